@@ -1,0 +1,38 @@
+"""The error tree of seatsim.
+
+SeatsimError            everything that seatsim raises on purpose
+├── InputError          a file, a value or a name is wrong (exit status 2, nothing written)
+├── RunError            a simulation could not be carried to its end (exit status 1)
+└── SynthesisError      a controller with the wanted property does not exist or was not found (exit status 1)
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class SeatsimError(Exception):
+    """Base of all errors that seatsim raises on purpose."""
+
+    exit_status = 1
+
+
+class InputError(SeatsimError):
+    """A file, a value or a name from the user is wrong."""
+
+    exit_status = 2
+
+
+class RunError(SeatsimError):
+    """A simulation could not be carried to its end."""
+
+
+class SynthesisError(SeatsimError):
+    """A controller with the wanted property does not exist, or none was found."""
+
+
+def nearest(name: object, known: Iterable[str]) -> str:
+    """Return `" (did you mean 'x'?)"` for the known name closest to `name`, or an empty string."""
+    matches = difflib.get_close_matches(str(name), [str(k) for k in known], n=1, cutoff=0.5)
+    return f" (did you mean '{matches[0]}'?)" if matches else ""

@@ -1,0 +1,65 @@
+"""Fields of the records that make up a rig: unit, meaning and bounds are stated once, here read by YAML, docs and fits.
+
+A record is a `typing.NamedTuple` whose annotations carry `param(...)`:
+
+    class Spring(NamedTuple):
+        stiffness: Annotated[float, param("N/m", "spring stiffness", low=0)] = 4600.0
+
+Pydantic validates it from a mapping, numba compiles it as a typed record.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
+
+from pydantic import Field, TypeAdapter
+from pydantic.fields import FieldInfo
+
+
+def param(
+    unit: str,
+    meaning: str,
+    low: float | None = None,
+    high: float | None = None,
+    above: float | None = None,
+) -> Any:
+    """Describe one field: SI `unit`, `meaning`, and bounds (`low <= value <= high`, `value > above`)."""
+    return Field(
+        description=meaning, json_schema_extra={"unit": unit}, ge=low, le=high, gt=above, strict=True
+    )
+
+
+class FieldCard(NamedTuple):
+    """What is known of one field of a record."""
+
+    name: str
+    unit: str
+    meaning: str
+    default: Any
+    required: bool
+
+
+@cache
+def adapter(record: type) -> TypeAdapter[Any]:
+    """Return the pydantic validator of a record class."""
+    return TypeAdapter(record)
+
+
+def describe(record: type) -> list[FieldCard]:
+    """List name, unit, meaning and default of every field of a record class, in order."""
+    defaults: dict[str, Any] = getattr(record, "_field_defaults", {})
+    cards = []
+    for name, hint in get_type_hints(record, include_extras=True).items():
+        info = _field_info(hint)
+        extra = info.json_schema_extra if info else None
+        unit = str(extra.get("unit", "")) if isinstance(extra, dict) else ""
+        meaning = (info.description or "") if info else ""
+        cards.append(FieldCard(name, unit, meaning, defaults.get(name), name not in defaults))
+    return cards
+
+
+def _field_info(hint: Any) -> FieldInfo | None:
+    if get_origin(hint) is not Annotated:
+        return None
+    return next((part for part in get_args(hint) if isinstance(part, FieldInfo)), None)
