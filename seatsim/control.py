@@ -34,6 +34,7 @@ class Measurement(NamedTuple):
     damper_force: float
     current: float
     temperature: float
+    replayed: float
 
 
 class LawCard(NamedTuple):

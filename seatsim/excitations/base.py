@@ -17,8 +17,8 @@ T = TypeVar("T", bound=type)
 class Floor(NamedTuple):
     """Vertical motion of the cab floor, sampled every `step` seconds from time zero; upward positive.
 
-    The simulation takes the acceleration as linear between samples; velocity and displacement are what laws and
-    transmissibility need, consistent with it and free of drift.
+    The simulation takes the acceleration as linear between samples; velocity and displacement are what laws
+    and transmissibility need, consistent with it and free of drift.
     """
 
     step: float
@@ -29,7 +29,7 @@ class Floor(NamedTuple):
     @property
     def time(self) -> Array:
         """Time of each sample in s, shape (N,)."""
-        return np.arange(len(self.acceleration)) * self.step
+        return self.step * np.arange(len(self.acceleration), dtype=np.float64)
 
 
 class Excitation(Protocol):

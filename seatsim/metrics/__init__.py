@@ -1,0 +1,58 @@
+"""What comes out of a run: comfort, motion, force and energy as single figures."""
+
+from seatsim.metrics.comfort import (
+    Dose,
+    crest_factor,
+    daily_exposure,
+    daily_vdv,
+    dose,
+    estimated_vdv,
+    mtvv,
+    running_rms,
+    seat_factor,
+    vdv,
+    weighted_rms,
+)
+from seatsim.metrics.motion import (
+    TrackingError,
+    electrical_energy,
+    end_stop_hits,
+    energy_residual,
+    force_tracking_error,
+    peak,
+    rms,
+)
+from seatsim.metrics.table import METRICS, Card, Metric, summarise
+from seatsim.metrics.transmissibility import Transmissibility, transmissibility
+from seatsim.metrics.weighting import WEIGHTINGS, Weighting, response, weight
+
+__all__ = [
+    "METRICS",
+    "WEIGHTINGS",
+    "Card",
+    "Dose",
+    "Metric",
+    "TrackingError",
+    "Transmissibility",
+    "Weighting",
+    "crest_factor",
+    "daily_exposure",
+    "daily_vdv",
+    "dose",
+    "electrical_energy",
+    "end_stop_hits",
+    "energy_residual",
+    "estimated_vdv",
+    "force_tracking_error",
+    "mtvv",
+    "peak",
+    "response",
+    "rms",
+    "running_rms",
+    "seat_factor",
+    "summarise",
+    "transmissibility",
+    "vdv",
+    "weight",
+    "weighted_rms",
+]

@@ -1,0 +1,97 @@
+"""Reading two columns of a table and refusing what cannot be a steady record."""
+
+from __future__ import annotations
+
+import zlib
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from seatsim.errors import InputError, nearest
+from seatsim.excitations.base import Array
+
+LEAST_ROWS = 16
+# Half-rounded times of a steady clock stay within this part of an interval; a lost row does not.
+LARGEST_JITTER = 0.25
+
+
+class Record(NamedTuple):
+    """Values at even intervals of time (s) or distance (m)."""
+
+    interval: float
+    values: Array
+
+    @property
+    def length(self) -> float:
+        """From the first to the last value, in s or m."""
+        return self.interval * (len(self.values) - 1)
+
+
+def read_record(path: str, axis: str, column: str) -> Record:
+    """Read `column` of a CSV (or CSV.gz) table over its column `axis`.
+
+    Raises:
+        InputError: no such file or column, not a table, fewer than 16 rows, an entry that is not a finite
+            number, or an `axis` that does not grow in even intervals.
+    """
+    table = _read(path, axis, column)
+    if len(table) < LEAST_ROWS:
+        raise InputError(
+            f"{path}: {len(table)} rows are too few for a record; permitted: at least {LEAST_ROWS}"
+        )
+    position = _numbers(path, table[axis])
+    return Record(_interval(path, axis, position), _numbers(path, table[column]))
+
+
+def _read(path: str, axis: str, column: str) -> pd.DataFrame:
+    try:
+        known = list(pd.read_csv(path, nrows=0, skipinitialspace=True).columns)
+        for name in (axis, column):
+            _check_column(path, name, known)
+        return pd.read_csv(path, usecols=[axis, column], skipinitialspace=True)
+    except FileNotFoundError as error:
+        raise InputError(f"{path}: no such file{_neighbour(Path(path))}") from error
+    except pd.errors.EmptyDataError as error:
+        raise InputError(f"{path}: the file is empty; expected a header line and rows of numbers") from error
+    except (pd.errors.ParserError, UnicodeDecodeError, OSError, EOFError, zlib.error) as error:
+        raise InputError(f"{path}: cannot be read as a CSV or CSV.gz table: {error}") from error
+
+
+def _check_column(path: str, name: str, known: list[str]) -> None:
+    if name not in known:
+        shown = ", ".join(known[:8]) + (f", ... ({len(known)} in all)" if len(known) > 8 else "")
+        raise InputError(f"{path}: no column '{name}'{nearest(name, known)}; columns: {shown}")
+
+
+def _neighbour(path: Path) -> str:
+    return nearest(path.name, (p.name for p in path.parent.iterdir())) if path.parent.is_dir() else ""
+
+
+def _numbers(path: str, column: pd.Series) -> Array:
+    numbers = pd.to_numeric(column, errors="coerce").to_numpy(dtype=float)
+    bad = np.flatnonzero(~np.isfinite(numbers))
+    if len(bad):
+        raise InputError(
+            f"{path}, line {bad[0] + 2}: column '{column.name}' holds '{column.iloc[bad[0]]}', not a number "
+            f"({len(bad)} of {len(numbers)} rows); choose another column or mend the table"
+        )
+    return numbers
+
+
+def _interval(path: str, axis: str, position: Array) -> float:
+    back = np.flatnonzero(np.diff(position) <= 0)
+    if len(back):
+        raise InputError(
+            f"{path}, line {back[0] + 3}: column '{axis}' does not grow; sort the rows, drop repeats"
+        )
+    interval = float(position[-1] - position[0]) / (len(position) - 1)
+    jitter = np.abs(position - position[0] - interval * np.arange(len(position)))
+    worst = int(np.argmax(jitter))
+    if jitter[worst] > LARGEST_JITTER * interval:
+        raise InputError(
+            f"{path}, line {worst + 2}: column '{axis}' is {jitter[worst]:.3g} off even steps of "
+            f"{interval:g}; permitted: {LARGEST_JITTER:g} of a step; resample the table at a steady rate"
+        )
+    return interval

@@ -1,0 +1,28 @@
+"""Keys that several excitations share: stated once, read alike by YAML, docs and errors."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from seatsim.fields import param
+
+
+def choice(meaning: str, unit: str = "") -> Any:
+    """Describe a key that has no numeric bounds of its own: a choice, a list or a nested record."""
+    return Field(description=meaning, json_schema_extra={"unit": unit})
+
+
+Duration = Annotated[float, param("s", "length of the run", above=0, high=7200)]
+Speed = Annotated[float, param("m/s", "constant vehicle speed", low=1, high=60)]
+Through = Annotated[
+    Literal["vehicle", "direct"],
+    choice(
+        "path from road to floor: 'vehicle' (tyre, body and cab mounts) or 'direct' (the floor is the road)"
+    ),
+]
+Quantity = Annotated[
+    Literal["displacement", "acceleration"],
+    choice("what the amplitude is of: displacement in m or acceleration in m/s^2"),
+]

@@ -1,0 +1,109 @@
+"""A measured floor or road from a table: acceleration over time, or elevation over distance."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+from scipy.constants import g
+from scipy.signal import detrend
+
+from seatsim.errors import InputError
+from seatsim.excitations.base import Floor, excitation
+from seatsim.excitations.columns import Record, read_record
+from seatsim.excitations.keys import Speed, Through, choice
+from seatsim.excitations.motion import check_step, samples, soft_start
+from seatsim.excitations.road import LONGEST, SHORTEST
+from seatsim.excitations.spectra import Spectrum, band, integrated_twice, lines, mirrored, motion_of
+from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response
+from seatsim.fields import param
+
+# Part of a table's Nyquist frequency up to which its content is trusted.
+USABLE = 0.8
+
+
+@excitation("table")
+class Table(NamedTuple):
+    """A floor or a road that somebody measured, from a CSV or CSV.gz table with one of two axes.
+
+    - `time_column`: `column` is the vertical floor acceleration. Its mean (gravity, bias) is removed, it is
+      limited to `high_pass..low_pass`, and integrated in the frequency domain.
+    - `distance_column`: `column` is the road's elevation in m, met at `speed`. Its straight trend is removed,
+      it is limited to 0.011 to 2.83 cycles/m (the band of `kind: road`; less where the table is coarser), and
+      passes `vehicle.floor_response` unless `through: direct`.
+
+    Both filters have no phase shift (see `spectra.band`) and take the record as continued by its mirror
+    image, which `repeat: mirror` also plays when the run is longer than the record. The floor is faded in
+    over the first second. The record is stretched by less than half a step over its length so that it holds a
+    whole number of steps.
+    """
+
+    path: Annotated[str, choice("the table's file")]
+    column: Annotated[str, choice("column of the acceleration or elevation")]
+    time_column: Annotated[str | None, choice("column of the time", "s")] = None
+    distance_column: Annotated[str | None, choice("column of the distance", "m")] = None
+    speed: Speed | None = None
+    duration: Annotated[
+        float | None, param("s", "length of the run; default: the record's", above=0, high=7200)
+    ] = None
+    repeat: Annotated[Literal["none", "mirror"], choice("what follows the record's end")] = "none"
+    unit: Annotated[Literal["m/s^2", "g"], choice("unit of a measured acceleration")] = "m/s^2"
+    high_pass: Annotated[float, param("Hz", "lower corner of a measured acceleration", low=0.02)] = 0.1
+    low_pass: Annotated[float, param("Hz", "end of its band, at most 0.8 of Nyquist", above=0)] = 80.0
+    through: Through = "vehicle"
+    vehicle: Annotated[Vehicle, choice("the vehicle between a measured road and the floor")] = TRUCK
+
+    def floor(self, step: float, seed: int) -> Floor:
+        """Return the motion of the floor; `seed` plays no part.
+
+        Raises:
+            InputError: the table cannot be used (see `columns.read_record`), the keys do not say whether it
+                is over time or distance, the run is longer than the record, or `step` is too coarse for its
+                band.
+        """
+        if (self.time_column is None) == (self.distance_column is None):
+            raise InputError(f"table {self.path}: give either time_column or distance_column (with speed)")
+        if self.time_column is not None:
+            return self._measured(read_record(self.path, self.time_column, self.column), step)
+        return self._driven(read_record(self.path, str(self.distance_column), self.column), step)
+
+    def _measured(self, record: Record, step: float) -> Floor:
+        if self.speed is not None:
+            raise InputError(
+                f"table {self.path}: speed belongs to distance_column; drop it beside time_column"
+            )
+        highest = min(self.low_pass, USABLE * 0.5 / record.interval)
+        if highest <= 2 * self.high_pass:
+            raise InputError(
+                f"table {self.path}: no band is left between {self.high_pass:g} and {highest:g} Hz; "
+                f"permitted: a high_pass below {highest / 2:g} Hz"
+            )
+        scale = g if self.unit == "g" else 1.0
+        period = 2 * record.length
+        acceleration = mirrored(scale * (record.values - record.values.mean()))
+        acceleration = acceleration[: int(highest * period) + 1]
+        acceleration *= band(lines(acceleration, period), self.high_pass, highest)
+        return self._play(integrated_twice(acceleration, period), record.length, highest, step)
+
+    def _driven(self, record: Record, step: float) -> Floor:
+        if self.speed is None:
+            raise InputError(f"table {self.path}: a table over distance needs speed, in m/s")
+        shortest = min(SHORTEST, USABLE * 0.5 / record.interval)
+        period = 2 * record.length
+        road = mirrored(detrend(record.values))[: int(shortest * period) + 1]
+        wavenumber = lines(road, period)
+        road = road * band(wavenumber, LONGEST, shortest)
+        if self.through == "vehicle":
+            road = road * floor_response(self.speed * wavenumber, self.vehicle)
+        return self._play(road, record.length / self.speed, self.speed * shortest, step)
+
+    def _play(self, displacement: Spectrum, length: float, highest: float, step: float) -> Floor:
+        check_step("table", step, highest, per_period=5)
+        duration = length if self.duration is None else self.duration
+        if duration > length + step and self.repeat == "none":
+            raise InputError(
+                f"table {self.path}: a duration of {duration:g} s exceeds the record's {length:.4g} s; "
+                "shorten it, or set repeat: mirror"
+            )
+        size = max(round(2 * length / step), 2 * np.size(displacement) - 1)
+        return soft_start(step, motion_of(displacement, step, size, samples(duration, step)))

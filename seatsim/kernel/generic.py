@@ -1,0 +1,117 @@
+"""Generic functions that the compiled loop calls; numba resolves each by the class of the record it is given.
+
+A record class is an ordinary NamedTuple with ordinary methods. `hook(default)` makes a function `f(self, ...)` that in
+compiled code is the record's own method of that name, inlined; where the class has none, the default's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from numba import njit, types
+from numba.extending import overload
+
+from seatsim.temperature import Heat, TemperatureFactors
+from seatsim.temperature import heat as _heat
+
+Tuple = tuple[float, ...]
+
+
+def hook(default: Callable[..., Any]) -> Callable[..., Any]:
+    """Make the generic function that calls a record's method of the default's name, or else the default."""
+    name = default.__name__
+
+    def generic(self: Any, *args: Any) -> Any:
+        method = getattr(self, name, None)
+        return method(*args) if method else default(self, *args)
+
+    def resolve(self: Any, *args: Any) -> Callable[..., Any] | None:
+        cls = getattr(self, "instance_class", None)
+        return getattr(cls, name, default) if isinstance(self, types.BaseNamedTuple) else None
+
+    generic.__name__ = generic.__qualname__ = name
+    overload(generic, strict=False, jit_options={"forceinline": True})(resolve)
+    return generic
+
+
+@hook
+def force(self: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> float:
+    """Damper force in N; every damper has its own."""
+    raise TypeError
+
+
+@hook
+def rates(self: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> Tuple:
+    """Time derivative of the damper's state."""
+    return ()
+
+
+@hook
+def coulomb(self: Any, i: float, heat: Heat) -> float:
+    """Magnitude in N of the damper's set-valued friction."""
+    return 0.0
+
+
+@hook
+def update(self: Any, y: Any, state: Tuple) -> Tuple:
+    """Next state of a control law."""
+    return state
+
+
+def wants_force(law: Any) -> bool:
+    """Whether the law answers with a force (through the inverse) rather than with a current."""
+    return hasattr(law, "force")
+
+
+@overload(wants_force, strict=False, jit_options={"forceinline": True})
+def _wants_force(law: Any) -> Callable[..., bool]:
+    answer = hasattr(law.instance_class, "force")
+    return lambda law: answer
+
+
+def ask(law: Any, y: Any, state: Tuple) -> float:
+    """Return what the law wants: a force in N or a current in A."""
+    answer: float = (law.force if wants_force(law) else law.current)(y, state)
+    return answer
+
+
+@overload(ask, strict=False, jit_options={"forceinline": True})
+def _ask(law: Any, y: Any, state: Any) -> Callable[..., float]:
+    cls = law.instance_class
+    method: Callable[..., float] = cls.force if hasattr(cls, "force") else cls.current
+    return method
+
+
+def axpy(y: Tuple, h: float, k: Tuple) -> Tuple:
+    """Return `y + h k` for two tuples of equal length."""
+    return tuple(a + h * b for a, b in zip(y, k, strict=True))
+
+
+@overload(axpy, strict=False, jit_options={"forceinline": True})
+def _axpy(y: Any, h: float, k: Any) -> Callable[..., Any]:
+    return _unrolled("y, h, k", "y[{j}] + h * k[{j}]", len(y))
+
+
+def combine(y: Tuple, h: float, k1: Tuple, k2: Tuple, k3: Tuple, k4: Tuple) -> Tuple:
+    """Return `y + h (k1 + 2 k2 + 2 k3 + k4) / 6`, the step of the classical Runge-Kutta method."""
+    stages = zip(y, k1, k2, k3, k4, strict=True)
+    return tuple(a + h / 6.0 * (b + 2.0 * (c + d) + e) for a, b, c, d, e in stages)
+
+
+@overload(combine, strict=False, jit_options={"forceinline": True})
+def _combine(y: Any, h: float, k1: Any, k2: Any, k3: Any, k4: Any) -> Callable[..., Any]:
+    term = "y[{j}] + h / 6.0 * (k1[{j}] + 2.0 * (k2[{j}] + k3[{j}]) + k4[{j}])"
+    return _unrolled("y, h, k1, k2, k3, k4", term, len(y))
+
+
+def _unrolled(arguments: str, term: str, length: int) -> Callable[..., Any]:
+    """Build a function that returns a tuple of `term` for j = 0 .. length - 1: numba has no tuple comprehension."""
+    body = "".join(term.format(j=j) + ", " for j in range(length))
+    namespace: dict[str, Any] = {}
+    exec(f"def impl({arguments}): return ({body})", namespace)
+    implementation: Callable[..., Any] = namespace["impl"]
+    return implementation
+
+
+heat_at: Callable[[TemperatureFactors, float], Heat] = njit(_heat)

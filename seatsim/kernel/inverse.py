@@ -1,0 +1,123 @@
+"""The inverse of a damper: from a wanted force to the current that comes closest to it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numba
+
+from seatsim.kernel.generic import Tuple, coulomb, force
+from seatsim.temperature import Heat
+
+CELLS = 16
+"""Cells of the grid on which a non-polynomial force-current map is searched for its first crossing."""
+
+
+class Answer(NamedTuple):
+    """Current in A, the force in N that the believed damper gives with it, and 1.0 where that is the wanted force."""
+
+    current: float
+    force: float
+    served: float
+
+
+@numba.njit(forceinline=True)
+def invert(
+    damper: Any, order: int, wanted: float, x: float, v: float, heat: Heat, z: Tuple, max_current: float
+) -> Answer:
+    """Return the least current in `[0, max_current]` whose force comes closest to `wanted` clipped to what can be done.
+
+    Outside the dissipative quadrant (`wanted v <= 0`) the current is zero; inside, the wanted force is clipped to the
+    range of forces over the permitted currents at this motion, temperature and state. Where the force is a polynomial in the current of
+    `order` 1 or 2 it is recovered exactly from three values and solved in closed form; any other map, which need not be
+    monotone, is searched from zero current upward for the first cell that holds the force, then bracketed there.
+    """
+    if wanted * v <= 0.0:
+        current = 0.0
+    elif order > 0:
+        current = _closed_form(damper, wanted, x, v, heat, z, max_current)
+    else:
+        current = _search(damper, wanted, x, v, heat, z, max_current)
+    got = total(damper, x, v, current, heat, z)
+    served = 1.0 if abs(got - wanted) <= 1e-6 * (1.0 + abs(wanted)) else 0.0
+    return Answer(current, got, served)
+
+
+@numba.njit(forceinline=True)
+def total(damper: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> float:
+    """Return the damper force in N with its set-valued friction, which is zero at v = 0."""
+    smooth: float = force(damper, x, v, i, heat, z)
+    return smooth + coulomb(damper, i, heat) * (0.0 if v == 0.0 else math.copysign(1.0, v))
+
+
+@numba.njit(forceinline=True)
+def _closed_form(damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float) -> float:
+    f0 = total(damper, x, v, 0.0, heat, z)
+    f1 = total(damper, x, v, 0.5 * top, heat, z)
+    f2 = total(damper, x, v, top, heat, z)
+    a, b, c = 2.0 * (f0 - 2.0 * f1 + f2), 4.0 * f1 - 3.0 * f0 - f2, f0 - target
+    size = abs(f0) + abs(f1) + abs(f2)
+    if abs(a) <= 1e-10 * size:
+        a = 0.0
+    best = 0.0 if abs(c) <= abs(f2 - target) else 1.0
+    turn = -0.5 * b / a if a != 0.0 else -1.0
+    if 0.0 < turn < 1.0 and abs(c + turn * (b + a * turn)) < min(abs(c), abs(f2 - target)):
+        best = turn
+    if a == 0.0:
+        if b != 0.0 and 0.0 <= -c / b <= 1.0:
+            best = -c / b
+        return best * top
+    square = b * b - 4.0 * a * c
+    if square < 0.0:
+        return best * top
+    q = -0.5 * (b + math.copysign(math.sqrt(square), b))
+    r1 = q / a
+    r2 = c / q if q != 0.0 else r1
+    low, high = min(r1, r2), max(r1, r2)
+    if 0.0 <= low <= 1.0:
+        return low * top
+    if 0.0 <= high <= 1.0:
+        return high * top
+    return best * top
+
+
+@numba.njit(forceinline=True)
+def _search(damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float) -> float:
+    left, f_left = 0.0, total(damper, x, v, 0.0, heat, z) - target
+    if f_left == 0.0:
+        return 0.0
+    best, f_best = left, abs(f_left)
+    for cell in range(CELLS):
+        right = top * (cell + 1) / CELLS
+        f_right = total(damper, x, v, right, heat, z) - target
+        if f_left * f_right <= 0.0:
+            return _bracket(damper, target, x, v, heat, z, left, f_left, right, f_right)
+        if abs(f_right) < f_best:
+            best, f_best = right, abs(f_right)
+        left, f_left = right, f_right
+    return best
+
+
+@numba.njit(forceinline=True)
+def _bracket(
+    damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple,
+    left: float, f_left: float, right: float, f_right: float,
+) -> float:
+    """Return the root in `[left, right]` by the Illinois method, to 1e-6 N."""
+    side = 0
+    middle = right
+    for _ in range(60):
+        middle = (left * f_right - right * f_left) / (f_right - f_left)
+        f_middle = total(damper, x, v, middle, heat, z) - target
+        if abs(f_middle) <= 1e-6:
+            break
+        if f_middle * f_left > 0.0:
+            left, f_left = middle, f_middle
+            f_right *= 0.5 if side == -1 else 1.0
+            side = -1
+        else:
+            right, f_right = middle, f_middle
+            f_left *= 0.5 if side == 1 else 1.0
+            side = 1
+    return middle

@@ -1,0 +1,173 @@
+"""The time loop: one run of a seat from rest, compiled for its combination of damper, law and inverse."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.coil import Coil
+from seatsim.control import Measurement
+from seatsim.kernel.belief import follow, heat, state
+from seatsim.kernel.generic import Tuple, ask, heat_at, update, wants_force
+from seatsim.kernel.inverse import invert
+from seatsim.kernel.rig import Rig
+from seatsim.kernel.step import Drive, Progress, advance, start
+from seatsim.temperature import Heat, TemperatureFactors, Thermal
+
+Array = NDArray[np.float64]
+
+CHANNELS = (
+    "floor_acceleration",
+    "frame_acceleration",
+    "driver_acceleration",
+    "suspension_displacement",
+    "suspension_velocity",
+    "cushion_displacement",
+    "cushion_velocity",
+    "damper_force",
+    "wanted_force",
+    "force_served",
+    "coil_current",
+    "current_command",
+    "damper_temperature",
+    "energy_floor",
+    "energy_damper",
+    "energy_suspension",
+    "energy_cushion",
+)
+"""Columns of a history, in order; SI units, degrees Celsius."""
+
+
+class Inputs(NamedTuple):
+    """What drives a run, sampled every `step`, shape (N,) each; an array of length 0 is an input that is absent.
+
+    `replayed` is a recorded command for laws that replay it, `prescribed` a coil current that bypasses the coil,
+    `temperature` the damper's temperature in degC.
+    """
+
+    floor_acceleration: Array
+    floor_velocity: Array
+    temperature: Array
+    replayed: Array
+    prescribed: Array
+
+
+class Timing(NamedTuple):
+    """Step of the loop in s, steps per sample of the controller, error tolerance, and whether temperature is a state."""
+
+    step: float
+    sample_every: int
+    tolerance: float
+    self_heating: bool
+
+
+class Setup(NamedTuple):
+    """The constant parts of a run."""
+
+    rig: Rig
+    coil: Coil
+    factors: TemperatureFactors
+    thermal: Thermal
+    law: Any
+    belief: Any
+    timing: Timing
+
+
+def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple, law_state: Tuple, out: Array) -> int:
+    """Simulate from rest and fill `out`, shape (N, len(CHANNELS)); return the number of samples reached (N if all)."""
+    rig, coil, law, belief, timing = setup.rig, setup.coil, setup.law, setup.belief, setup.timing
+    step, samples = timing.step, out.shape[0]
+    prescribed = len(inputs.prescribed) > 0
+    delay_steps = int(math.floor(coil.delay / step + 1e-9))
+    split = max(0.0, coil.delay - delay_steps * step)
+    current = inputs.prescribed[0] if prescribed else 0.0
+    temperature = inputs.temperature[0]
+    factors = heat_at(setup.factors, temperature)
+    mechanical = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    now = start(rig, mechanical + damper_state, inputs.floor_acceleration[0], current, factors, step)
+    command, wanted, served = 0.0, math.nan, math.nan
+
+    for k in range(samples):
+        floor = inputs.floor_acceleration[k]
+        if k % timing.sample_every == 0:
+            y = _measure(rig, inputs, now, k, step, current, temperature)
+            if wants_force(law):
+                wanted = ask(law, y, law_state)
+                answer = invert(
+                    belief.damper, belief.order, wanted, rig.plant.damper_ratio * now.state[0],
+                    rig.plant.damper_ratio * now.state[1], heat(belief, factors, temperature),
+                    state(belief, now.state[8:], believed), coil.max_current,
+                )
+                command, served = answer.current, answer.served
+            else:
+                command = ask(law, y, law_state)
+            command = min(max(command, 0.0), coil.max_current)
+            law_state = update(law, y, law_state)
+        _record(out, k, now, floor, wanted, served, current, command, temperature)
+        if k == samples - 1:
+            break
+        after = out[k - delay_steps, 11] if k >= delay_steps else 0.0
+        before = out[k - delay_steps - 1, 11] if k >= delay_steps + 1 else 0.0
+        if prescribed:
+            after = inputs.prescribed[k + 1]
+        drive = Drive(step, floor, inputs.floor_acceleration[k + 1] - floor, current, before, after, split, prescribed)
+        x, v, work = now.state[0], now.state[1], now.state[5]
+        now, next_current, good = advance(rig, coil, drive, factors, now, timing.tolerance)
+        if not good:
+            return k
+        ratio = rig.plant.damper_ratio
+        believed = follow(
+            belief.damper, believed, ratio * x, ratio * v, ratio * now.state[0], ratio * now.state[1],
+            0.5 * (current + next_current), heat(belief, factors, temperature), step,
+        )
+        if timing.self_heating:
+            temperature += _warming(setup.thermal, coil, temperature, now.state[5] - work, current, next_current, step)
+            factors = heat_at(setup.factors, temperature)
+        elif inputs.temperature[k + 1] != temperature:
+            temperature = inputs.temperature[k + 1]
+            factors = heat_at(setup.factors, temperature)
+        current = next_current
+    return samples
+
+
+@numba.njit(forceinline=True)
+def _measure(
+    rig: Rig, inputs: Inputs, now: Progress, k: int, step: float, current: float, temperature: float
+) -> Measurement:
+    """Return what the law sees at sample `k`."""
+    floor = inputs.floor_acceleration[k]
+    frame = now.rates[1] + floor
+    velocity = now.state[1] + inputs.floor_velocity[k]
+    replayed = inputs.replayed[k] if len(inputs.replayed) > 0 else math.nan
+    return Measurement(
+        k * step, now.state[0], now.state[1], velocity, velocity + now.state[3], floor, frame,
+        frame + now.rates[3], now.flow.damper_force, current, temperature, replayed,
+    )
+
+
+@numba.njit(forceinline=True)
+def _record(
+    out: Array, k: int, now: Progress, floor: float, wanted: float, served: float, current: float, command: float,
+    temperature: float,
+) -> None:
+    """Write sample `k` in the order of `CHANNELS`."""
+    s, row = now.state, out[k]
+    row[0], row[1], row[2] = floor, now.rates[1] + floor, now.rates[1] + floor + now.rates[3]
+    row[3], row[4], row[5], row[6] = s[0], s[1], s[2], s[3]
+    row[7], row[8], row[9] = now.flow.damper_force, wanted, served
+    row[10], row[11], row[12] = current, command, temperature
+    row[13], row[14], row[15], row[16] = s[4], s[5], s[6], s[7]
+
+
+@numba.njit(forceinline=True)
+def _warming(
+    thermal: Thermal, coil: Coil, temperature: float, work: float, i0: float, i1: float, step: float
+) -> float:
+    """Return the rise of temperature in K over a step: work of the damper and heat of the coil less what is lost."""
+    ohmic = coil.resistance * (i0 * i0 + i0 * i1 + i1 * i1) / 3.0 * step
+    loss = thermal.conductance * (temperature - thermal.ambient) * step
+    return (abs(work) + ohmic - loss) / thermal.heat_capacity

@@ -1,0 +1,173 @@
+"""One step of the rig: classical Runge-Kutta of order 4, sub-stepped where the rig is stiff or sticks.
+
+The derivative at the end of a step serves as the first stage of the next, and as the fifth stage of an embedded
+solution of order 3; their difference `h (k4 - k5) / 6` in the velocities is the error estimate. A smooth rig takes one
+sub-step a step at four evaluations; a stiff damper, a branch or an end stop takes as many as the tolerance needs.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numba
+
+from seatsim.coil import Coil, relax
+from seatsim.kernel.generic import Tuple, axpy, combine
+from seatsim.kernel.rig import Flow, Rig, derivative
+from seatsim.temperature import Heat
+
+relaxed = numba.njit(relax)
+FLOOR_OF_ERROR_SCALE = 0.01
+"""m/s added to the speed that the tolerance is relative to."""
+SMALLEST = 2.0**-26
+"""Shortest sub-step as a fraction of the step."""
+NEWTON_STEPS = 5
+"""Most corrections of the instant at which sliding ends."""
+BREAKAWAY = 2.0**-7
+"""Fraction of the step to which the instant of breaking away is resolved: the error estimate does not see it."""
+REST = 1e-12
+"""Speed in m/s that counts as rest there."""
+
+
+class Drive(NamedTuple):
+    """What acts on the rig during one step of `length` seconds.
+
+    Floor acceleration runs linearly from `floor` by `floor_rise`. The coil relaxes from `current` towards `before` for
+    the first `split` seconds and towards `after` from then on; with a `prescribed` current it runs linearly to `after`.
+    """
+
+    length: float
+    floor: float
+    floor_rise: float
+    current: float
+    before: float
+    after: float
+    split: float
+    prescribed: bool
+
+
+class Progress(NamedTuple):
+    """Where the integration stands: state, its rates and flow, sliding direction, last sub-step in s."""
+
+    state: Tuple
+    rates: Tuple
+    flow: Flow
+    slip: float
+    substep: float
+
+
+@numba.njit(forceinline=True)
+def current_at(coil: Coil, drive: Drive, time: float) -> float:
+    """Return the coil current `time` seconds into the step."""
+    if drive.prescribed:
+        return drive.current + (drive.after - drive.current) * time / drive.length
+    if drive.split <= 0.0:
+        return relaxed(coil, drive.current, drive.after, time)
+    if time <= drive.split:
+        return relaxed(coil, drive.current, drive.before, time)
+    return relaxed(coil, relaxed(coil, drive.current, drive.before, drive.split), drive.after, time - drive.split)
+
+
+@numba.njit(forceinline=True)
+def start(rig: Rig, state: Tuple, floor: float, current: float, heat: Heat, substep: float) -> Progress:
+    """Return the progress of a rig in `state`, sliding or at rest."""
+    rates, flow = derivative(rig, state, floor, current, heat, 0.0)
+    return Progress(state, rates, flow, 0.0, substep)
+
+
+@numba.njit(forceinline=True)
+def _try(
+    rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, time: float, h: float
+) -> tuple[Tuple, Tuple, Flow, Tuple, float]:
+    """Return state, rates, flow after a sub-step of `h` from `time`, the fourth stage, and the current at the end."""
+    middle = drive.floor + drive.floor_rise * (time + 0.5 * h) / drive.length
+    end = drive.floor + drive.floor_rise * (time + h) / drive.length
+    i_middle = current_at(coil, drive, time + 0.5 * h)
+    i_end = current_at(coil, drive, time + h)
+    k1, slip = now.rates, now.slip
+    k2, _ = derivative(rig, axpy(now.state, 0.5 * h, k1), middle, i_middle, heat, slip)
+    k3, _ = derivative(rig, axpy(now.state, 0.5 * h, k2), middle, i_middle, heat, slip)
+    k4, _ = derivative(rig, axpy(now.state, h, k3), end, i_end, heat, slip)
+    state = combine(now.state, h, k1, k2, k3, k4)
+    rates, flow = derivative(rig, state, end, i_end, heat, slip)
+    return state, rates, flow, k4, i_end
+
+
+@numba.njit(forceinline=True)
+def advance(
+    rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, tolerance: float
+) -> tuple[Progress, float, bool]:
+    """Return the progress after one step, the current then, and whether the step succeeded."""
+    time, current, h = 0.0, drive.current, now.substep
+    remaining = drive.length
+    while remaining > 0.0:
+        last = h >= remaining * (1.0 - 1e-12)
+        if last:
+            h = remaining
+        state, rates, flow, k4, i_end = _try(rig, coil, drive, heat, now, time, h)
+        scale = tolerance * (FLOOR_OF_ERROR_SCALE + abs(state[1]) + abs(state[3]))
+        error = h / 6.0 * (abs(k4[1] - rates[1]) + abs(k4[3] - rates[3])) / scale
+        if not error <= 1.0 and h > SMALLEST * drive.length:
+            h *= max(0.1, 0.9 / error**0.25) if error < 1e12 else 0.1
+            continue
+        if not error < 1e12:
+            return now, current, False
+        slip = now.slip
+        if flow.friction_limit > 0.0:
+            held = now.state[1] == 0.0 and now.rates[1] == 0.0
+            if held and state[1] != 0.0 and h > BREAKAWAY * drive.length:
+                h *= 0.5
+                continue
+            if slip * state[1] < 0.0:
+                # The sliding ends inside this sub-step: go to that instant, then let the friction decide anew.
+                longest, last = h, False
+                h *= _crossing(now.state[1], now.rates[1], state[1], rates[1], h)
+                for _ in range(NEWTON_STEPS):
+                    h = min(max(h, SMALLEST * drive.length), longest)
+                    state, rates, flow, k4, i_end = _try(rig, coil, drive, heat, now, time, h)
+                    if abs(state[1]) <= REST or rates[1] == 0.0:
+                        break
+                    h -= state[1] / rates[1]
+                state = _at_rest(state)
+            elif slip == 0.0 and state[1] * now.rates[1] <= 0.0 and now.state[1] == 0.0:
+                state = _at_rest(state)
+            slip = 0.0 if state[1] == 0.0 else (1.0 if state[1] > 0.0 else -1.0)
+            if slip != now.slip:
+                end = drive.floor + drive.floor_rise * (time + h) / drive.length
+                rates, flow = derivative(rig, state, end, i_end, heat, slip)
+        now = Progress(state, rates, flow, slip, h)
+        time += h
+        current = i_end
+        remaining = 0.0 if last else drive.length - time
+        h = _longer(h, error, drive.length)
+    return Progress(now.state, now.rates, now.flow, now.slip, h), current, True
+
+
+@numba.njit(forceinline=True)
+def _longer(h: float, error: float, length: float) -> float:
+    """Return the next sub-step after one of `h` with the given error in units of the tolerance."""
+    if h >= length:
+        return length
+    factor = 4.0 if error < 1e-3 else min(4.0, max(0.2, 0.9 / error**0.25))
+    return min(h * factor, length)
+
+
+@numba.njit(forceinline=True)
+def _at_rest(state: Tuple) -> Tuple:
+    """Return the state with the suspension velocity set to zero."""
+    return state[:1] + (0.0,) + state[2:]
+
+
+@numba.njit(forceinline=True)
+def _crossing(v0: float, a0: float, v1: float, a1: float, h: float) -> float:
+    """Return the fraction of the sub-step at which the Hermite cubic through both ends' velocities is zero."""
+    low, high = 0.0, 1.0
+    for _ in range(50):
+        t = 0.5 * (low + high)
+        u = 1.0 - t
+        v = u * u * (v0 * (1.0 + 2.0 * t) + h * a0 * t) + t * t * (v1 * (3.0 - 2.0 * t) - h * a1 * u)
+        if v * v0 > 0.0:
+            low = t
+        else:
+            high = t
+    return 0.5 * (low + high)

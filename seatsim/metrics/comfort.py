@@ -1,0 +1,152 @@
+"""How a person feels vertical vibration: figures of ISO 2631-1:1997 (clause 6) and the SEAT factor.
+
+`weighted` is a frequency-weighted acceleration in m/s^2, shape (N,), as `weight` returns it. Each sample
+stands for one sampling interval, so a record of N samples lasts T = N / sample_rate. All functions raise
+`InputError` where a signal is empty or not one-dimensional, or where a rate or duration is not above 0.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from seatsim.metrics.arrays import Array, as_pair, as_signal, positive, ratio
+from seatsim.metrics.motion import peak, rms
+from seatsim.metrics.weighting import weight
+
+WINDOW = 1.0
+"""Integration time of the running RMS in s (ISO 2631-1:1997, 6.3)."""
+
+EIGHT_HOURS = 8.0 * 3600.0
+"""Reference duration of a day's exposure in s (directive 2002/44/EC)."""
+
+
+def weighted_rms(acceleration: ArrayLike, sample_rate: float, weighting: str = "Wk") -> float:
+    """Return a_w = sqrt(1/T integral a_w(t)^2 dt) in m/s^2 (ISO 2631-1:1997, 6.1).
+
+    Args:
+        acceleration: not yet weighted, in m/s^2, shape (N,).
+        sample_rate: in Hz, at least 200.
+        weighting: "Wk" for vertical, "Wd" for horizontal vibration; no axis factor (z: 1) is applied.
+    """
+    return rms(weight(acceleration, sample_rate, weighting))
+
+
+def running_rms(weighted: ArrayLike, sample_rate: float) -> Array:
+    """Return the running RMS in m/s^2, shape (N,), by *linear* integration over the last second.
+
+        a_w(t0) = sqrt(1/tau integral from t0 - tau to t0 of a_w(t)^2 dt),  tau = 1 s
+
+    (ISO 2631-1:1997, 6.3). Other software averages exponentially instead, which gives other figures. The
+    rig counts as at rest before the record, so the first second rises from 0.
+    """
+    x = as_signal(weighted, "weighted")
+    width = max(1, round(WINDOW * positive(sample_rate, "sample_rate")))
+    energy = np.concatenate((np.zeros(width), np.cumsum(x * x)))
+    return np.sqrt(np.maximum(energy[width:] - energy[:-width], 0.0) / width)
+
+
+def mtvv(weighted: ArrayLike, sample_rate: float) -> float:
+    """Return MTVV = max_t0 a_w(t0), the largest `running_rms`, in m/s^2 (ISO 2631-1:1997, 6.3)."""
+    return float(np.max(running_rms(weighted, sample_rate)))
+
+
+def vdv(weighted: ArrayLike, sample_rate: float) -> float:
+    """Return the vibration dose value (integral a_w(t)^4 dt)^(1/4) in m/s^1.75 (ISO 2631-1:1997, 6.3).
+
+    It grows with the record's length; `daily_vdv` scales it to a day.
+    """
+    square = np.square(as_signal(weighted, "weighted"))
+    return math.pow(float(square @ square) / positive(sample_rate, "sample_rate"), 0.25)
+
+
+def estimated_vdv(rms_weighted: float, duration: float) -> float:
+    """Return eVDV = 1.4 a_w T^(1/4) in m/s^1.75 for `rms_weighted` a_w in m/s^2 over `duration` T in s.
+
+    An estimate for motion without shocks (crest factor below about 6); for stationary Gaussian motion the
+    factor is 3^(1/4) = 1.316, for a sine 1.5^(1/4) = 1.107.
+    """
+    return 1.4 * rms_weighted * math.pow(positive(duration, "duration"), 0.25)
+
+
+def crest_factor(weighted: ArrayLike) -> float:
+    """Return max |a_w(t)| / a_w of the weighted signal, dimensionless (ISO 2631-1:1997, 6.2); NaN at rest."""
+    return ratio(peak(weighted), rms(weighted))
+
+
+def seat_factor(driver: ArrayLike, floor: ArrayLike, sample_rate: float) -> float:
+    """Return SEAT = a_w(driver) / a_w(floor), both weighted with Wk; a ratio, not percent (ISO 10326-1).
+
+    Below 1 the seat isolates. NaN where the floor is at rest. The standard measures on the cushion under the
+    driver; here the driver is the mass that rests on it, so its acceleration stands for the cushion's
+    surface.
+
+    Args:
+        driver: acceleration of the driver in m/s^2, shape (N,), not weighted.
+        floor: acceleration of the floor in m/s^2, same shape, not weighted.
+        sample_rate: in Hz, at least 200.
+    """
+    seat, base = as_pair(driver, floor, ("driver", "floor"))
+    return ratio(weighted_rms(seat, sample_rate), weighted_rms(base, sample_rate))
+
+
+class Dose(NamedTuple):
+    """Whether a_w alone describes a record: doses, and ratios that grow with shocks (ISO 2631-1, 6.2, 6.3).
+
+    Thresholds in common use, beyond which shocks matter, are 9 for the crest factor, 1.5 for `mtvv_ratio` and
+    1.75 for `vdv_ratio`; they are not checked against the standard's text and none is applied here. A steady
+    sine has 1.414, 1 and 1.107; stationary Gaussian motion has a `vdv_ratio` of 1.316.
+    """
+
+    duration: float
+    """T in s."""
+    rms: float
+    """a_w in m/s^2."""
+    vdv: float
+    """Vibration dose value in m/s^1.75."""
+    estimated_vdv: float
+    """1.4 a_w T^(1/4) in m/s^1.75."""
+    mtvv: float
+    """Maximum transient vibration value in m/s^2."""
+    crest_factor: float
+    """max |a_w(t)| / a_w."""
+    mtvv_ratio: float
+    """MTVV / a_w."""
+    vdv_ratio: float
+    """VDV / (a_w T^(1/4))."""
+
+
+def dose(weighted: ArrayLike, sample_rate: float) -> Dose:
+    """Return all dose figures of one weighted record; ratios are NaN at rest."""
+    x = as_signal(weighted, "weighted")
+    duration = x.size / positive(sample_rate, "sample_rate")
+    a_w, value, transient = rms(x), vdv(x, sample_rate), mtvv(x, sample_rate)
+    return Dose(
+        duration=duration,
+        rms=a_w,
+        vdv=value,
+        estimated_vdv=estimated_vdv(a_w, duration),
+        mtvv=transient,
+        crest_factor=ratio(peak(x), a_w),
+        mtvv_ratio=ratio(transient, a_w),
+        vdv_ratio=ratio(value, a_w * duration**0.25),
+    )
+
+
+def daily_exposure(rms_weighted: float, exposure: float) -> float:
+    """Return A(8) = a_w sqrt(T / 8 h) in m/s^2, the vibration lasting `exposure` T in s a day.
+
+    Directive 2002/44/EC: action is due at 0.5 m/s^2, the limit is 1.15 m/s^2.
+    """
+    return rms_weighted * math.sqrt(positive(exposure, "exposure") / EIGHT_HOURS)
+
+
+def daily_vdv(value: float, duration: float, exposure: float) -> float:
+    """Return VDV (exposure / duration)^(1/4) in m/s^1.75, where `duration` s go on for `exposure` s a day.
+
+    Directive 2002/44/EC: action is due at 9.1 m/s^1.75, the limit is 21 m/s^1.75.
+    """
+    return value * math.pow(positive(exposure, "exposure") / positive(duration, "duration"), 0.25)

@@ -1,0 +1,68 @@
+"""The channels of one run, as the metrics ask for them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from seatsim.errors import InputError
+from seatsim.metrics.arrays import Array, as_signal, positive
+from seatsim.metrics.weighting import can_weight, weight
+
+
+class Absent(Exception):  # noqa: N818 - not an error: the metric that asked is left out
+    """What a metric asked for is not in the record."""
+
+
+class Record:
+    """Channels of one length, sampled every `step` s; the first `settle` seconds count as starting up."""
+
+    def __init__(self, channels: Mapping[str, ArrayLike], step: float, settle: float) -> None:
+        self.sample_rate = 1 / positive(step, "step")
+        self._channels = {name: as_signal(values, name) for name, values in channels.items()}
+        self._start = round(settle * self.sample_rate)
+        self._weighted: dict[str, Array] = {}
+        self._check(settle)
+
+    def whole(self, name: str) -> Array:
+        """Return a channel over the whole record; one that holds nothing but NaN counts as absent.
+
+        Raises:
+            Absent: the channel is not there.
+        """
+        values = self._channels.get(name)
+        if values is None or np.isnan(values).all():
+            raise Absent(name)
+        return values
+
+    def settled(self, name: str) -> Array:
+        """Return a channel without the start of the record.
+
+        Raises:
+            Absent: the channel is not there.
+        """
+        return self.whole(name)[self._start :]
+
+    def weighted(self, name: str) -> Array:
+        """Return a channel weighted with Wk over the whole record, then without the start; worked out once.
+
+        Raises:
+            Absent: the channel is not there, or its sample rate is too low for the weighting.
+        """
+        if name not in self._weighted:
+            if not can_weight(self.sample_rate):
+                raise Absent(name)
+            self._weighted[name] = weight(self.whole(name), self.sample_rate)
+        return self._weighted[name][self._start :]
+
+    def _check(self, settle: float) -> None:
+        lengths = {name: values.size for name, values in self._channels.items()}
+        if len(set(lengths.values())) > 1:
+            raise InputError(f"channels: have different numbers of samples, {lengths}; must all be the same")
+        if any(not 0 <= self._start < size for size in lengths.values()):
+            lasts = min(lengths.values()) / self.sample_rate
+            raise InputError(
+                f"settle: is {settle} s; must be 0 or more and less than the record, which lasts {lasts:g} s"
+            )
