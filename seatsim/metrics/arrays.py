@@ -39,6 +39,18 @@ def as_pair(first: ArrayLike, second: ArrayLike, names: tuple[str, str]) -> tupl
     return a, b
 
 
+def finite(signal: Array, name: str) -> Array:
+    """Return the signal, all of whose samples are numbers.
+
+    Raises:
+        InputError: one is NaN or infinite.
+    """
+    numbers = np.isfinite(signal)
+    if not numbers.all():
+        raise InputError(f"{name}: sample {int(np.argmin(numbers))} is not finite; all must be")
+    return signal
+
+
 def positive(value: float, name: str) -> float:
     """Return a number that is finite and above zero.
 

@@ -59,8 +59,8 @@ def vdv(weighted: ArrayLike, sample_rate: float) -> float:
 
     It grows with the record's length; `daily_vdv` scales it to a day.
     """
-    square = np.square(as_signal(weighted, "weighted"))
-    return math.pow(float(square @ square) / positive(sample_rate, "sample_rate"), 0.25)
+    fourth = np.square(np.square(as_signal(weighted, "weighted")))
+    return math.pow(np.sum(fourth) / positive(sample_rate, "sample_rate"), 0.25)
 
 
 def estimated_vdv(rms_weighted: float, duration: float) -> float:

@@ -20,7 +20,7 @@ def rms(signal: ArrayLike) -> float:
         InputError: the signal is empty or not one-dimensional.
     """
     x = as_signal(signal)
-    return math.sqrt(float(x @ x) / x.size)
+    return math.sqrt(np.mean(np.square(x)))
 
 
 def peak(signal: ArrayLike) -> float:

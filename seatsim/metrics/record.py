@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from seatsim.errors import InputError
-from seatsim.metrics.arrays import Array, as_signal, positive
+from seatsim.metrics.arrays import Array, as_signal, finite, positive
 from seatsim.metrics.weighting import can_weight, weight
 
 
@@ -22,9 +23,9 @@ class Record:
     def __init__(self, channels: Mapping[str, ArrayLike], step: float, settle: float) -> None:
         self.sample_rate = 1 / positive(step, "step")
         self._channels = {name: as_signal(values, name) for name, values in channels.items()}
-        self._start = round(settle * self.sample_rate)
         self._weighted: dict[str, Array] = {}
         self._check(settle)
+        self._start = round(settle * self.sample_rate)
 
     def whole(self, name: str) -> Array:
         """Return a channel over the whole record; one that holds nothing but NaN counts as absent.
@@ -50,19 +51,21 @@ class Record:
 
         Raises:
             Absent: the channel is not there, or its sample rate is too low for the weighting.
+            InputError: a sample is not finite.
         """
         if name not in self._weighted:
             if not can_weight(self.sample_rate):
                 raise Absent(name)
-            self._weighted[name] = weight(self.whole(name), self.sample_rate)
+            self._weighted[name] = weight(finite(self.whole(name), name), self.sample_rate)
         return self._weighted[name][self._start :]
 
     def _check(self, settle: float) -> None:
         lengths = {name: values.size for name, values in self._channels.items()}
         if len(set(lengths.values())) > 1:
             raise InputError(f"channels: have different numbers of samples, {lengths}; must all be the same")
-        if any(not 0 <= self._start < size for size in lengths.values()):
-            lasts = min(lengths.values()) / self.sample_rate
+        samples = min(lengths.values(), default=math.inf)
+        if not 0 <= settle * self.sample_rate < samples - 0.5:
+            lasts = samples / self.sample_rate
             raise InputError(
-                f"settle: is {settle} s; must be 0 or more and less than the record, which lasts {lasts:g} s"
+                f"settle: is {settle} s; must be 0 or more and less than the record's {lasts:g} s"
             )

@@ -58,21 +58,19 @@ def summarise(
 
     A metric whose input is absent is left out: no such channel, a channel of NaN only (no force was wanted),
     no travel or resistance stated, or a sample rate below 200 Hz where the signal must be weighted. A ratio
-    over nothing (the SEAT factor on a floor at rest) is NaN. Other channels are ignored.
+    over nothing (the SEAT factor on a floor at rest) is NaN. Further channels are not used.
 
     Args:
         history: channels by name, SI units, shape (N,) each.
         step: time between samples in s.
         travel: (low, high) of the suspension in m, for the end-stop hits.
         coil_resistance: in ohm, for the electrical energy.
-        settle: start of the record in s that RMS, peak, dose and share leave out, after the weighting has
-        passed
+        settle: start of the record in s that RMS, peak, dose and share leave out, after the weighting went
             over it. Hits, energies and the final temperature cover the whole record.
 
     Raises:
-        InputError: step, settle, travel or resistance out of range, channels of different length, or a
-        channel
-            that must be weighted and is not finite.
+        InputError: step, settle, travel or resistance out of range, channels not of one length,
+            or a channel that must be weighted and is not finite.
     """
     run = Run(Record(history, step, settle), travel, coil_resistance)
     metrics = {}

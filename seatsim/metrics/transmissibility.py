@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,8 @@ LONGEST = 10.0
 
 SHORTEST = 1.0
 """Shortest segment in s: beyond 1 Hz between lines the resonance of a seat suspension is smeared out."""
+
+Spectrum = TypeVar("Spectrum", Array, ComplexArray)
 
 
 class Transmissibility(NamedTuple):
@@ -60,23 +62,24 @@ def transmissibility(floor: ArrayLike, driver: ArrayLike, sample_rate: float) ->
     frequency, floor_psd = signal.welch(x, sample_rate, nperseg=length)
     _, driver_psd = signal.welch(y, sample_rate, nperseg=length)
     _, cross = signal.csd(x, y, sample_rate, nperseg=length)
-    response = _divide(cross, floor_psd)
-    coherence = _divide(np.abs(cross) ** 2, floor_psd * driver_psd)
-    segments = (x.size - length) // (length - length // 2) + 1
-    return Transmissibility(frequency, response, coherence.real, segments)
+    response = _quotient(np.asarray(cross, dtype=np.complex128), floor_psd)
+    coherence = _quotient(np.abs(cross) ** 2, floor_psd * driver_psd)
+    segments = 2 * x.size // length - 1
+    return Transmissibility(frequency, response, coherence, segments)
 
 
 def _segment(samples: int, sample_rate: float) -> int:
-    """Length of a segment such that `AVERAGES` of them, half overlapping, fit into the record."""
-    longest = 2 * samples // (AVERAGES + 1)
+    """Even length of a segment such that `AVERAGES` of them, half overlapping, fit into the record."""
+    longest = 2 * (samples // (AVERAGES + 1))
     if longest < SHORTEST * sample_rate:
         needed = SHORTEST * (AVERAGES + 1) / 2
         raise InputError(
             f"the record lasts {samples / sample_rate:g} s; a transmissibility needs {needed:g} s or more"
         )
-    return min(longest, round(LONGEST * sample_rate))
+    return min(longest, 2 * round(LONGEST * sample_rate / 2))
 
 
-def _divide(numerator: ComplexArray | Array, denominator: Array) -> ComplexArray:
-    quotient = np.full(denominator.shape, np.nan, dtype=np.complex128)
-    return np.divide(numerator, denominator, out=quotient, where=denominator > 0)
+def _quotient(numerator: Spectrum, power: Array) -> Spectrum:
+    """Divide where there is power, and leave NaN elsewhere."""
+    undefined = np.full_like(numerator, np.nan)
+    return np.divide(numerator, power, out=undefined, where=power > 0)

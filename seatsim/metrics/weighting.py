@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from seatsim.errors import InputError, nearest
-from seatsim.metrics.arrays import Array, as_signal, positive
+from seatsim.metrics.arrays import Array, as_signal, finite, positive
 
 ComplexArray = NDArray[np.complex128]
 
@@ -112,9 +112,7 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
     Raises:
         InputError: a sample is not finite, the sample rate is too low, or no weighting has this name.
     """
-    x = as_signal(signal)
-    if not np.isfinite(x).all():
-        raise InputError(f"signal: sample {int(np.argmin(np.isfinite(x)))} is not finite; all must be")
+    x = finite(as_signal(signal), "signal")
     if not can_weight(sample_rate):
         raise InputError(
             f"sample_rate: is {sample_rate} Hz; weightings reach 80 Hz and need {MINIMUM_RATE:g} Hz or more"

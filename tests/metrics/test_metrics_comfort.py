@@ -1,0 +1,178 @@
+"""Comfort figures against closed forms, and how they scale."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from seatsim.errors import InputError
+from seatsim.metrics import (
+    crest_factor,
+    daily_exposure,
+    daily_vdv,
+    dose,
+    estimated_vdv,
+    mtvv,
+    response,
+    running_rms,
+    seat_factor,
+    vdv,
+    weight,
+    weighted_rms,
+)
+
+RATE = 1000.0
+
+
+def sine(amplitude, frequency, seconds, sample_rate=RATE):
+    return amplitude * np.sin(2 * np.pi * frequency * np.arange(int(seconds * sample_rate)) / sample_rate)
+
+
+def test_weighted_rms_of_a_sine_is_the_weighted_amplitude():
+    # The start-up of the high-pass is 2 of 300 s.
+    assert weighted_rms(sine(2.0, 5.0, 300), RATE) == pytest.approx(
+        2 * abs(response(5.0)) / math.sqrt(2), rel=1e-3
+    )
+
+
+def test_weighted_rms_of_noise_agrees_with_the_integrated_spectrum():
+    noise = np.random.default_rng(1).normal(size=200_000)
+    grid = (np.arange(50_000) + 0.5) * RATE / 2 / 50_000
+    expected = math.sqrt(np.mean(np.abs(response(grid)) ** 2))
+    assert weighted_rms(noise, RATE) == pytest.approx(expected, rel=0.02)
+
+
+def test_vdv_of_a_sine():
+    # integral of (A sin)^4 over T is 3/8 A^4 T
+    assert vdv(sine(3.0, 4.0, 60), RATE) == pytest.approx(3 * (3 / 8 * 60) ** 0.25, rel=1e-12)
+
+
+def test_vdv_does_not_depend_on_the_sample_rate():
+    assert vdv(sine(1.0, 4.0, 10, 250.0), 250.0) == pytest.approx(
+        vdv(sine(1.0, 4.0, 10, 4000.0), 4000.0), rel=1e-12
+    )
+
+
+def test_vdv_of_a_day():
+    hour = sine(1.0, 4.0, 3600, 100.0)
+    assert daily_vdv(vdv(hour[:6000], 100.0), 60.0, 3600.0) == pytest.approx(vdv(hour, 100.0), rel=1e-9)
+
+
+def test_estimated_vdv_of_gaussian_motion_is_six_percent_high():
+    x = np.random.default_rng(2).normal(size=500_000)
+    assert estimated_vdv(1.0, 500.0) / vdv(x, RATE) == pytest.approx(1.4 / 3**0.25, rel=0.01)
+
+
+def test_daily_exposure():
+    assert daily_exposure(0.5, 8 * 3600) == 0.5
+    assert daily_exposure(1.0, 2 * 3600) == pytest.approx(0.5)
+
+
+def test_running_rms_of_a_burst():
+    x = np.zeros(5000)
+    x[2000:2500] = 2.0
+    running = running_rms(x, RATE)
+    assert running.shape == x.shape
+    assert running[1999] == 0
+    assert running[2249] == pytest.approx(1.0)
+    assert running[2499:3000] == pytest.approx(math.sqrt(2))
+    assert running[3499] == pytest.approx(0, abs=1e-6)
+    assert mtvv(x, RATE) == pytest.approx(math.sqrt(2))
+
+
+def test_running_rms_counts_the_time_before_the_record_as_rest():
+    assert running_rms(np.full(2000, 3.0), RATE)[[0, 249, 999, 1999]] == pytest.approx(
+        [3 * math.sqrt(0.001), 1.5, 3.0, 3.0]
+    )
+
+
+def test_mtvv_of_a_record_shorter_than_the_window():
+    assert mtvv(np.full(250, 2.0), RATE) == pytest.approx(1.0)
+
+
+def test_running_rms_stays_a_number_after_a_huge_shock():
+    x = np.full(4000, 1e-6)
+    x[10] = 1e9
+    assert np.isfinite(running_rms(x, RATE)).all()
+
+
+@pytest.mark.parametrize(("signal", "expected"), [
+    (sine(7.0, 5.0, 4), math.sqrt(2)),
+    (np.array([1.0, -1.0, 1.0]), 1.0),
+    (np.array([0.0, 0.0, 0.0, -2.0]), 2.0),
+])  # fmt: skip
+def test_crest_factor(signal, expected):
+    assert crest_factor(signal) == pytest.approx(expected, rel=1e-9)
+
+
+def test_ratios_at_rest_are_not_numbers():
+    still = np.zeros(2000)
+    assert math.isnan(crest_factor(still))
+    assert math.isnan(seat_factor(np.ones(2000), still, RATE))
+    assert math.isnan(dose(still, RATE).vdv_ratio)
+
+
+def test_seat_factor_of_a_rigid_and_of_a_halving_seat():
+    floor = np.random.default_rng(3).normal(size=20_000)
+    assert seat_factor(floor, floor, RATE) == 1.0
+    assert seat_factor(-0.5 * floor, floor, RATE) == pytest.approx(0.5)
+
+
+def test_seat_factor_weighs_what_the_seat_adds():
+    floor, added = sine(1.0, 1.0, 200), sine(1.0, 6.0, 200)
+    expected = math.hypot(abs(response(1.0)), abs(response(6.0))) / abs(response(1.0))
+    assert seat_factor(floor + added, floor, RATE) == pytest.approx(expected, rel=2e-3)
+
+
+def test_seat_factor_needs_equal_lengths():
+    with pytest.raises(InputError, match="driver has 3 samples, floor has 4"):
+        seat_factor(np.ones(3), np.ones(4), RATE)
+
+
+def test_dose_of_a_sine():
+    d = dose(sine(2.0, 5.0, 16), RATE)
+    assert d.duration == 16.0
+    assert d.estimated_vdv == pytest.approx(1.4 * math.sqrt(2) * 2)
+    assert (d.crest_factor, d.mtvv_ratio, d.vdv_ratio) == pytest.approx((2**0.5, 1, 1.5**0.25), rel=1e-9)
+    assert (d.rms, d.mtvv) == pytest.approx((2**0.5, 2**0.5), rel=1e-9)
+
+
+@pytest.mark.parametrize("call", [
+    lambda: vdv(np.ones(3), 0.0),
+    lambda: running_rms(np.ones(3), math.nan),
+    lambda: dose([], RATE),
+    lambda: daily_vdv(1.0, 0.0, 10.0),
+    lambda: daily_exposure(1.0, -1.0),
+    lambda: estimated_vdv(1.0, 0.0),
+])  # fmt: skip
+def test_refuses_nonsense(call):
+    with pytest.raises(InputError):
+        call()
+
+
+@settings(derandomize=True, deadline=None, max_examples=25)
+@given(st.floats(1e-6, 1e6), st.integers(0, 2**32 - 1))
+def test_scaling_and_bounds(factor, seed):
+    x = np.random.default_rng(seed).standard_t(3, size=1500)
+    small, large = dose(x, RATE), dose(-factor * x, RATE)
+    amplitudes = ("rms", "vdv", "estimated_vdv", "mtvv")
+    assert [getattr(large, a) for a in amplitudes] == pytest.approx(
+        [factor * getattr(small, a) for a in amplitudes]
+    )
+    ratios = ("crest_factor", "mtvv_ratio", "vdv_ratio")
+    assert [getattr(large, r) for r in ratios] == pytest.approx([getattr(small, r) for r in ratios])
+    assert small.vdv_ratio >= 1 <= small.crest_factor
+
+
+@settings(derandomize=True, deadline=None, max_examples=15)
+@given(st.floats(1e-3, 1e3), st.floats(1e-3, 1e3), st.integers(0, 2**32 - 1))
+def test_seat_factor_scales_with_each_side(a, b, seed):
+    driver, floor = np.random.default_rng(seed).normal(size=(2, 1000))
+    assert seat_factor(a * driver, b * floor, RATE) == pytest.approx(a / b * seat_factor(driver, floor, RATE))
+
+
+def test_weighting_then_dose_fits_together():
+    x = sine(1.0, 8.0, 60)
+    assert dose(weight(x, RATE), RATE).rms == weighted_rms(x, RATE)

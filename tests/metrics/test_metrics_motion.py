@@ -1,0 +1,165 @@
+"""Figures of motion, force and energy, and the transmissibility."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import signal as sp
+
+from seatsim.errors import InputError
+from seatsim.metrics import (
+    electrical_energy,
+    end_stop_hits,
+    energy_residual,
+    force_tracking_error,
+    peak,
+    rms,
+    transmissibility,
+)
+
+
+def test_rms_and_peak_of_a_sine():
+    x = 3 * np.sin(2 * np.pi * np.arange(1000) / 100)
+    assert rms(x) == pytest.approx(3 / math.sqrt(2))
+    assert peak(x) == pytest.approx(3.0)
+    assert peak([-5.0, 2.0]) == 5.0
+
+
+def test_a_lost_sample_is_not_hidden():
+    assert math.isnan(rms([1.0, math.nan]))
+    assert math.isnan(peak([1.0, math.nan]))
+
+
+@pytest.mark.parametrize("bad", [[], np.ones((2, 2)), ["x"], None])
+def test_refuses_what_is_no_signal(bad):
+    with pytest.raises(InputError, match="signal"):
+        rms(bad)
+
+
+@pytest.mark.parametrize(("displacement", "hits"), [
+    ([0, 0.01, 0.02], 0),
+    ([0, 0.05, 0.06, 0.07, 0.05], 1),
+    ([0, 0.06, 0.0, 0.06, 0.0, -0.06], 3),
+    ([0.06, 0.06], 1),
+    ([0.06, -0.06, 0.06], 3),
+    ([0.05, -0.05], 0),
+    ([math.nan, 0.06], 1),
+])  # fmt: skip
+def test_end_stop_hits(displacement, hits):
+    assert end_stop_hits(displacement, (-0.05, 0.05)) == hits
+
+
+@pytest.mark.parametrize("travel", [(0.05, -0.05), (0.0, 0.0), (math.nan, 0.05)])
+def test_travel_must_leave_room(travel):
+    with pytest.raises(InputError, match="travel"):
+        end_stop_hits([0.0], travel)
+
+
+def test_force_tracking_error():
+    error = force_tracking_error([100.0, -100.0, 100.0, math.nan], [90.0, -110.0, 90.0, 5000.0])
+    assert error == pytest.approx((10.0, 0.1))
+
+
+def test_force_tracking_error_without_a_wanted_force():
+    assert all(math.isnan(v) for v in force_tracking_error([math.nan] * 3, [1.0] * 3))
+    nothing = force_tracking_error([0.0, 0.0], [3.0, 3.0])
+    assert nothing.rms == 3.0
+    assert math.isnan(nothing.relative)
+
+
+def test_force_tracking_error_needs_pairs():
+    with pytest.raises(InputError, match="wanted has 1 samples, delivered has 2"):
+        force_tracking_error([1.0], [1.0, 2.0])
+
+
+def test_electrical_energy():
+    time = np.linspace(0, 10, 1001)
+    assert electrical_energy(np.full(1001, 2.0), 5.0, 100.0) == pytest.approx(200.0)
+    assert electrical_energy(np.sin(2 * np.pi * time), 5.0, 100.0) == pytest.approx(25.0)
+    with pytest.raises(InputError, match="resistance"):
+        electrical_energy([1.0], 0.0, 100.0)
+
+
+def test_energy_residual():
+    time = np.linspace(0, 1, 101)
+    parts = [0.6 * time, 0.3 * time, 0.09 * time + 7.0]
+    assert energy_residual(time, parts) == pytest.approx(0.01)
+    assert energy_residual(time, [*parts, 0.01 * time]) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_energy_residual_of_free_vibration_and_of_rest():
+    decay = np.exp(-np.linspace(0, 5, 100))
+    still = np.zeros(100)
+    assert energy_residual(still, [decay, -decay]) == 0
+    assert energy_residual(still, [decay, -0.9 * decay]) == pytest.approx(0.1)
+    assert energy_residual(still, [still, still]) == 0
+
+
+@settings(derandomize=True, deadline=None, max_examples=25)
+@given(st.floats(1e-6, 1e6), st.integers(0, 2**32 - 1))
+def test_scaling(factor, seed):
+    x, y = np.random.default_rng(seed).normal(size=(2, 300))
+    assert rms(factor * x) == pytest.approx(factor * rms(x))
+    assert peak(-factor * x) == pytest.approx(factor * peak(x))
+    assert rms(x) <= peak(x)
+    assert end_stop_hits(factor * x, (-factor, factor)) == end_stop_hits(x, (-1, 1))
+    assert end_stop_hits(-x, (-1, 2)) == end_stop_hits(x, (-2, 1))
+    plain, scaled = force_tracking_error(x, y), force_tracking_error(factor * x, factor * y)
+    assert scaled == pytest.approx((factor * plain.rms, plain.relative))
+    assert electrical_energy(factor * x, 2.0, 100.0) == pytest.approx(
+        factor**2 * electrical_energy(x, 2.0, 100.0)
+    )
+    assert energy_residual(factor * x, [factor * y]) == pytest.approx(energy_residual(x, [y]))
+
+
+def seat(rate):
+    """Single mass on spring and damper, 1.5 Hz and damping ratio 0.3, as digital sections at `rate`."""
+    w, zeta = 2 * math.pi * 1.5, 0.3
+    return sp.bilinear([2 * zeta * w, w * w], [1, 2 * zeta * w, w * w], rate)
+
+
+@pytest.mark.parametrize("seconds", [60, 300])
+def test_transmissibility_of_a_known_seat(seconds):
+    rate = 200.0
+    floor = np.random.default_rng(11).normal(size=int(seconds * rate))
+    driver = sp.lfilter(*seat(rate), floor)
+    found = transmissibility(floor, driver, rate)
+    band = (found.frequency > 0.5) & (found.frequency < 10)
+    _, truth = sp.freqz(*seat(rate), found.frequency[band], fs=rate)
+    assert np.abs(found.response[band] / truth - 1).max() < 0.08
+    assert found.coherence[band].min() > 0.97
+    assert found.frequency[1] == pytest.approx(0.1)
+
+
+def test_noise_on_the_driver_costs_coherence_but_no_gain():
+    rate, rng = 200.0, np.random.default_rng(12)
+    floor = rng.normal(size=100_000)
+    found = transmissibility(floor, 0.5 * floor + 0.5 * rng.normal(size=100_000), rate)
+    assert found.gain.mean() == pytest.approx(0.5, rel=0.03)
+    assert found.coherence.mean() == pytest.approx(0.5, abs=0.03)
+
+
+@pytest.mark.parametrize(("seconds", "segments"), [(5, 8), (20, 8), (60, 11), (600, 119)])
+def test_segments_suit_the_record(seconds, segments):
+    noise = np.random.default_rng(13).normal(size=seconds * 100)
+    found = transmissibility(noise, noise, 100.0)
+    assert found.segments == segments
+    assert found.coherence == pytest.approx(1.0)
+
+
+def test_floor_at_rest_has_no_transmissibility():
+    found = transmissibility(np.zeros(1000), np.ones(1000), 100.0)
+    assert np.isnan(found.response).all()
+    assert np.isnan(found.coherence).all()
+
+
+@pytest.mark.parametrize(("floor", "driver", "rate", "message"), [
+    (np.ones(400), np.ones(400), 100.0, r"lasts 4 s.*needs 4\.5 s"),
+    (np.ones(400), np.ones(500), 100.0, "floor has 400 samples, driver has 500"),
+    (np.ones(400), np.ones(400), 0.0, "sample_rate"),
+])  # fmt: skip
+def test_transmissibility_refuses(floor, driver, rate, message):
+    with pytest.raises(InputError, match=message):
+        transmissibility(floor, driver, rate)

@@ -1,0 +1,187 @@
+"""The table of one run."""
+
+import math
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import seatsim.metrics
+from seatsim.errors import InputError
+from seatsim.metrics import METRICS, rms, seat_factor, summarise, weight
+
+STEP = 0.001
+NAMES = [
+    "driver_acceleration_rms", "driver_acceleration_peak", "driver_acceleration_weighted", "driver_vdv",
+    "driver_mtvv", "driver_crest_factor", "seat_factor", "frame_acceleration_rms",
+    "frame_acceleration_peak", "suspension_displacement_rms", "suspension_displacement_peak",
+    "end_stop_hits", "force_tracking_error", "force_tracking_error_relative", "force_served_share",
+    "current_rms", "electrical_energy", "damper_energy", "energy_residual", "temperature_final",
+]  # fmt: skip
+
+
+def history(seconds=10.0, seed=0):
+    """Run-like channels, not a solution of any rig."""
+    n = round(seconds / STEP) + 1
+    rng = np.random.default_rng(seed)
+    t = np.arange(n) * STEP
+    return {
+        "time": t,
+        "floor_acceleration": rng.normal(size=n),
+        "frame_acceleration": rng.normal(size=n),
+        "driver_acceleration": 0.5 * rng.normal(size=n),
+        "suspension_displacement": 0.06 * np.sin(2 * np.pi * t),
+        "damper_force": np.full(n, 90.0),
+        "wanted_force": np.full(n, 100.0),
+        "coil_current": np.full(n, 0.5),
+        "damper_temperature": 20 + t,
+        "force_served": (t < seconds / 4).astype(float),
+        "energy_floor": 10 * t,
+        "energy_damper": 6 * t,
+        "energy_suspension": 2 * t,
+        "energy_cushion": t,
+        "energy_stored": 3 + 0.9 * t,
+    }
+
+
+def test_every_metric_in_order():
+    table = summarise(history(), STEP, travel=(-0.05, 0.05), coil_resistance=4.0)
+    assert list(table) == NAMES == list(METRICS)
+    assert all(isinstance(m.value, float) and m.unit and m.meaning for m in table.values())
+    assert all(m.unit == METRICS[name].unit for name, m in table.items())
+
+
+def test_values():
+    channels = history()
+    table = summarise(channels, STEP, travel=(-0.05, 0.05), coil_resistance=4.0)
+    floor, driver = channels["floor_acceleration"], channels["driver_acceleration"]
+    expected = {
+        "driver_acceleration_rms": rms(driver),
+        "driver_acceleration_weighted": rms(weight(driver, 1 / STEP)),
+        "seat_factor": seat_factor(driver, floor, 1 / STEP),
+        "suspension_displacement_peak": 0.06,
+        "end_stop_hits": 20,
+        "force_tracking_error": 10.0,
+        "force_tracking_error_relative": 0.1,
+        "force_served_share": 0.25,
+        "current_rms": 0.5,
+        "electrical_energy": 10.0,
+        "damper_energy": 60.0,
+        "energy_residual": 0.01,
+        "temperature_final": 30.0,
+    }
+    assert {name: table[name].value for name in expected} == pytest.approx(expected, rel=1e-3)
+
+
+def test_what_is_absent_is_left_out():
+    channels = {"suspension_displacement": np.ones(5), "mystery": np.ones(5)}
+    assert list(summarise(channels, STEP)) == ["suspension_displacement_rms", "suspension_displacement_peak"]
+    assert summarise({}, STEP) == {}
+
+
+def test_law_that_commands_a_current_has_no_force_metrics():
+    channels = history()
+    channels["wanted_force"][:] = math.nan
+    channels["force_served"][:] = math.nan
+    assert not [name for name in summarise(channels, STEP) if name.startswith("force_")]
+
+
+def test_force_wanted_for_part_of_the_run_only():
+    channels = history()
+    channels["wanted_force"][:5000] = channels["force_served"][:5000] = math.nan
+    table = summarise(channels, STEP)
+    assert table["force_tracking_error"].value == pytest.approx(10.0)
+    assert table["force_served_share"].value == 0.0
+
+
+def test_force_wanted_only_while_settling():
+    channels = history()
+    channels["wanted_force"][5000:] = channels["force_served"][5000:] = math.nan
+    table = summarise(channels, STEP, settle=6.0)
+    assert math.isnan(table["force_tracking_error"].value)
+    assert math.isnan(table["force_served_share"].value)
+
+
+def test_floor_at_rest():
+    channels = history()
+    channels["floor_acceleration"][:] = 0.0
+    channels["driver_acceleration"][:] = 0.0
+    table = summarise(channels, STEP)
+    assert math.isnan(table["seat_factor"].value)
+    assert math.isnan(table["driver_crest_factor"].value)
+    assert table["driver_vdv"].value == table["driver_mtvv"].value == 0.0
+
+
+def test_settle_leaves_out_the_start():
+    channels = history()
+    plain = summarise(channels, STEP, settle=2.0, coil_resistance=1.0, travel=(-0.05, 0.05))
+    for name in ("driver_acceleration", "frame_acceleration", "suspension_displacement", "coil_current"):
+        channels[name][:1000] += 50.0
+    spoilt = summarise(channels, STEP, settle=2.0, coil_resistance=1.0, travel=(-0.05, 0.05))
+    untouched = [name for name in NAMES if name.endswith(("_rms", "_peak")) and "driver" not in name]
+    assert [spoilt[n].value for n in untouched] == [plain[n].value for n in untouched]
+    assert spoilt["driver_acceleration_rms"].value == plain["driver_acceleration_rms"].value
+    assert spoilt["electrical_energy"].value > plain["electrical_energy"].value
+    assert spoilt["end_stop_hits"].value < plain["end_stop_hits"].value
+    assert plain["damper_energy"].value == pytest.approx(60.0)
+
+
+def test_settle_may_leave_a_single_sample():
+    assert summarise({"coil_current": np.arange(11.0)}, STEP, settle=0.01)["current_rms"].value == 10.0
+
+
+def test_slow_record_keeps_what_needs_no_weighting():
+    table = summarise({"driver_acceleration": np.ones(50), "floor_acceleration": np.ones(50)}, 0.01)
+    assert list(table) == ["driver_acceleration_rms", "driver_acceleration_peak"]
+
+
+@pytest.mark.parametrize(("options", "message"), [
+    ({"step": 0.0}, "step"),
+    ({"step": math.nan}, "step"),
+    ({"settle": -1.0}, "settle"),
+    ({"settle": 11.0}, "settle: is 11.0 s"),
+    ({"settle": math.nan}, "settle"),
+    ({"travel": (1.0, -1.0)}, "travel"),
+    ({"coil_resistance": -1.0}, "resistance"),
+])  # fmt: skip
+def test_refuses_settings_out_of_range(options, message):
+    with pytest.raises(InputError, match=message):
+        summarise(history(), **{"step": STEP, **options})
+
+
+def test_refuses_channels_that_do_not_fit():
+    with pytest.raises(InputError, match="different numbers of samples"):
+        summarise({"coil_current": np.ones(4), "damper_force": np.ones(5)}, STEP)
+    with pytest.raises(InputError, match="driver_acceleration: sample 2 is not finite"):
+        summarise({"driver_acceleration": [1.0, 2.0, math.nan]}, STEP)
+    with pytest.raises(InputError, match="coil_current"):
+        summarise({"coil_current": np.ones((4, 2))}, STEP)
+
+
+@settings(derandomize=True, deadline=None, max_examples=15)
+@given(st.floats(1e-3, 1e3), st.integers(0, 1000))
+def test_scaling_the_motion(factor, seed):
+    channels = history(1.0, seed)
+    motion = [name for name in channels if "acceleration" in name]
+    plain = summarise(channels, STEP)
+    scaled = summarise(channels | {name: factor * channels[name] for name in motion}, STEP)
+    for name in NAMES[:9]:
+        power = 0 if METRICS[name].unit == "-" else 1
+        assert scaled[name].value == pytest.approx(factor**power * plain[name].value)
+
+
+def test_a_minute_at_one_kilohertz_is_quick():
+    channels = history(60.0)
+    best = math.inf
+    for _ in range(5):
+        start = time.perf_counter()
+        summarise(channels, STEP, travel=(-0.05, 0.05), coil_resistance=4.0)
+        best = min(best, time.perf_counter() - start)
+    assert best < 0.05
+
+
+def test_exports():
+    assert sorted(seatsim.metrics.__all__) == sorted(set(seatsim.metrics.__all__))
+    assert all(hasattr(seatsim.metrics, name) for name in seatsim.metrics.__all__)

@@ -1,0 +1,146 @@
+"""Frequency weightings against the standard's table, the analog response and an oversampled filter."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import signal as sp
+
+from seatsim.errors import InputError
+from seatsim.metrics import WEIGHTINGS, response, weight
+
+NOMINAL = np.array([
+    0.5, 0.63, 0.8, 1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8, 10, 12.5, 16, 20, 25, 31.5, 40, 50, 63, 80,
+])  # fmt: skip
+EXACT = 10 ** (np.arange(-3, 20) / 10)
+WK = np.array([
+    418, 459, 477, 482, 484, 494, 531, 631, 804, 967, 1039, 1054, 1036, 988, 902, 768, 636,
+    513, 405, 314, 246, 186, 132,
+]) / 1000  # fmt: skip
+WD = np.array([
+    853, 944, 992, 1011, 1008, 968, 890, 776, 642, 512, 409, 323, 253, 212, 161, 125, 100,
+    80, 63.2, 49.4, 38.8, 29.5, 21.1,
+]) / 1000  # fmt: skip
+RATES = (200.0, 500.0, 1000.0, 10000.0)
+
+
+def measured_gain(frequency, sample_rate, weighting):
+    """Complex gain of `weight` for a sine, over a stretch where the start is forgotten."""
+    time = np.arange(int(14 * sample_rate)) / sample_rate
+    carrier = np.exp(2j * np.pi * frequency * time)
+    middle = slice(int(8 * sample_rate), int(13 * sample_rate))
+    out = weight(carrier.imag, sample_rate, weighting)[middle]
+    basis = np.column_stack((carrier.imag[middle], carrier.real[middle]))
+    in_phase, quadrature = np.linalg.lstsq(basis, out)[0]
+    return in_phase + 1j * quadrature
+
+
+def test_formula_reproduces_the_table_at_its_nominal_frequencies():
+    assert np.abs(response(NOMINAL, "Wk")) == pytest.approx(WK, rel=4e-3)
+
+
+def test_formula_reproduces_the_horizontal_table():
+    # The table's 212 at 10 Hz lies off the curve that its neighbours and the formula (202) follow.
+    smooth = NOMINAL != 10
+    assert np.abs(response(NOMINAL, "Wd"))[smooth] == pytest.approx(WD[smooth], rel=4e-3)
+
+
+def test_table_belongs_to_nominal_not_to_exact_centres():
+    assert np.abs(response(EXACT, "Wk")) == pytest.approx(WK, rel=1.5e-2)
+    assert np.abs(np.abs(response(EXACT, "Wk")) / WK - 1).max() > 1e-2
+
+
+@pytest.mark.parametrize("sample_rate", RATES)
+def test_digital_weighting_meets_the_table(sample_rate):
+    gains = [abs(measured_gain(f, sample_rate, "Wk")) for f in NOMINAL]
+    assert gains == pytest.approx(WK, rel=5e-3)
+
+
+@pytest.mark.parametrize("weighting", WEIGHTINGS)
+@pytest.mark.parametrize("sample_rate", RATES)
+def test_digital_gain_and_phase_are_the_analog_ones(sample_rate, weighting):
+    for frequency in EXACT:
+        analog = complex(response(frequency, weighting))
+        assert abs(measured_gain(frequency, sample_rate, weighting) / analog - 1) < 1e-3
+
+
+def analog_sections():
+    """Wk once more, as second-order sections in Laplace form, written down independently."""
+    w1, w2, w3, w5, w6 = (2 * math.pi * f for f in (0.4, 100.0, 12.5, 2.37, 3.35))
+    root = math.sqrt(2)
+    return (
+        ([1, 0, 0], [1, root * w1, w1**2]),
+        ([w2**2], [1, root * w2, w2**2]),
+        ([w3, w3**2], [1, w3 / 0.63, w3**2]),
+        ([1, w5 / 0.91, w5**2], [1, w6 / 0.91, w6**2]),
+    )
+
+
+def test_transient_agrees_with_an_oversampled_filter():
+    sample_rate, factor = 500.0, 64
+    time = np.arange(0, 20, 1 / (factor * sample_rate))
+    rng = np.random.default_rng(5)
+    tones = zip(rng.uniform(0.3, 80, 40), rng.uniform(0, 2 * np.pi, 40), strict=True)
+    fine = sum(np.sin(2 * np.pi * f * time + p) for f, p in tones) * np.clip(time, 0, 1)
+    reference = fine
+    for b, a in analog_sections():
+        reference = sp.lfilter(*sp.bilinear(b, a, factor * sample_rate), reference)
+    error = weight(fine[::factor], sample_rate) - reference[::factor]
+    assert np.sqrt(np.mean(error**2)) < 1e-3 * reference.std()
+
+
+def test_what_comes_later_hardly_matters():
+    signal = np.zeros(4000)
+    signal[2000] = 1.0
+    out = weight(signal, 500.0)
+    assert np.abs(out[:2000]).max() < 0.006 * np.abs(out).max()
+    assert np.abs(out[:1980]).max() < 1e-3 * np.abs(out).max()
+
+
+def test_nothing_wraps_round_from_the_end():
+    tail = np.zeros(6000)
+    tail[-500:] = 1.0
+    assert np.abs(weight(tail, 500.0)[:4000]).max() < 1e-4
+
+
+def test_constant_acceleration_is_forgotten():
+    assert np.abs(weight(np.full(10000, 9.81), 500.0)[4000:5000]).max() < 1e-3
+
+
+def test_continues_smoothly_at_zero_frequency():
+    assert response(0.0) == 0
+    assert response(np.zeros((2, 3))).shape == (2, 3)
+
+
+@pytest.mark.parametrize("rate", [100.0, 199.0, 0.0, -500.0, math.nan, math.inf])
+def test_refuses_a_rate_it_cannot_serve(rate):
+    with pytest.raises(InputError, match="sample_rate"):
+        weight(np.ones(100), rate)
+
+
+@pytest.mark.parametrize("bad", [[], [[1.0]], 1.0, ["a"], [1.0, math.nan], [math.inf]])
+def test_refuses_what_is_no_signal(bad):
+    with pytest.raises(InputError, match="signal"):
+        weight(bad, 500.0)
+
+
+def test_names_the_weightings_it_has():
+    with pytest.raises(InputError, match=r"did you mean 'Wk'.*permitted: Wk, Wd"):
+        weight(np.ones(10), 500.0, "Wkk")
+
+
+def test_input_is_left_alone_and_short_records_work():
+    signal = np.array([1.0])
+    assert weight(signal, 500.0).shape == (1,)
+    assert signal[0] == 1.0
+
+
+@settings(derandomize=True, deadline=None, max_examples=25)
+@given(st.floats(-1e3, 1e3), st.integers(0, 2**32 - 1), st.sampled_from(sorted(WEIGHTINGS)))
+def test_is_linear(factor, seed, weighting):
+    x, y = np.random.default_rng(seed).normal(size=(2, 700))
+    together = weight(factor * x + y, 400.0, weighting)
+    apart = factor * weight(x, 400.0, weighting) + weight(y, 400.0, weighting)
+    assert together == pytest.approx(apart, abs=1e-11 * (1 + abs(factor)))
