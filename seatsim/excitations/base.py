@@ -25,6 +25,9 @@ class Floor(NamedTuple):
     acceleration: Array
     velocity: Array
     displacement: Array
+    command: Array | None = None
+    coil_current: Array | None = None
+    temperature: Array | None = None
 
     @property
     def time(self) -> Array:

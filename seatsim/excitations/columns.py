@@ -13,7 +13,7 @@ from seatsim.errors import InputError, nearest
 from seatsim.excitations.base import Array
 
 LEAST_ROWS = 16
-# Half-rounded times of a steady clock stay within this part of an interval; a lost row does not.
+# Rounded times of a steady clock stay within this part of an interval; a lost row does not.
 LARGEST_JITTER = 0.25
 
 
@@ -28,9 +28,13 @@ class Record(NamedTuple):
         """From the first to the last value, in s or m."""
         return self.interval * (len(self.values) - 1)
 
+    def after(self, start: float) -> Record:
+        """Return what is left from `start`, in s or m after the first value."""
+        return self._replace(values=self.values[round(start / self.interval) :])
 
-def read_record(path: str, axis: str, column: str) -> Record:
-    """Read `column` of a CSV (or CSV.gz) table over its column `axis`.
+
+def read_record(path: str, axis: str, column: str, start: float) -> Record:
+    """Read `column` of a CSV (or CSV.gz) table over its column `axis`, from `start` after its first row.
 
     Raises:
         InputError: no such file or column, not a table, fewer than 16 rows, an entry that is not a finite
@@ -38,11 +42,15 @@ def read_record(path: str, axis: str, column: str) -> Record:
     """
     table = _read(path, axis, column)
     if len(table) < LEAST_ROWS:
-        raise InputError(
-            f"{path}: {len(table)} rows are too few for a record; permitted: at least {LEAST_ROWS}"
-        )
+        raise InputError(f"{path}: {len(table)} rows are too few; permitted: at least {LEAST_ROWS}")
     position = _numbers(path, table[axis])
-    return Record(_interval(path, axis, position), _numbers(path, table[column]))
+    whole = Record(_interval(path, axis, position), _numbers(path, table[column]))
+    record = whole.after(start)
+    if len(record.values) < LEAST_ROWS:
+        raise InputError(
+            f"{path}: start {start:g} leaves fewer than {LEAST_ROWS} rows of {whole.length:g} (s or m)"
+        )
+    return record
 
 
 def _read(path: str, axis: str, column: str) -> pd.DataFrame:

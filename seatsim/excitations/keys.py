@@ -14,8 +14,10 @@ def choice(meaning: str, unit: str = "") -> Any:
     return Field(description=meaning, json_schema_extra={"unit": unit})
 
 
-Duration = Annotated[float, param("s", "length of the run", above=0, high=7200)]
-Speed = Annotated[float, param("m/s", "constant vehicle speed", low=1, high=60)]
+DURATION = param("s", "length of the run", above=0, high=7200)
+Duration = Annotated[float, DURATION]
+SPEED = param("m/s", "constant vehicle speed", low=1, high=60)
+Speed = Annotated[float, SPEED]
 Through = Annotated[
     Literal["vehicle", "direct"],
     choice(

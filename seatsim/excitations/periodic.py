@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -27,6 +27,8 @@ Frequency = Annotated[float, param("Hz", "frequency of the tone", above=0)]
 Amplitude = Annotated[
     float, param("m or m/s^2", "amplitude of displacement or acceleration, see quantity", above=0)
 ]
+
+TONES: Any = Field(description="the tones in order", json_schema_extra={"unit": "Hz"}, min_length=1)
 
 
 @excitation("sine")
@@ -57,7 +59,7 @@ class SteppedSine(NamedTuple):
     2)/f`. An acceleration amplitude a stands for a displacement amplitude `a/(2 pi f)^2`.
     """
 
-    frequencies: Annotated[tuple[Frequency, ...], Field(min_length=1), choice("the tones in order", "Hz")]
+    frequencies: Annotated[tuple[Frequency, ...], TONES]
     cycles: Annotated[int, param("", "periods at full amplitude in every step", low=1)]
     amplitude: Amplitude
     quantity: Quantity = "displacement"

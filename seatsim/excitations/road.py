@@ -13,6 +13,7 @@ with that standard; it was not checked against its text.
 
 from __future__ import annotations
 
+from math import ceil
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -54,7 +55,8 @@ class Road(NamedTuple):
         """
         check_step("road", step, SHORTEST * self.speed, per_period=5)
         count = samples(self.duration, step)
-        size = max(count - 1, round(LEAST_PERIOD / (self.speed * step)))
+        # In whole seconds, so that the period, and with it the road, is the same for every step.
+        size = max(count - 1, round(ceil(LEAST_PERIOD / self.speed) / step))
         spectrum = _road(self.road_class, size * step * self.speed, SHORTEST, seed)
         if self.through == "vehicle":
             spectrum = spectrum * floor_response(lines(spectrum, size * step), self.vehicle)

@@ -77,6 +77,21 @@ def mirrored(values: Array) -> Spectrum:
     return spectrum
 
 
+def limited(values: Array, interval: float, low: float, high: float) -> Array:
+    """Return a record passed through `band`, shape of `values`, without mean and steady slope.
+
+    Beyond both ends the record is taken as continued by its point mirror image: the line through first and
+    last value is taken off, the rest repeated backwards with the opposite sign, so value and slope run on.
+    """
+    rest = values - np.linspace(values[0], values[-1], len(values))
+    spectrum = rfft(np.concatenate([rest, -rest[-2:0:-1]]), norm="forward")
+    size = 2 * (len(values) - 1)
+    spectrum *= band(lines(spectrum, size * interval), low, high)
+    passed: Array = irfft(spectrum, n=size, norm="forward")[: len(values)]
+    passed -= passed.mean()
+    return passed
+
+
 def band(frequency: Array, low: float, high: float) -> Array:
     """Return the gain of a band-pass without phase shift, shape of `frequency`.
 

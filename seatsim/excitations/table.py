@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, NamedTuple
 
-import numpy as np
 from scipy.constants import g
-from scipy.signal import detrend
 
 from seatsim.errors import InputError
 from seatsim.excitations.base import Floor, excitation
 from seatsim.excitations.columns import Record, read_record
-from seatsim.excitations.keys import Speed, Through, choice
+from seatsim.excitations.keys import DURATION, SPEED, Through, choice
 from seatsim.excitations.motion import check_step, samples, soft_start
 from seatsim.excitations.road import LONGEST, SHORTEST
-from seatsim.excitations.spectra import Spectrum, band, integrated_twice, lines, mirrored, motion_of
+from seatsim.excitations.spectra import Spectrum, band, integrated_twice, limited, lines, mirrored, motion_of
 from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response
 from seatsim.fields import param
 
@@ -28,24 +26,24 @@ class Table(NamedTuple):
 
     - `time_column`: `column` is the vertical floor acceleration. Its mean (gravity, bias) is removed, it is
       limited to `high_pass..low_pass`, and integrated in the frequency domain.
-    - `distance_column`: `column` is the road's elevation in m, met at `speed`. Its straight trend is removed,
+    - `distance_column`: `column` is the road's elevation in m, met at `speed`. Its steady slope is removed,
       it is limited to 0.011 to 2.83 cycles/m (the band of `kind: road`; less where the table is coarser), and
-      passes `vehicle.floor_response` unless `through: direct`.
+      passes `vehicle.floor_response` unless `through: direct`. Waves shorter than 0.35 m are left out, since
+      a tyre's contact patch averages over them.
 
-    Both filters have no phase shift (see `spectra.band`) and take the record as continued by its mirror
-    image, which `repeat: mirror` also plays when the run is longer than the record. The floor is faded in
+    Both filters have no phase shift (see `spectra.band`). Without `duration` the whole record is played; a
+    longer run plays it backwards and forwards in turn where `repeat: mirror` says so. The floor is faded in
     over the first second. The record is stretched by less than half a step over its length so that it holds a
     whole number of steps.
     """
 
-    path: Annotated[str, choice("the table's file")]
+    path: Annotated[str, choice("the table's file, relative to the scenario")]
     column: Annotated[str, choice("column of the acceleration or elevation")]
     time_column: Annotated[str | None, choice("column of the time", "s")] = None
     distance_column: Annotated[str | None, choice("column of the distance", "m")] = None
-    speed: Speed | None = None
-    duration: Annotated[
-        float | None, param("s", "length of the run; default: the record's", above=0, high=7200)
-    ] = None
+    speed: Annotated[float | None, SPEED] = None
+    duration: Annotated[float | None, DURATION] = None
+    start: Annotated[float, param("s or m", "part of the record left out at its beginning", low=0)] = 0.0
     repeat: Annotated[Literal["none", "mirror"], choice("what follows the record's end")] = "none"
     unit: Annotated[Literal["m/s^2", "g"], choice("unit of a measured acceleration")] = "m/s^2"
     high_pass: Annotated[float, param("Hz", "lower corner of a measured acceleration", low=0.02)] = 0.1
@@ -64,8 +62,8 @@ class Table(NamedTuple):
         if (self.time_column is None) == (self.distance_column is None):
             raise InputError(f"table {self.path}: give either time_column or distance_column (with speed)")
         if self.time_column is not None:
-            return self._measured(read_record(self.path, self.time_column, self.column), step)
-        return self._driven(read_record(self.path, str(self.distance_column), self.column), step)
+            return self._measured(read_record(self.path, self.time_column, self.column, self.start), step)
+        return self._driven(read_record(self.path, str(self.distance_column), self.column, self.start), step)
 
     def _measured(self, record: Record, step: float) -> Floor:
         if self.speed is not None:
@@ -90,9 +88,9 @@ class Table(NamedTuple):
             raise InputError(f"table {self.path}: a table over distance needs speed, in m/s")
         shortest = min(SHORTEST, USABLE * 0.5 / record.interval)
         period = 2 * record.length
-        road = mirrored(detrend(record.values))[: int(shortest * period) + 1]
+        elevation = limited(record.values, record.interval, LONGEST, shortest)
+        road = mirrored(elevation)[: int(shortest * period) + 1]
         wavenumber = lines(road, period)
-        road = road * band(wavenumber, LONGEST, shortest)
         if self.through == "vehicle":
             road = road * floor_response(self.speed * wavenumber, self.vehicle)
         return self._play(road, record.length / self.speed, self.speed * shortest, step)
@@ -105,5 +103,5 @@ class Table(NamedTuple):
                 f"table {self.path}: a duration of {duration:g} s exceeds the record's {length:.4g} s; "
                 "shorten it, or set repeat: mirror"
             )
-        size = max(round(2 * length / step), 2 * np.size(displacement) - 1)
+        size = round(2 * length / step)
         return soft_start(step, motion_of(displacement, step, size, samples(duration, step)))

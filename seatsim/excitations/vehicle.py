@@ -15,9 +15,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.errors import InputError
 from seatsim.excitations.base import Array
 from seatsim.excitations.spectra import Spectrum
 from seatsim.fields import param
+
+LONGEST_RING_DOWN = 600.0
 
 
 class Vehicle(NamedTuple):
@@ -84,9 +87,18 @@ def state_space(vehicle: Vehicle = TRUCK) -> tuple[Array, Array, Array, Array]:
 
 
 def ring_down(vehicle: Vehicle) -> float:
-    """Return the time in s in which every free vibration of the vehicle falls below a millionth."""
+    """Return the time in s in which every free vibration of the vehicle falls below a millionth.
+
+    Raises:
+        InputError: it takes longer than ten minutes, so some stiffness or damping must be wrong.
+    """
     slowest = np.linalg.eigvals(state_space(vehicle)[0]).real.max()
-    return float(np.log(1e6) / -slowest)
+    if slowest > -np.log(1e6) / LONGEST_RING_DOWN:
+        raise InputError(
+            f"vehicle {vehicle}: it still sways after {LONGEST_RING_DOWN:g} s; "
+            "check that stiffnesses are in N/m and dampings in N s/m"
+        )
+    return float(-np.log(1e6) / slowest)
 
 
 def _stages(s: Spectrum, v: Vehicle) -> tuple[tuple[float, NDArray[np.complex128]], ...]:

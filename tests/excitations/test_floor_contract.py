@@ -1,0 +1,132 @@
+"""What every excitation owes: samples, start at rest, consistent derivatives, described keys, refusals."""
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_trapezoid
+
+from seatsim.errors import InputError
+from seatsim.excitations.bumps import Bumps
+from seatsim.excitations.iso7096 import Iso7096
+from seatsim.excitations.periodic import Chirp, Sine, SteppedSine
+from seatsim.excitations.road import Road
+from seatsim.fields import adapter, describe
+from seatsim.registry import card_of, name_of
+
+STEP = 0.001
+BUMP = {"height": 0.05, "length": 1.0, "speed": 8, "duration": 6.0, "number": 2, "spacing": 12.0}
+MAPPINGS = [
+    (Road, {"road_class": "D", "speed": 12, "duration": 20}),
+    (Road, {"road_class": "B", "speed": 20.0, "duration": 20.0, "through": "direct"}),
+    (Road, {"road_class": "C", "speed": 1.5, "duration": 3.0}),
+    (Iso7096, {"spectral_class": "EM3", "duration": 20}),
+    (Sine, {"amplitude": 0.02, "frequency": 1.5, "duration": 10}),
+    (SteppedSine, {"frequencies": [1, 2.5, 4.0], "cycles": 3, "amplitude": 1, "quantity": "acceleration"}),
+    (SteppedSine, {"frequencies": [3.0], "cycles": 2, "amplitude": 0.002}),
+    (Chirp, {"start_frequency": 0.5, "stop_frequency": 20, "amplitude": 0.001, "duration": 10}),
+    (
+        Chirp,
+        {
+            "start_frequency": 15,
+            "stop_frequency": 1.0,
+            "amplitude": 1.0,
+            "duration": 10,
+            "quantity": "acceleration",
+            "sweep": "linear",
+        },
+    ),
+    (Bumps, {"shape": "half_sine", **BUMP}),
+    (Bumps, {"shape": "half_sine", "through": "direct", **BUMP}),
+    (Bumps, {"shape": "haversine", **BUMP}),
+    (Bumps, {"shape": "haversine", "through": "direct", **BUMP}),
+]
+
+
+def build(cls, mapping):
+    return adapter(cls).validate_python(mapping)
+
+
+@pytest.fixture(params=MAPPINGS, ids=lambda m: f"{m[0].__name__}-{MAPPINGS.index(m)}")
+def made(request):
+    return build(*request.param)
+
+
+def test_floor_has_one_sample_more_than_steps(made):
+    floor = made.floor(STEP, 3)
+    count = round(made.duration / STEP) + 1
+    assert floor.step == STEP
+    assert [part.shape for part in floor[1:4]] == [(count,)] * 3
+    assert all(part.dtype == np.float64 and np.isfinite(part).all() for part in floor[1:4])
+
+
+def test_floor_starts_at_rest(made):
+    floor = made.floor(STEP, 3)
+    # The vehicle's tail wraps round by less than a millionth of the bump.
+    assert max(abs(part[0]) / np.abs(part).max() for part in floor[1:4]) < 1e-5
+
+
+def test_velocity_and_displacement_are_integrals_without_drift(made):
+    floor = made.floor(STEP, 3)
+    velocity = cumulative_trapezoid(floor.acceleration, dx=STEP, initial=0)
+    displacement = cumulative_trapezoid(floor.velocity, dx=STEP, initial=0)
+    assert np.abs(velocity - floor.velocity).max() < 0.01 * np.abs(floor.velocity).max()
+    assert np.abs(displacement - floor.displacement).max() < 0.01 * np.abs(floor.displacement).max()
+
+
+def test_same_seed_same_motion_and_any_step(made):
+    fine, again, coarse = made.floor(STEP, 3), made.floor(STEP, 3), made.floor(2 * STEP, 3)
+    assert np.array_equal(fine.acceleration, again.acceleration)
+    shared = fine.displacement[::2]
+    np.testing.assert_allclose(coarse.displacement[: len(shared)], shared, atol=1e-3 * np.abs(shared).max())
+
+
+@pytest.mark.parametrize(
+    ("cls", "mapping"),
+    [m for m in MAPPINGS if m[0] in (Road, Iso7096)],
+    ids=lambda v: getattr(v, "__name__", ""),
+)
+def test_another_seed_draws_another_motion(cls, mapping):
+    made = build(cls, mapping)
+    a, b = made.floor(STEP, 3).acceleration, made.floor(STEP, 4).acceleration
+    assert abs(np.corrcoef(a, b)[0, 1]) < 0.5
+
+
+def test_too_coarse_a_step_is_refused_with_the_permitted_one(made):
+    with pytest.raises(
+        InputError, match=r"too coarse for its .* Hz; permitted: at most .* s; lower solver.step"
+    ):
+        made.floor(0.5, 3)
+
+
+@pytest.mark.parametrize("cls", {m[0] for m in MAPPINGS}, ids=lambda c: c.__name__)
+def test_every_key_is_described_and_registered(cls):
+    assert all(card.meaning for card in describe(cls))
+    assert name_of("excitation", cls) in {"road", "iso7096", "sine", "stepped_sine", "chirp", "bumps"}
+    assert isinstance(card_of(cls).source, str)
+
+
+@pytest.mark.parametrize(
+    ("cls", "wrong"),
+    [
+        (Road, {"road_class": "I"}),
+        (Road, {"speed": 0}),
+        (Road, {"speed": "12"}),
+        (Road, {"duration": -1.0}),
+        (Road, {"vehicle": {"cab_mass": 0}}),
+        (Road, {"vehicle": {"cab_mas": 400}}),
+        (Road, {"rougness": 1}),
+        (Iso7096, {"spectral_class": "EM10"}),
+        (SteppedSine, {"frequencies": []}),
+        (SteppedSine, {"frequencies": [1, -2]}),
+        (SteppedSine, {"cycles": 1.5}),
+        (Bumps, {"shape": "square"}),
+    ],
+)
+def test_wrong_keys_are_refused(cls, wrong):
+    mapping = next(m for c, m in MAPPINGS if c is cls)
+    with pytest.raises(ValueError, match="validation error"):
+        build(cls, {**mapping, **wrong})
+
+
+def test_a_run_of_less_than_two_steps_is_refused():
+    with pytest.raises(InputError, match="fewer than two steps"):
+        Sine(0.01, 2.0, 0.001).floor(STEP, 0)

@@ -1,0 +1,90 @@
+"""Random roads carry the spectrum of ISO 8608."""
+
+import time
+
+import numpy as np
+import pytest
+from scipy.signal import welch
+
+from seatsim.excitations.road import Road, displacement_density, profile
+
+STEP, SPEED = 0.002, 20.0
+OCTAVES = [(0.5 * 2**k, 2**k) for k in range(6)]
+
+
+def octave_ratios(seed, road_class="C"):
+    """Band powers of the floor's acceleration over those of the class, octaves from 0.5 to 32 Hz."""
+    floor = Road(road_class, SPEED, 120.0, through="direct").floor(STEP, seed)
+    f, measured = welch(floor.acceleration[1000:], 1 / STEP, nperseg=8192, window="hann")
+    f, measured = f[1:], measured[1:]
+    target = displacement_density(f / SPEED, road_class) / SPEED * (2 * np.pi * f) ** 4
+    bands = [(f >= low) & (f < high) for low, high in OCTAVES]
+    return np.array([measured[b].sum() / target[b].sum() for b in bands])
+
+
+def test_geometric_means_of_the_classes():
+    n0 = np.array([0.1])
+    means = [displacement_density(n0, c)[0] * 1e6 for c in "ABCDEFGH"]
+    np.testing.assert_allclose(means, [16, 64, 256, 1024, 4096, 16384, 65536, 262144])
+
+
+def test_density_falls_with_the_square_of_the_wavenumber():
+    assert displacement_density(np.array([0.2]), "A")[0] == pytest.approx(4e-6)
+
+
+def test_octave_bands_of_one_realisation():
+    np.testing.assert_allclose(octave_ratios(5), 1.0, atol=0.12)
+
+
+def test_octave_bands_of_the_mean_over_seeds():
+    mean = np.mean([octave_ratios(seed) for seed in range(12)], axis=0)
+    np.testing.assert_allclose(mean, 1.0, atol=0.03)
+
+
+def test_velocity_has_the_variance_of_a_flat_spectrum():
+    # G_v = 4 pi^2 n0^2 Gd V is constant between 0.011 V and 2.83 V.
+    floor = Road("C", SPEED, 200.0, through="direct").floor(STEP, 1)
+    expected = 4 * np.pi**2 * 0.1**2 * 256e-6 * SPEED * (2.83 - 0.011) * SPEED
+    assert np.var(floor.velocity[1000:]) == pytest.approx(expected, rel=0.02)
+
+
+def test_elevation_is_nearly_gaussian():
+    acceleration = Road("B", SPEED, 120.0).floor(STEP, 2).acceleration[1000:]
+    standard = acceleration / acceleration.std()
+    assert abs(np.mean(standard**3)) < 0.1
+    assert np.mean(standard**4) == pytest.approx(3.0, abs=0.3)
+
+
+def test_classes_are_scaled_copies():
+    a, c = (Road(k, SPEED, 20.0).floor(STEP, 9).acceleration for k in "AC")
+    np.testing.assert_allclose(c, 4 * a, rtol=1e-9, atol=1e-12)
+
+
+def test_nothing_beyond_the_band():
+    floor = Road("C", 10.0, 100.0, through="direct").floor(STEP, 1)
+    f, density = welch(floor.acceleration[1000:], 1 / STEP, nperseg=8192, window="blackmanharris")
+    assert density[f > 2.9 * 10].max() < 1e-6 * density.max()
+
+
+def test_profile_carries_the_same_spectrum():
+    spacing = 0.25
+    mean = 0.0
+    for seed in range(8):
+        _, elevation = profile("C", 4000.0, spacing, seed)
+        n, density = welch(elevation, 1 / spacing, nperseg=2048)
+        band = (n > 0.05) & (n < 1.5)
+        mean += (
+            np.sum(density[band] * n[band] ** 2)
+            / np.sum(displacement_density(n[band], "C") * n[band] ** 2)
+            / 8
+        )
+    assert mean == pytest.approx(1.0, abs=0.03)
+
+
+def test_a_minute_at_a_millisecond_is_quick():
+    def once():
+        start = time.perf_counter()
+        Road("D", 15.0, 60.0).floor(0.001, 1)
+        return time.perf_counter() - start
+
+    assert min(once() for _ in range(5)) < 0.1

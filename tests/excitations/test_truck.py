@@ -1,0 +1,76 @@
+"""The stated vehicle between road and cab floor."""
+
+import control
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from seatsim.errors import InputError
+from seatsim.excitations.bumps import Bumps
+from seatsim.excitations.road import LONGEST, SHORTEST, Road, displacement_density
+from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response, ring_down, state_space
+
+
+def test_response_agrees_with_the_state_space():
+    f = np.geomspace(0.05, 80, 60)
+    outputs = np.squeeze(control.ss(*state_space())(2j * np.pi * f))
+    s = 2j * np.pi * f
+    np.testing.assert_allclose(outputs[0], floor_response(f), rtol=1e-8)
+    np.testing.assert_allclose(outputs[1], s * floor_response(f), rtol=1e-8)
+    np.testing.assert_allclose(outputs[2], s**2 * floor_response(f), rtol=1e-8)
+
+
+def test_slow_road_is_followed_and_fast_road_is_not():
+    assert abs(floor_response(np.array([1e-4]))[0]) == pytest.approx(1.0, abs=1e-6)
+    # Tyre, damper and mount damper leave a fall with the fourth power of frequency.
+    high = np.abs(floor_response(np.array([400.0, 800.0])))
+    assert high[0] / high[1] == pytest.approx(16, rel=0.02)
+
+
+def test_stiff_links_make_one_mass_on_its_tyre():
+    rigid = Vehicle(suspension_stiffness=1e12, mount_stiffness=1e12)
+    f = np.array([0.5, 1.0, 1.5])
+    mass = TRUCK.axle_mass + TRUCK.body_mass + TRUCK.cab_mass
+    expected = TRUCK.tyre_stiffness / (TRUCK.tyre_stiffness - mass * (2 * np.pi * f) ** 2)
+    np.testing.assert_allclose(floor_response(f, rigid), expected, rtol=1e-4)
+
+
+def test_stated_modes():
+    poles = control.ss(*state_space()).poles()
+    poles = sorted(poles[poles.imag > 0], key=abs)
+    assert np.abs(poles) / (2 * np.pi) == pytest.approx([1.15, 1.96, 8.83], abs=0.01)
+    assert -np.real(poles) / np.abs(poles) == pytest.approx([0.29, 0.49, 0.53], abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("road_class", "speed", "low", "high"),
+    [("B", 20.0, 0.3, 0.6), ("D", 10.0, 1.0, 2.0), ("D", 15.0, 1.0, 2.0)],
+)
+def test_floor_acceleration_is_that_of_a_truck_cab(road_class, speed, low, high):
+    acceleration = Road(road_class, speed, 60.0).floor(0.001, 1).acceleration[1000:]
+    rms = np.sqrt(np.mean(acceleration**2))
+    assert low < rms < high
+    f = np.linspace(LONGEST * speed, SHORTEST * speed, 20000)
+    density = displacement_density(f / speed, road_class) / speed * (2 * np.pi * f) ** 4
+    assert rms == pytest.approx(np.sqrt(np.trapezoid(density * np.abs(floor_response(f)) ** 2, f)), rel=0.05)
+
+
+def test_bump_response_agrees_with_time_integration():
+    bump = Bumps("haversine", 0.06, 1.5, 6.0, 4.0)
+    floor, road = bump.floor(0.001, 0), bump._replace(through="direct").floor(0.001, 0)
+    A, B, C, _ = state_space()
+
+    def rates(t, x):
+        return A @ x + B[:, 0] * np.interp(t, road.time, road.displacement)
+
+    solution = solve_ivp(rates, (0, 4), np.zeros(6), t_eval=floor.time, max_step=0.005, rtol=1e-7, atol=1e-10)
+    for name, output in zip(("displacement", "velocity", "acceleration"), C @ solution.y, strict=True):
+        scale = np.abs(output).max()
+        np.testing.assert_allclose(getattr(floor, name), output, atol=1e-3 * scale)
+
+
+def test_ring_down_covers_the_slowest_mode_and_refuses_a_vehicle_that_never_settles():
+    slowest = np.linalg.eigvals(state_space()[0]).real.max()
+    assert np.exp(slowest * ring_down(TRUCK)) == pytest.approx(1e-6)
+    with pytest.raises(InputError, match="N/m"):
+        ring_down(Vehicle(tyre_stiffness=1000.0))
