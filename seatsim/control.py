@@ -3,8 +3,8 @@
 A law is a record (NamedTuple) of its keys. At every sampling instant it sees a `Measurement` and its own state, a tuple
 of floats, and answers with *one* of
 
-    def force(self, y, state):    wanted damper force in N, positive when it opposes extension
-    def current(self, y, state):  wanted coil current in A
+    def wanted_force(self, y, state):    wanted damper force in N, positive when it opposes extension
+    def wanted_current(self, y, state):  wanted coil current in A
 
 and, where it has a state, with `def update(self, y, state)`, the state for the next instant. Methods are compiled by
 numba: plain arithmetic and `math` only. A law that wants a force is served through the inverse damper of the scenario.
@@ -38,12 +38,15 @@ class Measurement(NamedTuple):
 
 
 class LawCard(NamedTuple):
-    """What is stated of a law: the initial value of its state, and its source."""
+    """What is stated of a law: the initial value of its state, whether it replays a recording row by row, its source."""
 
     initial: tuple[float, ...]
+    replays: bool
     source: str
 
 
-def law(name: str, initial: tuple[float, ...] = (), source: str = "") -> Callable[[T], T]:
+def law(
+    name: str, initial: tuple[float, ...] = (), replays: bool = False, source: str = ""
+) -> Callable[[T], T]:
     """Register a record class as the control law `law: name` with the `initial` value of its state."""
-    return register("law", name, LawCard(initial, source))
+    return register("law", name, LawCard(initial, replays, source))

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numba
 
 from seatsim.dampers.base import State
+from seatsim.fields import param
 
+QuadraticLaw = tuple[
+    Annotated[float, param("", "constant")],
+    Annotated[float, param("1/A", "linear")],
+    Annotated[float, param("1/A^2", "quadratic")],
+]
+"""Coefficients of a quadratic law in the current."""
+
+BRANCH_STATE = "w, the displacement in m about its recent mean, whose sign is the branch of the loop"
 BRANCH_WIDTH = 1e-4
 """Displacement in m over which a branch changes sign, tanh(w / 0.1 mm)."""
 BRANCH_MEMORY = 5.0
@@ -26,6 +36,12 @@ def power(base: float, exponent: float) -> float:
 def cubic(c: tuple[float, ...], i: float) -> float:
     """Return `c[0] + c[1] i + c[2] i^2 + c[3] i^3`."""
     return c[0] + i * (c[1] + i * (c[2] + i * c[3]))
+
+
+@numba.njit
+def quadratic(c: tuple[float, ...], i: float) -> float:
+    """Return `c[0] + c[1] i + c[2] i^2`."""
+    return c[0] + i * (c[1] + i * c[2])
 
 
 @numba.njit

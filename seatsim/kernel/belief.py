@@ -8,9 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numba
-
 from seatsim.kernel.generic import Tuple, axpy, combine, heat_at, hook, rates
+from seatsim.kernel.options import jit
 from seatsim.temperature import Heat, TemperatureFactors
 
 
@@ -61,7 +60,7 @@ def heat(self: Any, true: Heat, temperature: float) -> Heat:
     raise TypeError
 
 
-@numba.njit(forceinline=True)
+@jit
 def follow(
     damper: Any, own: Tuple, x: float, v: float, x_next: float, v_next: float, i: float, heat: Heat, length: float
 ) -> Tuple:

@@ -6,12 +6,14 @@ served from a stale entry. Here every combination of sources has a cache folder 
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import os
 import sys
 import sysconfig
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
+from importlib.util import resolve_name
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -19,12 +21,14 @@ from typing import Any
 import numba
 import platformdirs
 
+from seatsim.kernel.options import ARITHMETIC
+
 _OUTSIDE = ("numba", "numpy", "scipy", "llvmlite", "pydantic", "control", "cvxpy")
 
 
 def compiled(function: Callable[..., Any], plugged: Iterable[type]) -> Callable[..., Any]:
-    """Return the compiled `function`, cached on disk under the sources of seatsim and of the `plugged` classes."""
-    modules = frozenset(sys.modules[cls.__module__] for cls in plugged)
+    """Return the compiled `function`, cached on disk under its sources and those of the `plugged` classes."""
+    modules = frozenset(sys.modules[part.__module__] for part in (function, *plugged))
     return _compiled(function, modules)
 
 
@@ -33,7 +37,7 @@ def _compiled(function: Callable[..., Any], modules: frozenset[ModuleType]) -> C
     previous = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(cache_folder() / digest(modules))
     try:
-        dispatcher: Callable[..., Any] = numba.njit(cache=True, nogil=True)(function)
+        dispatcher: Callable[..., Any] = numba.njit(cache=True, nogil=True, **ARITHMETIC)(function)
     finally:
         numba.config.CACHE_DIR = previous
     return dispatcher
@@ -46,10 +50,8 @@ def cache_folder() -> Path:
 
 
 def digest(modules: Iterable[ModuleType]) -> str:
-    """Return a hash over the sources of seatsim, of the given modules, and of what these reach outside libraries."""
-    files = set(Path(__file__).parents[1].rglob("*.py"))
-    for module in _reachable(modules):
-        files.add(Path(str(module.__file__)))
+    """Return a hash over the sources of the given modules and of what these reach outside libraries."""
+    files = {Path(str(module.__file__)) for module in _reachable(modules)}
     state = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
     for file in sorted(files):
         state.update(str(file).encode() + file.read_bytes())
@@ -57,19 +59,26 @@ def digest(modules: Iterable[ModuleType]) -> str:
 
 
 def _reachable(modules: Iterable[ModuleType]) -> set[ModuleType]:
-    """Return the modules and those whose objects stand in their globals, without libraries that do not change."""
+    """Return the modules and all that they import, directly or not, without libraries that do not change."""
     found: set[ModuleType] = set()
     waiting = list(modules)
     while waiting:
         module = waiting.pop()
-        if module in found or not _changes(module):
-            continue
-        found.add(module)
-        for value in vars(module).values():
-            name = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", None)
-            if isinstance(name, str) and name in sys.modules:
-                waiting.append(sys.modules[name])
+        if module not in found and _changes(module):
+            found.add(module)
+            waiting += [sys.modules[name] for name in _imported(module) if name in sys.modules]
     return found
+
+
+def _imported(module: ModuleType) -> Iterator[str]:
+    """Yield the full names of what the module's source imports."""
+    for node in ast.walk(ast.parse(Path(str(module.__file__)).read_bytes())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            origin = resolve_name("." * node.level + (node.module or ""), module.__package__)
+            yield origin
+            yield from (f"{origin}.{alias.name}" for alias in node.names)
 
 
 def _changes(module: ModuleType) -> bool:

@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from numba import njit, types
+from numba import types
 from numba.extending import overload
 
+from seatsim.kernel.options import INLINED, jit
 from seatsim.temperature import Heat, TemperatureFactors
 from seatsim.temperature import heat as _heat
 
@@ -31,7 +32,7 @@ def hook(default: Callable[..., Any]) -> Callable[..., Any]:
         return getattr(cls, name, default) if isinstance(self, types.BaseNamedTuple) else None
 
     generic.__name__ = generic.__qualname__ = name
-    overload(generic, strict=False, jit_options={"forceinline": True})(resolve)
+    overload(generic, strict=False, jit_options=INLINED)(resolve)
     return generic
 
 
@@ -61,26 +62,32 @@ def update(self: Any, y: Any, state: Tuple) -> Tuple:
 
 def wants_force(law: Any) -> bool:
     """Whether the law answers with a force (through the inverse) rather than with a current."""
-    return hasattr(law, "force")
+    return hasattr(law, "wanted_force") or hasattr(law, "force")
 
 
-@overload(wants_force, strict=False, jit_options={"forceinline": True})
+@overload(wants_force, strict=False, jit_options=INLINED)
 def _wants_force(law: Any) -> Callable[..., bool]:
-    answer = hasattr(law.instance_class, "force")
+    answer = wants_force(law.instance_class)
     return lambda law: answer
 
 
 def ask(law: Any, y: Any, state: Tuple) -> float:
     """Return what the law wants: a force in N or a current in A."""
-    answer: float = (law.force if wants_force(law) else law.current)(y, state)
+    answer: float = _question(type(law))(law, y, state)
     return answer
 
 
-@overload(ask, strict=False, jit_options={"forceinline": True})
+@overload(ask, strict=False, jit_options=INLINED)
 def _ask(law: Any, y: Any, state: Any) -> Callable[..., float]:
-    cls = law.instance_class
-    method: Callable[..., float] = cls.force if hasattr(cls, "force") else cls.current
-    return method
+    return _question(law.instance_class)
+
+
+def _question(cls: type) -> Callable[..., float]:
+    for name in ("wanted_force", "wanted_current", "force", "current"):
+        if hasattr(cls, name):
+            method: Callable[..., float] = getattr(cls, name)
+            return method
+    raise TypeError(cls)
 
 
 def axpy(y: Tuple, h: float, k: Tuple) -> Tuple:
@@ -88,7 +95,7 @@ def axpy(y: Tuple, h: float, k: Tuple) -> Tuple:
     return tuple(a + h * b for a, b in zip(y, k, strict=True))
 
 
-@overload(axpy, strict=False, jit_options={"forceinline": True})
+@overload(axpy, strict=False, jit_options=INLINED)
 def _axpy(y: Any, h: float, k: Any) -> Callable[..., Any]:
     return _unrolled("y, h, k", "y[{j}] + h * k[{j}]", len(y))
 
@@ -99,7 +106,7 @@ def combine(y: Tuple, h: float, k1: Tuple, k2: Tuple, k3: Tuple, k4: Tuple) -> T
     return tuple(a + h / 6.0 * (b + 2.0 * (c + d) + e) for a, b, c, d, e in stages)
 
 
-@overload(combine, strict=False, jit_options={"forceinline": True})
+@overload(combine, strict=False, jit_options=INLINED)
 def _combine(y: Any, h: float, k1: Any, k2: Any, k3: Any, k4: Any) -> Callable[..., Any]:
     term = "y[{j}] + h / 6.0 * (k1[{j}] + 2.0 * (k2[{j}] + k3[{j}]) + k4[{j}])"
     return _unrolled("y, h, k1, k2, k3, k4", term, len(y))
@@ -114,4 +121,4 @@ def _unrolled(arguments: str, term: str, length: int) -> Callable[..., Any]:
     return implementation
 
 
-heat_at: Callable[[TemperatureFactors, float], Heat] = njit(_heat)
+heat_at: Callable[[TemperatureFactors, float], Heat] = jit(_heat)

@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numba
+import numpy as np
+from numpy.typing import NDArray
 
 from seatsim.kernel.generic import Tuple, coulomb, force
+from seatsim.kernel.options import jit
 from seatsim.temperature import Heat
+
+Array = NDArray[np.float64]
 
 CELLS = 16
 """Cells of the grid on which a non-polynomial force-current map is searched for its first crossing."""
@@ -22,11 +26,13 @@ class Answer(NamedTuple):
     served: float
 
 
-@numba.njit(forceinline=True)
+@jit
 def invert(
-    damper: Any, order: int, wanted: float, x: float, v: float, heat: Heat, z: Tuple, max_current: float
+    damper: Any, order: int, wanted: float, x: float, v: float, heat: Heat, z: Tuple, max_current: float, grid: Array
 ) -> Answer:
     """Return the least current in `[0, max_current]` whose force comes closest to `wanted` clipped to what can be done.
+
+    `grid`, shape (CELLS + 1,), is scratch.
 
     Outside the dissipative quadrant (`wanted v <= 0`) the current is zero; inside, the wanted force is clipped to the
     range of forces over the permitted currents at this motion, temperature and state. Where the force is a polynomial in the current of
@@ -38,20 +44,20 @@ def invert(
     elif order > 0:
         current = _closed_form(damper, wanted, x, v, heat, z, max_current)
     else:
-        current = _search(damper, wanted, x, v, heat, z, max_current)
+        current = _search(damper, wanted, x, v, heat, z, max_current, grid)
     got = total(damper, x, v, current, heat, z)
     served = 1.0 if abs(got - wanted) <= 1e-6 * (1.0 + abs(wanted)) else 0.0
     return Answer(current, got, served)
 
 
-@numba.njit(forceinline=True)
+@jit
 def total(damper: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> float:
     """Return the damper force in N with its set-valued friction, which is zero at v = 0."""
     smooth: float = force(damper, x, v, i, heat, z)
     return smooth + coulomb(damper, i, heat) * (0.0 if v == 0.0 else math.copysign(1.0, v))
 
 
-@numba.njit(forceinline=True)
+@jit
 def _closed_form(damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float) -> float:
     f0 = total(damper, x, v, 0.0, heat, z)
     f1 = total(damper, x, v, 0.5 * top, heat, z)
@@ -82,24 +88,29 @@ def _closed_form(damper: Any, target: float, x: float, v: float, heat: Heat, z: 
     return best * top
 
 
-@numba.njit(forceinline=True)
-def _search(damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float) -> float:
-    left, f_left = 0.0, total(damper, x, v, 0.0, heat, z) - target
-    if f_left == 0.0:
+@jit
+def _search(
+    damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float, grid: Array
+) -> float:
+    # The whole grid first: without an early exit the compiler evaluates several currents at once.
+    for j in range(CELLS + 1):
+        grid[j] = total(damper, x, v, top * j / CELLS, heat, z) - target
+    if grid[0] == 0.0:
         return 0.0
-    best, f_best = left, abs(f_left)
-    for cell in range(CELLS):
-        right = top * (cell + 1) / CELLS
-        f_right = total(damper, x, v, right, heat, z) - target
-        if f_left * f_right <= 0.0:
-            return _bracket(damper, target, x, v, heat, z, left, f_left, right, f_right)
-        if abs(f_right) < f_best:
-            best, f_best = right, abs(f_right)
-        left, f_left = right, f_right
-    return best
+    for j in range(CELLS):
+        if grid[j] * grid[j + 1] <= 0.0:
+            left, right = top * j / CELLS, top * (j + 1) / CELLS
+            return _bracket(damper, target, x, v, heat, z, left, grid[j], right, grid[j + 1])
+    closest = abs(grid[0])
+    for j in range(1, CELLS + 1):
+        closest = min(closest, abs(grid[j]))
+    best = 0
+    while best < CELLS and abs(grid[best]) > closest:
+        best += 1
+    return top * best / CELLS
 
 
-@numba.njit(forceinline=True)
+@jit
 def _bracket(
     damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple,
     left: float, f_left: float, right: float, f_right: float,

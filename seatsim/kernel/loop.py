@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,9 +12,10 @@ from seatsim.coil import Coil
 from seatsim.control import Measurement
 from seatsim.kernel.belief import follow, heat, state
 from seatsim.kernel.generic import Tuple, ask, heat_at, update, wants_force
-from seatsim.kernel.inverse import invert
+from seatsim.kernel.inverse import CELLS, invert
+from seatsim.kernel.options import jit
 from seatsim.kernel.rig import Rig
-from seatsim.kernel.step import Drive, Progress, advance, start
+from seatsim.kernel.step import Drive, Progress, advance, relaxed, start
 from seatsim.temperature import Heat, TemperatureFactors, Thermal
 
 Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ class Inputs(NamedTuple):
     """What drives a run, sampled every `step`, shape (N,) each; an array of length 0 is an input that is absent.
 
     `replayed` is a recorded command for laws that replay it, `prescribed` a coil current that bypasses the coil,
-    `temperature` the damper's temperature in degC.
+    `temperature` the damper's temperature in degC; the coil starts at `start_current`.
     """
 
     floor_acceleration: Array
@@ -54,6 +54,7 @@ class Inputs(NamedTuple):
     temperature: Array
     replayed: Array
     prescribed: Array
+    start_current: float = 0.0
 
 
 class Timing(NamedTuple):
@@ -84,12 +85,14 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
     prescribed = len(inputs.prescribed) > 0
     delay_steps = int(math.floor(coil.delay / step + 1e-9))
     split = max(0.0, coil.delay - delay_steps * step)
-    current = inputs.prescribed[0] if prescribed else 0.0
+    kept = (1.0 - relaxed(coil, 0.0, 1.0, 0.5 * step), relaxed(coil, 1.0, 0.0, 0.5 * step))
+    current = inputs.start_current
     temperature = inputs.temperature[0]
     factors = heat_at(setup.factors, temperature)
     mechanical = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     now = start(rig, mechanical + damper_state, inputs.floor_acceleration[0], current, factors, step)
     command, wanted, served = 0.0, math.nan, math.nan
+    grid = np.empty(CELLS + 1)
 
     for k in range(samples):
         floor = inputs.floor_acceleration[k]
@@ -100,7 +103,7 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
                 answer = invert(
                     belief.damper, belief.order, wanted, rig.plant.damper_ratio * now.state[0],
                     rig.plant.damper_ratio * now.state[1], heat(belief, factors, temperature),
-                    state(belief, now.state[8:], believed), coil.max_current,
+                    state(belief, now.state[8:], believed), coil.max_current, grid,
                 )
                 command, served = answer.current, answer.served
             else:
@@ -114,7 +117,8 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
         before = out[k - delay_steps - 1, 11] if k >= delay_steps + 1 else 0.0
         if prescribed:
             after = inputs.prescribed[k + 1]
-        drive = Drive(step, floor, inputs.floor_acceleration[k + 1] - floor, current, before, after, split, prescribed)
+        rise = inputs.floor_acceleration[k + 1] - floor
+        drive = Drive(step, floor, rise, current, before, after, split, prescribed, kept)
         x, v, work = now.state[0], now.state[1], now.state[5]
         now, next_current, good = advance(rig, coil, drive, factors, now, timing.tolerance)
         if not good:
@@ -134,7 +138,7 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
     return samples
 
 
-@numba.njit(forceinline=True)
+@jit
 def _measure(
     rig: Rig, inputs: Inputs, now: Progress, k: int, step: float, current: float, temperature: float
 ) -> Measurement:
@@ -149,7 +153,7 @@ def _measure(
     )
 
 
-@numba.njit(forceinline=True)
+@jit
 def _record(
     out: Array, k: int, now: Progress, floor: float, wanted: float, served: float, current: float, command: float,
     temperature: float,
@@ -163,7 +167,7 @@ def _record(
     row[13], row[14], row[15], row[16] = s[4], s[5], s[6], s[7]
 
 
-@numba.njit(forceinline=True)
+@jit
 def _warming(
     thermal: Thermal, coil: Coil, temperature: float, work: float, i0: float, i1: float, step: float
 ) -> float:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numba
-
 from seatsim.kernel.generic import Tuple, coulomb, force, rates
+from seatsim.kernel.options import jit
 from seatsim.plant import Plant
 from seatsim.suspension import SuspensionExtras, extra_force
 from seatsim.temperature import Heat
@@ -30,7 +29,7 @@ class Flow(NamedTuple):
     friction_limit: float
 
 
-@numba.njit(forceinline=True)
+@jit
 def derivative(
     rig: Rig, s: Tuple, floor: float, current: float, heat: Heat, slip: float
 ) -> tuple[Tuple, Flow]:
@@ -66,7 +65,7 @@ def derivative(
     return (v, acceleration, vc, cushion_rate) + works + dz, Flow(damper_force, limit)
 
 
-@numba.njit(forceinline=True)
+@jit
 def _friction(free: float, v: float, slip: float, limit: float, mass: float) -> tuple[float, float]:
     """Return the friction as a share of its limit (-1 to 1) and the relative acceleration under it."""
     if limit <= 0.0:

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
-
 from seatsim.coil import Coil, relax
 from seatsim.kernel.generic import Tuple, axpy, combine
+from seatsim.kernel.options import jit
 from seatsim.kernel.rig import Flow, Rig, derivative
 from seatsim.temperature import Heat
 
-relaxed = numba.njit(relax)
+relaxed = jit(relax)
 FLOOR_OF_ERROR_SCALE = 0.01
 """m/s added to the speed that the tolerance is relative to."""
 SMALLEST = 2.0**-26
@@ -34,6 +33,7 @@ class Drive(NamedTuple):
 
     Floor acceleration runs linearly from `floor` by `floor_rise`. The coil relaxes from `current` towards `before` for
     the first `split` seconds and towards `after` from then on; with a `prescribed` current it runs linearly to `after`.
+    `kept` is what half a step leaves of the distance to the command, of a rising and of a falling current.
     """
 
     length: float
@@ -44,6 +44,7 @@ class Drive(NamedTuple):
     after: float
     split: float
     prescribed: bool
+    kept: tuple[float, float]
 
 
 class Progress(NamedTuple):
@@ -56,7 +57,7 @@ class Progress(NamedTuple):
     substep: float
 
 
-@numba.njit(forceinline=True)
+@jit
 def current_at(coil: Coil, drive: Drive, time: float) -> float:
     """Return the coil current `time` seconds into the step."""
     if drive.prescribed:
@@ -68,22 +69,31 @@ def current_at(coil: Coil, drive: Drive, time: float) -> float:
     return relaxed(coil, relaxed(coil, drive.current, drive.before, drive.split), drive.after, time - drive.split)
 
 
-@numba.njit(forceinline=True)
+@jit
+def _currents(coil: Coil, drive: Drive, time: float, h: float) -> tuple[float, float]:
+    """Return the coil current in the middle and at the end of a sub-step of `h` from `time`."""
+    if h < drive.length or drive.split > 0.0 or drive.prescribed:
+        return current_at(coil, drive, time + 0.5 * h), current_at(coil, drive, time + h)
+    kept = drive.kept[0] if drive.after > drive.current else drive.kept[1]
+    middle = drive.after + (drive.current - drive.after) * kept
+    return middle, drive.after + (middle - drive.after) * kept
+
+
+@jit
 def start(rig: Rig, state: Tuple, floor: float, current: float, heat: Heat, substep: float) -> Progress:
     """Return the progress of a rig in `state`, sliding or at rest."""
     rates, flow = derivative(rig, state, floor, current, heat, 0.0)
     return Progress(state, rates, flow, 0.0, substep)
 
 
-@numba.njit(forceinline=True)
+@jit
 def _try(
     rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, time: float, h: float
 ) -> tuple[Tuple, Tuple, Flow, Tuple, float]:
     """Return state, rates, flow after a sub-step of `h` from `time`, the fourth stage, and the current at the end."""
     middle = drive.floor + drive.floor_rise * (time + 0.5 * h) / drive.length
     end = drive.floor + drive.floor_rise * (time + h) / drive.length
-    i_middle = current_at(coil, drive, time + 0.5 * h)
-    i_end = current_at(coil, drive, time + h)
+    i_middle, i_end = _currents(coil, drive, time, h)
     k1, slip = now.rates, now.slip
     k2, _ = derivative(rig, axpy(now.state, 0.5 * h, k1), middle, i_middle, heat, slip)
     k3, _ = derivative(rig, axpy(now.state, 0.5 * h, k2), middle, i_middle, heat, slip)
@@ -93,7 +103,7 @@ def _try(
     return state, rates, flow, k4, i_end
 
 
-@numba.njit(forceinline=True)
+@jit
 def advance(
     rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, tolerance: float
 ) -> tuple[Progress, float, bool]:
@@ -143,7 +153,7 @@ def advance(
     return Progress(now.state, now.rates, now.flow, now.slip, h), current, True
 
 
-@numba.njit(forceinline=True)
+@jit
 def _longer(h: float, error: float, length: float) -> float:
     """Return the next sub-step after one of `h` with the given error in units of the tolerance."""
     if h >= length:
@@ -152,13 +162,13 @@ def _longer(h: float, error: float, length: float) -> float:
     return min(h * factor, length)
 
 
-@numba.njit(forceinline=True)
+@jit
 def _at_rest(state: Tuple) -> Tuple:
     """Return the state with the suspension velocity set to zero."""
     return state[:1] + (0.0,) + state[2:]
 
 
-@numba.njit(forceinline=True)
+@jit
 def _crossing(v0: float, a0: float, v1: float, a1: float, h: float) -> float:
     """Return the fraction of the sub-step at which the Hermite cubic through both ends' velocities is zero."""
     low, high = 0.0, 1.0

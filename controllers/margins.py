@@ -1,0 +1,73 @@
+"""How much a seat's loop under static output feedback can take: margins, and stability of the sampled loop.
+
+The loop is broken at the damper force, with the damper taken as delivering the wanted force through the coil's lag (the
+linear view of the semi-active loop; the clip to what a damper can do only takes energy out).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import control
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from seatsim.coil import Coil
+from seatsim.plant import Plant, state_space
+
+Array = NDArray[np.float64]
+
+
+class Margins(NamedTuple):
+    """Factor by which the loop gain may rise (inf where any may), phase margin in degrees, delay margin in s."""
+
+    gain: float
+    phase: float
+    delay: float
+
+
+def margins(plant: Plant, gain: Array, coil: Coil) -> Margins:
+    """Return the margins of the continuous loop `L(s) = -K G(s) r / (s + r)`, with G from Fd to (x, v), r the coil's rate.
+
+    The delay margin is the least phase margin over its crossover frequency (rad/rad/s), over all crossovers.
+    """
+    s = state_space(plant)
+    k = np.atleast_2d(gain)
+    lag = control.ss(-coil.rate, coil.rate, 1.0, 0.0)
+    loop = control.ss(s.A, s.B2, -k @ s.C2, 0.0) * lag
+    gains, phases, _, _, crossings, _ = control.stability_margins(loop, returnall=True)
+    rising = [g for g in gains if g > 1.0]
+    ahead = np.mod(np.asarray(phases), 360.0)
+    delays = np.radians(ahead) / np.asarray(crossings)
+    return Margins(
+        float(min(rising, default=math.inf)),
+        float(np.min(np.abs(phases), initial=math.inf)),
+        float(np.min(delays, initial=math.inf)),
+    )
+
+
+def sampled_radius(plant: Plant, gain: Array, coil: Coil, sample_time: float, delay_samples: int = 0) -> float:
+    """Return the spectral radius of the sampled loop (below 1: stable): coil as a state, command held between samples.
+
+    The exact zero-order hold of plant and coil over `sample_time`, with `delay_samples` whole samples of delay.
+    """
+    s = state_space(plant)
+    n = len(s.A)
+    k = np.atleast_2d(gain) @ s.C2
+    flow = np.zeros((n + 2, n + 2))
+    flow[:n, :n], flow[:n, n : n + 1] = s.A, s.B2
+    flow[n, n], flow[n, n + 1] = -coil.rate, coil.rate
+    step = expm(flow * sample_time)
+    order = n + 1 + delay_samples
+    loop = np.zeros((order, order))
+    loop[: n + 1, : n + 1] = step[: n + 1, : n + 1]
+    held = step[: n + 1, n + 1]
+    if delay_samples == 0:
+        loop[: n + 1, :n] += np.outer(held, k[0])
+    else:
+        loop[: n + 1, n + 1] = held
+        loop[n + 1 : -1, n + 2 :] = np.eye(delay_samples - 1)
+        loop[-1, :n] = k[0]
+    return float(np.max(np.abs(np.linalg.eigvals(loop))))

@@ -1,0 +1,96 @@
+"""BFGS with a weak Wolfe line search, which also works on functions with kinks.
+
+Source: Lewis & Overton 2013, Math. Program. 141:135 (the kink slows no step: the search needs only values and the gradient of the side it is on).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from controllers.synthesis.plant import Array
+
+Function = Callable[[Array], tuple[float, Array]]
+
+_ARMIJO, _CURVATURE = 1e-4, 0.5
+_LINE_STEPS = 40
+
+
+class Point(NamedTuple):
+    """A place with the function's value and gradient there."""
+
+    x: Array
+    value: float
+    gradient: Array
+
+
+def minimise(
+    function: Function,
+    start: Array,
+    deadline: float,
+    enough: float = -np.inf,
+    patience: int = 20,
+    progress: float = 1e-6,
+    iterations: int = 1000,
+) -> Point:
+    """Descend from `start`, where `function` must be finite.
+
+    Ends where the value is at most `enough`, `patience` steps together gain less than `progress`, no step descends,
+    or `time.monotonic()` passes `deadline`.
+    """
+    here = Point(start, *function(start))
+    inverse = np.eye(len(start))
+    history = [here.value]
+    fresh = True
+    for _ in range(iterations):
+        if here.value <= enough or not np.any(here.gradient) or time.monotonic() > deadline:
+            break
+        following = _line_search(function, here, -inverse @ here.gradient)
+        if following is None:
+            if fresh:
+                break
+            inverse, fresh = np.eye(len(start)), True
+            continue
+        inverse = _update(inverse, here, following, fresh)
+        here, fresh = following, False
+        history.append(here.value)
+        if len(history) > patience and history[-1 - patience] - here.value < progress:
+            break
+    return here
+
+
+def _line_search(function: Function, here: Point, direction: Array) -> Point | None:
+    """Find a point with sufficient decrease and a flatter slope; None where nothing lower is found."""
+    slope = float(here.gradient @ direction)
+    if not slope < 0:
+        return None
+    low, high, step = 0.0, np.inf, 1.0
+    lowest: Point | None = None
+    for _ in range(_LINE_STEPS):
+        trial = Point(here.x + step * direction, *function(here.x + step * direction))
+        if not trial.value < here.value + _ARMIJO * step * slope:
+            high = step
+        else:
+            lowest, low = trial, step
+            if trial.gradient @ direction >= _CURVATURE * slope:
+                return trial
+        step = (low + high) / 2 if np.isfinite(high) else 2 * low
+    return lowest
+
+
+def _update(inverse: Array, here: Point, following: Point, fresh: bool) -> Array:
+    """BFGS update of the inverse Hessian; the first one also sets its scale."""
+    s, y = following.x - here.x, following.gradient - here.gradient
+    curvature = float(s @ y)
+    if not curvature > 1e-14 * float(np.linalg.norm(s) * np.linalg.norm(y)):
+        return inverse
+    if fresh:
+        inverse = np.eye(len(s)) * curvature / float(y @ y)
+    Hy = inverse @ y
+    answer: Array = (
+        inverse + (1 + float(y @ Hy) / curvature) * np.outer(s, s) / curvature - (np.outer(Hy, s) + np.outer(s, Hy)) / curvature
+    )
+    return answer

@@ -1,0 +1,52 @@
+"""A bound that no controller beats, whatever its order, from the frequency response alone.
+
+With T the closed loop of any one gain, every other controller gives T + T12 Q T21 at each frequency, so that
+
+    gamma >= sup over omega of max(sigma_max(N' T), sigma_max(T M)),   N' T12 = 0,  T21 M = 0,  N, M orthonormal.
+
+Weaker than the full-order LMI bound, but exact to rounding and cheap at any order. Source: Parrott's theorem (Zhou, Doyle & Glover 1996, section 2.11).
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controllers.synthesis.certify import Certificate
+from controllers.synthesis.norm import frequency_grid, response
+from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
+
+Response = NDArray[np.complex128]
+
+
+def lower_bound(plant: GeneralisedPlant, stabilising: Array, certificate: Certificate | None, deadline: float) -> float:
+    """Return the larger of the pointwise and the full-order LMI bound; the latter only with a certificate and time left."""
+    bound = pointwise_bound(plant, stabilising)
+    left = deadline - time.monotonic()
+    if certificate is not None and left > 0:
+        from controllers.synthesis.lmi import full_order_bound
+
+        bound = max(bound, full_order_bound(plant, certificate.matrix, certificate.gamma, left))
+    return bound
+
+
+def pointwise_bound(plant: GeneralisedPlant, stabilising: Array) -> float:
+    """Return the bound; `stabilising` is any stabilising gain (nu, ny)."""
+    loop = plant.close(stabilising)
+    omega = frequency_grid(loop)
+    T = response(loop, omega)
+    from_control = response(Loop(loop.A, plant.B2, loop.C, plant.D12), omega)
+    to_measured = response(Loop(loop.A, loop.B, plant.C2, plant.D21), omega)
+    adjoint = _unreached(np.conj(np.swapaxes(to_measured, 1, 2)), np.conj(np.swapaxes(T, 1, 2)))
+    return max(_unreached(from_control, T), adjoint)
+
+
+def _unreached(path: Response, T: Response) -> float:
+    """Largest singular value, over all frequencies, of the rows of T that `path` (m, nz, nu) does not reach."""
+    reached = path.shape[2]
+    if path.shape[1] <= reached:
+        return 0.0
+    basis = np.linalg.svd(path)[0][:, :, reached:]
+    return float(np.linalg.svd(np.conj(np.swapaxes(basis, 1, 2)) @ T, compute_uv=False).max())

@@ -1,0 +1,85 @@
+"""Multi-start descent on the exact H-infinity norm, in scaled coordinates.
+
+From every start: BFGS on the spectral abscissa until the loop is stable, then BFGS on log gamma, coarsely. The best few are
+then lowered to the end, by BFGS and polish in turn.
+Source: Apkarian & Noll 2006, IEEE Trans. Autom. Control 51:71; Burke, Henrion, Lewis & Overton 2006 (HIFOO).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from controllers.synthesis.bfgs import minimise
+from controllers.synthesis.norm import hinf_norm
+from controllers.synthesis.objective import STABILITY_MARGIN, Objective
+from controllers.synthesis.plant import Array
+from controllers.synthesis.polish import polish
+
+# A loop this stable (in scaled time) is ready for the descent on its norm.
+_STABLE_ENOUGH = -1e-2
+_STABILISING_PATIENCE = 60
+_COARSE, _FINE = 1e-3, 1e-6
+_REFINED = 4
+_TURNS = 8
+
+
+class Candidate(NamedTuple):
+    """Free entries of a stabilising gain and the norm of its loop."""
+
+    gamma: float
+    entries: Array
+
+
+def _gamma(candidate: Candidate) -> float:
+    return candidate.gamma
+
+
+class Descent(NamedTuple):
+    """Candidates, best first; where there are none, `abscissa` tells how near to stability the search came."""
+
+    candidates: list[Candidate]
+    abscissa: float
+    starts: int
+
+    def with_more(self, more: Descent) -> Descent:
+        """Put two explorations together."""
+        candidates = sorted([*self.candidates, *more.candidates], key=_gamma)
+        return Descent(candidates, min(self.abscissa, more.abscissa), self.starts + more.starts)
+
+
+def explore(objective: Objective, starts: Iterable[Array], deadline: float) -> Descent:
+    """Descend coarsely from every start until the deadline."""
+    candidates: list[Candidate] = []
+    abscissa, tried = float("inf"), 0
+    for start in starts:
+        point = minimise(
+            objective.abscissa, objective.angles(start[objective.free]), deadline, _STABLE_ENOUGH, _STABILISING_PATIENCE, 1e-4
+        )
+        abscissa, tried = min(abscissa, point.value), tried + 1
+        if point.value < -STABILITY_MARGIN:
+            lowest = minimise(objective.log_norm, point.x, deadline, progress=_COARSE)
+            entries = objective.entries(lowest.x)
+            candidates.append(Candidate(hinf_norm(objective.loop(entries)).value, entries))
+        if time.monotonic() > deadline:
+            break
+    return Descent(sorted(candidates, key=_gamma), abscissa, tried)
+
+
+def refine(objective: Objective, candidates: list[Candidate], deadline: float) -> Candidate:
+    """Lower the best few candidates to the end and return the best."""
+    return min((_lower(objective, candidate, deadline) for candidate in candidates[:_REFINED]), key=_gamma)
+
+
+def _lower(objective: Objective, candidate: Candidate, deadline: float) -> Candidate:
+    """BFGS and polish in turn, until both together gain nothing."""
+    for _ in range(_TURNS):
+        point = minimise(objective.log_norm, objective.angles(candidate.entries), deadline, progress=_FINE)
+        entries = polish(objective, objective.entries(point.x), deadline)
+        lower = Candidate(hinf_norm(objective.loop(entries)).value, entries)
+        settled = lower.gamma >= candidate.gamma * (1 - _FINE)
+        candidate = min(candidate, lower, key=_gamma)
+        if settled or time.monotonic() > deadline:
+            break
+    return candidate

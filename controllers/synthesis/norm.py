@@ -1,0 +1,152 @@
+"""The H-infinity norm of a loop, twice: from a Hamiltonian matrix, and from a dense frequency grid.
+
+    ||T|| = sup over omega of sigma_max(D + C (j omega - A)^-1 B)
+
+Sources: Boyd & Balakrishnan 1990, Syst. Control Lett. 15:1 and Bruinsma & Steinbuch 1990, Syst. Control Lett. 14:287.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import ArrayLike, NDArray
+
+from controllers.synthesis.plant import Array, Loop
+
+_ITERATIONS = 60
+_GRID_POINTS = 600
+_ZOOMS = 12
+_ROUNDING = 1e-9
+
+
+class Peak(NamedTuple):
+    """A largest singular value and the frequency in rad/s (0 to infinity) where it stands."""
+
+    value: float
+    frequency: float
+
+
+def response(loop: Loop, frequencies: ArrayLike) -> NDArray[np.complex128]:
+    """Return T(j omega), shape (frequencies, nz, nw), at frequencies in rad/s; infinity is allowed."""
+    omega = np.atleast_1d(np.asarray(frequencies, dtype=float))
+    finite = np.isfinite(omega)
+    resolvent = np.multiply.outer(1j * np.where(finite, omega, 1.0), np.eye(len(loop.A))) - loop.A
+    dynamic = loop.C @ np.linalg.solve(resolvent, loop.B[None])
+    answer: NDArray[np.complex128] = dynamic * finite[:, None, None] + loop.D
+    return answer
+
+
+def largest_gains(loop: Loop, frequencies: ArrayLike) -> Array:
+    """Return sigma_max(T(j omega)) at frequencies in rad/s."""
+    values: Array = np.linalg.svd(response(loop, frequencies), compute_uv=False)[:, 0]
+    return values
+
+
+def balanced(loop: Loop) -> tuple[Loop, Array]:
+    """Return the loop in balanced states x~, and the factors of x = diag(factors) x~."""
+    _, (states, _) = scipy.linalg.matrix_balance(loop.A, permute=False, separate=True)
+    return Loop(loop.A * states / states[:, None], loop.B / states[:, None], loop.C * states, loop.D), states
+
+
+def hinf_norm(loop: Loop, guesses: ArrayLike = (), tolerance: float = 1e-10) -> Peak:
+    """Return the H-infinity norm and its peak frequency by bisection on the Hamiltonian matrix.
+
+    The value is attained at the frequency returned, and no frequency exceeds it by more than `tolerance` (relative) or
+    the rounding of the Hamiltonian's eigenvalues. `guesses` are frequencies to look at first. An unstable loop has norm infinity.
+    """
+    loop, _ = balanced(loop)
+    poles = np.linalg.eigvals(loop.A)
+    if poles.real.max() >= 0:
+        return Peak(np.inf, float(abs(poles[poles.real.argmax()].imag)))
+    start = np.concatenate([[0.0, np.inf], np.abs(poles), np.abs(poles.imag), np.ravel(guesses)])
+    best = _highest(loop, start)
+    for _ in range(_ITERATIONS if best.value > 0 else 0):
+        crossings = _crossings(loop, best.value * (1 + tolerance))
+        found = _highest(loop, np.concatenate([crossings, (crossings[1:] + crossings[:-1]) / 2, [best.frequency]]))
+        if found.value <= best.value * (1 + tolerance):
+            break
+        best = found
+    return best
+
+
+def _highest(loop: Loop, frequencies: Array) -> Peak:
+    values = largest_gains(loop, frequencies)
+    place = int(values.argmax())
+    return Peak(float(values[place]), float(frequencies[place]))
+
+
+def _crossings(loop: Loop, gamma: float) -> Array:
+    """Frequencies where a singular value may equal gamma: Hamiltonian eigenvalues on or near the imaginary axis.
+
+    As a pencil in states, costates, w and z: no inverse of gamma^2 - D'D is formed, which is nearly singular where the
+    norm is attained at infinity. An orthogonal complement takes w and z out again.
+    """
+    A, B, C, D = loop.A, loop.B / np.sqrt(gamma), loop.C / np.sqrt(gamma), loop.D / gamma
+    n, nw, nz = len(A), B.shape[1], len(C)
+    static = np.zeros((2 * n + nz + nw, nw + nz))
+    static[:n, :nw], static[n : 2 * n, nw:] = B, -C.T
+    static[2 * n : -nw, :nw], static[2 * n : -nw, nw:] = D, -np.eye(nz)
+    static[-nw:, :nw], static[-nw:, nw:] = -np.eye(nw), D.T
+    dynamic = np.zeros((2 * n + nz + nw, 2 * n))
+    dynamic[:n, :n], dynamic[n : 2 * n, n:] = A, -A.T
+    dynamic[2 * n : -nw, :n], dynamic[-nw:, n:] = C, B.T
+    rest = np.linalg.qr(static, mode="complete")[0][:, nw + nz :].T
+    alpha, beta = scipy.linalg.eigvals(rest @ dynamic, rest[:, : 2 * n], homogeneous_eigvals=True, check_finite=False)
+    finite = np.abs(beta) > 1e-14 * np.abs(alpha)
+    values = alpha[finite] / beta[finite]
+    # Generous: a frequency too many costs one evaluation, a missed one would under-report the norm.
+    near = np.abs(values.real) <= 1e-2 * np.abs(values)
+    answer: Array = np.unique(np.abs(values.imag[near]))
+    return answer
+
+
+def grid_norm(loop: Loop) -> Peak:
+    """Return the H-infinity norm of a stable loop from a dense frequency grid, refined at its highest peaks.
+
+    Shares nothing with `hinf_norm` but the frequency response. It never over-reports; a peak far narrower than the
+    damping of the poles could escape it.
+    """
+    return max(local_peaks(loop, 0.5))
+
+
+def local_peaks(loop: Loop, level: float) -> list[Peak]:
+    """Return the peaks of sigma_max over frequency that reach `level` times the highest, zero and infinity included."""
+    omega = frequency_grid(loop)
+    values = largest_gains(loop, omega)
+    left, right = np.append(-np.inf, values[:-1]), np.append(values[1:], -np.inf)
+    # On a plateau, rounding alone makes tops: one side at least must fall off by more.
+    tops = np.flatnonzero(
+        (values >= np.maximum(left, right))
+        & (values > np.minimum(left, right) * (1 + _ROUNDING))
+        & (values >= level * values.max())
+    )
+    # The grid ends with infinity, which has no neighbourhood to refine.
+    inner = tops[tops < len(omega) - 2]
+    refined = _zoom(loop, omega[np.maximum(inner - 1, 0)], omega[inner + 1])
+    return refined + [Peak(float(values[top]), float(omega[top])) for top in tops]
+
+
+def frequency_grid(loop: Loop) -> Array:
+    """Return frequencies from zero to infinity: dense on a logarithmic scale, and denser about every pole."""
+    poles = loop.poles
+    rates = np.abs(poles[np.abs(poles) > 0])
+    wide = np.geomspace(rates.min() / 1e3, rates.max() * 1e3, _GRID_POINTS)
+    offsets = np.concatenate([-np.geomspace(10, 0.05, 12), [0.0], np.geomspace(0.05, 10, 12)])
+    about = np.abs(poles.imag)[:, None] + np.abs(poles.real)[:, None] * offsets
+    omega: Array = np.unique(np.concatenate([[0.0, np.inf], wide, about[about > 0]]))
+    return omega
+
+
+def _zoom(loop: Loop, low: Array, high: Array) -> list[Peak]:
+    """Close in on the peak between each `low` and `high`, all at once, by a factor of four a round."""
+    spread, rows = np.linspace(0, 1, 9), np.arange(len(low))
+    for _ in range(_ZOOMS if len(low) else 0):
+        omega = low[:, None] + (high - low)[:, None] * spread
+        values = largest_gains(loop, omega.ravel()).reshape(omega.shape)
+        best = np.clip(values.argmax(axis=1), 1, len(spread) - 2)
+        low, high = omega[rows, best - 1], omega[rows, best + 1]
+    if not len(low):
+        return []
+    return [Peak(float(v), float(w)) for v, w in zip(values[rows, best], omega[rows, best], strict=True)]

@@ -1,0 +1,177 @@
+"""The generalised plant of static output feedback, and the loop that a gain closes.
+
+    x' = A x + B1 w + B2 u        w: disturbances, u: control
+    z  = C1 x + D11 w + D12 u     z: what is to stay small
+    y  = C2 x + D21 w             y: what is measured (no direct path from u to y)
+    u  = K y
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from seatsim.errors import InputError
+
+Array = NDArray[np.float64]
+MATRICES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
+
+
+class Loop(NamedTuple):
+    """A closed loop `x' = A x + B w`, `z = C x + D w`."""
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+
+    @property
+    def poles(self) -> NDArray[np.complex128]:
+        """Eigenvalues of A in rad/s, rightmost first."""
+        poles = np.linalg.eigvals(self.A).astype(np.complex128)
+        return poles[np.lexsort((-poles.imag, -poles.real))]
+
+    @property
+    def abscissa(self) -> float:
+        """Largest real part of the poles in 1/s; negative where the loop is stable."""
+        return float(np.linalg.eigvals(self.A).real.max())
+
+
+class StateSpace(Protocol):
+    """What is used of a `control.StateSpace` (or a continuous `scipy.signal.StateSpace`)."""
+
+    A: Any
+    B: Any
+    C: Any
+    D: Any
+    dt: Any
+
+
+@dataclass(frozen=True, eq=False)
+class GeneralisedPlant:
+    """The eight matrices of the plant; `B2`, `C2` are COMPleib's `B`, `C`.
+
+    Shapes: A (n, n), B1 (n, nw), B2 (n, nu), C1 (nz, n), C2 (ny, n), D11 (nz, nw), D12 (nz, nu), D21 (ny, nw).
+    `structure` (nu, ny) marks with True or 1 the gains that are free; the others stay zero. Default: all free.
+    Units are the user's own, time in seconds.
+
+    Raises:
+        InputError: a matrix is not a finite real matrix, or its shape does not fit the others.
+    """
+
+    A: Array
+    B1: Array
+    B2: Array
+    C1: Array
+    C2: Array
+    D11: Array
+    D12: Array
+    D21: Array
+    structure: NDArray[np.bool_] | None = None
+
+    def __post_init__(self) -> None:
+        for name in MATRICES:
+            object.__setattr__(self, name, _matrix(name, getattr(self, name)))
+        _check_shapes(self)
+        object.__setattr__(self, "structure", _structure(self.structure, self.control_count, self.measured_count))
+
+    @property
+    def order(self) -> int:
+        """Number of states n."""
+        return len(self.A)
+
+    @property
+    def control_count(self) -> int:
+        """Number of control inputs nu."""
+        return self.B2.shape[1]
+
+    @property
+    def measured_count(self) -> int:
+        """Number of measurements ny."""
+        return len(self.C2)
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """Which gains are free, (nu, ny)."""
+        if self.structure is None:
+            return np.ones((self.control_count, self.measured_count), dtype=bool)
+        return self.structure
+
+    def close(self, gain: ArrayLike) -> Loop:
+        """Return the loop of `u = gain @ y`: A + B2 K C2, B1 + B2 K D21, C1 + D12 K C2, D11 + D12 K D21."""
+        K = np.asarray(gain, dtype=float)
+        left, right = self.B2 @ K, self.D12 @ K
+        return Loop(
+            self.A + left @ self.C2, self.B1 + left @ self.D21, self.C1 + right @ self.C2, self.D11 + right @ self.D21
+        )
+
+    @classmethod
+    def from_state_space(
+        cls, system: StateSpace, disturbances: int, performance: int, structure: ArrayLike | None = None
+    ) -> GeneralisedPlant:
+        """Split a continuous-time system with inputs [w; u] and outputs [z; y].
+
+        The first `disturbances` inputs are w, the first `performance` outputs are z.
+
+        Raises:
+            InputError: the system is sampled, u reaches y directly, or the split leaves a part empty.
+        """
+        if system.dt:
+            raise InputError(f"the plant is sampled (dt = {system.dt}); H-infinity synthesis wants continuous time")
+        A, B, C, D = (_matrix(name, getattr(system, name)) for name in "ABCD")
+        _check_split(disturbances, performance, D.shape)
+        w, z = slice(None, disturbances), slice(None, performance)
+        u, y = slice(disturbances, None), slice(performance, None)
+        if np.any(D[y, u]):
+            raise InputError("u reaches y directly (D22 is not zero); subtract D22 @ u from the measurement first")
+        mask: Any = structure
+        return cls(A, B[:, w], B[:, u], C[z], C[y], D[z, w], D[z, u], D[y, w], mask)
+
+
+def _matrix(name: str, value: Any) -> Array:
+    try:
+        matrix = np.array(value, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name} is not a matrix of real numbers: {error}") from error
+    if matrix.ndim != 2 or 0 in matrix.shape:
+        raise InputError(f"{name} has shape {matrix.shape}; a matrix with at least one row and one column is wanted")
+    if not np.isfinite(matrix).all():
+        row, column = np.argwhere(~np.isfinite(matrix))[0]
+        raise InputError(f"{name}[{row}, {column}] is {matrix[row, column]}; finite numbers are wanted")
+    matrix.flags.writeable = False
+    return matrix
+
+
+def _check_shapes(plant: GeneralisedPlant) -> None:
+    n, nw, nu = len(plant.A), plant.B1.shape[1], plant.B2.shape[1]
+    nz, ny = len(plant.C1), len(plant.C2)
+    wanted = ((n, n), (n, nw), (n, nu), (nz, n), (ny, n), (nz, nw), (nz, nu), (ny, nw))
+    assert len(wanted) == len(MATRICES) == len(fields(plant)) - 1
+    for name, shape in zip(MATRICES, wanted, strict=True):
+        found = getattr(plant, name).shape
+        if found != shape:
+            raise InputError(
+                f"{name} has shape {found}, wanted is {shape}: "
+                f"{n} states, {nw} disturbances, {nu} controls, {nz} performance outputs, {ny} measurements"
+            )
+
+
+def _structure(value: Any, rows: int, columns: int) -> NDArray[np.bool_] | None:
+    if value is None:
+        return None
+    mask = _matrix("structure", value)
+    if mask.shape != (rows, columns) or not np.isin(mask, (0.0, 1.0)).all():
+        raise InputError(f"structure must be a ({rows}, {columns}) matrix of True (free) and False (zero), got {value!r}")
+    if not mask.any():
+        raise InputError("structure leaves no gain free")
+    return mask.astype(bool)
+
+
+def _check_split(disturbances: int, performance: int, shape: tuple[int, ...]) -> None:
+    outputs, inputs = shape
+    for name, count, total in (("disturbance inputs", disturbances, inputs), ("performance outputs", performance, outputs)):
+        if not 0 < count < total:
+            raise InputError(f"{count} {name} of {total}: at least one must be on each side of the split")

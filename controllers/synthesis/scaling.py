@@ -1,0 +1,89 @@
+"""Scaled coordinates, in which synthesis works: LMIs and searches fail in raw SI units.
+
+    x = diag(states) x~,  u = diag(controls) u~,  y~ = diag(measured) y,  t~ = rate t,  K = diag(controls) K~ diag(measured)
+
+All factors are powers of two, so that scaling costs no rounding. w and z are left alone: gamma is the same number.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from controllers.synthesis.plant import Array, GeneralisedPlant
+
+_SWEEPS = 30
+
+
+class Scaled(NamedTuple):
+    """A plant in scaled coordinates, and the way back."""
+
+    plant: GeneralisedPlant
+    controls: Array
+    measured: Array
+    rate: float
+
+    def physical_gain(self, gain: Array) -> Array:
+        """Gain in the user's units from the gain in scaled coordinates."""
+        return self.controls[:, None] * gain * self.measured
+
+    def scaled_gain(self, gain: Array) -> Array:
+        """Gain in scaled coordinates from the gain in the user's units."""
+        return gain / (self.controls[:, None] * self.measured)
+
+
+def scale(plant: GeneralisedPlant) -> Scaled:
+    """Balance states against each other, time against the poles, and give unit columns to B2, unit rows to C2."""
+    states = np.ones(plant.order)
+    rate = _power_of_two(_mean_rate(plant.A))
+    for _ in range(_SWEEPS):
+        controls = 1 / _sizes(plant.B2 / states[:, None] / rate)
+        measured = 1 / _sizes((plant.C2 * states).T)
+        step = _balancing_step(plant, states, controls, measured, rate)
+        states = states * step
+        if np.all(step == 1.0):
+            break
+    moved = GeneralisedPlant(
+        plant.A * states / states[:, None] / rate,
+        plant.B1 / states[:, None] / rate,
+        plant.B2 * controls / states[:, None] / rate,
+        plant.C1 * states,
+        plant.C2 * states * measured[:, None],
+        plant.D11,
+        plant.D12 * controls,
+        plant.D21 * measured[:, None],
+        plant.structure,
+    )
+    return Scaled(moved, controls, measured, rate)
+
+
+def _balancing_step(plant: GeneralisedPlant, states: Array, controls: Array, measured: Array, rate: float) -> Array:
+    """Factors that make the row and the column of every state in [A B; C 0] about equally large (Osborne)."""
+    A = np.abs(plant.A - np.diag(np.diag(plant.A))) * states / states[:, None] / rate
+    B1, C1 = plant.B1 / states[:, None], plant.C1 * states
+    rows = np.hstack([A, B1 / _size(B1), plant.B2 * controls / states[:, None] / rate])
+    columns = np.vstack([A, C1 / _size(C1), plant.C2 * states * measured[:, None]])
+    r, c = np.linalg.norm(rows, axis=1), np.linalg.norm(columns, axis=0)
+    ratio = np.divide(r, c, out=np.ones_like(r), where=(r > 0) & (c > 0))
+    # A quarter of the exponent at a time: all states move at once, and full steps would overshoot.
+    return np.exp2(np.round(np.log2(ratio) / 4))
+
+
+def _mean_rate(A: Array) -> float:
+    rates = np.abs(np.linalg.eigvals(A))
+    moving = rates[rates > 1e-9 * max(rates.max(), 1e-300)]
+    return float(np.exp(np.log(moving).mean())) if moving.size else 1.0
+
+
+def _size(matrix: Array) -> float:
+    return float(np.linalg.norm(matrix)) or 1.0
+
+
+def _sizes(columns: Array) -> Array:
+    norms = np.linalg.norm(columns, axis=0)
+    return np.array([_power_of_two(norm) if norm > 0 else 1.0 for norm in norms])
+
+
+def _power_of_two(value: float) -> float:
+    return float(np.exp2(np.round(np.log2(value))))

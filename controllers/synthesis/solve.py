@@ -1,0 +1,151 @@
+"""From a plant to a verified, certified design: scale, check, search, verify, certify, bound."""
+
+from __future__ import annotations
+
+import time
+from itertools import islice
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from controllers.synthesis.bound import lower_bound
+from controllers.synthesis.certify import certify
+from controllers.synthesis.descent import Descent, explore, refine
+from controllers.synthesis.design import Design
+from controllers.synthesis.modes import require_stabilisable
+from controllers.synthesis.norm import Peak, grid_norm, hinf_norm
+from controllers.synthesis.objective import Objective
+from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant, Loop, StateSpace
+from controllers.synthesis.scaling import Scaled, scale
+from controllers.synthesis.starts import starting_gains
+from seatsim.errors import InputError, SynthesisError
+
+_STARTS, _FIRST_STARTS = 30, 6
+_AGREEMENT = 5e-3
+# Shares of the time budget: starts are explored until the first, refined until the second; the rest is for proofs.
+_EXPLORED, _REFINED = 0.4, 0.8
+
+
+@overload
+def synthesise(
+    A: GeneralisedPlant, /, *, max_gain: float = ..., time_budget: float = ..., seed: int = ...
+) -> Design: ...
+@overload
+def synthesise(
+    A: StateSpace, /, *, split: tuple[int, int], max_gain: float = ..., time_budget: float = ..., seed: int = ...
+) -> Design: ...
+@overload
+def synthesise(
+    A: ArrayLike,
+    B1: ArrayLike,
+    B2: ArrayLike,
+    C1: ArrayLike,
+    C2: ArrayLike,
+    D11: ArrayLike,
+    D12: ArrayLike,
+    D21: ArrayLike,
+    *,
+    max_gain: float = ...,
+    time_budget: float = ...,
+    seed: int = ...,
+) -> Design: ...
+
+
+def synthesise(
+    A: Any,
+    B1: Any = None,
+    B2: Any = None,
+    C1: Any = None,
+    C2: Any = None,
+    D11: Any = None,
+    D12: Any = None,
+    D21: Any = None,
+    *,
+    split: tuple[int, int] | None = None,
+    max_gain: float = 1e6,
+    time_budget: float = 60.0,
+    seed: int = 0,
+) -> Design:
+    """Find the static output feedback `u = gain @ y` with the smallest H-infinity norm from w to z.
+
+    The plant is given by its eight matrices (shapes: `GeneralisedPlant`), as a `GeneralisedPlant` (also with a structure:
+    gains that stay zero), or as a `control.StateSpace` with inputs [w; u], outputs [z; y] and `split = (nw, nz)`.
+    `max_gain` bounds every |gain_ij| in the user's units; `time_budget` in s; the same seed gives the same design, unless
+    time runs out. The problem is not convex: the answer is a certified local optimum, the best of several starts.
+
+    Raises:
+        InputError: a matrix, the split or an option is wrong.
+        SynthesisError: no gain can stabilise the plant, or none was found.
+    """
+    begin = time.monotonic()
+    plant = _as_plant((A, B1, B2, C1, C2, D11, D12, D21), split)
+    _check_options(max_gain, time_budget)
+    scaled = scale(plant)
+    require_stabilisable(scaled)
+    objective = Objective(scaled.plant, scaled.scaled_gain(np.full(plant.free.shape, float(max_gain))))
+    scaled_gain = _search(objective, scaled, seed, begin, time_budget)
+    gain = np.clip(scaled.physical_gain(scaled_gain), -max_gain, max_gain)
+    loop = plant.close(gain)
+    peak = verified_norm(loop)
+    certificate = certify(loop, peak.value)
+    return Design(
+        gain=gain,
+        gamma=peak.value,
+        max_gain=float(max_gain),
+        lower_bound=lower_bound(plant, gain, certificate, begin + time_budget),
+        certificate=certificate,
+        peak_frequency=peak.frequency,
+        poles=loop.poles,
+    )
+
+
+def verified_norm(loop: Loop) -> Peak:
+    """Return the H-infinity norm on which bisection and frequency grid agree: where the grid finds more, it leads."""
+    grid = grid_norm(loop)
+    return max(hinf_norm(loop, guesses=[grid.frequency]), grid)
+
+
+def _as_plant(parts: tuple[Any, ...], split: tuple[int, int] | None) -> GeneralisedPlant:
+    first, rest = parts[0], parts[1:]
+    if isinstance(first, GeneralisedPlant):
+        return first
+    if hasattr(first, "dt"):
+        if split is None:
+            raise InputError("a state space needs its split: split=(disturbance inputs, performance outputs)")
+        return GeneralisedPlant.from_state_space(first, *split)
+    missing = [name for name, part in zip(MATRICES[1:], rest, strict=True) if part is None]
+    if missing:
+        raise InputError(f"the plant lacks {', '.join(missing)}; give all of {', '.join(MATRICES)}, or a plant object")
+    return GeneralisedPlant(*parts)
+
+
+def _check_options(max_gain: float, time_budget: float) -> None:
+    for name, value in (("max_gain", max_gain), ("time_budget", time_budget)):
+        if not 0 < value < np.inf:
+            raise InputError(f"{name} is {value}; a finite number above 0 is wanted")
+
+
+def _search(objective: Objective, scaled: Scaled, seed: int, begin: float, budget: float) -> Array:
+    """Return the best gain in scaled coordinates. Few starts where all agree, many where they do not."""
+    starts = starting_gains(scaled.plant, seed, _STARTS)
+    until = begin + _EXPLORED * budget
+    found = explore(objective, islice(starts, _FIRST_STARTS), until)
+    if not _agreed(found):
+        found = found.with_more(explore(objective, starts, until))
+    if not found.candidates:
+        raise SynthesisError(_not_stabilised(found, objective, scaled, budget))
+    return objective.gain(refine(objective, found.candidates, begin + _REFINED * budget).entries)
+
+
+def _agreed(found: Descent) -> bool:
+    gammas = [candidate.gamma for candidate in found.candidates]
+    return len(gammas) == found.starts and gammas[-1] <= gammas[0] * (1 + _AGREEMENT)
+
+
+def _not_stabilised(found: Descent, objective: Objective, scaled: Scaled, budget: float) -> str:
+    limit = float(scaled.physical_gain(objective.gain(objective.limits)).max())
+    return (
+        f"no stabilising gain with |gain| <= {limit:.4g} was found from {found.starts} starts in at most {budget:g} s: "
+        f"the least spectral abscissa reached is {found.abscissa * scaled.rate:.3g} 1/s"
+    )

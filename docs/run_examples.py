@@ -1,0 +1,39 @@
+"""Run every example of the documentation: the fenced `sh` and `python` blocks of each page, in order, in one folder.
+
+A block that is preceded by `<!-- not run -->` is left out.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent
+BLOCK = re.compile(r"(<!-- not run -->\n)?```(sh|python)\n(.*?)```", re.DOTALL)
+
+
+def main() -> None:
+    """Run the pages named on the command line, or all of them; stop at the first example that fails."""
+    pages = [Path(name) for name in sys.argv[1:]] or sorted(DOCS.glob("*.md"))
+    for page in pages:
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "scenarios").symlink_to(DOCS.parent / "scenarios")
+            for skipped, language, code in BLOCK.findall(page.read_text(encoding="utf-8")):
+                if not skipped:
+                    run(language, code, folder, page)
+
+
+def run(language: str, code: str, folder: str, page: Path) -> None:
+    """Run one block in the page's folder."""
+    print(f"-- {page.name}: {code.strip().splitlines()[0]}", flush=True)
+    command = ["bash", "-euc", code] if language == "sh" else [sys.executable, "-c", code]
+    done = subprocess.run(command, cwd=folder, check=False)
+    if done.returncode:
+        sys.exit(f"{page.name}: this example failed with {done.returncode}:\n{code}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,162 @@
+"""The command line."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import Progress
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from seatsim.errors import InputError, SeatsimError
+
+if TYPE_CHECKING:
+    from seatsim.result import Run
+
+app = typer.Typer(
+    help="Simulate semi-active MR-damper seats and compare what is done to them.",
+    no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False,
+)  # fmt: skip
+out = Console()
+err = Console(stderr=True)
+
+Scenarios = Annotated[list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)]
+OneScenario = Annotated[str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)]
+Out = Annotated[Path | None, typer.Option("--out", help="Folder for the files.", show_default="out/NAME")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Replace a value by dotted key, such as plant.driver_mass=55."),
+]
+
+
+def main() -> None:
+    """Run the command line: exit 0 done, 1 a run failed, 2 bad input (nothing written)."""
+    try:
+        app()
+    except SeatsimError as error:
+        err.print(f"error: {error}", style="red", markup=False, highlight=False, soft_wrap=True)
+        sys.exit(error.exit_status)
+    except KeyboardInterrupt:
+        err.print("interrupted")
+        sys.exit(130)
+
+
+@app.command()
+def run(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None) -> None:
+    """Simulate scenarios and print a table for each."""
+    several = out_folder is not None and len(scenarios) > 1
+    folders = [out_folder / Path(path).stem if several and out_folder else out_folder for path in scenarios]
+    _execute([[path] for path in scenarios], folders, _settings(settings))
+
+
+@app.command()
+def compare(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None) -> None:
+    """Simulate scenarios and print one table over all of them."""
+    _execute([scenarios], [out_folder], _settings(settings))
+
+
+@app.command()
+def synthesise(scenario: OneScenario, out_folder: Out = None, settings: Settings = None) -> None:
+    """Synthesise the H-infinity static output feedback of a scenario's plant and weights."""
+    from seatsim.replay import single
+    from seatsim.synthesis import design_for, report
+
+    chosen = single(scenario, _settings(settings))
+    design = design_for(chosen)
+    out.print(report(design))
+    folder = out_folder or Path("out") / chosen.name
+    design.save(folder / "design.yaml")
+    out.print(f"written: {folder / 'design.yaml'}")
+
+
+@app.command()
+def gap(scenario: OneScenario, recording: Path, out_folder: Out = None) -> None:
+    """Replay a scenario against a recording and print the gap beside the noise floor."""
+    from seatsim.replay import gap as find_gap
+    from seatsim.replay import report
+    from seatsim.files import write_json
+
+    found = find_gap(scenario, recording)
+    out.print(report(found))
+    path = write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", found.as_dict())
+    out.print(f"written: {path}")
+
+
+@app.command()
+def describe(name: Annotated[str, typer.Argument(help="A name, such as bouc_wen or road.")] = "") -> None:
+    """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds."""
+    from seatsim.describe import describe as tell
+
+    out.print(tell(name), markup=False, highlight=False, soft_wrap=True)
+
+
+def _execute(groups: list[list[str]], folders: list[Path | None], values: dict[str, Any]) -> None:
+    """Run every group of files as one result, then print its table and write its files; exit 1 where a run failed."""
+    from seatsim.loading import load
+    from seatsim.runs import run_many
+
+    loaded = [[scenario for path in group for scenario in load(path, values)] for group in groups]
+    scenarios = [scenario for group in loaded for scenario in group]
+    done: dict[int, Run] = {}
+    interrupted = False
+    with _progress(len(scenarios)) as advance:
+        try:
+            for scenario, answer in run_many(scenarios, advance):
+                if isinstance(answer, SeatsimError):
+                    err.print(f"failed: {answer}", style="red", markup=False, highlight=False, soft_wrap=True)
+                else:
+                    done[id(scenario)] = answer
+        except KeyboardInterrupt:
+            interrupted = True
+    for group, folder in zip(loaded, folders, strict=True):
+        _present([done[id(scenario)] for scenario in group if id(scenario) in done], folder)
+    if interrupted:
+        raise KeyboardInterrupt
+    if len(done) < len(scenarios):
+        raise typer.Exit(1)
+
+
+def _present(runs: list[Run], folder: Path | None) -> None:
+    """Print the table of some runs, what their user is warned of, and the paths of the files written."""
+    from seatsim.output import write_result
+    from seatsim.result import Result
+    from seatsim.tables import comparison
+
+    if not runs:
+        return
+    names = list(dict.fromkeys(run.scenario.name for run in runs))
+    title = names[0] if len(names) == 1 else "comparison"
+    out.print(comparison(runs, title))
+    for sentence in dict.fromkeys(sentence for run in runs for sentence in run.warnings):
+        err.print(f"warning: {sentence}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+    target = folder or Path("out") / title
+    paths = write_result(Result(runs), target)
+    out.print(f"written to {target}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
+
+
+@contextmanager
+def _progress(total: int) -> Iterator[Any]:
+    """Show a bar on the terminal while runs are under way."""
+    with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
+        task = progress.add_task("simulating", total=total)
+        yield lambda _: progress.advance(task)
+
+
+def _settings(pairs: list[str] | None) -> dict[str, Any]:
+    """Read `KEY=VALUE` pairs, the value as YAML."""
+    values = {}
+    for pair in pairs or []:
+        key, sign, text = pair.partition("=")
+        if not sign or not key:
+            raise InputError(f"--set {pair}: write KEY=VALUE, such as --set plant.driver_mass=55")
+        try:
+            values[key] = YAML(typ="safe").load(text)
+        except YAMLError as error:
+            raise InputError(f"--set {pair}: '{text}' is not a YAML value") from error
+    return values

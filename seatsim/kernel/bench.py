@@ -1,0 +1,111 @@
+"""A damper on a test bench: motion, current and temperature are prescribed, the force comes out.
+
+The classical Runge-Kutta method of order 4 on samples every half step, so that the middle of a step is a sample too.
+Steps in which the damper's state is stiff are divided; motion and current then follow the parabola through the three
+samples of the step.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.kernel.generic import Tuple, axpy, combine, force, heat_at, rates
+from seatsim.kernel.inverse import total
+from seatsim.temperature import Heat, TemperatureFactors
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-4
+"""Error of the force that a step may add, relative to the force plus `FLOOR`."""
+FLOOR = 10.0
+"""N added to the force that the tolerance is relative to."""
+MOST_PARTS = 4096
+"""Most parts that a step is divided into."""
+
+
+def run_bench(
+    damper: Any,
+    factors: TemperatureFactors,
+    x: Array,
+    v: Array,
+    current: Array,
+    temperature: Array,
+    initial_state: Tuple,
+    step: float,
+    out: Array,
+) -> int:
+    """Fill `out`, shape (n + 1,), with the force in N every `step`; return the number of samples reached (n + 1 if all).
+
+    x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step; temperature is
+    held over a step. Set-valued friction acts as `coulomb sgn(v)`, zero at v = 0. To be compiled by `compiled`.
+    """
+    z = initial_state
+    parts = 1
+    now = temperature[0]
+    factor = heat_at(factors, now)
+    for k in range(out.shape[0]):
+        j = 2 * k
+        if temperature[j] != now:
+            now = temperature[j]
+            factor = heat_at(factors, now)
+        out[k] = total(damper, x[j], v[j], current[j], factor, z)
+        if k == out.shape[0] - 1:
+            break
+        if len(z) > 0:
+            z, parts, good = _advance(damper, factor, x[j : j + 3], v[j : j + 3], current[j : j + 3], z, step, parts)
+            if not good:
+                return k + 1
+    return int(out.shape[0])
+
+
+@numba.njit(forceinline=True)
+def _advance(
+    damper: Any, heat: Heat, x: Array, v: Array, current: Array, z: Tuple, step: float, parts: int
+) -> tuple[Tuple, int, bool]:
+    """Return the state after a step, the parts to try next, and whether the state is still finite."""
+    while True:
+        state, worst = z, 0.0
+        for part in range(parts):
+            state, error = _part(damper, heat, x, v, current, state, step / parts, part / parts, 1.0 / parts)
+            if not error <= worst:
+                worst = error
+        if worst <= 1.0 or parts >= MOST_PARTS:
+            break
+        parts *= 2
+    if worst < 1.0 / 32.0 and parts > 1:
+        parts //= 2
+    return state, parts, worst < 1e12
+
+
+@numba.njit(forceinline=True)
+def _part(
+    damper: Any, heat: Heat, x: Array, v: Array, current: Array, z: Tuple, h: float, s: float, ds: float
+) -> tuple[Tuple, float]:
+    """Return the state after a part of `h` seconds from the fraction `s` of the step, and its error over the tolerance.
+
+    The error is the difference in force to an embedded solution of order 3, as in the time loop.
+    """
+    middle, end = s + 0.5 * ds, s + ds
+    xm, vm, im = _between(x, middle), _between(v, middle), _between(current, middle)
+    xe, ve, ie = _between(x, end), _between(v, end), _between(current, end)
+    k1 = rates(damper, _between(x, s), _between(v, s), _between(current, s), heat, z)
+    k2 = rates(damper, xm, vm, im, heat, axpy(z, 0.5 * h, k1))
+    k3 = rates(damper, xm, vm, im, heat, axpy(z, 0.5 * h, k2))
+    k4 = rates(damper, xe, ve, ie, heat, axpy(z, h, k3))
+    state = combine(z, h, k1, k2, k3, k4)
+    k5 = rates(damper, xe, ve, ie, heat, state)
+    embedded = axpy(axpy(state, -h / 6.0, k4), h / 6.0, k5)
+    got = force(damper, xe, ve, ie, heat, state)
+    error = abs(got - force(damper, xe, ve, ie, heat, embedded))
+    return state, error / (TOLERANCE * (FLOOR + abs(got)))
+
+
+@numba.njit(forceinline=True)
+def _between(samples: Array, s: float) -> float:
+    """Return the parabola through three samples at the fraction `s` of the step; exact at 0, 1/2 and 1."""
+    t = 1.0 - s
+    return t * (t - s) * samples[0] + 4.0 * s * t * samples[1] + s * (s - t) * samples[2]

@@ -1,0 +1,153 @@
+"""From a scenario file to scenarios: one for each variant and each value of a sweep."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from seatsim import registry
+from seatsim.coil import Coil
+from seatsim.errors import InputError
+from seatsim.expansion import expand
+from seatsim.plant import Plant
+from seatsim.scenario import Control, DamperChoice, Inverse, Scenario, Solver
+from seatsim.temperature import TemperatureFactors, Thermal
+from seatsim.validation import build, check_keys, choose, mapping
+from seatsim.yaml_source import KeyPath, Source
+
+BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
+SEAT_KEYS = (*BENCH_KEYS, "plant", "controller", "excitation", "sweep", "variants", "published")
+EXAMPLES = (Path(__file__).parent / "examples", Path(__file__).parents[1] / "scenarios")
+
+
+def load(path: str | Path, settings: Mapping[str, Any] | None = None) -> list[Scenario]:
+    """Return the scenarios of a file, at least one.
+
+    `settings` replaces values by dotted key, such as `{"plant.driver_mass": 55.0}`. A path that does not exist is looked
+    up among the examples that come with seatsim.
+
+    Raises:
+        InputError: anything in the file is missing, unknown or not permitted.
+    """
+    source = Source(_located(Path(path)))
+    return [_scenario(variant, label) for variant, label in expand(source, settings or {})]
+
+
+def _located(path: Path) -> Path:
+    if path.exists():
+        return path
+    for folder in EXAMPLES:
+        for name in (path.name, f"{path.name}.yaml", Path(*path.parts[1:]), path):
+            if (folder / name).is_file():
+                return folder / name
+    known = sorted({str(p.relative_to(f)) for f in EXAMPLES if f.is_dir() for p in f.rglob("*.yaml")})
+    raise InputError(f"{path}: no such file; give the path of a scenario, or an example: {', '.join(known)}")
+
+
+def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
+    data = source.data
+    check_keys(data, SEAT_KEYS, source, ())
+    bench = not {"plant", "controller", "excitation"} & set(data)
+    for key in ("damper", "actuator", "temperature") + (() if bench else ("plant", "controller", "excitation")):
+        if key not in data:
+            raise source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator, temperature,"
+                                   " controller and excitation")  # fmt: skip
+    sys.path.extend(folder for folder in (str(source.path.parent), "") if folder not in sys.path)
+    return Scenario(
+        name=str(data.get("name", source.path.stem)),
+        damper=_damper(data["damper"], source, ("damper",)),
+        coil=build(Coil, data["actuator"], source, ("actuator",), required=("rate", "max_current")),
+        temperature=_temperature(data["temperature"], source),
+        plant=None if bench else build(Plant, data["plant"], source, ("plant",)),
+        control=None if bench else _control(data["controller"], source),
+        excitation=None if bench else _excitation(data["excitation"], source),
+        effects=_effects(data.get("effects", []), source),
+        solver=build(Solver, data.get("solver", {}), source, ("solver",)),
+        seed=_seed(data.get("seed", 0), source),
+        label=label,
+        source=source,
+    )
+
+
+def _find(kind: str, name: str, source: Source, keys: KeyPath) -> type:
+    try:
+        return registry.find(kind, name)
+    except InputError as error:
+        raise source.error(keys, str(error)) from error
+
+
+def _damper(values: Any, source: Source, keys: KeyPath, extra: tuple[str, ...] = ()) -> DamperChoice:
+    mapping(values, source, keys)
+    check_keys(values, ("model", "parameters", "temperature_factors", *extra), source, keys)
+    cls = _find("damper", choose(values, "model", source, keys), source, (*keys, "model"))
+    card = registry.card_of(cls)
+    required = getattr(cls, "_fields", ()) if "parameters" in values else ()
+    hint = "; state every parameter, or leave 'parameters' out for the model's default set"
+    record = build(cls, values.get("parameters", {}), source, (*keys, "parameters"), required, hint)
+    if "temperature_factors" not in values:
+        return DamperChoice(record, card.factors)
+    where = (*keys, "temperature_factors")
+    return DamperChoice(record, build(TemperatureFactors, values["temperature_factors"], source, where))
+
+
+def _temperature(value: Any, source: Source) -> float | Thermal:
+    if isinstance(value, Mapping):
+        return build(Thermal, value, source, ("temperature",))
+    start = build(Thermal, {"start": value}, source, ("temperature",)).start
+    return float(start)
+
+
+def _control(values: Any, source: Source) -> Control:
+    keys: KeyPath = ("controller",)
+    mapping(values, source, keys)
+    cls = _find("law", choose(values, "law", source, keys), source, (*keys, "law"))
+    own = {key: value for key, value in values.items() if key not in ("law", "sample_time", "inverse")}
+    if isinstance(own.get("design"), str):
+        own["design"] = str(source.path.parent / own["design"])
+    inverse = _inverse(values["inverse"], source) if "inverse" in values else None
+    sample_time = values.get("sample_time")
+    if sample_time is not None and not (isinstance(sample_time, int | float) and 0 < sample_time <= 1):
+        raise source.error((*keys, "sample_time"), f"{sample_time!r} is not permitted; it must be 0 to 1 s")
+    return Control(build(cls, own, source, keys), sample_time, inverse)
+
+
+def _inverse(values: Any, source: Source) -> Inverse:
+    keys: KeyPath = ("controller", "inverse")
+    damper = _damper(values, source, keys, extra=("temperature",))
+    temperature = values.get("temperature", "measured")
+    if temperature == "measured":
+        return Inverse(damper, None)
+    if isinstance(temperature, bool) or not isinstance(temperature, int | float):
+        raise source.error((*keys, "temperature"), f"{temperature!r} is not permitted; a number in degC or 'measured'")
+    return Inverse(damper, float(temperature))
+
+
+def _excitation(values: Any, source: Source) -> Any:
+    keys: KeyPath = ("excitation",)
+    mapping(values, source, keys)
+    cls = _find("excitation", choose(values, "kind", source, keys), source, (*keys, "kind"))
+    own = {key: value for key, value in values.items() if key != "kind"}
+    if isinstance(own.get("path"), str):
+        own["path"] = str(source.path.parent / own["path"])
+    return build(cls, own, source, keys)
+
+
+def _effects(values: Any, source: Source) -> tuple[Any, ...]:
+    if not isinstance(values, list):
+        raise source.error(("effects",), f"{values!r} is not a list; write '- effect: NAME' below it")
+    effects = []
+    for index, value in enumerate(values):
+        keys: KeyPath = ("effects", index)
+        mapping(value, source, keys)
+        check_keys(value, ("effect", "parameters"), source, keys)
+        cls = _find("effect", choose(value, "effect", source, keys), source, (*keys, "effect"))
+        effects.append(build(cls, value.get("parameters", {}), source, (*keys, "parameters")))
+    return tuple(effects)
+
+
+def _seed(value: Any, source: Source) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or value < 0:
+        raise source.error(("seed",), f"{value!r} is not permitted; it must be a whole number of at least 0")
+    return value

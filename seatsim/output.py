@@ -1,0 +1,60 @@
+"""Files of a result: table, histories, pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from seatsim.files import write_json, write_whole
+from seatsim.result import UNITS, Result, Run
+
+
+def write_result(result: Result, folder: Path) -> list[Path]:
+    """Write `summary.csv`, `summary.json`, `history.parquet` and the pictures of a result; return their paths."""
+    from seatsim.plots import draw
+
+    paths = [
+        write_whole(folder / "summary.csv", lambda part: result.table.to_csv(part, index=False)),
+        write_json(folder / "summary.json", {"runs": [_summary(run) for run in result.runs]}),
+        write_whole(folder / "history.parquet", lambda part: _write_history(result, part)),
+    ]
+    for name, figure in draw(result).items():
+        draw_to = _saver(figure)
+        paths.append(write_whole(folder / f"{name}.png", draw_to))
+    return paths
+
+
+def _saver(figure: Any) -> Callable[[Path], object]:
+    return lambda part: figure.savefig(part, dpi=110, metadata={"Software": "seatsim"})
+
+
+def _summary(run: Run) -> dict[str, Any]:
+    metrics = {name: {"value": m.value, "unit": m.unit, "meaning": m.meaning} for name, m in run.metrics.items()}
+    return {
+        "scenario": run.scenario.name,
+        "label": dict(run.scenario.label),
+        "metrics": metrics,
+        "warnings": list(run.warnings),
+    }
+
+
+def _write_history(result: Result, path: Path) -> None:
+    """Write all runs below each other, a column a channel in single precision, units in the columns' metadata."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    fields = [pa.field("run", pa.dictionary(pa.int32(), pa.string()))]
+    fields += [
+        pa.field(name, pa.float64() if name == "time" else pa.float32(), metadata={"unit": unit})
+        for name, unit in UNITS.items()
+    ]
+    schema = pa.schema(fields)
+    with pq.ParquetWriter(path, schema, compression="zstd", compression_level=1) as writer:
+        for run in result.runs:
+            length = len(run.history["time"])
+            titles = pa.DictionaryArray.from_arrays(np.zeros(length, dtype=np.int32), [run.scenario.title])
+            columns = [pa.array(run.history[name], type=schema.field(name).type) for name in UNITS]
+            writer.write_table(pa.Table.from_arrays([titles, *columns], schema=schema))

@@ -1,0 +1,107 @@
+"""Comfort and travel of several runs side by side: bars, or lines over a swept number."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from seatsim.plots import labels, style
+from seatsim.plots.style import COLOURS, LETTER, Entry, Grid
+from seatsim.plots.thinning import Array
+from seatsim.result import Run
+
+
+class Compared(NamedTuple):
+    """A metric that is compared: its name, the label of its axis, the factor to the unit shown, its decimals."""
+
+    metric: str
+    axis: str
+    factor: float = 1.0
+    decimals: int = 2
+
+
+COMPARED = (
+    Compared("driver_acceleration_rms", "driver acceleration\nRMS [m/s²]"),
+    Compared("driver_acceleration_weighted", "driver acceleration\nRMS, Wk-weighted [m/s²]"),
+    Compared("suspension_displacement_rms", "suspension displacement\nRMS [mm]", 1e3, 1),
+    Compared("seat_factor", "SEAT factor [-]"),
+)
+BAR = 0.32
+"""Height of a bar with its gap in inches."""
+
+
+def comparison(runs: Sequence[Run]) -> Figure:
+    """Return bars run by run, or lines over the number that is swept, one line for each variant."""
+    key = swept_number(runs)
+    return _over(runs, key) if key else _bars(runs)
+
+
+def swept_number(runs: Sequence[Run]) -> str:
+    """Return the key that has the most different values among those with a number in every run, or nothing."""
+    counts = {}
+    for key in runs[0].scenario.label:
+        values = [run.scenario.label.get(key) for run in runs]
+        if all(labels.is_number(value) for value in values):
+            counts[key] = len(set(values))
+    best = max(counts, key=lambda key: counts[key], default="")
+    return best if counts.get(best, 0) > 1 else ""
+
+
+def _bars(runs: Sequence[Run]) -> Figure:
+    names = labels.labels(runs)
+    many = len(runs) > labels.MOST
+    colours = [COLOURS[0]] * len(runs) if many else [entry.colour for entry in style.entries(names)]
+    left = 0.35 + LETTER * max(len(name) for name in names)
+    grid = Grid(heights=(BAR * len(runs) + 0.2,), columns=len(COMPARED), left=left, gap=(0.2, 0.0))
+    page = style.page(f"Comparison: {labels.title(runs)}", "", grid)
+    for axes, compared in zip(page.rows[0], COMPARED, strict=True):
+        _bar_panel(axes, _values(runs, compared), compared, colours)
+    page.rows[0][0].set_yticks(range(len(runs)), names, fontsize=10)
+    for axes in page.rows[0][1:]:
+        axes.set_yticks([])
+    return page.figure
+
+
+def _bar_panel(axes: Axes, values: Array, compared: Compared, colours: Sequence[str]) -> None:
+    bars = axes.barh(np.arange(len(values)), np.nan_to_num(values), height=0.62, color=colours)
+    texts = [f"{value:.{compared.decimals}f}" if np.isfinite(value) else "none" for value in values]
+    axes.bar_label(bars, texts, padding=3, fontsize=9.5)
+    axes.set_xlim(0.0, 1.3 * float(np.max(np.nan_to_num(values))) or 1.0)
+    axes.set_ylim(len(values) - 0.4, -0.6)
+    axes.grid(False, axis="y")
+    axes.locator_params(axis="x", nbins=4)
+    axes.set_xlabel(compared.axis)
+
+
+def _over(runs: Sequence[Run], key: str) -> Figure:
+    """Draw lines over the swept number, a line for all runs that differ in nothing else."""
+    named = len({run.scenario.name for run in runs}) > 1
+    series: dict[str, list[Run]] = {}
+    for run in sorted(runs, key=lambda run: float(run.scenario.label[key])):
+        series.setdefault(labels.label(run.scenario, named, without=key), []).append(run)
+    looks = style.entries(list(series))
+    page = style.page(f"Comparison: {labels.title(runs)}", "", Grid((2.5, 2.5), 2, gap=(0.95, 0.7)), looks)
+    panels = [axes for row in page.rows for axes in row]
+    for axes, compared in zip(panels, COMPARED, strict=True):
+        for look, alike in zip(looks, series.values(), strict=True):
+            _curve(axes, alike, key, compared, look)
+        axes.set_xlabel(labels.axis(runs[0].scenario, key))
+        axes.set_ylabel(compared.axis)
+        axes.set_ylim(bottom=0)
+    return page.figure
+
+
+def _curve(axes: Axes, runs: Sequence[Run], key: str, compared: Compared, look: Entry) -> None:
+    swept = [float(run.scenario.label[key]) for run in runs]
+    style.line(axes, swept, _values(runs, compared), look._replace(width=1.6))
+    axes.plot(swept, _values(runs, compared), "o", color=look.colour, markersize=4.5)
+
+
+def _values(runs: Sequence[Run], compared: Compared) -> Array:
+    """Return the metric of every run; NaN where it has none."""
+    found = [run.metrics[compared.metric].value if compared.metric in run.metrics else np.nan for run in runs]
+    return compared.factor * np.array(found)

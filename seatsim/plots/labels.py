@@ -1,0 +1,122 @@
+"""What runs and swept values are called in a picture, and which runs it shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from seatsim.coil import Coil
+from seatsim.fields import describe
+from seatsim.plant import Plant
+from seatsim.result import Run
+from seatsim.scenario import Scenario, Solver
+from seatsim.temperature import TemperatureFactors, Thermal
+
+MOST = 8
+"""Most runs that lines of one panel can tell apart."""
+LONGEST = 44
+"""Letters of a label before it is cut."""
+PRETTY = {"degC": "°C", "^2": "²", "^3": "³", "ohm": "Ω", " s/m": "·s/m"}
+
+
+def unit(text: str) -> str:
+    """Return a unit as it is printed in a picture."""
+    for plain, pretty in PRETTY.items():
+        text = text.replace(plain, pretty)
+    return text
+
+
+def shown(runs: Sequence[Run]) -> list[Run]:
+    """Return the runs that lines are drawn of: all up to eight, else those at the first swept values, else a choice.
+
+    The choice is spread evenly over the order of the runs, first and last included.
+    """
+    if len(runs) <= MOST:
+        return list(runs)
+    first = _swept(runs[0])
+    alike = [run for run in runs if _swept(run) == first]
+    if 1 < len(alike) <= MOST:
+        return alike
+    return [runs[index * (len(runs) - 1) // (MOST - 1)] for index in range(MOST)]
+
+
+def which(chosen: Sequence[Run], runs: Sequence[Run]) -> str:
+    """Return a sentence about the runs that are left out, or nothing."""
+    return f" {len(chosen)} of {len(runs)} runs are shown." if len(chosen) < len(runs) else ""
+
+
+def labels(runs: Sequence[Run]) -> list[str]:
+    """Return what sets each run apart from the others, shortest first: variant and swept values, or the name."""
+    several = len({run.scenario.name for run in runs}) > 1
+    return [label(run.scenario, several) for run in runs]
+
+
+def label(scenario: Scenario, named: bool, without: str = "") -> str:
+    """Return variant and swept values of a scenario, `named` with its name before them, less one swept key."""
+    parts = [_part(scenario, key, value) for key, value in scenario.label.items() if key != without]
+    return clean(", ".join([scenario.name] * named + parts) or scenario.name)
+
+
+def clean(text: str) -> str:
+    """Return a text that matplotlib prints as it stands: no formulas, no hidden label, not too long."""
+    short = text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+    return (f" {short}" if short.startswith("_") else short).replace("$", r"\$")
+
+
+def title(runs: Sequence[Run]) -> str:
+    """Return the name of the scenario of one run, or the names of the scenarios of several."""
+    names = list(dict.fromkeys(run.scenario.name for run in runs))
+    return clean(runs[0].scenario.title if len(runs) == 1 else ", ".join(names))
+
+
+def is_number(value: Any) -> bool:
+    """Tell whether a swept value is a number."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def axis(scenario: Scenario, key: str) -> str:
+    """Return the label of an axis over the swept key, with its unit."""
+    return f"{_word(key)} [{unit(unit_of(scenario, key)) or '-'}]"
+
+
+def unit_of(scenario: Scenario, key: str) -> str:
+    """Return the unit of the value under a dotted key of a scenario; empty where it has none."""
+    if key == "temperature":
+        return "degC"
+    section, _, name = key.rpartition(".")
+    record = _records(scenario).get(section)
+    cards = describe(record) if record else []
+    found = next((card.unit for card in cards if card.name == name), "")
+    return "" if found == "-" else found
+
+
+def _records(scenario: Scenario) -> dict[str, type]:
+    control, belief = scenario.control, scenario.control.inverse if scenario.control else None
+    return {
+        "plant": Plant,
+        "damper.parameters": type(scenario.damper.record),
+        "damper.temperature_factors": TemperatureFactors,
+        "actuator": Coil,
+        "temperature": Thermal,
+        "controller": type(control.law) if control else tuple,
+        "controller.inverse.parameters": type(belief.damper.record) if belief else tuple,
+        "excitation": type(scenario.excitation),
+        "solver": Solver,
+    }
+
+
+def _part(scenario: Scenario, key: str, value: Any) -> str:
+    if key == "variant":
+        return str(value)
+    text = f"{value:g}" if is_number(value) else str(value)
+    if key == "temperature" and is_number(value):
+        return f"{text} °C"
+    return f"{_word(key)} {text} {unit(unit_of(scenario, key))}".strip()
+
+
+def _word(key: str) -> str:
+    return "damper temperature" if key == "temperature" else key.rpartition(".")[2].replace("_", " ")
+
+
+def _swept(run: Run) -> dict[str, Any]:
+    return {key: value for key, value in run.scenario.label.items() if key != "variant"}

@@ -1,0 +1,158 @@
+"""A recording of a rig: `recording.yaml`, its nominal scenario, and a table per run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from seatsim.errors import InputError, nearest
+from seatsim.fields import param
+from seatsim.validation import build, check_keys, mapping
+from seatsim.yaml_source import Source
+
+Array = NDArray[np.float64]
+
+SEAT_CHANNELS = {
+    "floor_acceleration": "m/s^2",
+    "frame_acceleration": "m/s^2",
+    "driver_acceleration": "m/s^2",
+    "suspension_displacement": "m",
+    "damper_force": "N",
+    "current_command": "A",
+    "coil_current": "A",
+    "damper_temperature": "degC",
+}
+BENCH_CHANNELS = {
+    "displacement": "m",
+    "velocity": "m/s",
+    "damper_force": "N",
+    "current_command": "A",
+    "command_voltage": "V",
+    "coil_current": "A",
+    "damper_temperature": "degC",
+}
+"""Channels that a recording of each rig may have, with the unit they are in."""
+KEYS = ("rig", "sample_rate", "parameter_tolerance", "nominal", "runs", "channels", "actuator", "note")
+
+
+class Header(NamedTuple):
+    """The numbers at the top of a recording."""
+
+    rig: Literal["seat", "damper_bench"]
+    sample_rate: Annotated[float, param("Hz", "rows per second", above=0, high=1e6)]
+    nominal: str
+    parameter_tolerance: Annotated[float, param("-", "fraction to which parameters are known", low=0, high=1)] = 0.02
+
+
+class RunEntry(NamedTuple):
+    """One run of a recording; `repeat_of` names the run whose excitation it repeats."""
+
+    name: str
+    file: str
+    repeat_of: str | None = None
+    note: str | None = None
+
+
+class ChannelEntry(NamedTuple):
+    """Unit of a channel, and its noise as an RMS in that unit (0 where none is stated)."""
+
+    unit: str
+    noise_rms: Annotated[float, param("", "noise of the sensor", low=0)] = 0.0
+
+
+class VoltageGain(NamedTuple):
+    """Gain from a command voltage to the commanded current."""
+
+    gain: Annotated[float, param("A/V", "commanded current per volt")]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What `recording.yaml` says; the tables are read run by run with `table`."""
+
+    folder: Path
+    header: Header
+    runs: dict[str, RunEntry]
+    channels: dict[str, ChannelEntry]
+    voltage_gain: float | None
+
+    @property
+    def nominal(self) -> Path:
+        """Path of the scenario that the rig's owner believes in."""
+        return self.folder / self.header.nominal
+
+    def table(self, run: str) -> dict[str, Array]:
+        """Return the recorded channels of a run, shape (N,) each.
+
+        Raises:
+            InputError: there is no such run, or its table is missing, empty, short of a channel, or not numeric.
+        """
+        if run not in self.runs:
+            permitted = ", ".join(self.runs)
+            raise InputError(f"{self.folder}: no run is called '{run}'{nearest(run, self.runs)}; permitted: {permitted}")
+        return _read_table(self.folder / self.runs[run].file, list(self.channels))
+
+
+def load_recording(folder: str | Path) -> Recording:
+    """Read and check `recording.yaml` of a folder.
+
+    Raises:
+        InputError: a key or channel is unknown, missing or of the wrong unit.
+    """
+    folder = Path(folder)
+    source = Source(folder / "recording.yaml")
+    data = source.data
+    check_keys(data, KEYS, source, ())
+    header = build(Header, {k: data[k] for k in Header._fields if k in data}, source, ())
+    gain = build(VoltageGain, data["actuator"], source, ("actuator",)).gain if "actuator" in data else None
+    return Recording(folder, header, _runs(data, source), _channels(data, source, header.rig), gain)
+
+
+def _runs(data: dict[str, Any], source: Source) -> dict[str, RunEntry]:
+    entries = data.get("runs")
+    if not isinstance(entries, list) or not entries:
+        raise source.error(("runs",), "a recording has at least one run; write '- {name: run-a, file: run-a.csv.gz}'")
+    runs = [build(RunEntry, entry, source, ("runs", index)) for index, entry in enumerate(entries)]
+    return {run.name: run for run in runs}
+
+
+def _channels(data: dict[str, Any], source: Source, rig: str) -> dict[str, ChannelEntry]:
+    known = SEAT_CHANNELS if rig == "seat" else BENCH_CHANNELS
+    entries = mapping(data.get("channels", {}), source, ("channels",))
+    check_keys(entries, known, source, ("channels",))
+    channels = {}
+    for name, entry in entries.items():
+        channels[name] = build(ChannelEntry, entry, source, ("channels", name))
+        if channels[name].unit != known[name]:
+            problem = f"'{channels[name].unit}' is not permitted; convert the channel to {known[name]}"
+            raise source.error(("channels", name, "unit"), problem)
+    needed = "floor_acceleration" if rig == "seat" else "displacement"
+    if needed not in channels:
+        raise source.error(("channels",), f"channel '{needed}' is missing; it drives the simulation of this rig")
+    return channels
+
+
+def _read_table(path: Path, channels: list[str]) -> dict[str, Array]:
+    try:
+        frame = pd.read_csv(path)
+    except (OSError, ValueError, EOFError) as error:
+        raise InputError(f"{path}: cannot be read as a table: {error}") from error
+    if len(frame) < 2:
+        raise InputError(f"{path}: holds {len(frame)} rows; a run has at least two")
+    missing = [name for name in channels if name not in frame]
+    if missing:
+        raise InputError(f"{path}: column '{missing[0]}' is missing{nearest(missing[0], frame)}; recording.yaml lists it")
+    table = {}
+    for name in channels:
+        values = pd.to_numeric(frame[name], errors="coerce").to_numpy(dtype=np.float64)
+        bad = np.flatnonzero(~np.isfinite(values))
+        if bad.size:
+            raise InputError(f"{path}, line {bad[0] + 2}, {name}: not a finite number; {bad.size} rows are not")
+        table[name] = values
+    return table
+

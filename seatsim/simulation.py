@@ -1,0 +1,133 @@
+"""From a scenario to the history of its run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.errors import InputError, RunError
+from seatsim.excitations.base import Floor
+from seatsim.kernel.belief import Belief, Truth
+from seatsim.kernel.compilation import compiled
+from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
+from seatsim.kernel.rig import Rig
+from seatsim.plant import Plant
+from seatsim.registry import card_of
+from seatsim.scenario import Control, Scenario
+from seatsim.suspension import SuspensionExtras
+from seatsim.temperature import Thermal
+
+Array = NDArray[np.float64]
+NONE = np.zeros(0)
+DEFAULT_SAMPLE_TIME = 0.001
+
+
+@dataclass(frozen=True)
+class History:
+    """The channels of one run by name, shape (N,) each, sampled every `step` seconds; SI units, degrees Celsius."""
+
+    step: float
+    channels: Mapping[str, Array]
+
+    def __getitem__(self, name: str) -> Array:
+        """Return one channel."""
+        return self.channels[name]
+
+
+def simulate(scenario: Scenario) -> History:
+    """Simulate one run from rest.
+
+    Raises:
+        InputError: the scenario has no plant, or its times do not fit each other.
+        RunError: the solution grew beyond all bounds.
+    """
+    if scenario.plant is None or scenario.control is None:
+        raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")
+    step = scenario.solver.step
+    with scenario.placed("excitation"):
+        floor: Floor = scenario.excitation.floor(step, scenario.seed)
+    setup = _setup(scenario, scenario.plant, scenario.control)
+    inputs = _inputs(scenario, scenario.control, floor)
+    states = (card_of(type(scenario.damper.record)).initial, _believed(scenario), card_of(type(scenario.control.law)).initial)
+    out = np.empty((len(floor.acceleration), len(CHANNELS)))
+    plugged = (type(scenario.damper.record), type(setup.law), type(setup.belief.damper))
+    reached = compiled(run_loop, plugged)(setup, inputs, *states, out)
+    if reached < len(out):
+        raise RunError(
+            f"{scenario.title}: the solution left all bounds at {reached * step:.3f} s; check the signs of gains and"
+            " stiffnesses, and the damper's parameters"
+        )
+    return _history(scenario.plant, step, out)
+
+
+def _setup(scenario: Scenario, plant: Plant, control: Control) -> Setup:
+    rig = Rig(plant, scenario.damper.record, SuspensionExtras())
+    for effect in scenario.effects:
+        rig = effect.change(rig)
+    with scenario.placed("controller"):
+        law = control.law.prepared(plant) if hasattr(control.law, "prepared") else control.law
+        sample_every = _sample_every(scenario.solver.step, control)
+    heated = isinstance(scenario.temperature, Thermal)
+    thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal()
+    timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
+    return Setup(rig, scenario.coil, scenario.damper.factors, thermal, law, _belief(scenario, control), timing)
+
+
+def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
+    if control.inverse is None:
+        record = scenario.damper.record
+        return Truth(record, card_of(type(record)).current_order)
+    record, factors = control.inverse.damper.record, control.inverse.damper.factors
+    temperature = control.inverse.temperature
+    return Belief(record, card_of(type(record)).current_order, factors, np.nan if temperature is None else temperature)
+
+
+def _believed(scenario: Scenario) -> tuple[float, ...]:
+    inverse = scenario.control.inverse if scenario.control else None
+    record = inverse.damper.record if inverse else scenario.damper.record
+    initial: tuple[float, ...] = card_of(type(record)).initial
+    return initial
+
+
+def _sample_every(step: float, control: Control) -> int:
+    if control.sample_time is None:
+        return 1 if card_of(type(control.law)).replays else max(1, round(DEFAULT_SAMPLE_TIME / step))
+    every = round(control.sample_time / step)
+    if every < 1 or abs(every * step - control.sample_time) > 1e-9:
+        raise InputError(
+            f"sample_time {control.sample_time:g} s is not a multiple of solver.step"
+            f" {step:g} s; choose {max(1, every) * step:g} s"
+        )
+    return every
+
+
+def _inputs(scenario: Scenario, control: Control, floor: Floor) -> Inputs:
+    fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
+    measured = floor.temperature is not None and not isinstance(scenario.temperature, Thermal)
+    temperature = floor.temperature if measured else np.full(len(floor.acceleration), fixed)
+    command = NONE if floor.command is None else floor.command
+    replays = card_of(type(control.law)).replays
+    direct = replays and floor.command is None and floor.coil_current is not None
+    start = 0.0 if floor.coil_current is None else float(floor.coil_current[0])
+    return Inputs(
+        floor.acceleration, floor.velocity, temperature, command, floor.coil_current if direct else NONE, start
+    )
+
+
+def _history(plant: Plant, step: float, out: Array) -> History:
+    """Return the recorded channels with the time and the energy stored in masses, suspension and cushion springs."""
+    channels: dict[str, Any] = {"time": np.arange(len(out)) * step}
+    channels |= {name: np.ascontiguousarray(out[:, column]) for column, name in enumerate(CHANNELS)}
+    v, driver = channels["suspension_velocity"], channels["suspension_velocity"] + channels["cushion_velocity"]
+    x, cushion = channels["suspension_displacement"], channels["cushion_displacement"]
+    channels["energy_stored"] = 0.5 * (
+        plant.frame_mass * v**2
+        + plant.driver_mass * driver**2
+        + plant.suspension_stiffness * x**2
+        + plant.cushion_stiffness * cushion**2
+    )
+    return History(step, channels)

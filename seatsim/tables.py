@@ -1,0 +1,81 @@
+"""The comparison table on the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from rich import box
+from rich.table import Table
+
+from seatsim.result import Run
+
+
+class Column(NamedTuple):
+    """A metric in the table: its heading, the factor to the unit shown, its decimals."""
+
+    metric: str
+    heading: str
+    scale: float
+    decimals: int
+
+
+COLUMNS = (
+    Column("driver_acceleration_rms", "driver\nRMS\n\\[m/s²]", 1.0, 3),
+    Column("driver_acceleration_weighted", "driver\nWk RMS\n\\[m/s²]", 1.0, 3),
+    Column("driver_vdv", "driver\nVDV\n\\[m/s¹·⁷⁵]", 1.0, 2),
+    Column("seat_factor", "SEAT\nfactor\n\\[-]", 1.0, 2),
+    Column("suspension_displacement_rms", "travel\nRMS\n\\[mm]", 1e3, 2),
+    Column("suspension_displacement_peak", "travel\npeak\n\\[mm]", 1e3, 1),
+    Column("current_rms", "current\nRMS\n\\[A]", 1.0, 2),
+)
+COMPARED = COLUMNS[:-1]
+"""Columns of which the smallest value is the best."""
+
+
+def comparison(runs: Sequence[Run], title: str) -> Table:
+    """Return the table of runs: what sets them apart, then comfort, travel and effort; best comfort and travel bold."""
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    labels = _label_keys(runs)
+    for key in labels:
+        table.add_column(key.replace("_", " ").replace(".", "\n"), vertical="bottom")
+    for column in COLUMNS:
+        table.add_column(column.heading, justify="right", vertical="bottom", no_wrap=True)
+    best = {column.metric: _best(runs, column.metric) for column in COMPARED}
+    for run in runs:
+        cells = [_label(run, key) for key in labels]
+        cells += [_cell(run, column, best.get(column.metric)) for column in COLUMNS]
+        table.add_row(*cells)
+    return table
+
+
+
+
+def _label_keys(runs: Sequence[Run]) -> list[str]:
+    keys: dict[str, None] = {}
+    if len({run.scenario.name for run in runs}) > 1:
+        keys["scenario"] = None
+    for run in runs:
+        keys |= dict.fromkeys(run.scenario.label)
+    return list(keys) or ["scenario"]
+
+
+def _label(run: Run, key: str) -> str:
+    value: Any = run.scenario.name if key == "scenario" else run.scenario.label.get(key, "")
+    return f"{value:g}" if isinstance(value, int | float) else str(value)
+
+
+def _best(runs: Sequence[Run], metric: str) -> float:
+    values = [run.metrics[metric].value for run in runs if metric in run.metrics]
+    return min((value for value in values if math.isfinite(value)), default=math.nan)
+
+
+def _cell(run: Run, column: Column, best: float | None) -> str:
+    if column.metric not in run.metrics:
+        return "-"
+    value = run.metrics[column.metric].value
+    if not math.isfinite(value):
+        return "-"
+    text = f"{value * column.scale:.{column.decimals}f}"
+    return f"[bold green]{text}[/]" if best is not None and value == best else text
