@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import control
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
@@ -33,6 +32,8 @@ def margins(plant: Plant, gain: Array, coil: Coil) -> Margins:
 
     The delay margin is the least phase margin over its crossover frequency (rad/rad/s), over all crossovers.
     """
+    import control
+
     s = state_space(plant)
     k = np.atleast_2d(gain)
     lag = control.ss(-coil.rate, coil.rate, 1.0, 0.0)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
-from controllers.synthesis import Design, GeneralisedPlant, synthesise
 from seatsim.control import Measurement, law
 from seatsim.errors import InputError
 from seatsim.fields import param
 from seatsim.plant import Plant, state_space
+
+if TYPE_CHECKING:
+    from controllers.synthesis import Design, GeneralisedPlant
 
 State = tuple[float, ...]
 SOURCE = "Yu et al. 2019, eqs 15-19, on the exact plant and with u = +K y for the damper force"
@@ -53,16 +55,22 @@ class StaticOutputFeedback(NamedTuple):
             raise InputError("give exactly one of 'gain', 'design' and 'weights'")
         if self.gain is not None:
             return OutputFeedback(float(self.gain[0]), float(self.gain[1]))
+        from controllers.synthesis import Design
+
         gain = (Design.load(Path(self.design)) if self.design else self.synthesis(plant)).gain
         return OutputFeedback(float(gain[0, 0]), float(gain[0, 1]))
 
     def synthesis(self, plant: Plant) -> Design:
         """Return the H-infinity design for a plant with this law's weights (the default ones where none are given)."""
+        from controllers.synthesis import synthesise
+
         return synthesise(generalised(plant, self.weights or Weights()))
 
 
 def generalised(plant: Plant, weights: Weights) -> GeneralisedPlant:
     """Return the exact seat plant for synthesis: disturbance z0'', control Fd, output (x, v), z as in `Weights`."""
+    from controllers.synthesis import GeneralisedPlant
+
     s = state_space(plant)
     c1 = s.C1 * [[weights.travel], [weights.acceleration]]
     nothing = np.zeros((2, 1))

@@ -125,6 +125,7 @@ def _execute(groups: list[list[str]], folders: list[Path | None], values: dict[s
 def _present(runs: list[Run], folder: Path | None) -> None:
     """Print the table of some runs, what their user is warned of, and the paths of the files written."""
     from seatsim.output import write_result
+    from seatsim.published import published_tables
     from seatsim.result import Result
     from seatsim.tables import comparison
 
@@ -132,7 +133,8 @@ def _present(runs: list[Run], folder: Path | None) -> None:
         return
     names = list(dict.fromkeys(run.scenario.name for run in runs))
     title = names[0] if len(names) == 1 else "comparison"
-    out.print(comparison(runs, title))
+    for table in [comparison(runs, title), *published_tables(runs)]:
+        out.print(table)
     for sentence in dict.fromkeys(sentence for run in runs for sentence in run.warnings):
         err.print(f"warning: {sentence}", style="yellow", markup=False, highlight=False, soft_wrap=True)
     target = folder or Path("out") / title

@@ -10,7 +10,7 @@ from seatsim.coil import Coil
 from seatsim.errors import InputError, nearest
 from seatsim.fields import FieldCard, describe as fields_of
 from seatsim.plant import Plant
-from seatsim.scenario import Solver
+from seatsim.scenario import Solver, Start
 from seatsim.temperature import TemperatureFactors, Thermal
 
 KINDS = ("damper", "law", "excitation", "effect")
@@ -20,6 +20,7 @@ SECTIONS = {
     "temperature_factors": TemperatureFactors,
     "temperature": Thermal,
     "solver": Solver,
+    "start": Start,
 }
 """Sections of a scenario whose keys are always the same."""
 

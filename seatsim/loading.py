@@ -12,13 +12,14 @@ from seatsim.coil import Coil
 from seatsim.errors import InputError
 from seatsim.expansion import expand
 from seatsim.plant import Plant
-from seatsim.scenario import Control, DamperChoice, Inverse, Scenario, Solver
+from seatsim.published import check_published
+from seatsim.scenario import Control, DamperChoice, Inverse, Scenario, Solver, Start
 from seatsim.temperature import TemperatureFactors, Thermal
 from seatsim.validation import build, check_keys, choose, mapping
 from seatsim.yaml_source import KeyPath, Source
 
 BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
-SEAT_KEYS = (*BENCH_KEYS, "plant", "controller", "excitation", "sweep", "variants", "published")
+SEAT_KEYS = (*BENCH_KEYS, "plant", "controller", "excitation", "start", "sweep", "variants", "published")
 EXAMPLES = (Path(__file__).parent / "examples", Path(__file__).parents[1] / "scenarios")
 
 
@@ -50,6 +51,8 @@ def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
     data = source.data
     check_keys(data, SEAT_KEYS, source, ())
     bench = not {"plant", "controller", "excitation"} & set(data)
+    if "published" in data:
+        check_published(source, list(label))
     for key in ("damper", "actuator", "temperature") + (() if bench else ("plant", "controller", "excitation")):
         if key not in data:
             raise source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator, temperature,"
@@ -65,6 +68,7 @@ def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
         excitation=None if bench else _excitation(data["excitation"], source),
         effects=_effects(data.get("effects", []), source),
         solver=build(Solver, data.get("solver", {}), source, ("solver",)),
+        start=build(Start, data.get("start", {}), source, ("start",)),
         seed=_seed(data.get("seed", 0), source),
         label=label,
         source=source,

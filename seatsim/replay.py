@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
+from seatsim.bench_replay import replay_bench
 from seatsim.errors import InputError
 from seatsim.excitations.recording import RecordedRun
 from seatsim.loading import load
@@ -89,16 +90,20 @@ def pooled(
 
 def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return the measured and the simulated channels of a run at the rows compared, without its first second."""
-    if recording.header.rig != "seat" or scenario.plant is None:
-        return replay_bench(scenario, recording, run)
-    table = recording.table(run)
-    excitation = RecordedRun(str(recording.folder), run)
-    history = simulate(dataclasses.replace(scenario, excitation=excitation))
-    every = round(1.0 / (recording.header.sample_rate * history.step))
+    bench = recording.header.rig == "damper_bench"
+    measured, simulated = (replay_bench if bench else _replay_seat)(scenario, recording, run)
     skip = round(LEFT_OUT * recording.header.sample_rate)
-    names = [name for name in COMPARED["seat"] if name in table]
-    measured = {name: table[name][skip:] for name in names}
-    return measured, {name: history[name][::every][skip:] for name in names}
+    names = [name for name in COMPARED[recording.header.rig] if name in measured]
+    rows = len(next(iter(measured.values())))
+    if rows < skip + 2:
+        raise InputError(f"{recording.folder}, run {run}: {rows} rows are too short; its first second is left out")
+    return {name: measured[name][skip:] for name in names}, {name: simulated[name][skip:] for name in names}
+
+
+def _replay_seat(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str, Array], dict[str, Array]]:
+    history = simulate(dataclasses.replace(scenario, excitation=RecordedRun(str(recording.folder), run)))
+    every = round(1.0 / (recording.header.sample_rate * history.step))
+    return recording.table(run), {name: history[name][::every] for name in COMPARED["seat"]}
 
 
 def _is_loud(values: Array, noise: float) -> bool:

@@ -22,6 +22,13 @@ class Solver(NamedTuple):
     tolerance: Annotated[float, param("-", "relative error of a sub-step's velocities", above=0, high=1)] = 1e-4
 
 
+class Start(NamedTuple):
+    """Where the suspension is at time zero, for release tests; the cushion is at rest and unstrained."""
+
+    displacement: Annotated[float, param("m", "suspension displacement", low=-10, high=10)] = 0.0
+    velocity: Annotated[float, param("m/s", "suspension velocity", low=-100, high=100)] = 0.0
+
+
 @dataclass(frozen=True)
 class DamperChoice:
     """A damper with its parameters and its temperature factors."""
@@ -63,6 +70,7 @@ class Scenario:
     excitation: Any = None
     effects: tuple[Any, ...] = ()
     solver: Solver = Solver()
+    start: Start = Start()
     seed: int = 0
     label: Mapping[str, Any] = field(default_factory=dict)
     source: Source | None = None

@@ -113,9 +113,8 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor) -> Inputs:
     replays = card_of(type(control.law)).replays
     direct = replays and floor.command is None and floor.coil_current is not None
     start = 0.0 if floor.coil_current is None else float(floor.coil_current[0])
-    return Inputs(
-        floor.acceleration, floor.velocity, temperature, command, floor.coil_current if direct else NONE, start
-    )
+    prescribed = floor.coil_current if direct else NONE
+    return Inputs(floor.acceleration, floor.velocity, temperature, command, prescribed, start, *scenario.start)
 
 
 def _history(plant: Plant, step: float, out: Array) -> History:

@@ -39,7 +39,8 @@ def comparison(runs: Sequence[Run], title: str) -> Table:
     table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     labels = _label_keys(runs)
     for key in labels:
-        table.add_column(key.replace("_", " ").replace(".", "\n"), vertical="bottom")
+        heading = "damper\n\\[°C]" if key == "temperature" else key.split(".")[-1].replace("_", "\n")
+        table.add_column(heading, vertical="bottom", no_wrap="." in key or key == "temperature")
     for column in COLUMNS:
         table.add_column(column.heading, justify="right", vertical="bottom", no_wrap=True)
     best = {column.metric: _best(runs, column.metric) for column in COMPARED}

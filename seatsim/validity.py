@@ -23,9 +23,9 @@ def warnings_of(scenario: Scenario, history: History) -> tuple[str, ...]:
         (history["coil_current"] > card.max_current * (1 + 1e-9), f"above {card.max_current:g} A", "its laws end there"),
     ]
     found = [
-        f"{model}: {share:.0%} of the run is {what}, beyond the data behind the model; {consequence}"
+        f"{model}: more than {SHARE:.0%} of a run is {what}, beyond the data behind the model; {consequence}"
         for outside, what, consequence in checks
-        if (share := float(np.mean(outside))) > SHARE
+        if np.mean(outside) > SHARE
     ]
     x = history["suspension_displacement"]
     if card.centred and abs(np.mean(x)) > 0.5 * np.std(x):

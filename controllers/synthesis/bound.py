@@ -24,11 +24,10 @@ Response = NDArray[np.complex128]
 def lower_bound(plant: GeneralisedPlant, stabilising: Array, certificate: Certificate | None, deadline: float) -> float:
     """Return the larger of the pointwise and the full-order LMI bound; the latter only with a certificate and time left."""
     bound = pointwise_bound(plant, stabilising)
-    left = deadline - time.monotonic()
-    if certificate is not None and left > 0:
+    if certificate is not None and time.monotonic() < deadline:
         from controllers.synthesis.lmi import full_order_bound
 
-        bound = max(bound, full_order_bound(plant, certificate.matrix, certificate.gamma, left))
+        bound = max(bound, full_order_bound(plant, certificate.matrix, certificate.gamma, deadline))
     return bound
 
 

@@ -1,10 +1,12 @@
-"""Linear matrix inequalities: the only module that imports cvxpy (2.5 s), so import it where it is used.
+"""Linear matrix inequalities: the only module that imports cvxpy, so import it where it is used.
 
-All problems are posed in states where a known Lyapunov matrix is the identity, with gamma near 1: in raw units solvers fail.
+All problems are posed in states where a known Lyapunov matrix is about the identity, with gamma near 1: in raw units
+solvers fail.
 """
 
 from __future__ import annotations
 
+import time
 import warnings
 from typing import Any
 
@@ -14,29 +16,111 @@ import scipy.linalg
 
 from controllers.synthesis.plant import Array, GeneralisedPlant
 
-_STRICT = 1e-7
+_PASSES, _SETTLED = 4, 1e-5
+# Bounds on the eigenvalues of the Lyapunov matrix of the state feedback, in balanced states.
+_LOW, _HIGH = 1e-4, 1e4
+_RELAXED = 2.0
 
 
-def full_order_bound(plant: GeneralisedPlant, lyapunov: Array, gamma: float, time_limit: float) -> float:
-    """Return the best gamma that any linear controller of order up to n reaches; 0 where the solver fails.
+def full_order_bound(plant: GeneralisedPlant, lyapunov: Array, gamma: float, deadline: float) -> float:
+    """Return the best gamma that any linear controller reaches (order n suffices); 0 where the solver fails.
 
         minimise g over R, S:  [R I; I S] >= 0,
         NR' [A R + R A', R C1', B1; C1 R, -g I, D11; B1', D11', -g I] NR <= 0,   NR spans the kernel of [B2' D12' 0],
         NS' [A'S + S A, S B1, C1'; B1'S, -g I, D11'; C1, D11, -g I] NS <= 0,     NS spans the kernel of [C2 D21 0].
 
     `lyapunov` (n, n) certifies some static gain at `gamma`, so that in its coordinates R = S = I is feasible at g = 1.
+    R and S often run to 1e5: the problem is solved again with R = r R~ r', S = s S~ s' until its value settles.
     Source: Gahinet & Apkarian 1994, Int. J. Robust Nonlinear Control 4:421, theorem 4.3.
     """
-    p = recentred(plant, lyapunov, gamma)
-    n = p.order
-    R, S, g = cp.Variable((n, n), symmetric=True), cp.Variable((n, n), symmetric=True), cp.Variable()
-    one = np.eye(n)
-    constraints = [
-        cp.bmat([[R, one], [one, S]]) >> 0,
-        _projected(p.A.T, p.C1, p.B1, p.D11, np.hstack([p.B2.T, p.D12.T]), R, g) << 0,
-        _projected(p.A, p.B1.T, p.C1.T, p.D11.T, np.hstack([p.C2, p.D21]), S, g) << 0,
-    ]
-    return gamma * float(g.value) if _solve(g, constraints, time_limit) else 0.0
+    p = _recentred(plant, lyapunov, gamma)
+    one = np.eye(p.order)
+    r, s, value = one, one, 0.0
+    for _ in range(_PASSES):
+        R, S, g = cp.Variable(one.shape, symmetric=True), cp.Variable(one.shape, symmetric=True), cp.Variable()
+        ri, si = np.linalg.inv(r), np.linalg.inv(s)
+        constraints = [
+            cp.bmat([[R, ri @ si.T], [si @ ri.T, S]]) >> 0,
+            _projected((ri @ p.A @ r).T, p.C1 @ r, ri @ p.B1, p.D11, np.hstack([(ri @ p.B2).T, p.D12.T]), R, g) << 0,
+            _projected(s.T @ p.A @ si.T, p.B1.T @ s, si @ p.C1.T, p.D11.T, np.hstack([p.C2 @ si.T, p.D21]), S, g) << 0,
+        ]
+        if not _solve(g, constraints, deadline):
+            break
+        r, s = r @ _root(R.value), s @ _root(S.value)
+        settled = abs(value - float(g.value)) <= _SETTLED * float(g.value)
+        value = float(g.value)
+        if settled:
+            break
+    return gamma * value
+
+
+def single_step_gain(plant: GeneralisedPlant, gamma: float, deadline: float) -> Array | None:
+    """Return a stabilising gain (nu, ny) from two convex problems, None where they have no solution.
+
+        minimise g over X > 0, Y:
+        [A X + X A' + B2 Y + Y'B2', B1, X C1' + Y'D12'; B1', -g I, D11'; C1 X + D12 Y, D11, -g I] < 0,
+
+    first with X, Y free (state feedback, solution X*), then in states where X* = I with X = Q XQ Q' + R XR R', Y = YR R',
+    C2 Q = 0, C2 R = I: then Y = K C2 X with K = YR XR^-1. `gamma` sets the scale of g. The effect of D21 on the norm
+    is left out, unless D12 = 0, where the transposed problem takes it in. Not every stabilisable plant has such a gain.
+    Source: Rubio-Massegu, Palacios-Quinonero, Rossell & Karimi 2013, Math. Probl. Eng. 2013:907056.
+    """
+    if np.any(plant.D21) and not np.any(plant.D12):
+        gain = single_step_gain(_transposed(plant), gamma, deadline)
+        return None if gain is None else gain.T
+    if np.linalg.matrix_rank(plant.C2) < plant.measured_count:
+        return None
+    one = np.eye(plant.order)
+    X, Y = cp.Variable(one.shape, symmetric=True), cp.Variable((plant.control_count, plant.order))
+    best = _lower(plant, gamma, X, Y, [X >> _LOW * one, X << _HIGH * one], deadline)
+    if best is None or not _centre(plant, gamma, _RELAXED * best, X, Y, deadline):
+        return None
+    p = _moved(plant, _root(X.value))
+    XR, YR, X, Y = _structured(p)
+    if _lower(p, gamma, X, Y, [X >> 1e-6 * one], deadline) is None:
+        return None
+    gain: Array = YR.value @ np.linalg.inv(XR.value)
+    return gain * plant.free
+
+
+def _structured(plant: GeneralisedPlant) -> tuple[Any, Any, Any, Any]:
+    """Variables XR, YR and the expressions X, Y they make; a diagonal XR hands the structure of YR on to the gain."""
+    R, Q = np.linalg.pinv(plant.C2), scipy.linalg.null_space(plant.C2)
+    ny = plant.measured_count
+    XR = cp.Variable((ny, ny), symmetric=True) if plant.free.all() else cp.diag(cp.Variable(ny))
+    YR = cp.multiply(plant.free.astype(float), cp.Variable(plant.free.shape))
+    X = R @ XR @ R.T
+    if Q.shape[1]:
+        X = X + Q @ cp.Variable((Q.shape[1], Q.shape[1]), symmetric=True) @ Q.T
+    return XR, YR, X, YR @ R.T
+
+
+def _lower(plant: GeneralisedPlant, gamma: float, X: Any, Y: Any, sizes: list[Any], deadline: float) -> float | None:
+    """Minimise g over X and Y subject to the bounded-real inequality of the closed loop."""
+    g = cp.Variable()
+    H = _bounded_real(plant, gamma, X, Y, g)
+    return float(g.value) if _solve(g, [H << -1e-7 * np.eye(H.shape[0]), *sizes], deadline) else None
+
+
+def _centre(plant: GeneralisedPlant, gamma: float, g: float, X: Any, Y: Any, deadline: float) -> bool:
+    """Move X and Y away from the edge: the inequality holds at a fixed g with the largest margin."""
+    margin = cp.Variable()
+    H = _bounded_real(plant, gamma, X, Y, g)
+    one = np.eye(plant.order)
+    return _solve(-margin, [H << -margin * np.eye(H.shape[0]), X >> _LOW * one, X << _HIGH * one], deadline)
+
+
+def _bounded_real(plant: GeneralisedPlant, gamma: float, X: Any, Y: Any, g: Any) -> Any:
+    B1, C1, D11, D12 = plant.B1 / np.sqrt(gamma), plant.C1 / np.sqrt(gamma), plant.D11 / gamma, plant.D12 / np.sqrt(gamma)
+    flow, seen = plant.A @ X + plant.B2 @ Y, C1 @ X + D12 @ Y
+    H = cp.bmat(
+        [
+            [flow + flow.T, B1, seen.T],
+            [B1.T, -g * np.eye(B1.shape[1]), D11.T],
+            [seen, D11, -g * np.eye(len(C1))],
+        ]
+    )
+    return (H + H.T) / 2
 
 
 def _projected(A: Array, inner: Array, outer: Array, D: Array, blocked: Array, X: Any, g: Any) -> Any:
@@ -54,35 +138,63 @@ def _projected(A: Array, inner: Array, outer: Array, D: Array, blocked: Array, X
     return (product + product.T) / 2
 
 
-def recentred(plant: GeneralisedPlant, lyapunov: Array, gamma: float) -> GeneralisedPlant:
+def _recentred(plant: GeneralisedPlant, lyapunov: Array, gamma: float) -> GeneralisedPlant:
     """Return the plant in states L'x (lyapunov = L L') and time such that ||A|| = 1, w and z scaled so that `gamma` becomes 1.
 
     Columns of B2 and rows of C2 have unit length; gains are not kept track of.
     """
-    L = np.linalg.cholesky(lyapunov)
-    A = scipy.linalg.solve_triangular(L, (L.T @ plant.A).T, lower=True).T
-    time, size = np.sqrt(np.linalg.norm(A, 2)), np.sqrt(gamma)
-    B2, C2 = L.T @ plant.B2 / time, scipy.linalg.solve_triangular(L, plant.C2.T, lower=True).T / time
-    controls, measured = 1 / np.linalg.norm(B2, axis=0), 1 / np.linalg.norm(C2, axis=1)[:, None]
+    p = _moved(plant, scipy.linalg.solve_triangular(np.linalg.cholesky(lyapunov), np.eye(plant.order), lower=True).T)
+    rate = np.linalg.norm(p.A, 2)
+    state, size = np.sqrt(rate), np.sqrt(gamma)
+    controls, measured = _lengths(p.B2) / state, _lengths(p.C2.T)[:, None] / state
     return GeneralisedPlant(
-        A / time**2,
-        L.T @ plant.B1 / (time * size),
-        B2 * controls,
-        scipy.linalg.solve_triangular(L, plant.C1.T, lower=True).T / (time * size),
-        C2 * measured,
-        plant.D11 / gamma,
-        plant.D12 * controls / size,
-        plant.D21 * measured / size,
+        p.A / rate,
+        p.B1 / (state * size),
+        p.B2 / state / controls,
+        p.C1 / (state * size),
+        p.C2 / state / measured,
+        p.D11 / gamma,
+        p.D12 / size / controls,
+        p.D21 / size / measured,
     )
 
 
-def _solve(objective: Any, constraints: list[Any], time_limit: float) -> bool:
+def _moved(plant: GeneralisedPlant, T: Array) -> GeneralisedPlant:
+    """Return the plant in states x~ with x = T x~."""
+    inverse = np.linalg.inv(T)
+    A, B1, B2 = inverse @ plant.A @ T, inverse @ plant.B1, inverse @ plant.B2
+    return GeneralisedPlant(
+        A, B1, B2, plant.C1 @ T, plant.C2 @ T, plant.D11, plant.D12, plant.D21, plant.structure
+    )
+
+
+def _transposed(plant: GeneralisedPlant) -> GeneralisedPlant:
+    p = plant
+    return GeneralisedPlant(p.A.T, p.C1.T, p.C2.T, p.B1.T, p.B2.T, p.D11.T, p.D21.T, p.D12.T, p.free.T)
+
+
+def _lengths(columns: Array) -> Array:
+    lengths: Array = np.linalg.norm(columns, axis=0)
+    return np.where(lengths > 0, lengths, 1.0)
+
+
+def _root(matrix: Array) -> Array:
+    """Symmetric square root, kept invertible."""
+    values, vectors = np.linalg.eigh(matrix)
+    root: Array = vectors * np.sqrt(np.maximum(values, 1e-9 * values[-1])) @ vectors.T
+    return root
+
+
+def _solve(objective: Any, constraints: list[Any], deadline: float) -> bool:
+    left = deadline - time.monotonic()
+    if left <= 0:
+        return False
     problem = cp.Problem(cp.Minimize(objective), constraints)
     with warnings.catch_warnings():
-        # An inaccurate solution is still usable here: every caller verifies or rounds.
+        # Starts and bounds may be inaccurate: starts are descended from, bounds are solved again until they settle.
         warnings.filterwarnings("ignore", message="Solution may be inaccurate")
         try:
-            problem.solve(solver=cp.CLARABEL, time_limit=max(time_limit, 0.1))
+            problem.solve(solver=cp.CLARABEL, time_limit=left, chordal_decomposition_enable=False)
         except cp.SolverError:
             return False
     return problem.status in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE)

@@ -18,6 +18,8 @@ from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
 
 # In scaled time: loops this close to the edge of stability count as unstable.
 STABILITY_MARGIN = 1e-7
+# At the limit itself the angle has no slope, and a search could not leave.
+_INSIDE = 0.999
 
 
 class Objective:
@@ -50,7 +52,7 @@ class Objective:
 
     def angles(self, entries: Array) -> Array:
         """Angles of free entries; beyond the limits, of the nearest entries within."""
-        values: Array = self.limits * np.arcsin(np.clip(entries / self.limits, -1, 1))
+        values: Array = self.limits * np.arcsin(np.clip(entries / self.limits, -_INSIDE, _INSIDE))
         return values
 
     def abscissa(self, theta: Array) -> tuple[float, Array]:

@@ -34,16 +34,18 @@ class Scaled(NamedTuple):
 
 
 def scale(plant: GeneralisedPlant) -> Scaled:
-    """Balance states against each other, time against the poles, and give unit columns to B2, unit rows to C2."""
-    states = np.ones(plant.order)
+    """Balance states against each other, B1 against C1, time against the poles; unit columns in B2, unit rows in C2."""
     rate = _power_of_two(_mean_rate(plant.A))
+    states = np.ones(plant.order)
     for _ in range(_SWEEPS):
-        controls = 1 / _sizes(plant.B2 / states[:, None] / rate)
-        measured = 1 / _sizes((plant.C2 * states).T)
-        step = _balancing_step(plant, states, controls, measured, rate)
+        step = _balancing_step(plant, states, rate)
         states = states * step
         if np.all(step == 1.0):
             break
+    states = states * _power_of_two(
+        np.sqrt(_size(plant.B1 / states[:, None] / rate) / _size(plant.C1 * states))
+    )
+    controls, measured = _input_output(plant, states, rate)
     moved = GeneralisedPlant(
         plant.A * states / states[:, None] / rate,
         plant.B1 / states[:, None] / rate,
@@ -58,8 +60,14 @@ def scale(plant: GeneralisedPlant) -> Scaled:
     return Scaled(moved, controls, measured, rate)
 
 
-def _balancing_step(plant: GeneralisedPlant, states: Array, controls: Array, measured: Array, rate: float) -> Array:
+def _input_output(plant: GeneralisedPlant, states: Array, rate: float) -> tuple[Array, Array]:
+    """Factors that give about unit length to the columns of B2 and the rows of C2."""
+    return 1 / _sizes(plant.B2 / states[:, None] / rate), 1 / _sizes((plant.C2 * states).T)
+
+
+def _balancing_step(plant: GeneralisedPlant, states: Array, rate: float) -> Array:
     """Factors that make the row and the column of every state in [A B; C 0] about equally large (Osborne)."""
+    controls, measured = _input_output(plant, states, rate)
     A = np.abs(plant.A - np.diag(np.diag(plant.A))) * states / states[:, None] / rate
     B1, C1 = plant.B1 / states[:, None], plant.C1 * states
     rows = np.hstack([A, B1 / _size(B1), plant.B2 * controls / states[:, None] / rate])

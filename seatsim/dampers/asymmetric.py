@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-import numba
-
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, QuadraticLaw, branch, branch_rate, quadratic
 from seatsim.fields import param
+from seatsim.kernel.options import jit
 from seatsim.temperature import Heat, TemperatureFactors
 
 Coefficient = Annotated[float, param("-", "coefficient of a power of u")]
@@ -19,20 +18,20 @@ Seven = tuple[Coefficient, Coefficient, Coefficient, Coefficient, Coefficient, C
 LinearLaw = tuple[Annotated[float, param("", "constant")], Annotated[float, param("1/A", "linear")]]
 
 
-@numba.njit
+@jit
 def rebound(p: Three, d: Three, s: float) -> float:
     """Return the backbone P of extension at the scaled speed s >= 0: even powers 0-4 over 2-6."""
     w = s * s
     return (p[0] + w * (p[1] + w * p[2])) / (1.0 + w * (d[0] + w * (d[1] + w * d[2])))
 
 
-@numba.njit
+@jit
 def compression(n: Four, d: Three, s: float) -> float:
     """Return the backbone N of compression at the scaled speed s >= 0: powers 0-3 over 1-3."""
     return (n[0] + s * (n[1] + s * (n[2] + s * n[3]))) / (1.0 + s * (d[0] + s * (d[1] + s * d[2])))
 
 
-@numba.njit
+@jit
 def opening(q: Seven, d: Six, u: float) -> float:
     """Return the branch f_br, half the opening of the loop, at the scaled velocity u: powers 0-6 over 1-6."""
     top = q[0] + u * (q[1] + u * (q[2] + u * (q[3] + u * (q[4] + u * (q[5] + u * q[6])))))
@@ -41,13 +40,19 @@ def opening(q: Seven, d: Six, u: float) -> float:
 
 @damper(
     "yu2019",
-    source="Yu, Dong, Wang, Pan and Zhou 2019, Front. Mater. 6:227, eqs 1-4 and 9-12; no coefficients are published:"
-    " defaults derived by us from measured loops of another damper and from the figures that the paper states",
-    initial=(0.0,), state=BRANCH_STATE, current_order=2, centred=True, max_speed=0.035, max_current=1.2,
-    temperatures=(20.0, 80.0), factors=TemperatureFactors(-0.00667, -0.00667, -0.00667, 20.0),
-)  # fmt: skip
+    source="Yu, Dong, Wang, Pan and Zhou 2019, Front. Mater. 6:227, eqs 1-4 and 9-12; no coefficients are"
+    " published: defaults derived by us from measured loops of another damper and from what the paper states",
+    initial=(0.0,),
+    state=BRANCH_STATE,
+    current_order=2,
+    centred=True,
+    max_speed=0.035,
+    max_current=1.2,
+    temperatures=(20.0, 80.0),
+    factors=TemperatureFactors(-0.00667, -0.00667, -0.00667, 20.0),
+)
 class Yu2019(NamedTuple):
-    """Asymmetric damper: viscous and elastic terms beside a hysteresis that differs between extension and compression.
+    """Asymmetric damper: viscous, elastic, and a hysteresis that differs between extension and compression.
 
         F = c(I) v + k(I) x + alpha(I) [f_ba(v) + f_br(v) sgn(x)],   u = v / v_ref
         f_ba = P(u) for v >= 0,  -N(-u) for v < 0
@@ -55,35 +60,37 @@ class Yu2019(NamedTuple):
         N = (n0 + n1 s + n2 s^2 + n3 s^3) / (1 + N1 s + N2 s^2 + N3 s^3),   s = -u
         f_br = (q0 + q1 u + ... + q6 u^6) / (1 + Q1 u + ... + Q6 u^6)
 
-    c, k and alpha scale with temperature as exp{delta (T - T0)} (eqs 9-11): viscous, stiffness, yield. The force is
-    quadratic in the current. sgn(x) is smoothed and taken about the recent mean of the motion (`pieces.branch`).
+    c, k and alpha scale with temperature as exp{delta (T - T0)} (eqs 9-11): viscous, stiffness, yield. The
+    force is quadratic in the current. sgn(x) is smoothed and taken about the recent mean of the motion
+    (`pieces.branch`).
 
-    Read otherwise than printed: eq 2 has f_br sgn(v), which gives no hysteresis, so eq 12 holds; numerators and
-    denominators have coefficients of their own, since the shared ones of eq 3 let f_ba vanish for v -> inf and keep its
-    sign for v -> -inf; the factor 2 of eq 3 is in P and N. The rationals are held beyond `held_from`, where f_br is
-    0.06 % of alpha: 0.063 m/s by default, while the paper's tests end at 0.035 m/s and a seat reaches 0.3 m/s.
+    Read otherwise than printed: eq 2 has f_br sgn(v), which gives no hysteresis, so eq 12 holds; numerators
+    and denominators have coefficients of their own, since the shared ones of eq 3 let f_ba vanish for v ->
+    inf and keep its sign for v -> -inf; the factor 2 of eq 3 is in P and N. The rationals are held beyond
+    `held_from`, the end of the paper's tests, where f_br is down to 0.06 % of alpha; a seat reaches 0.3 m/s.
 
-    Published: the form; tests at 4, 6, 8 mm, 0.5-0.7 Hz, 0-1.2 A, 20-80 degC; 33 % less peak force and energy at 80 degC,
-    which gives delta = ln(0.67)/60 K if all three are equal (derived). Derived: one shape for P and N and the shape of
-    f_br, from measured sine tests of the damper of UTFSM (see `yu2017`); the height of alpha, so that the force over the
-    paper's tests has the standard deviation of 220 N that its RMSE of 16.2 N at R2 = 0.9946 implies. Chosen: half that
-    damper's scale of speed, P/N = 1.1/0.9, c and k small and nearly in proportion to alpha, alpha(1.2 A)/alpha(0) = 10.
+    Published: the form; tests at 4, 6, 8 mm, 0.5-0.7 Hz (0.035 m/s), 0-1.2 A, 20-80 degC; 33 % less peak
+    force and energy at 80 degC. Derived: delta = ln(0.67)/60 K, if all three are equal; one shape for P and N
+    and the shape of f_br, from measured sine tests of the damper of UTFSM (see `weng_arctangent`); the height
+    of alpha, from the standard deviation of 220 N over the paper's tests that its RMSE of 16.2 N at R2 =
+    0.9946 implies. Chosen: that damper's speeds, up to 0.126 m/s, mapped onto the paper's; P/N = 1.1/0.9; c
+    and k small and nearly in proportion to alpha; alpha(1.2 A)/alpha(0) = 10.
 
-    `asymmetry` weighs the asymmetric part of the hysteresis: 0 leaves its centrosymmetric part, the ideal symmetric
-    damper to compare with (the paper's model I; its conventional model is `yu2017`).
+    `asymmetry` weighs the asymmetric part of the hysteresis: 0 leaves its centrosymmetric part, the ideal
+    symmetric damper to compare with (the paper's model I; its conventional model is `yu2017`).
     """
 
     c: Annotated[QuadraticLaw, param("N s/m", "viscous damping c(I)")] = (120.0, 600.0, -100.0)
     k: Annotated[LinearLaw, param("N/m", "stiffness k(I)")] = (100.0, 600.0)
-    alpha: Annotated[QuadraticLaw, param("N", "height alpha(I) of the hysteresis")] = (44.0, 465.0, -115.0)
+    alpha: Annotated[QuadraticLaw, param("N", "height alpha(I) of the hysteresis")] = (41.0, 435.0, -108.0)
     p: Annotated[Three, param("-", "numerator of P: u^0, u^2, u^4")] = (0.0, 3586.0, 1.298e6)
     p_den: Annotated[Three, param("-", "denominator of P: u^2, u^4, u^6")] = (14600.0, 1.18e6, 0.0)
     n: Annotated[Four, param("-", "numerator of N: s^0 to s^3")] = (0.0, 19.17, 0.0, 4140.0)
     n_den: Annotated[Three, param("-", "denominator of N: s^1 to s^3")] = (62.2, 2.8, 4600.0)
     q: Annotated[Seven, param("-", "numerator of f_br: u^0 to u^6")] = (0.612, 0.0, 14.4, 0.0, 0.0, 0.0, 0.0)
     q_den: Annotated[Six, param("-", "denominator of f_br: u^1 to u^6")] = (0.0, 137.7, 0.0, 0.0, 0.0, 9137.0)
-    v_ref: Annotated[float, param("m/s", "velocity at which u = 1", above=0, high=10)] = 0.05
-    held_from: Annotated[float, param("m/s", "speed from which the rationals are held", above=0)] = 0.063
+    v_ref: Annotated[float, param("m/s", "velocity at which u = 1", above=0, high=10)] = 0.028
+    held_from: Annotated[float, param("m/s", "speed from which the rationals are held", above=0)] = 0.0352
     asymmetry: Annotated[float, param("-", "weight of the asymmetric part", low=0, high=1)] = 1.0
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
 

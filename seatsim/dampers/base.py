@@ -4,9 +4,9 @@
     def rates(self, x, v, i, heat, z):   time derivative of the state z (a tuple of floats)
     def coulomb(self, i, heat):          magnitude in N of a set-valued friction beside `force` (optional)
 
-with x [m], v = x' [m/s], current i [A], `heat` the temperature factors (`seatsim.temperature.Heat`) by which the model
-multiplies its viscous, elastic and yield terms. Methods are compiled by numba: plain arithmetic and `math` only; what
-they call from their module is decorated with `numba.njit`.
+with x [m], v = x' [m/s], current i [A], `heat` the temperature factors (`seatsim.temperature.Heat`) by which
+the model multiplies its viscous, elastic and yield terms. Methods are compiled by numba: plain arithmetic and
+`math` only; what they call from their module is decorated with `numba.njit`.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ class Damper(Protocol):
 class DamperCard(NamedTuple):
     """What is stated of a damper model.
 
-    initial: state at rest. current_order: degree (1 or 2) of the polynomial in the current that `force` is at fixed
-    motion and state, 0 where it is none; it decides whether the inverse has a closed form. centred: the model branches
-    on sgn(x) or sgn(dv/dt), so that it is wrong where the motion is not centred about x = 0. The ranges of speed [m/s],
-    current [A] and temperature [degC] are those of the data behind it.
+    initial: state at rest. current_order: degree (1 or 2) of the polynomial in the current that `force` is at
+    fixed motion and state, 0 where it is none; it decides whether the inverse has a closed form. centred: the
+    model branches on sgn(x) or sgn(dv/dt), so that it is wrong where the motion is not centred about x = 0.
+    The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it.
     """
 
     source: str
@@ -62,7 +62,14 @@ def damper(
 ) -> Callable[[T], T]:
     """Register a record class as the damper `model: name`; see `DamperCard` for the facts."""
     card = DamperCard(
-        source, initial, state, current_order, centred, max_speed, max_current, temperatures,
+        source,
+        initial,
+        state,
+        current_order,
+        centred,
+        max_speed,
+        max_current,
+        temperatures,
         factors or TemperatureFactors(),
     )
     return register("damper", name, card)

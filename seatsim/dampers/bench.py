@@ -18,11 +18,11 @@ from seatsim.temperature import TemperatureFactors
 Array = NDArray[np.float64]
 
 DRIFT_LIMIT = 0.2
-"""Mean distance of the middle of a stroke from x = 0, over half the stroke, above which motion counts as uncentred."""
+"""Mean distance of the middle of a stroke from x = 0, over half the stroke, that counts as uncentred."""
 
 
 class SineTest(NamedTuple):
-    """One steady cycle of a sine test, both ends included: time [s], displacement [m], velocity [m/s], force [N]."""
+    """One cycle of a sine test, both ends included: time [s], displacement [m], velocity [m/s], force [N]."""
 
     time: Array
     displacement: Array
@@ -50,7 +50,8 @@ class SineTest(NamedTuple):
     def asymmetric_part(self) -> Array:
         """Difference in N from the ideal symmetric loop, `(F(t) + F(t + T/2)) / 2`.
 
-        The ideal loop is the centrosymmetric part of this one: half the difference of F at (x, v) and at (-x, -v).
+        The ideal loop is the centrosymmetric part of this one: half the difference of F at (x, v) and at (-x,
+        -v).
         """
         half = (len(self.force) - 1) // 2
         cycle = self.force[:-1]
@@ -70,18 +71,19 @@ def sine_test(
 ) -> SineTest:
     """Drive the damper with `x = amplitude sin(2 pi frequency t)` and return the last of its `cycles`.
 
-    amplitude in m, frequency in Hz, current in A, temperature in degC; `factors` default to those on the model's card.
-    `samples` per cycle is even. Models with a slow state (the branch of an algebraic model forgets its start within
-    seconds) need as many cycles as that takes.
+    amplitude in m, frequency in Hz, current in A, temperature in degC; `factors` default to those on the
+    model's card. `samples` per cycle is even. Models with a slow state (the branch of an algebraic model
+    forgets its start within seconds) need as many cycles as that takes.
 
     Raises:
         InputError: `samples` is odd, or amplitude or frequency is not positive.
         RunError: the damper's state ran away.
+
     """
     if samples % 2 or samples < 2 or not (amplitude > 0 and frequency > 0 and cycles > 0):
         raise InputError(
-            f"a sine test needs amplitude, frequency and cycles above 0 and an even number of samples, not {amplitude} m,"
-            f" {frequency} Hz, {cycles}, {samples}"
+            "a sine test needs amplitude, frequency and cycles above 0 and an even number of samples, not"
+            f" {amplitude} m, {frequency} Hz, {cycles}, {samples}"
         )
     step = 1.0 / (frequency * samples)
     phase = math.pi / samples * np.arange(2 * cycles * samples + 1)
@@ -89,9 +91,8 @@ def sine_test(
     velocity = 2.0 * math.pi * frequency * amplitude * np.cos(phase)
     force = bench_force(damper, displacement, velocity, current, temperature, step, factors)
     last = slice(-(samples + 1), None)
-    return SineTest(
-        (step * np.arange(len(force)))[last], displacement[::2][last], velocity[::2][last], force[last]
-    )
+    time = np.asarray(step * np.arange(len(force)), dtype=float)
+    return SineTest(time[last], displacement[::2][last], velocity[::2][last], force[last])
 
 
 def bench_force(
@@ -106,19 +107,21 @@ def bench_force(
 ) -> Array:
     """Return the force in N, shape (n + 1,), of a damper whose motion is prescribed, every `step` seconds.
 
-    displacement [m] and velocity [m/s] have shape (2 n + 1,), sampled every *half* step; current [A] and temperature
-    [degC] likewise, or one number. `factors` and the initial `state` default to those on the model's card.
+    displacement [m] and velocity [m/s] have shape (2 n + 1,), sampled every *half* step; current [A] and
+    temperature [degC] likewise, or one number. `factors` and the initial `state` default to those on the
+    model's card.
 
     Raises:
         InputError: the lengths do not fit.
         RunError: the damper's state ran away.
+
     """
     card: DamperCard = card_of(type(damper))
     x = np.array(displacement, dtype=float)
     if x.ndim != 1 or len(x) % 2 == 0:
-        raise InputError(f"a bench needs an odd number of samples, two a step and one more, not shape {x.shape}")
+        raise InputError(f"a bench needs two samples a step and one more, in one dimension, not {x.shape}")
     try:
-        v, i, heat = (np.array(np.broadcast_to(a, x.shape), dtype=float) for a in (velocity, current, temperature))
+        v, i, heat = (np.array(np.broadcast_to(a, x.shape), float) for a in (velocity, current, temperature))
     except ValueError as error:
         raise InputError(f"the samples of a bench differ in number: {error}") from error
     out = np.full((len(x) + 1) // 2, math.nan)
@@ -126,15 +129,16 @@ def bench_force(
     initial = card.initial if state is None else state
     reached = run(damper, factors or card.factors, x, v, i, heat, initial, float(step), out)
     if reached < len(out) or not np.all(np.isfinite(out)):
-        raise RunError(f"the force of {type(damper).__name__} is not finite after {reached * step:.3g} s on the bench")
+        raise RunError(f"the force of {type(damper).__name__} is not finite after {reached * step:.3g} s")
     return out
 
 
 def centring(displacement: ArrayLike, velocity: ArrayLike) -> str:
     """Return why this motion does not suit a model whose card says `centred`, or an empty string.
 
-    Such a model takes its branch from the sign of the displacement, so every stroke between two reversals has to be
-    centred about x = 0; reported is the mean distance of the strokes' middles from it, over half the mean stroke.
+    Such a model takes its branch from the sign of the displacement, so every stroke between two reversals has
+    to be centred about x = 0; reported is the mean distance of the strokes' middles from it, over half the
+    mean stroke.
     """
     x, v = np.asarray(displacement, dtype=float), np.asarray(velocity, dtype=float)
     turns = x[1:][np.signbit(v[1:]) != np.signbit(v[:-1])]
@@ -145,6 +149,7 @@ def centring(displacement: ArrayLike, velocity: ArrayLike) -> str:
     if drift <= DRIFT_LIMIT:
         return ""
     return (
-        f"the middles of the strokes lie {drift:.0%} of half a stroke from x = 0 (limit {DRIFT_LIMIT:.0%}): a model that"
-        " branches on the sign of the displacement is not at home here; prefer one with a hysteretic state"
+        f"the middles of the strokes lie {drift:.0%} of half a stroke from x = 0 (limit {DRIFT_LIMIT:.0%}): a"
+        " model that branches on the sign of the displacement is not valid here; prefer one with a state of"
+        " hysteresis"
     )

@@ -53,16 +53,16 @@ class Bingham(NamedTuple):
 
 @damper(
     "original_bingham",
-    source="Stanway et al. 1987 with the current laws of Braz-Cesar and Barros 2012 eqs 4.1-4.2, whose printed numbers"
-    " are lost: defaults fitted by us to their modified Bouc-Wen model of the RD-1005-3",
+    source="Stanway et al. 1987 with the current laws of Braz-Cesar and Barros 2012 eqs 4.1-4.2, whose"
+    " printed numbers are lost: defaults fitted by us to their modified Bouc-Wen model of the RD-1005-3",
     max_speed=0.13,
     max_current=1.0,
 )
 class OriginalBingham(NamedTuple):
     """Bingham damper with cubic current laws and a set-valued yield force: `F = c0(I) v + fc(I) sgn(v) + f0`.
 
-    Defaults are a surrogate of the RD-1005-3 (derived, not published): fitted over 0.5-2 Hz, 2-10 mm and 0-1 A, rms
-    20-279 N; `f0` is the paper's 40 N, off by default because the seat's rest position absorbs it.
+    Defaults are a surrogate of the RD-1005-3 (derived, not published): fitted over 0.5-2 Hz, 2-10 mm and 0-1
+    A, rms 20-279 N; `f0` is the paper's 40 N, off by default because the seat's rest position absorbs it.
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I)")] = (940.0, 13280.0, 20350.0, -20040.0)

@@ -13,8 +13,13 @@ from seatsim.temperature import Heat
 HYSTERESIS = "z, the hysteretic displacement"
 
 
-@damper("bouc_wen", source="Wen 1976; Spencer et al. 1997, J. Eng. Mech. 123:230", initial=(0.0,), state=HYSTERESIS,
-        current_order=1)  # fmt: skip
+@damper(
+    "bouc_wen",
+    source="Wen 1976; Spencer et al. 1997, J. Eng. Mech. 123:230",
+    initial=(0.0,),
+    state=HYSTERESIS,
+    current_order=1,
+)
 class BoucWen(NamedTuple):
     """Simple Bouc-Wen damper with laws linear in the current.
 
@@ -47,17 +52,21 @@ class BoucWen(NamedTuple):
 
 @damper(
     "simple_bouc_wen",
-    source="Braz-Cesar and Barros 2012, eqs 2.2-2.3 (A, beta, gamma, k0, n as printed); its current laws 4.3-4.4 are"
-    " lost: defaults of alpha and c0 fitted by us to its modified Bouc-Wen model of the RD-1005-3",
-    initial=(0.0,), state=HYSTERESIS, max_speed=0.13, max_current=1.0,
-)  # fmt: skip
+    source="Braz-Cesar and Barros 2012, eqs 2.2-2.3 (A, beta, gamma, k0, n as printed); its current laws"
+    " 4.3-4.4 are lost: alpha and c0 fitted by us to its modified Bouc-Wen model of the RD-1005-3",
+    initial=(0.0,),
+    state=HYSTERESIS,
+    max_speed=0.13,
+    max_current=1.0,
+)
 class SimpleBoucWen(NamedTuple):
     """Simple Bouc-Wen damper of the RD-1005-3 with cubic current laws.
 
         F  = c0(I) v + k0 x + alpha(I) z + f0
         z' = A v - beta v |z|^n - gamma |v| z |z|^(n-1)
 
-    z in m. alpha and c0 are a surrogate (derived, not published): fitted over 0.5-2 Hz, 2-10 mm, 0-1 A, rms 14-166 N.
+    z in m. alpha and c0 are a surrogate (derived, not published): fitted over 0.5-2 Hz, 2-10 mm, 0-1 A, rms
+    14-166 N.
     """
 
     c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I)")] = (855.0, 11200.0, 18970.0, -18690.0)
@@ -83,10 +92,13 @@ class SimpleBoucWen(NamedTuple):
 
 @damper(
     "modified_bouc_wen",
-    source="Spencer et al. 1997, J. Eng. Mech. 123:230; RD-1005-3 set of Braz-Cesar and Barros 2012, eqs 4.5-4.7",
-    initial=(0.0, 0.0), state="y, displacement behind the series dashpot; z, hysteretic displacement",
-    max_speed=0.13, max_current=1.0,
-)  # fmt: skip
+    source="Spencer et al. 1997, J. Eng. Mech. 123:230; RD-1005-3 set of Braz-Cesar and Barros 2012,"
+    " eqs 4.5-4.7",
+    initial=(0.0, 0.0),
+    state="y, displacement behind the series dashpot; z, hysteretic displacement",
+    max_speed=0.13,
+    max_current=1.0,
+)
 class ModifiedBoucWen(NamedTuple):
     """Modified Bouc-Wen damper: a Bouc-Wen element in series with a dashpot c1.
 
@@ -94,12 +106,14 @@ class ModifiedBoucWen(NamedTuple):
         z' = A r - beta r |z|^n - gamma |r| z |z|^(n-1),   r = v - y'
         F  = c1(I) y' + k1 (x - x0) + f0
 
-    Defaults: RD-1005-3, cubic laws as published (converted from N, mm, s). gamma = 0.103 1/mm^2 goes with |r|, beta =
-    3.044 1/mm^2 with r. alpha peaks at 0.91 A and is negative at 1.5 A: the laws hold at 1 A beyond 1 A. The published
-    offset f0 = 40 N is off by default because the seat's rest position absorbs it.
+    Defaults: RD-1005-3, cubic laws as published (converted from N, mm, s). gamma = 0.103 1/mm^2 goes with
+    |r|, beta = 3.044 1/mm^2 with r. alpha peaks at 0.91 A and is negative at 1.5 A: the laws hold at 1 A
+    beyond 1 A. The published offset f0 = 40 N is off by default because the seat's rest position absorbs it.
     """
 
-    c0: Annotated[CurrentLaw, param("N s/m", "damping c0(I) of the inner dashpot")] = (590.0, 11020.0, 10510.0, -11730.0)
+    c0: Annotated[CurrentLaw, param("N s/m", "damping c0(I) of the inner dashpot")] = (
+        590.0, 11020.0, 10510.0, -11730.0,
+    )  # fmt: skip
     c1: Annotated[CurrentLaw, param("N s/m", "damping c1(I) of the series dashpot")] = (
         4730.0, 64570.0, 57030.0, -54400.0,
     )  # fmt: skip

@@ -13,19 +13,25 @@ from seatsim.temperature import Heat
 
 @damper(
     "kwok_tanh",
-    source="Kwok, Ha, Nguyen, Li and Samali 2006, Sensors and Actuators A 132:441; RD-1005-3 set recalled, not read in"
-    " the paper, corroborated by the tables of Hong et al. for the same damper",
-    initial=(0.0,), state=BRANCH_STATE, centred=True, max_speed=0.1, max_current=2.0, temperatures=(20.0, 20.0),
-)  # fmt: skip
+    source="Kwok, Ha, Nguyen, Li and Samali 2006, Sensors and Actuators A 132:441; RD-1005-3 set recalled,"
+    " not read in the paper, corroborated by the tables of Hong et al. for the same damper",
+    initial=(0.0,),
+    state=BRANCH_STATE,
+    centred=True,
+    max_speed=0.1,
+    max_current=2.0,
+    temperatures=(20.0, 20.0),
+)
 class KwokTanh(NamedTuple):
     """Hyperbolic tangent of the velocity, shifted by the branch of the loop.
 
         F = c(I) v + k(I) x + alpha(I) tanh{beta v + delta(I) sgn(x)} + f0(I)
 
-    sgn(x) is smoothed and taken about the recent mean of the motion (`pieces.branch`). Defaults: the set of the RD-1005-3
-    for 0-2 A (recalled, corroborated; held at 2 A). Its offset f0 = -257 - 18 I N, which is of the accumulator and the
-    load cell's zero, is off by default because the seat's rest position absorbs it; give f0_a and f0_b to have it.
-    Tested at 1 Hz 4 mm and 2 Hz 8 mm, up to 0.1 m/s. Temperature scales c (viscous), k (elastic) and alpha (yield).
+    sgn(x) is smoothed and taken about the recent mean of the motion (`pieces.branch`). Defaults: the set of
+    the RD-1005-3 for 0-2 A (recalled, corroborated; held at 2 A). Its offset f0 = -257 - 18 I N, which is of
+    the accumulator and the load cell's zero, is off by default because the seat's rest position absorbs it;
+    give f0_a and f0_b to have it. Tested at 1 Hz 4 mm and 2 Hz 8 mm, up to 0.1 m/s. Temperature scales c
+    (viscous), k (elastic) and alpha (yield).
     """
 
     c_a: Annotated[float, param("N s/m", "viscous damping at zero current", low=0)] = 1232.0
@@ -43,9 +49,11 @@ class KwokTanh(NamedTuple):
     def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        linear = (self.c_a + self.c_b * held) * heat.viscous * v + (self.k_a + self.k_b * held) * heat.stiffness * x
+        viscous = (self.c_a + self.c_b * held) * heat.viscous * v
+        elastic = (self.k_a + self.k_b * held) * heat.stiffness * x
         curve = math.tanh(self.beta * v + (self.delta_a + self.delta_b * held) * branch(z))
-        return linear + quadratic(self.alpha, held) * heat.yielding * curve + self.f0_a + self.f0_b * held
+        yielding = quadratic(self.alpha, held) * heat.yielding * curve
+        return viscous + elastic + yielding + self.f0_a + self.f0_b * held
 
     def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
         """Return (w',)."""

@@ -1,15 +1,14 @@
-"""Hysteresis-division damper after Yu, Dong and Zhang: the conventional, symmetric model of Yu et al. 2019."""
+"""Hysteresis-division damper after Yu, Dong and Zhang: the conventional model of Yu et al. 2019."""
 
 from __future__ import annotations
 
 import math
 from typing import Annotated, NamedTuple
 
-import numba
-
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, branch, branch_rate
 from seatsim.fields import param
+from seatsim.kernel.options import jit
 from seatsim.temperature import Heat
 
 RISE_TIME = 0.01
@@ -18,33 +17,39 @@ DECAY_TIME = 2.0
 """Time in s in which it forgets a lower one."""
 
 
-@numba.njit
+@jit
 def envelope_rate(speed: float, envelope: float) -> float:
-    """Return the rate of the envelope of the speed in m/s^2: fast towards a higher speed, slow towards a lower one."""
+    """Return the rate of the envelope of the speed in m/s^2: fast to a higher speed, slow to a lower one."""
     return (speed - envelope) / (RISE_TIME if speed > envelope else DECAY_TIME)
 
 
 @damper(
     "yu2017",
-    source="Yu, Dong and Zhang 2017, Smart Mater. Struct. 26, as eq 5 of Yu et al. 2019 (conventional model); defaults"
-    " fitted by us to measured sine tests of the damper of UTFSM (repository DanielMaurelE/vRTHS_AMBC_MRdamper, MIT)",
-    initial=(0.0, 0.0), state=f"{BRANCH_STATE}; e, envelope of the speed in m/s, for the cycle's peak speed",
-    centred=True, max_speed=0.126, max_current=1.0, temperatures=(20.0, 20.0),
-)  # fmt: skip
+    source="Yu, Dong and Zhang 2017, Smart Mater. Struct. 26, as eq 5 of Yu et al. 2019 (conventional model);"
+    " defaults fitted by us to measured sine tests of the damper of UTFSM (repository"
+    " DanielMaurelE/vRTHS_AMBC_MRdamper, MIT)",
+    initial=(0.0, 0.0),
+    state=f"{BRANCH_STATE}; e, envelope of the speed in m/s, for the cycle's peak speed",
+    centred=True,
+    max_speed=0.126,
+    max_current=1.0,
+    temperatures=(20.0, 20.0),
+)
 class Yu2017(NamedTuple):
     """Backbone and branch of a symmetric loop, divided and scaled by one height S.
 
         F = S(vm, I) {(1 - exp(b1 |v|)) / (1 + exp(b2 |v|)) sgn(v) + d1 exp(-(|v| - d2)^2 / d3) sgn(x)}
         S = c1 + c2 / (1 + exp(c3 vm)) + cI1 exp(cI2 I),   b1, b2 < 0
 
-    vm is the peak speed of the cycle, here the causal envelope `e' = (|v| - e) / tau`, tau = 0.01 s where |v| > e and 2 s
-    below; sgn(x) is smoothed and taken about the recent mean (`pieces.branch`). Read otherwise than printed: eq 5 has v
-    in the Gaussian, which for d2 != 0 would make the symmetric model asymmetric.
+    vm is the peak speed of the cycle, here the causal envelope `e' = (|v| - e) / tau`, tau = 0.01 s where |v|
+    > e and 2 s below; sgn(x) is smoothed and taken about the recent mean (`pieces.branch`). Read otherwise
+    than printed: eq 5 has v in the Gaussian, which for d2 != 0 would make the symmetric model asymmetric.
 
-    No parameters are published. The defaults are derived by us, from measurement: one steady cycle each of 2 mm 5 Hz,
-    5 mm 3 and 4 Hz, 10 mm 1 and 2 Hz, 25 mm 0.1, 0.25 and 0.5 Hz at 0, 0.25, 0.5, 0.75, 1 A, offset removed, with d2 = 0
-    and cI2 = -0.3 1/A chosen (these data rise almost linearly with current); rms error 21, 62, 94, 162, 228 N, 12 % of the
-    peak force over all. Valid to 0.126 m/s and 1 A. Temperature scales S (yield); nothing here is viscous.
+    No parameters are published. The defaults are derived by us, from measurement: one steady cycle each of 2
+    mm 5 Hz, 5 mm 3 and 4 Hz, 10 mm 1 and 2 Hz, 25 mm 0.1, 0.25 and 0.5 Hz at 0, 0.25, 0.5, 0.75, 1 A, offset
+    removed, with d2 = 0 and cI2 = -0.3 1/A chosen (these data rise almost linearly with current); rms error
+    21, 62, 94, 162, 228 N, 12 % of the peak force over all. Valid to 0.126 m/s and 1 A. Temperature scales S
+    (yield); nothing here is viscous.
     """
 
     c1: Annotated[float, param("N", "height S, constant")] = 5828.0
@@ -68,4 +73,4 @@ class Yu2017(NamedTuple):
 
     def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
         """Return (w', e')."""
-        return branch_rate(v, z) + (envelope_rate(abs(v), z[1]),)
+        return (*branch_rate(v, z), envelope_rate(abs(v), z[1]))

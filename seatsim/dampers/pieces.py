@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-import numba
-
 from seatsim.dampers.base import State
 from seatsim.fields import param
+from seatsim.kernel.options import jit
 
 QuadraticLaw = tuple[
     Annotated[float, param("", "constant")],
@@ -18,51 +17,57 @@ QuadraticLaw = tuple[
 """Coefficients of a quadratic law in the current."""
 
 BRANCH_STATE = "w, the displacement in m about its recent mean, whose sign is the branch of the loop"
-BRANCH_WIDTH = 1e-4
-"""Displacement in m over which a branch changes sign, tanh(w / 0.1 mm)."""
-BRANCH_MEMORY = 5.0
-"""Time in s over which the branch state forgets the mean of the motion."""
+BRANCH_WIDTH = 5e-4
+"""Displacement in m over which a branch changes sign, tanh(w / 0.5 mm)."""
+BRANCH_MEMORY = 1.0
+"""Time in s over which the branch state forgets the mean of the motion.
+
+Both are chosen by us, against swept-sine and seismic records of the damper of UTFSM: 1 s and 0.5 mm predict
+motion off centre better than sgn(x) itself (swept sine at 1 A: rms 358 against 506 N) and leave the loops of
+centred sines above 0.3 Hz nearly as they are.
+"""
 
 
-@numba.njit
+@jit
 def power(base: float, exponent: float) -> float:
-    """Return `base ** exponent` for a base >= 0, without the cost of a general power for exponents 1 and 2."""
+    """Return `base ** exponent` for a base >= 0, without the cost of a general power for 1 and 2."""
     if exponent == 2.0:
         return base * base
     return base if exponent == 1.0 else float(base**exponent)
 
 
-@numba.njit
+@jit
 def cubic(c: tuple[float, ...], i: float) -> float:
     """Return `c[0] + c[1] i + c[2] i^2 + c[3] i^3`."""
     return c[0] + i * (c[1] + i * (c[2] + i * c[3]))
 
 
-@numba.njit
+@jit
 def quadratic(c: tuple[float, ...], i: float) -> float:
     """Return `c[0] + c[1] i + c[2] i^2`."""
     return c[0] + i * (c[1] + i * c[2])
 
 
-@numba.njit
+@jit
 def bouc_wen_rate(A: float, beta: float, gamma: float, n: float, r: float, z: float) -> float:
-    """Return `A r - beta r |z|^n - gamma |r| z |z|^(n-1)`, the rate of the Bouc-Wen state at relative velocity r."""
+    """Return `A r - beta r |z|^n - gamma |r| z |z|^(n-1)`, the rate of the Bouc-Wen state at velocity r."""
     size = power(abs(z), n)
     signed = math.copysign(size, z)
     return A * r - beta * r * size - gamma * abs(r) * signed
 
 
-@numba.njit
+@jit
 def branch(z: State) -> float:
-    """Return the smoothed sign (-1 to 1) of the displacement about its recent mean, the state of `branch_rate`.
+    """Return the smoothed sign (-1 to 1) of the displacement about its recent mean.
 
-    It stands for sgn(x), and for -sgn(dv/dt), which is the same for harmonic motion about zero: a measured loop has a
-    positive force at v = 0 where x > 0. Taking it from the displacement keeps it causal and free of chatter.
+    It stands for sgn(x), and for -sgn(dv/dt), which is the same for harmonic motion about zero: a measured
+    loop has a positive force at v = 0 where x > 0. Taking it from the displacement keeps it causal and free
+    of chatter.
     """
     return math.tanh(z[0] / BRANCH_WIDTH)
 
 
-@numba.njit
+@jit
 def branch_rate(v: float, z: State) -> State:
-    """Return the rate of the branch state, `w' = v - w / 5 s`."""
+    """Return the rate of the branch state, `w' = v - w / 1 s`."""
     return (v - z[0] / BRANCH_MEMORY,)

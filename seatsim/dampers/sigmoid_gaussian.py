@@ -5,14 +5,17 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-import numba
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, branch, branch_rate
 from seatsim.fields import param
+from seatsim.kernel.options import jit
 from seatsim.temperature import Heat
+
+Row = tuple[float, float, float, float, float]
 
 CURRENTS = np.array([0.0, 0.25, 0.5, 0.75, 1.0, 2.0])
 """Test currents in A; the paper prints the third as 0.25 again."""
@@ -34,59 +37,72 @@ TABLES = np.array([
         [1.00, -2.49, 3.06, 0.38, 0.72],
     ],
 ])  # fmt: skip
-"""Tables 1 and 2 of the paper, shape (test, current, parameter), in units of kN and of the velocity unit u."""
-_PIECES = np.ascontiguousarray(
-    np.moveaxis([PchipInterpolator(CURRENTS, table, axis=0).c for table in TABLES], 1, -1)
-)  # (test, cell, parameter, power from 3 to 0)
+"""Tables 1 and 2 of the paper, shape (test, current, parameter), in kN and the velocity unit u."""
+_CUBICS = np.array([np.moveaxis(PchipInterpolator(CURRENTS, table).c, 0, -1) for table in TABLES])
+"""Shape (test, cell, parameter, power from 3 to 0)."""
 
 
-@numba.njit
-def table_value(test: int, parameter: int, current: float) -> float:
-    """Return column `parameter` of table `test` (1 or 2), monotone between the test currents and held beyond them."""
+@jit
+def table_row(test: int, current: float) -> Row:
+    """Return (a, b, c, sigma, r) of test 1 or 2, monotone between the test currents and held beyond them."""
     held = min(max(current, CURRENTS[0]), CURRENTS[-1])
     cell = 0
     while cell < len(CURRENTS) - 2 and held >= CURRENTS[cell + 1]:
         cell += 1
-    c, s = _PIECES[test - 1, cell, parameter], held - CURRENTS[cell]
-    return float(((c[0] * s + c[1]) * s + c[2]) * s + c[3])
+    cubics, s = _CUBICS[test - 1, cell], held - CURRENTS[cell]
+    return _at(cubics[0], s), _at(cubics[1], s), _at(cubics[2], s), _at(cubics[3], s), _at(cubics[4], s)
+
+
+@jit
+def _at(c: NDArray[np.float64], s: float) -> float:
+    """Return the cubic `((c[0] s + c[1]) s + c[2]) s + c[3]`."""
+    value: float = ((c[0] * s + c[1]) * s + c[2]) * s + c[3]
+    return value
 
 
 @damper(
     "hong_sigmoid_gaussian",
-    source="Hong, Nguyen, Kwok, Ha and Li, 'Hysteretic model for MR fluid dampers using a curve fitting approach', eqs 4,"
-    " 6, 7 and tables 1 and 2 (RD-1005-3), with the sign of eq 7 corrected; the velocity unit is ours",
-    initial=(0.0,), state=BRANCH_STATE, centred=True, max_speed=0.1, max_current=2.0, temperatures=(20.0, 20.0),
-)  # fmt: skip
+    source="Hong, Nguyen, Kwok, Ha and Li, 'Hysteretic model for magnetorheological fluid dampers using a"
+    " curve fitting approach', eqs 4, 6, 7 and tables 1 and 2 (RD-1005-3), with the sign of eq 7 corrected;"
+    " the velocity unit is ours",
+    initial=(0.0,),
+    state=BRANCH_STATE,
+    centred=True,
+    max_speed=0.1,
+    max_current=2.0,
+    temperatures=(20.0, 20.0),
+)
 class HongSigmoidGaussian(NamedTuple):
-    """Sigmoid G for the mean of the loop, Gaussian D for its thickness, with the parameters of a table of the paper.
+    """Sigmoid G for the mean of the loop, Gaussian D for its thickness, with the tables of the paper.
 
         G = a + b / (1 + exp(c v)),   D = r exp(-(v / sigma)^2 / 2) / (sqrt(2 pi) sigma),   F = G - sgn(v') D
 
-    a, b, c, sigma, r come from table 1 (`test: 1`; 1 Hz, 4 mm) or table 2 (`test: 2`; 2 Hz, 8 mm), as published, by
-    monotone (PCHIP) interpolation in the current, since they are not linear in it; held beyond 2 A. Read otherwise than
-    printed: eq 7 adds D for v' >= 0, which contradicts the paper's section 3.1 and every measured loop, so the sign is
-    reversed; the second row of 0.25 A is 0.50 A. -sgn(v') is the smoothed sign of the displacement (`pieces.branch`).
+    a, b, c, sigma, r come from table 1 (`test: 1`; 1 Hz, 4 mm) or table 2 (`test: 2`; 2 Hz, 8 mm), as
+    published, by monotone (PCHIP) interpolation in the current, since they are not linear in it; held beyond
+    2 A. Read otherwise than printed: eq 7 adds D for v' >= 0, which contradicts the paper's section 3.1 and
+    every measured loop, so the sign is reversed; the second row of 0.25 A is 0.50 A. -sgn(v') is the smoothed
+    sign of the displacement (`pieces.branch`).
 
-    Chosen by us: the velocity unit, which the paper does not state and its numbers do not settle. mm/s and m/s are ruled
-    out; 25.4 mm/s is the in/s that matches the peak speed of test 1 to 1 % (a velocity over the test's peak, 0.0251 and
-    0.1005 m/s, would explain both tests, 0.01 m/s is the other candidate). The offset a + b/2 of about -0.25 kN, of the
-    accumulator and the load cell's zero, is retained by the share `offset_share`, 0 by default because the seat's rest
-    position absorbs it. Valid to 0.1 m/s. Temperature scales G and D alike (yield); nothing here is viscous.
+    Chosen by us: the velocity unit, which the paper does not state and its numbers do not settle. mm/s and
+    m/s are ruled out; 25.4 mm/s is the in/s that matches the peak speed of test 1 to 1 % (a velocity over the
+    test's peak, 0.0251 and 0.1005 m/s, would explain both tests, 0.01 m/s is the other candidate). The offset
+    a + b/2 of about -0.25 kN, of the accumulator and the load cell's zero, is retained by the share
+    `offset_share`, 0 by default because the seat's rest position absorbs it. Valid to 0.1 m/s. Temperature
+    scales G, less its offset, and D alike (yield); nothing here is viscous.
     """
 
-    test: Annotated[int, param("-", "table of the paper: 1 (1 Hz, 4 mm) or 2 (2 Hz, 8 mm)", low=1, high=2)] = 1
+    test: Annotated[int, param("-", "table: 1 (1 Hz, 4 mm) or 2 (2 Hz, 8 mm)", low=1, high=2)] = 1
     v_unit: Annotated[float, param("m/s", "velocity unit of the tables", above=0, high=1)] = 0.0254
-    offset_share: Annotated[float, param("-", "share of the published offset that is kept", low=0, high=1)] = 0.0
+    offset_share: Annotated[float, param("-", "kept share of the published offset", low=0, high=1)] = 0.0
 
     def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
         """Return F in N."""
+        a, b, c, sigma, r = table_row(self.test, i)
         u = v / self.v_unit
-        a, b = table_value(self.test, 0, i), table_value(self.test, 1, i)
-        sigma = table_value(self.test, 3, i)
-        # a + b / (1 + exp(c u)) written about its middle, which cannot overflow
-        mean = self.offset_share * (a + 0.5 * b) - 0.5 * b * math.tanh(0.5 * table_value(self.test, 2, i) * u)
-        spread = table_value(self.test, 4, i) / (math.sqrt(2.0 * math.pi) * sigma)
-        return 1e3 * heat.yielding * (mean + branch(z) * spread * math.exp(-0.5 * (u / sigma) ** 2))
+        # G is written about its middle a + b/2, so that it cannot overflow.
+        mean = -0.5 * b * math.tanh(0.5 * c * u)
+        thickness = r / (math.sqrt(2.0 * math.pi) * sigma) * math.exp(-0.5 * (u / sigma) ** 2)
+        return 1e3 * (heat.yielding * (mean + branch(z) * thickness) + self.offset_share * (a + 0.5 * b))
 
     def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
         """Return (w',)."""

@@ -1,20 +1,20 @@
 """A damper on a test bench: motion, current and temperature are prescribed, the force comes out.
 
-The classical Runge-Kutta method of order 4 on samples every half step, so that the middle of a step is a sample too.
-Steps in which the damper's state is stiff are divided; motion and current then follow the parabola through the three
-samples of the step.
+The classical Runge-Kutta method of order 4 on samples every half step, so that the middle of a step is a
+sample too. Steps in which the damper's state is stiff are divided; motion and current then follow the
+parabola through the three samples of the step.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.kernel.generic import Tuple, axpy, combine, force, heat_at, rates
 from seatsim.kernel.inverse import total
+from seatsim.kernel.options import jit
 from seatsim.temperature import Heat, TemperatureFactors
 
 Array = NDArray[np.float64]
@@ -38,10 +38,11 @@ def run_bench(
     step: float,
     out: Array,
 ) -> int:
-    """Fill `out`, shape (n + 1,), with the force in N every `step`; return the number of samples reached (n + 1 if all).
+    """Fill `out`, shape (n + 1,), with the force in N every `step`; return the samples reached.
 
-    x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step; temperature is
-    held over a step. Set-valued friction acts as `coulomb sgn(v)`, zero at v = 0. To be compiled by `compiled`.
+    x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step;
+    temperature is held over a step. The number returned is n + 1 if all went well. Set-valued friction acts
+    as `coulomb sgn(v)`, zero at v = 0. To be compiled by `compiled`.
     """
     z = initial_state
     parts = 1
@@ -56,13 +57,14 @@ def run_bench(
         if k == out.shape[0] - 1:
             break
         if len(z) > 0:
-            z, parts, good = _advance(damper, factor, x[j : j + 3], v[j : j + 3], current[j : j + 3], z, step, parts)
+            span = slice(j, j + 3)
+            z, parts, good = _advance(damper, factor, x[span], v[span], current[span], z, step, parts)
             if not good:
                 return k + 1
     return int(out.shape[0])
 
 
-@numba.njit(forceinline=True)
+@jit
 def _advance(
     damper: Any, heat: Heat, x: Array, v: Array, current: Array, z: Tuple, step: float, parts: int
 ) -> tuple[Tuple, int, bool]:
@@ -81,13 +83,14 @@ def _advance(
     return state, parts, worst < 1e12
 
 
-@numba.njit(forceinline=True)
+@jit
 def _part(
     damper: Any, heat: Heat, x: Array, v: Array, current: Array, z: Tuple, h: float, s: float, ds: float
 ) -> tuple[Tuple, float]:
-    """Return the state after a part of `h` seconds from the fraction `s` of the step, and its error over the tolerance.
+    """Return the state after a part of `h` seconds from the fraction `s` of the step, and its scaled error.
 
-    The error is the difference in force to an embedded solution of order 3, as in the time loop.
+    The error, over the tolerance, is the difference in force to an embedded solution of order 3, as in the
+    time loop.
     """
     middle, end = s + 0.5 * ds, s + ds
     xm, vm, im = _between(x, middle), _between(v, middle), _between(current, middle)
@@ -104,8 +107,9 @@ def _part(
     return state, error / (TOLERANCE * (FLOOR + abs(got)))
 
 
-@numba.njit(forceinline=True)
+@jit
 def _between(samples: Array, s: float) -> float:
     """Return the parabola through three samples at the fraction `s` of the step; exact at 0, 1/2 and 1."""
     t = 1.0 - s
-    return t * (t - s) * samples[0] + 4.0 * s * t * samples[1] + s * (s - t) * samples[2]
+    value: float = t * (t - s) * samples[0] + 4.0 * s * t * samples[1] + s * (s - t) * samples[2]
+    return value

@@ -46,7 +46,8 @@ class Inputs(NamedTuple):
     """What drives a run, sampled every `step`, shape (N,) each; an array of length 0 is an input that is absent.
 
     `replayed` is a recorded command for laws that replay it, `prescribed` a coil current that bypasses the coil,
-    `temperature` the damper's temperature in degC; the coil starts at `start_current`.
+    `temperature` the damper's temperature in degC; the coil starts at `start_current`, the
+    suspension at `start_displacement` and `start_velocity`, the cushion at rest.
     """
 
     floor_acceleration: Array
@@ -55,6 +56,8 @@ class Inputs(NamedTuple):
     replayed: Array
     prescribed: Array
     start_current: float = 0.0
+    start_displacement: float = 0.0
+    start_velocity: float = 0.0
 
 
 class Timing(NamedTuple):
@@ -84,12 +87,14 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
     step, samples = timing.step, out.shape[0]
     prescribed = len(inputs.prescribed) > 0
     delay_steps = int(math.floor(coil.delay / step + 1e-9))
-    split = max(0.0, coil.delay - delay_steps * step)
+    split = coil.delay - delay_steps * step
+    if split < 1e-9 * step:
+        split = 0.0
     kept = (1.0 - relaxed(coil, 0.0, 1.0, 0.5 * step), relaxed(coil, 1.0, 0.0, 0.5 * step))
     current = inputs.start_current
     temperature = inputs.temperature[0]
     factors = heat_at(setup.factors, temperature)
-    mechanical = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    mechanical = (inputs.start_displacement, inputs.start_velocity, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     now = start(rig, mechanical + damper_state, inputs.floor_acceleration[0], current, factors, step)
     command, wanted, served = 0.0, math.nan, math.nan
     grid = np.empty(CELLS + 1)
@@ -113,8 +118,8 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
         _record(out, k, now, floor, wanted, served, current, command, temperature)
         if k == samples - 1:
             break
-        after = out[k - delay_steps, 11] if k >= delay_steps else 0.0
-        before = out[k - delay_steps - 1, 11] if k >= delay_steps + 1 else 0.0
+        after = out[k - delay_steps, 11] if k >= delay_steps else inputs.start_current
+        before = out[k - delay_steps - 1, 11] if k >= delay_steps + 1 else inputs.start_current
         if prescribed:
             after = inputs.prescribed[k + 1]
         rise = inputs.floor_acceleration[k + 1] - floor

@@ -16,5 +16,11 @@ INLINED: dict[str, Any] = ARITHMETIC | {"forceinline": True}
 
 def jit(function: F) -> F:
     """Compile a function of the loop, inlined where it is called."""
-    compiled: F = numba.njit(**INLINED)(function)
-    return compiled
+    inlined: F = numba.njit(**INLINED)(function)
+    return inlined
+
+
+def jit_apart(function: F) -> F:
+    """Compile a function that is seldom called, apart from its callers, so that these keep to the registers."""
+    called: F = numba.njit(**ARITHMETIC)(function)
+    return called

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from seatsim.coil import Coil, relax
 from seatsim.kernel.generic import Tuple, axpy, combine
-from seatsim.kernel.options import jit
+from seatsim.kernel.options import jit, jit_apart
 from seatsim.kernel.rig import Flow, Rig, derivative
 from seatsim.temperature import Heat
 
@@ -108,6 +108,26 @@ def advance(
     rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, tolerance: float
 ) -> tuple[Progress, float, bool]:
     """Return the progress after one step, the current then, and whether the step succeeded."""
+    h = now.substep
+    if h == drive.length and now.flow.friction_limit <= 0.0:
+        state, rates, flow, k4, i_end = _try(rig, coil, drive, heat, now, 0.0, h)
+        if flow.friction_limit <= 0.0 and _error(state, rates, k4, h, tolerance) <= 1.0:
+            return Progress(state, rates, flow, 0.0, h), i_end, True
+    return _divided(rig, coil, drive, heat, now, tolerance)
+
+
+@jit
+def _error(state: Tuple, rates: Tuple, k4: Tuple, h: float, tolerance: float) -> float:
+    """Return the estimated error in the velocities over a sub-step of `h`, in units of the tolerance."""
+    scale = tolerance * (FLOOR_OF_ERROR_SCALE + abs(state[1]) + abs(state[3]))
+    return h / 6.0 * (abs(k4[1] - rates[1]) + abs(k4[3] - rates[3])) / scale
+
+
+@jit_apart
+def _divided(
+    rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, tolerance: float
+) -> tuple[Progress, float, bool]:
+    """Advance by one step in as many sub-steps as it needs, with the set-valued friction."""
     time, current, h = 0.0, drive.current, now.substep
     remaining = drive.length
     while remaining > 0.0:
@@ -115,14 +135,13 @@ def advance(
         if last:
             h = remaining
         state, rates, flow, k4, i_end = _try(rig, coil, drive, heat, now, time, h)
-        scale = tolerance * (FLOOR_OF_ERROR_SCALE + abs(state[1]) + abs(state[3]))
-        error = h / 6.0 * (abs(k4[1] - rates[1]) + abs(k4[3] - rates[3])) / scale
+        error = _error(state, rates, k4, h, tolerance)
         if not error <= 1.0 and h > SMALLEST * drive.length:
             h *= max(0.1, 0.9 / error**0.25) if error < 1e12 else 0.1
             continue
         if not error < 1e12:
             return now, current, False
-        slip = now.slip
+        slip = now.slip if flow.friction_limit > 0.0 else 0.0
         if flow.friction_limit > 0.0:
             held = now.state[1] == 0.0 and now.rates[1] == 0.0
             if held and state[1] != 0.0 and h > BREAKAWAY * drive.length:

@@ -1,7 +1,7 @@
 """Pictures of a result; the only part of seatsim that imports matplotlib.
 
-Figures are built through matplotlib's objects, without pyplot and without global state, so that threads may draw.
-Equal results give equal bytes: `figure.savefig(path, metadata={"Software": "seatsim"})` writes no date and no version.
+Figures are built through matplotlib's objects, without pyplot and without global state, so threads may draw.
+Equal results give equal bytes where a figure is saved with `metadata={"Software": "seatsim"}`.
 """
 
 from __future__ import annotations
@@ -21,10 +21,8 @@ __all__ = ["draw"]
 def draw(result: Result) -> dict[str, Figure]:
     """Return the figures of a result by name, 10 inches wide; `comparison` is there for two runs or more.
 
-    Where there is nothing to show (a floor at rest, a record too short for a spectrum), a figure says so.
-
-    Raises:
-        RunError: the sine test of a damper could not be carried to its end.
+    Where there is nothing to show (a floor at rest, a record too short for a spectrum), a figure says so. The
+    sine tests of the dampers raise RunError where one cannot be carried to its end.
     """
     figures = {
         "time_histories": time_histories(result.runs),

@@ -16,7 +16,7 @@ from seatsim.result import Run
 
 
 class Compared(NamedTuple):
-    """A metric that is compared: its name, the label of its axis, the factor to the unit shown, its decimals."""
+    """A metric that is compared: name, label of its axis, factor to the unit shown, decimals."""
 
     metric: str
     axis: str
@@ -25,23 +25,27 @@ class Compared(NamedTuple):
 
 
 COMPARED = (
-    Compared("driver_acceleration_rms", "driver acceleration\nRMS [m/s²]"),
-    Compared("driver_acceleration_weighted", "driver acceleration\nRMS, Wk-weighted [m/s²]"),
-    Compared("suspension_displacement_rms", "suspension displacement\nRMS [mm]", 1e3, 1),
-    Compared("seat_factor", "SEAT factor [-]"),
+    Compared("driver_acceleration_rms", "driver RMS\nacceleration [m/s²]"),
+    Compared("driver_acceleration_weighted", "driver Wk-weighted\nacceleration [m/s²]"),
+    Compared("suspension_displacement_rms", "suspension RMS\ndisplacement [mm]", 1e3, 1),
+    Compared("seat_factor", "SEAT factor\n[-]"),
 )
+NOTE = "Over the whole run; the smaller the better."
 BAR = 0.32
 """Height of a bar with its gap in inches."""
+LONGEST = 34
+"""Letters of the name of a bar."""
 
 
 def comparison(runs: Sequence[Run]) -> Figure:
     """Return bars run by run, or lines over the number that is swept, one line for each variant."""
     key = swept_number(runs)
-    return _over(runs, key) if key else _bars(runs)
+    lines = _series(runs, key)
+    return _over(key, lines) if key and len(lines) <= labels.MOST else _bars(runs)
 
 
 def swept_number(runs: Sequence[Run]) -> str:
-    """Return the key that has the most different values among those with a number in every run, or nothing."""
+    """Return the key with the most different values among those that are numbers in every run, or nothing."""
     counts = {}
     for key in runs[0].scenario.label:
         values = [run.scenario.label.get(key) for run in runs]
@@ -52,12 +56,13 @@ def swept_number(runs: Sequence[Run]) -> str:
 
 
 def _bars(runs: Sequence[Run]) -> Figure:
-    names = labels.labels(runs)
+    names = labels.labels(runs, LONGEST)
     many = len(runs) > labels.MOST
     colours = [COLOURS[0]] * len(runs) if many else [entry.colour for entry in style.entries(names)]
     left = 0.35 + LETTER * max(len(name) for name in names)
-    grid = Grid(heights=(BAR * len(runs) + 0.2,), columns=len(COMPARED), left=left, gap=(0.2, 0.0))
-    page = style.page(f"Comparison: {labels.title(runs)}", "", grid)
+    height = BAR * len(runs) + 0.2
+    grid = Grid((height,), columns=len(COMPARED), left=left, bottom=0.75, gap=(0.25, 0.0))
+    page = style.page(f"Comparison: {labels.title(runs)}", NOTE, grid)
     for axes, compared in zip(page.rows[0], COMPARED, strict=True):
         _bar_panel(axes, _values(runs, compared), compared, colours)
     page.rows[0][0].set_yticks(range(len(runs)), names, fontsize=10)
@@ -77,28 +82,36 @@ def _bar_panel(axes: Axes, values: Array, compared: Compared, colours: Sequence[
     axes.set_xlabel(compared.axis)
 
 
-def _over(runs: Sequence[Run], key: str) -> Figure:
-    """Draw lines over the swept number, a line for all runs that differ in nothing else."""
-    named = len({run.scenario.name for run in runs}) > 1
+def _series(runs: Sequence[Run], key: str) -> dict[str, list[Run]]:
+    """Return the runs that differ in nothing but the swept number, by what else sets them apart."""
     series: dict[str, list[Run]] = {}
-    for run in sorted(runs, key=lambda run: float(run.scenario.label[key])):
-        series.setdefault(labels.label(run.scenario, named, without=key), []).append(run)
+    for name, run in zip(labels.labels(runs, without=key), runs, strict=True):
+        series.setdefault(name, []).append(run)
+    return series
+
+
+def _over(key: str, series: dict[str, list[Run]]) -> Figure:
+    runs = [run for alike in series.values() for run in alike]
     looks = style.entries(list(series))
-    page = style.page(f"Comparison: {labels.title(runs)}", "", Grid((2.5, 2.5), 2, gap=(0.95, 0.7)), looks)
+    swept = sorted({float(run.scenario.label[key]) for run in runs})
+    page = style.page(f"Comparison: {labels.title(runs)}", NOTE, Grid((2.5, 2.5), 2, gap=(0.95, 0.7)), looks)
     panels = [axes for row in page.rows for axes in row]
     for axes, compared in zip(panels, COMPARED, strict=True):
         for look, alike in zip(looks, series.values(), strict=True):
             _curve(axes, alike, key, compared, look)
         axes.set_xlabel(labels.axis(runs[0].scenario, key))
         axes.set_ylabel(compared.axis)
-        axes.set_ylim(bottom=0)
+        axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
+        if len(swept) <= labels.MOST:
+            axes.set_xticks(swept)
     return page.figure
 
 
 def _curve(axes: Axes, runs: Sequence[Run], key: str, compared: Compared, look: Entry) -> None:
-    swept = [float(run.scenario.label[key]) for run in runs]
-    style.line(axes, swept, _values(runs, compared), look._replace(width=1.6))
-    axes.plot(swept, _values(runs, compared), "o", color=look.colour, markersize=4.5)
+    ordered = sorted(runs, key=lambda run: float(run.scenario.label[key]))
+    swept, values = [float(run.scenario.label[key]) for run in ordered], _values(ordered, compared)
+    style.line(axes, swept, values, look._replace(width=1.6))
+    axes.plot(swept, values, "o", color=look.colour, markersize=4.5)
 
 
 def _values(runs: Sequence[Run], compared: Compared) -> Array:

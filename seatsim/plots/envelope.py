@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from seatsim.plots import labels, style
-from seatsim.plots.loops import FREQUENCY, stroke_ratio, temperature_of, tested
+from seatsim.plots.loops import FREQUENCY, specimens, stroke_ratio, temperature_of
 from seatsim.plots.style import Entry, Grid
 from seatsim.plots.thinning import Array
 from seatsim.result import Run
@@ -22,15 +22,15 @@ SLOWEST = 0.01
 
 
 def force_velocity(run: Run) -> Figure:
-    """Return delivered force over damper velocity, coloured by the coil current, with the damper's own limits."""
-    [damper], temperature = tested([run]), temperature_of(run)
+    """Return delivered force over damper velocity, coloured by coil current, with the damper's own limits."""
+    [damper], temperature = specimens([run]), temperature_of(run)
     most = damper.max_current
     off, on = Entry("damper at 0 A", "0.45", width=1.8), Entry(f"damper at {most:g} A", "black", width=1.8)
     velocity = stroke_ratio(run) * run.history["suspension_velocity"]
     amplitude = max(SLOWEST, float(np.max(np.abs(velocity)))) / (2 * math.pi * FREQUENCY)
     note = (
         f"Dots: the run. Curves: sine test at {temperature:g} °C, amplitude {1e3 * amplitude:.3g} mm,"
-        f" frequency {FREQUENCY:g} Hz. In the shaded quadrants a force would need a drive."
+        f" frequency {FREQUENCY:g} Hz. Shaded: the damper gives energy back."
     )
     page = style.page(f"Damper at work: {labels.title([run])}", note, Grid((4.8,), right=1.3), [off, on])
     axes = page.rows[0][0]
@@ -57,7 +57,7 @@ def _dots(axes: Axes, velocity: Array, run: Run) -> None:
 
 
 def _quadrants(axes: Axes) -> None:
-    """Shade where force and velocity differ in sign: a passive damper only dissipates, but for its elastic part."""
+    """Shade where force and velocity differ in sign: there a damper can only return what it stored."""
     right, top = (max(abs(end) for end in ends) for ends in (axes.get_xlim(), axes.get_ylim()))
     axes.set_xlim(-right, right)
     axes.set_ylim(-top, top)

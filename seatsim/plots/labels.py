@@ -14,8 +14,9 @@ from seatsim.temperature import TemperatureFactors, Thermal
 
 MOST = 8
 """Most runs that lines of one panel can tell apart."""
-LONGEST = 44
-"""Letters of a label before it is cut."""
+LONGEST = 52
+"""Letters of a label; longer ones are cut in the middle."""
+LONGEST_TITLE = 64
 PRETTY = {"degC": "°C", "^2": "²", "^3": "³", "ohm": "Ω", " s/m": "·s/m"}
 
 
@@ -27,9 +28,10 @@ def unit(text: str) -> str:
 
 
 def shown(runs: Sequence[Run]) -> list[Run]:
-    """Return the runs that lines are drawn of: all up to eight, else those at the first swept values, else a choice.
+    """Return the runs that lines are drawn of.
 
-    The choice is spread evenly over the order of the runs, first and last included.
+    These are all of up to eight runs; of more those at the first swept values (one for each variant), or else
+    eight that are spread evenly over their order, first and last included.
     """
     if len(runs) <= MOST:
         return list(runs)
@@ -45,28 +47,24 @@ def which(chosen: Sequence[Run], runs: Sequence[Run]) -> str:
     return f" {len(chosen)} of {len(runs)} runs are shown." if len(chosen) < len(runs) else ""
 
 
-def labels(runs: Sequence[Run]) -> list[str]:
-    """Return what sets each run apart from the others, shortest first: variant and swept values, or the name."""
+def labels(runs: Sequence[Run], longest: int = LONGEST, without: str = "") -> list[str]:
+    """Return what sets each run apart from the others: variant and swept values, less those of one key."""
     several = len({run.scenario.name for run in runs}) > 1
-    return [label(run.scenario, several) for run in runs]
-
-
-def label(scenario: Scenario, named: bool, without: str = "") -> str:
-    """Return variant and swept values of a scenario, `named` with its name before them, less one swept key."""
-    parts = [_part(scenario, key, value) for key, value in scenario.label.items() if key != without]
-    return clean(", ".join([scenario.name] * named + parts) or scenario.name)
-
-
-def clean(text: str) -> str:
-    """Return a text that matplotlib prints as it stands: no formulas, no hidden label, not too long."""
-    short = text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
-    return (f" {short}" if short.startswith("_") else short).replace("$", r"\$")
+    return [clean(_described(run.scenario, several, without), longest) for run in runs]
 
 
 def title(runs: Sequence[Run]) -> str:
-    """Return the name of the scenario of one run, or the names of the scenarios of several."""
-    names = list(dict.fromkeys(run.scenario.name for run in runs))
-    return clean(runs[0].scenario.title if len(runs) == 1 else ", ".join(names))
+    """Return the name of one run with what sets it apart, or the names of the scenarios of several."""
+    if len(runs) == 1:
+        return clean(_described(runs[0].scenario, True), LONGEST_TITLE)
+    return clean(", ".join(dict.fromkeys(run.scenario.name for run in runs)), LONGEST_TITLE)
+
+
+def clean(text: str, longest: int) -> str:
+    """Return a text that matplotlib prints as it stands: no formulas, no hidden label, not too long."""
+    half = longest // 2
+    short = text if len(text) <= longest else f"{text[: half - 1]}…{text[-half:]}"
+    return (f" {short}" if short.startswith("_") else short).replace("$", r"\$")
 
 
 def is_number(value: Any) -> bool:
@@ -103,6 +101,12 @@ def _records(scenario: Scenario) -> dict[str, type]:
         "excitation": type(scenario.excitation),
         "solver": Solver,
     }
+
+
+def _described(scenario: Scenario, named: bool, without: str = "") -> str:
+    """Return variant and swept values, less those of one key; `named` puts the scenario's name first."""
+    parts = [_part(scenario, key, value) for key, value in scenario.label.items() if key != without]
+    return ", ".join([scenario.name] * named + parts) or scenario.name
 
 
 def _part(scenario: Scenario, key: str, value: Any) -> str:

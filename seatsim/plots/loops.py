@@ -30,7 +30,7 @@ MOST = 4
 """Most dampers in one picture."""
 
 
-class Tested(NamedTuple):
+class Specimen(NamedTuple):
     """A damper with its temperature factors, the largest current, and the runs that use it."""
 
     record: Any
@@ -50,26 +50,26 @@ class Tested(NamedTuple):
 
 def damper_loops(runs: Sequence[Run]) -> Figure:
     """Return the loops of each distinct damper by current, and by temperature where that plays a part."""
-    dampers = tested(runs)
+    dampers = specimens(runs)
     rows = [row for damper in dampers[:MOST] for row in _rows(damper, len(dampers) > 1)]
     amplitude = amplitude_of(runs)
     note = f"Sine test, amplitude {1e3 * amplitude:g} mm, frequency {FREQUENCY:g} Hz."
     if len(dampers) > MOST:
         note += f" {MOST} of {len(dampers)} dampers are shown."
-    grid = Grid(heights=(2.9,) * len(rows), columns=2, right=1.35, gap=(0.75, 0.95))
+    grid = Grid(heights=(2.9,) * len(rows), columns=2, right=1.35, top=0.35, gap=(0.35, 0.95))
     names = ", ".join(dict.fromkeys(damper.name for damper in dampers))
-    page = style.page(f"Damper loops: {labels.clean(names)}", note, grid)
+    page = style.page(f"Damper loops: {labels.clean(names, labels.LONGEST_TITLE)}", note, grid)
     for panels, row in zip(page.rows, rows, strict=True):
         _draw(panels, row, amplitude)
     return page.figure
 
 
-def tested(runs: Iterable[Run]) -> list[Tested]:
+def specimens(runs: Iterable[Run]) -> list[Specimen]:
     """Return the distinct dampers of some runs in their order."""
-    found: dict[str, Tested] = {}
+    found: dict[str, Specimen] = {}
     for run in runs:
         choice, current = run.scenario.damper, run.scenario.coil.max_current
-        damper = Tested(choice.record, choice.factors, current, [])
+        damper = Specimen(choice.record, choice.factors, current, [])
         found.setdefault(repr(damper), damper).runs.append(run)
     return list(found.values())
 
@@ -96,15 +96,15 @@ def temperature_of(run: Run) -> float:
 
 
 class _Row(NamedTuple):
-    """Two panels: a title, the title of the legend, and the loops by (label, current, temperature, colour)."""
+    """Two panels: their title, that of the legend, and label, current, temperature, colour of each loop."""
 
-    damper: Tested
+    damper: Specimen
     title: str
     legend: str
     loops: list[tuple[str, float, float, str]]
 
 
-def _rows(damper: Tested, several: bool) -> list[_Row]:
+def _rows(damper: Specimen, several: bool) -> list[_Row]:
     start = temperature_of(damper.runs[0])
     called = f"{damper.name} ({labels.labels(damper.runs)[0]})" if several else damper.name
     currents = [share * damper.max_current for share in SHARES]
@@ -123,7 +123,7 @@ def _rows(damper: Tested, several: bool) -> list[_Row]:
     return rows
 
 
-def _temperatures(damper: Tested) -> list[float]:
+def _temperatures(damper: Specimen) -> list[float]:
     """Return the temperatures of the runs where these differ, else those between which the model holds."""
     used = sorted({temperature_of(run) for run in damper.runs})
     if len(used) > 1:
@@ -143,4 +143,6 @@ def _draw(panels: Sequence[Axes], row: _Row, amplitude: float) -> None:
     panels[0].set_xlabel("velocity [m/s]")
     panels[1].set_xlabel("displacement [mm]")
     panels[0].set_ylabel("damper force [N]")
+    panels[1].set_ylim(panels[0].get_ylim())
+    panels[1].tick_params(labelleft=False)
     style.beside(panels[1], row.legend)

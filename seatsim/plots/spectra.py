@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import LogLocator, NullFormatter
 from scipy import signal
 
 from seatsim import metrics
@@ -28,7 +28,7 @@ LONGEST = 10.0
 DECADES = 6.0
 """Decades below the highest density that are shown."""
 TRUSTED = 0.5
-"""Coherence below which a line fades."""
+"""Least coherence with which a transmissibility is drawn: below it is chance."""
 GRID = Grid(heights=(4.4,))
 
 
@@ -45,39 +45,43 @@ def psd(runs: Sequence[Run]) -> Figure:
     looks = style.entries(labels.labels(chosen))
     floor = Entry("floor", GREY, width=2.2)
     note = f"Welch's method, averaged over 1/{PER_OCTAVE} octave.{labels.which(chosen, runs)}"
-    page = style.page(f"Driver acceleration over frequency: {labels.title(runs)}", note, GRID, [*looks, floor])
+    title = f"Driver acceleration over frequency: {labels.title(runs)}"
+    page = style.page(title, note, GRID, [*looks, floor])
     axes = page.rows[0][0]
     lines = [(_density(run, "floor_acceleration"), floor) for run in _floors(chosen)]
     lines += [(_density(run, "driver_acceleration"), look) for run, look in zip(chosen, looks, strict=True)]
-    highest = max((float(np.max(density.power, initial=0.0)) for density, _ in lines))
-    for density, look in lines:
-        style.line(axes, *density, look)
     _frequency_axis(axes)
     axes.set_ylabel("power spectral density [m²/s³]")
-    if highest > 0:
-        axes.set_yscale("log")
-        axes.set_ylim(bottom=max(axes.get_ylim()[0], highest / 10**DECADES))
-    else:
+    highest = max(float(np.max(density.power, initial=0.0)) for density, _ in lines)
+    if highest == 0.0:
         style.say(axes, "at rest, or too short a run for a spectrum")
+        return page.figure
+    axes.set_yscale("log")
+    for density, look in lines:
+        style.line(axes, *density, look)
+    axes.set_ylim(bottom=max(axes.get_ylim()[0], highest / 10**DECADES))
     return page.figure
 
 
 def transmissibility(runs: Sequence[Run]) -> Figure:
-    """Return the magnitude of the transmissibility from floor to driver, faded where the coherence is low."""
+    """Return the magnitude of the transmissibility from floor to driver, where the coherence is high."""
     chosen = labels.shown(runs)
     looks = style.entries(labels.labels(chosen))
-    note = f"Faded where the coherence is below {TRUSTED:g}.{labels.which(chosen, runs)}"
-    page = style.page(f"Transmissibility, floor to driver: {labels.title(runs)}", note, GRID, looks)
+    note = f"Drawn where the floor explains the driver's motion (coherence of {TRUSTED:g} or more)."
+    title = f"Transmissibility, floor to driver: {labels.title(runs)}"
+    page = style.page(title, note + labels.which(chosen, runs), GRID, looks)
     axes = page.rows[0][0]
-    drawn = [_gain(axes, run, look) for run, look in zip(chosen, looks, strict=True)]
-    axes.axhline(1.0, color=GREY, linewidth=1.0, zorder=1)
     _frequency_axis(axes)
     axes.set_ylabel("|driver / floor| [-]")
-    if any(drawn):
-        axes.set_yscale("log")
-        axes.yaxis.set_major_formatter("{x:g}")
-    else:
-        style.say(axes, "no floor motion, or too short a run for a spectrum")
+    drawn = [_gain(axes, run, look) for run, look in zip(chosen, looks, strict=True)]
+    if not any(drawn):
+        style.say(axes, "no floor motion, no coherence with it, or too short a run")
+        return page.figure
+    axes.axhline(1.0, color=GREY, linewidth=1.0, zorder=1)
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
     return page.figure
 
 
@@ -93,13 +97,13 @@ def _floors(runs: Sequence[Run]) -> list[Run]:
 
 def _density(run: Run, channel: str) -> Density:
     values, rate = run.history[channel], 1 / run.history.step
-    length = min(round(LONGEST * rate), 2 * len(values) // (AVERAGES + 1))
+    length = max(1, min(round(LONGEST * rate), 2 * len(values) // (AVERAGES + 1)))
     frequency, power = signal.welch(values, rate, nperseg=length)
     return _averaged(frequency, power)
 
 
 def _averaged(frequency: Array, power: Array) -> Density:
-    """Average over bins of equal width on a logarithmic axis; lines further apart than a bin stay as they are."""
+    """Average over bins of equal width on a logarithmic axis; lines further apart stay as they are."""
     inside = (frequency >= BAND[0]) & (frequency <= BAND[1])
     frequency, power = frequency[inside], power[inside]
     bins = np.floor(PER_OCTAVE * np.log2(frequency / BAND[0])).astype(int)
@@ -115,11 +119,10 @@ def _gain(axes: Axes, run: Run, look: Entry) -> bool:
         found = metrics.transmissibility(floor, driver, 1 / run.history.step)
     except InputError:
         return False
-    inside = (found.frequency >= BAND[0]) & (found.frequency <= BAND[1]) & np.isfinite(found.gain)
-    frequency, gain = found.frequency[inside], found.gain[inside]
-    style.line(axes, frequency, gain, look._replace(alpha=0.3, width=1.0))
-    style.line(axes, frequency, np.where(found.coherence[inside] >= TRUSTED, gain, np.nan), look)
-    return bool(inside.any())
+    inside = (found.frequency >= BAND[0]) & (found.frequency <= BAND[1])
+    trusted = inside & (found.coherence >= TRUSTED)
+    style.line(axes, found.frequency[inside], np.where(trusted, found.gain, np.nan)[inside], look)
+    return bool(trusted.any())
 
 
 def _frequency_axis(axes: Axes) -> None:

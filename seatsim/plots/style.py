@@ -6,25 +6,30 @@ Pages are laid out in inches: that costs nothing, where matplotlib's own layout 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike
 
 WIDTH = 10.0
 MARGIN = 0.15
 LETTER = 0.082
 """Width of a letter of a legend in inches, on average."""
+SAMPLE = 0.7
+"""Width of a legend's sample of a line, with the gaps around it, in inches."""
 LINE = 0.23
 """Height of a line of text in inches."""
 GREY = "0.6"
 DARK = "0.25"
+Dashes = str | tuple[float, tuple[float, float]]
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#882255", "#000000")
-"""Okabe and Ito's palette for all kinds of colour vision, with wine in place of its yellow, which fades on white."""
-DASHES = ("-", "--")
-"""The first half of the palette is drawn solid, the second dashed, so that colour is never the only difference."""
+"""Okabe and Ito's palette for all kinds of colour vision; wine replaces its yellow, which fades on white."""
+DASHES: tuple[Dashes, ...] = ("-", (0.0, (5.0, 1.5)))
+"""Every second line is dashed: two that coincide are both seen, and colour is not the only difference."""
 
 
 class Entry(NamedTuple):
@@ -32,8 +37,8 @@ class Entry(NamedTuple):
 
     label: str
     colour: str
-    dashes: str = "-"
-    width: float = 1.3
+    dashes: Dashes = "-"
+    width: float = 1.4
     alpha: float = 1.0
 
 
@@ -45,20 +50,21 @@ class Page(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """Sizes in inches: height of the panels of each row, margins, and gaps between columns and rows."""
+    """Sizes in inches: height of each row of panels, margins, gaps between columns and between rows."""
 
     heights: Sequence[float]
     columns: int = 1
     left: float = 0.95
     right: float = 0.2
+    top: float = 0.2
+    bottom: float = 0.6
     gap: tuple[float, float] = (0.85, 0.75)
 
 
 def entries(labels: Sequence[str]) -> list[Entry]:
     """Return one distinct look for each of up to eight runs; further ones begin anew."""
-    half = len(COLOURS) // 2
     return [
-        Entry(label, COLOURS[index % len(COLOURS)], DASHES[index % len(COLOURS) // half])
+        Entry(label, COLOURS[index % len(COLOURS)], DASHES[index % len(DASHES)])
         for index, label in enumerate(labels)
     ]
 
@@ -71,70 +77,75 @@ def scale(name: str, count: int) -> list[str]:
 
 
 def page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -> Page:
-    """Return a figure with a title, a note below it, a legend of one entry or more, and empty panels."""
+    """Return a figure with a title, a note, a legend where there are entries, and empty panels."""
     columns = _legend_columns(legend)
-    lines = -(-len(legend) // columns)
-    header = MARGIN + 0.3 + LINE * note.count("\n") + (LINE if note else 0) + LINE * lines + 0.2
-    gaps = grid.gap[1] * (len(grid.heights) - 1)
-    height = header + sum(grid.heights) + gaps + 0.6
+    header = MARGIN + 0.52 + LINE * -(-len(legend) // columns) + grid.top
+    height = header + sum(grid.heights) + grid.gap[1] * (len(grid.heights) - 1) + grid.bottom
     figure = Figure(figsize=(WIDTH, height))
     left = MARGIN / WIDTH
     figure.text(left, 1 - MARGIN / height, title, fontsize=12, fontweight="bold", va="top")
-    figure.text(left, 1 - (MARGIN + 0.27) / height, note, fontsize=10, color=DARK, va="top", linespacing=1.3)
+    figure.text(left, 1 - (MARGIN + 0.27) / height, note, fontsize=10, color=DARK, va="top")
     if legend:
         figure.legend(
-            handles=[_handle(entry) for entry in legend], ncols=columns, loc="lower left", frameon=False,
-            bbox_to_anchor=(left, 1 - (header - 0.12) / height), borderaxespad=0, borderpad=0,
+            handles=[_handle(entry) for entry in legend], ncols=columns, loc="upper left", frameon=False,
+            bbox_to_anchor=(left, 1 - (MARGIN + 0.56) / height), borderaxespad=0, borderpad=0,
         )  # fmt: skip
     return Page(figure, _panels(figure, grid, header, height))
 
 
-def line(axes: Axes, x: object, y: object, entry: Entry) -> None:
+def line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> None:
     """Draw a line with the look of its entry."""
-    axes.plot(
-        x, y, color=entry.colour, linestyle=entry.dashes, linewidth=entry.width, alpha=entry.alpha, label=entry.label
-    )  # type: ignore[arg-type]
+    axes.plot(np.asarray(x), np.asarray(y), label=look.label, **_style(look))
 
 
 def beside(axes: Axes, title: str) -> None:
     """Put the legend of a panel to its right."""
     axes.legend(
-        title=title, loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False, borderaxespad=0, alignment="left"
-    )
+        title=title, alignment="left", loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False,
+        borderaxespad=0,
+    )  # fmt: skip
 
 
 def say(axes: Axes, text: str) -> None:
     """Write into the middle of a panel why it is empty."""
+    axes.set_yticks([])
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=DARK)
 
 
-def _handle(entry: Entry) -> Line2D:
-    return Line2D(
-        [], [], color=entry.colour, linestyle=entry.dashes, linewidth=entry.width + 0.5, alpha=entry.alpha,
-        label=entry.label,
-    )  # fmt: skip
+def _handle(look: Entry) -> Line2D:
+    return Line2D([], [], label=look.label, **_style(look._replace(width=look.width + 0.5)))
+
+
+def _style(look: Entry) -> dict[str, Any]:
+    return {
+        "color": look.colour, "linestyle": look.dashes, "linewidth": look.width, "alpha": look.alpha,
+        "solid_capstyle": "butt",
+    }  # fmt: skip
 
 
 def _legend_columns(legend: Sequence[Entry]) -> int:
-    longest = max((len(entry.label) for entry in legend), default=1)
-    fitting = int((WIDTH - 2 * MARGIN) / (LETTER * longest + 0.7))
-    return max(1, min(len(legend), fitting))
+    """Return the most columns that fit; the legend fills them one by one, the first ones fullest."""
+    letters = [len(entry.label) for entry in legend]
+    for count in range(len(letters), 1, -1):
+        widths = [LETTER * max(column) + SAMPLE for column in np.array_split(letters, count)]
+        if sum(widths) <= WIDTH - 2 * MARGIN:
+            return count
+    return 1
 
 
 def _panels(figure: Figure, grid: Grid, header: float, height: float) -> list[list[Axes]]:
     width = (WIDTH - grid.left - grid.right - grid.gap[0] * (grid.columns - 1)) / grid.columns
     rows, top = [], height - header
     for tall in grid.heights:
-        places = [
-            (grid.left + column * (width + grid.gap[0]), top - tall, width, tall) for column in range(grid.columns)
-        ]
-        rows.append([_panel(figure, x / WIDTH, y / height, w / WIDTH, h / height) for x, y, w, h in places])
+        lefts = [grid.left + column * (width + grid.gap[0]) for column in range(grid.columns)]
+        bottom = (top - tall) / height
+        rows.append([_panel(figure, (x / WIDTH, bottom, width / WIDTH, tall / height)) for x in lefts])
         top -= tall + grid.gap[1]
     return rows
 
 
-def _panel(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
-    axes = figure.add_axes((left, bottom, width, height))
+def _panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes:
+    axes = figure.add_axes(place)
     axes.grid(True, color="0.9", linewidth=0.7)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)

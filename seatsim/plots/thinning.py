@@ -33,7 +33,7 @@ class Window(NamedTuple):
 
 
 def thinned(x: Array, y: Array) -> tuple[Array, Array]:
-    """Return a line of at most 2 `BINS` points that covers the same pixels: extremes are kept in their order."""
+    """Return a line of at most 2 `BINS` points over the same pixels: extremes are kept, in their order."""
     if len(y) <= 2 * BINS:
         return x, y
     size = -(-len(y) // BINS)
@@ -44,7 +44,7 @@ def thinned(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def eventful(values: Array, step: float) -> Window:
-    """Return the window of `CLOSE_UP` seconds in which the values have their largest RMS: the first of equals."""
+    """Return the window of `CLOSE_UP` seconds in which the RMS is largest, the first of equals."""
     size = round(CLOSE_UP / step)
     if size >= len(values):
         return Window(0.0, (len(values) - 1) * step)

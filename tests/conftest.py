@@ -1,0 +1,33 @@
+"""Shared fixtures."""
+
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+SEAT = """\
+plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
+        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
+damper: {model: bouc_wen}
+actuator: {rate: 130.0, max_current: 1.0}
+temperature: 20.0
+controller: {law: static_output_feedback, gain: [2.0, 2147.6], sample_time: 0.005}
+excitation: {kind: iso7096, spectral_class: EM5, duration: 6.0}
+"""
+
+
+@pytest.fixture
+def seat_file(tmp_path):
+    """A short seat scenario on disk."""
+    path = tmp_path / "seat.yaml"
+    path.write_text(SEAT)
+    return path
+
+
+@pytest.fixture
+def shared():
+    """The folder of measured data beside the repository; tests that need it skip where it is absent."""
+    folder = ROOT.parent / "shared"
+    if not folder.is_dir():
+        pytest.skip("measured data are not beside the repository")
+    return folder

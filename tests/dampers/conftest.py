@@ -1,0 +1,25 @@
+"""Every registered damper, found and built with its defaults."""
+
+import pytest
+
+from seatsim.registry import card_of, find, names
+
+NAMES = names("damper")
+
+
+@pytest.fixture(params=NAMES)
+def cls(request):
+    """The class of one registered damper after the other."""
+    return find("damper", request.param)
+
+
+@pytest.fixture
+def model(cls):
+    """The same with its default parameters."""
+    return cls()
+
+
+@pytest.fixture
+def card(cls):
+    """What is stated of it."""
+    return card_of(cls)

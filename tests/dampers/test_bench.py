@@ -1,0 +1,112 @@
+"""The bench against closed forms, its order of convergence, and its refusals."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatsim.dampers.bench import bench_force, centring, sine_test
+from seatsim.dampers.bingham import Bingham, OriginalBingham
+from seatsim.dampers.bouc_wen import BoucWen
+from seatsim.dampers.hyperbolic_tangent import KwokTanh
+from seatsim.errors import InputError, RunError
+from seatsim.temperature import TemperatureFactors
+
+VISCOUS = BoucWen(c_a=700.0, alpha_a=0.0, alpha_b=0.0)
+
+
+def motion(steps, duration):
+    """Extension without reversal, so that a Bouc-Wen model is smooth: position, velocity, step."""
+    t = np.linspace(0.0, duration, 2 * steps + 1)
+    return 0.01 * t + 0.001 * np.sin(4.0 * t), 0.01 + 0.004 * np.cos(4.0 * t), duration / steps
+
+
+def test_a_viscous_damper_is_its_own_equivalent_damping():
+    test = sine_test(VISCOUS, 0.004, 2.0, 0.0, 20.0)
+    assert test.equivalent_damping == pytest.approx(700.0, rel=1e-9)
+    assert test.peak_force == pytest.approx(700.0 * 0.004 * 4 * math.pi, rel=1e-9)
+
+
+def test_energy_of_a_set_valued_bingham_cycle():
+    # 4 fc X from friction, pi c w X^2 from the dashpot
+    damper = Bingham(c_a=300.0, c_b=0.0, fc_a=50.0, fc_b=400.0, v_ref=0.0)
+    test = sine_test(damper, 0.006, 1.5, 0.5, 20.0)
+    expected = 4 * 250.0 * 0.006 + math.pi * 300.0 * 3 * math.pi * 0.006**2
+    assert test.dissipated_energy == pytest.approx(expected, rel=1e-5)
+
+
+def test_set_valued_friction_follows_the_sign_of_the_prescribed_velocity():
+    damper = OriginalBingham(c0=(0.0,) * 4, fc=(100.0, 0.0, 0.0, 0.0))
+    force = bench_force(damper, np.zeros(7), [0.1, 0.1, 0.0, 0.0, -1e-9, 0.0, 0.0], 0.0, 20.0, 0.01)
+    assert force.tolist() == [100.0, 0.0, -100.0, 0.0]
+
+
+def test_the_offset_is_the_asymmetric_part_of_a_symmetric_loop():
+    test = sine_test(VISCOUS._replace(f0=40.0), 0.004, 2.0, 0.0, 20.0)
+    assert test.asymmetric_part == pytest.approx(np.full(len(test.force), 40.0), abs=1e-9)
+
+
+def test_the_last_cycle_is_returned_with_both_ends():
+    test = sine_test(VISCOUS, 0.004, 2.0, 0.0, 20.0, cycles=2, samples=100)
+    assert len(test.time) == len(test.force) == 101
+    assert test.time[0] == pytest.approx(0.5) and test.time[-1] == pytest.approx(1.0)
+    assert test.displacement[25] == pytest.approx(0.004)
+    assert test.velocity[0] == pytest.approx(0.004 * 4 * math.pi)
+
+
+def test_the_bench_converges_with_order_four():
+    damper = BoucWen(A=500.0, beta=200.0, gamma=300.0)
+    exact = bench_force(damper, *motion(4096, 0.4)[:2], 0.5, 20.0, 0.4 / 4096)[-1]
+    errors = []
+    for steps in (16, 32, 64):
+        x, v, step = motion(steps, 0.4)
+        errors.append(abs(bench_force(damper, x, v, 0.5, 20.0, step)[-1] - exact))
+    orders = np.diff(np.log2(errors))
+    assert np.all(orders < -3.7), orders
+
+
+def test_stiff_states_are_divided():
+    # 2e6 per metre at 0.01 m/s is a rate of 2e4 per second, on steps of a tenth of a second.
+    damper = BoucWen(A=2e6, beta=1e6, gamma=1e6, n=1.0)
+    x, v, step = motion(4, 0.4)
+    force = bench_force(damper, x, v, 0.5, 20.0, step)
+    assert force[1:] == pytest.approx((250.0 + 175.0) * v[2::2] + 355.0, rel=1e-3)
+
+
+def test_current_and_temperature_may_vary_along_the_run():
+    v = np.full(9, 0.1)
+    current, temperature = np.linspace(0.0, 1.0, 9), np.repeat([20.0, 20.0, 80.0], 3)
+    factors = TemperatureFactors(viscous=-0.01)
+    force = bench_force(VISCOUS, np.zeros(9), v, current, temperature, 0.1, factors)
+    share = np.array([1.0, 1.0, 1.0, math.exp(-0.6), math.exp(-0.6)])
+    assert force == pytest.approx(share * (70.0 + 35.0 * current[::2]))
+
+
+@pytest.mark.filterwarnings("ignore:overflow", "ignore:invalid value")
+def test_a_run_that_runs_away_is_an_error():
+    damper = BoucWen(beta=-1e9, gamma=0.0)
+    with pytest.raises(RunError, match="not finite"):
+        bench_force(damper, *motion(50, 5.0)[:2], 0.5, 20.0, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("x", "v"), [(np.zeros(4), np.zeros(4)), (np.zeros((3, 3)), 0.0), (np.zeros(5), np.zeros(3))]
+)
+def test_samples_that_do_not_fit_are_refused(x, v):
+    with pytest.raises(InputError):
+        bench_force(KwokTanh(), x, v, 0.0, 20.0, 0.01)
+
+
+@pytest.mark.parametrize("wrong", [{"samples": 11}, {"amplitude": 0.0}, {"frequency": -1.0}, {"cycles": 0}])
+def test_impossible_sine_tests_are_refused(wrong):
+    right = {"amplitude": 0.004, "frequency": 1.0, "current": 0.0, "temperature": 20.0}
+    with pytest.raises(InputError, match="sine test"):
+        sine_test(VISCOUS, **(right | wrong))
+
+
+def test_motion_off_centre_is_noticed():
+    t = np.linspace(0.0, 10.0, 5001)
+    x, v = 0.005 * np.sin(9 * t), 0.045 * np.cos(9 * t)
+    assert centring(x, v) == ""
+    assert "80%" in centring(x + 0.004, v)
+    assert centring(np.zeros(10), np.zeros(10)) == ""

@@ -1,0 +1,191 @@
+"""What every registered damper fulfils; a new model is tested by being registered."""
+
+import math
+from types import SimpleNamespace
+
+import numba
+import numpy as np
+import pytest
+
+from seatsim.dampers.bench import bench_force, sine_test
+from seatsim.fields import adapter, describe
+from seatsim.kernel import generic
+from seatsim.registry import find
+from seatsim.temperature import Heat, TemperatureFactors
+
+COLD = Heat()
+
+
+@numba.njit
+def compiled_force(damper, x, v, i, heat, z):
+    return generic.force(damper, x, v, i, heat, z)
+
+
+@numba.njit
+def compiled_rates(damper, x, v, i, heat, z):
+    return generic.rates(damper, x, v, i, heat, z)
+
+
+@numba.njit
+def compiled_coulomb(damper, i, heat):
+    return generic.coulomb(damper, i, heat)
+
+
+def states(model, card, count=20):
+    """States that the model takes on random motion: its own, at random instants of random bench runs."""
+    rng = np.random.default_rng(7)
+    found = []
+    for _ in range(count):
+        x, v, i = (
+            rng.uniform(-0.02, 0.02),
+            rng.uniform(-1, 1) * card.max_speed,
+            rng.uniform(0, card.max_current),
+        )
+        z = card.initial
+        for _ in range(40):
+            z = tuple(a + 2e-4 * b for a, b in zip(z, rates_of(model, x, v, i, z), strict=True))
+            x += 2e-4 * v
+        found.append(SimpleNamespace(x=float(x), v=float(v), i=float(i), z=z))
+    return found
+
+
+def rates_of(model, x, v, i, z):
+    return model.rates(x, v, i, COLD, z) if hasattr(model, "rates") else ()
+
+
+def whole_force(model, s, i, heat=COLD):
+    friction = model.coulomb(i, heat) if hasattr(model, "coulomb") else 0.0
+    return model.force(s.x, s.v, i, heat, s.z) + friction * math.copysign(1.0, s.v)
+
+
+def closed_motion(seed, frequency=1.0, samples=4000, cycles=6):
+    """A random displacement of period 1/frequency and its velocity, on the half-step grid."""
+    rng = np.random.default_rng(seed)
+    phase = math.pi / samples * np.arange(2 * cycles * samples + 1)
+    x, v = np.zeros_like(phase), np.zeros_like(phase)
+    for harmonic in range(1, 6):
+        size, shift = rng.normal() / harmonic, rng.uniform(0, 2 * math.pi)
+        x += size * np.sin(harmonic * phase + shift)
+        v += size * harmonic * 2 * math.pi * frequency * np.cos(harmonic * phase + shift)
+    scale = rng.uniform(0.002, 0.02) / np.max(np.abs(x))
+    return scale * x, scale * v, 1.0 / (frequency * samples), samples
+
+
+def conditions(card):
+    currents = np.linspace(0.0, card.max_current, 4)
+    return [(float(i), float(t)) for i in currents for t in card.temperatures]
+
+
+def test_the_card_is_complete(cls, card):
+    assert card.source
+    assert card.current_order in (0, 1, 2)
+    assert card.max_speed > 0 and card.max_current > 0
+    assert card.temperatures[0] <= card.temperatures[1]
+    assert isinstance(card.factors, TemperatureFactors)
+    assert bool(card.initial) == bool(card.state) == hasattr(cls, "rates")
+    assert len([part for part in card.state.split(";") if part]) == len(card.initial)
+
+
+def test_every_field_has_unit_meaning_and_default(cls):
+    for field in describe(cls):
+        assert field.unit and field.meaning and not field.required, field.name
+
+
+def test_the_docstring_gives_the_equation(cls):
+    assert "=" in cls.__doc__
+
+
+def test_defaults_validate_in_a_round_trip(cls, model):
+    assert adapter(cls).validate_python(model._asdict()) == model
+
+
+def test_force_and_rates_are_finite(model, card):
+    for s in states(model, card):
+        for current in (0.0, card.max_current, 3.0):
+            assert math.isfinite(whole_force(model, s, current))
+        assert all(math.isfinite(rate) for rate in rates_of(model, s.x, s.v, s.i, s.z))
+
+
+def test_the_compiled_model_is_the_python_model(model, card):
+    heat = Heat(0.8, 0.9, 0.7)
+    for s in states(model, card):
+        expected = model.force(s.x, s.v, s.i, heat, s.z)
+        assert compiled_force(model, s.x, s.v, s.i, heat, s.z) == pytest.approx(expected, rel=1e-10, abs=1e-9)
+        if hasattr(model, "rates"):
+            rates = model.rates(s.x, s.v, s.i, heat, s.z)
+            assert compiled_rates(model, s.x, s.v, s.i, heat, s.z) == pytest.approx(
+                rates, rel=1e-10, abs=1e-12
+            )
+        if hasattr(model, "coulomb"):
+            assert compiled_coulomb(model, s.i, heat) == pytest.approx(model.coulomb(s.i, heat), rel=1e-12)
+
+
+def test_the_force_is_the_polynomial_in_the_current_that_the_card_says(model, card):
+    order = card.current_order
+    if order == 0:
+        pytest.skip("no polynomial is claimed")
+    nodes = np.linspace(0.0, card.max_current, order + 1)
+    for s in states(model, card):
+        law = np.polynomial.Polynomial.fit(nodes, [whole_force(model, s, float(i)) for i in nodes], order)
+        for i in np.linspace(0.0, card.max_current, 7):
+            got = whole_force(model, s, float(i))
+            assert law(i) == pytest.approx(got, rel=1e-10, abs=1e-9)
+
+
+def test_the_force_scales_with_all_temperature_factors_together(model, card):
+    for s in states(model, card):
+        whole = whole_force(model, s, s.i)
+        assert whole_force(model, s, s.i, Heat(0.6, 0.6, 0.6)) == pytest.approx(
+            0.6 * whole, rel=1e-10, abs=1e-9
+        )
+
+
+def test_temperature_lowers_force_and_energy_as_the_factors_say(model):
+    factors = TemperatureFactors(-0.005, -0.005, -0.005, 20.0)
+    cold, hot = (sine_test(model, 0.005, 1.5, 0.5, t, factors, samples=400) for t in (20.0, 80.0))
+    share = math.exp(-0.005 * 60.0)
+    assert hot.peak_force == pytest.approx(share * cold.peak_force, rel=1e-5)
+    assert hot.dissipated_energy == pytest.approx(share * cold.dissipated_energy, rel=1e-5)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_models_with_a_hysteretic_state_dissipate_over_closed_cycles(model, card, seed):
+    if card.centred:
+        pytest.skip("branches on the sign of the displacement: tested on centred sines")
+    x, v, step, samples = closed_motion(seed)
+    for current, temperature in conditions(card):
+        force = bench_force(model, x, v, current, temperature, step)[-samples - 1 :]
+        power = force * v[::2][-samples - 1 :]
+        assert np.trapezoid(power, dx=step) > 0.0
+
+
+@pytest.mark.parametrize(("amplitude", "frequency"), [(0.002, 0.5), (0.005, 1.5), (0.02, 2.0), (0.002, 5.0)])
+def test_every_model_dissipates_over_centred_sines(model, card, amplitude, frequency):
+    for current, temperature in conditions(card):
+        test = sine_test(model, amplitude, frequency, current, temperature, cycles=4, samples=400)
+        assert test.dissipated_energy > 0.0
+        assert test.equivalent_damping > 0.0
+
+
+@pytest.mark.parametrize(("amplitude", "frequency"), [(0.004, 1.0), (0.005, 1.5), (0.01, 1.0)])
+def test_peak_force_grows_with_current(model, card, amplitude, frequency):
+    # Published cubic laws turn down just before the end of their range.
+    currents = np.linspace(0.0, 0.9 * card.max_current, 8)
+    peaks = [sine_test(model, amplitude, frequency, float(i), 20.0, samples=400).peak_force for i in currents]
+    assert np.all(np.diff(peaks) > -1e-9 * peaks[-1])
+    assert peaks[-1] > 2.0 * peaks[0]
+
+
+def test_branches_follow_the_measured_rule(model, card):
+    # A measured loop has a positive force at v = 0 where x > 0, a negative one where x < 0.
+    if not card.centred:
+        pytest.skip("has no branch")
+    for current in (0.0, 0.5, card.max_current):
+        test = sine_test(model, 0.005, 1.5, current, 20.0, cycles=6, samples=400)
+        assert test.force[np.argmax(test.displacement)] > 0.0
+        assert test.force[np.argmin(test.displacement)] < 0.0
+
+
+def test_every_model_is_found_by_its_name(cls, request):
+    name = request.node.callspec.params["cls"]
+    assert find("damper", name) is cls

@@ -1,0 +1,131 @@
+"""Replays: a rig's own recording leaves no gap, recordings of others leave one that is well defined."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import seatsim
+from seatsim.cli import main
+from seatsim.dampers.bench import bench_force
+from seatsim.dampers.bouc_wen import BoucWen
+from seatsim.recording_writer import save_recording
+
+CHANNELS = ["floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement",
+            "damper_force", "current_command", "coil_current", "damper_temperature"]  # fmt: skip
+VARIANTS = {"feedback": {}, "switched": {"controller": {"law": "on_off_skyhook", "on": 0.6, "sample_time": 0.002}}}
+
+
+@pytest.fixture
+def recorded(seat_file):
+    result = seatsim.run(seat_file, {"variants": VARIANTS})
+    return save_recording(result, seat_file.parent / "recorded", CHANNELS)
+
+
+@pytest.mark.parametrize("absent", [[], ["damper_force"], ["coil_current"], ["current_command"], ["damper_temperature"]])
+def test_the_replay_of_an_own_noiseless_recording_leaves_no_gap(seat_file, absent):
+    result = seatsim.run(seat_file, {"variants": VARIANTS})
+    kept = [name for name in CHANNELS if name not in absent]
+    folder = save_recording(result, seat_file.parent / "recorded", kept)
+    assert seatsim.gap(folder / "nominal.yaml", folder).overall < 1e-3
+
+
+def test_a_nominal_that_is_off_leaves_a_gap(recorded):
+    nominal = recorded / "nominal.yaml"
+    nominal.write_text(nominal.read_text().replace("driver_mass: 80.0", "driver_mass: 90.0"))
+    gap = seatsim.gap(nominal, recorded)
+    assert gap.overall > 0.01
+    overall = np.sqrt(np.mean([value**2 for value in gap.channels.values()]))
+    assert gap.overall == pytest.approx(overall)
+
+
+def test_the_gap_of_one_run_only(recorded):
+    gap = seatsim.gap(recorded / "nominal.yaml", recorded, runs=["run-2"])
+    assert gap.overall < 1e-3
+    with pytest.raises(seatsim.InputError, match="did you mean 'run-2'"):
+        seatsim.gap(recorded / "nominal.yaml", recorded, runs=["run-3"])
+
+
+def test_the_command_writes_the_gap(recorded, tmp_path, monkeypatch):
+    arguments = ["seatsim", "gap", recorded / "nominal.yaml", recorded, "--out", tmp_path / "gap"]
+    monkeypatch.setattr("sys.argv", [str(argument) for argument in arguments])
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    assert stopped.value.code == 0
+    written = json.loads((tmp_path / "gap" / "gap.json").read_text())
+    assert set(written) == {"overall", "channels", "floor"}
+    assert set(written["floor"]) == {"overall", "channels"}
+
+
+def break_header(folder, old, new):
+    header = folder / "recording.yaml"
+    assert old in header.read_text()
+    header.write_text(header.read_text().replace(old, new, 1))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("rig: seat", "rig: chair", "permitted: seat, damper_bench"),
+        ("sample_rate", "sample_rat", "did you mean 'sample_rate'"),
+        ("driver_acceleration:", "driver_accel:", "did you mean 'driver_acceleration'"),
+        ("unit: N", "unit: kN", "convert the channel to N"),
+        ("file: run-1.csv.gz", "file: run-9.csv.gz", "cannot be read as a table"),
+        ("nominal: nominal.yaml", "nominal: 3", "nominal"),
+    ],
+)
+def test_a_wrong_header_is_one_clear_error(recorded, old, new, expected):
+    break_header(recorded, old, new)
+    with pytest.raises(seatsim.InputError, match=expected):
+        seatsim.gap(recorded / "nominal.yaml", recorded)
+
+
+@pytest.mark.parametrize(
+    ("damage", "expected"),
+    [
+        (lambda frame: frame.drop(columns="driver_acceleration"), "column 'driver_acceleration' is missing"),
+        (lambda frame: frame.assign(driver_acceleration=frame.driver_acceleration.where(frame.index != 7)), "line 9"),
+        (lambda frame: frame.iloc[:0], "holds 0 rows"),
+        (lambda frame: frame.iloc[:500], "too short"),
+    ],
+)
+def test_a_damaged_table_is_one_clear_error(recorded, damage, expected):
+    table = recorded / "run-1.csv.gz"
+    damage(pd.read_csv(table)).to_csv(table, index=False)
+    with pytest.raises(seatsim.InputError, match=expected):
+        seatsim.gap(recorded / "nominal.yaml", recorded)
+
+
+def test_a_step_that_does_not_divide_the_rows_is_refused(recorded):
+    nominal = recorded / "nominal.yaml"
+    nominal.write_text(nominal.read_text() + "solver: {step: 0.0007}\n")
+    with pytest.raises(seatsim.InputError, match=r"set it to 0\.0005"):
+        seatsim.gap(nominal, recorded)
+
+
+def test_a_bench_recording_is_replayed_from_displacement_and_command(tmp_path):
+    rows = np.arange(0.0, 6.0, 0.002)
+    fine = np.arange(2 * len(rows) - 1) * 0.001
+    omega = 2 * np.pi * 1.5
+    force = bench_force(BoucWen(), 0.01 * np.sin(omega * fine), 0.01 * omega * np.cos(omega * fine), 0.6, 20.0, 0.002)
+    frame = pd.DataFrame({"displacement": 0.01 * np.sin(omega * rows), "coil_current": 0.6, "damper_force": force})
+    frame.to_csv(tmp_path / "a.csv", index=False)
+    (tmp_path / "nominal.yaml").write_text(
+        "damper: {model: bouc_wen}\nactuator: {rate: 130.0, max_current: 1.0}\ntemperature: 20.0\n"
+    )
+    (tmp_path / "recording.yaml").write_text(
+        "rig: damper_bench\nsample_rate: 500.0\nnominal: nominal.yaml\nruns: [{name: a, file: a.csv}]\n"
+        "channels: {displacement: {unit: m}, coil_current: {unit: A}, damper_force: {unit: N, noise_rms: 2.0}}\n"
+    )
+    gap = seatsim.gap(tmp_path / "nominal.yaml", tmp_path)
+    assert list(gap.channels) == ["damper_force"]
+    assert gap.overall < 1e-3
+
+
+def test_every_recording_of_an_independent_rig_can_be_replayed(shared):
+    folders = sorted((shared / "field").glob("field-*"))
+    gaps = [seatsim.gap(folder / "nominal.yaml", folder) for folder in folders]
+    assert gaps
+    for gap in gaps:
+        assert 0 < gap.floor["overall"] < gap.overall < 2

@@ -1,0 +1,94 @@
+"""Scenario files: variants, sweeps, settings, examples, a user's own classes."""
+
+import sys
+
+import numpy as np
+import pytest
+
+import seatsim
+from seatsim.loading import load
+
+
+def test_a_sweep_makes_every_combination_in_order(seat_file):
+    seat_file.write_text(
+        seat_file.read_text().replace("temperature: 20.0", "temperature: [20.0, 80.0]")
+        + "variants: {light: {plant.driver_mass: 55.0}, heavy: {plant.driver_mass: 120.0}}\n"
+    )
+    runs = load(seat_file)
+    assert [(run.label["variant"], run.temperature, run.plant.driver_mass) for run in runs] == [
+        ("light", 20.0, 55.0), ("light", 80.0, 55.0), ("heavy", 20.0, 120.0), ("heavy", 80.0, 120.0),
+    ]  # fmt: skip
+    assert runs[1].title == "seat (light, temperature 80)"
+
+
+def test_settings_replace_values_before_anything_is_read(seat_file):
+    (run,) = load(seat_file, {"plant.driver_mass": 98.0, "controller": {"law": "constant", "current": 0.2}})
+    assert run.plant.driver_mass == 98.0
+    assert run.control.law.current == 0.2
+
+
+def test_an_example_is_found_by_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert load("quickstart")[0].name == "quickstart"
+    assert load("scenarios/quickstart.yaml")[0].name == "quickstart"
+    with pytest.raises(seatsim.InputError, match=r"no such file.*quickstart\.yaml"):
+        load("nothing")
+
+
+def test_whole_numbers_and_exponents_are_numbers(seat_file):
+    (run,) = load(seat_file, {"plant.driver_mass": 80, "solver": {"step": 1e-3}})
+    assert isinstance(run.plant.driver_mass, float)
+    seat_file.write_text(seat_file.read_text() + "solver: {step: 1e-3}\n")
+    assert load(seat_file)[0].solver.step == 1e-3
+
+
+def test_a_users_own_damper_and_law_run_like_built_in_ones(seat_file, monkeypatch):
+    (seat_file.parent / "own_parts.py").write_text(
+        "from typing import Annotated, NamedTuple\n"
+        "from seatsim.control import law\n"
+        "from seatsim.dampers.base import damper\n"
+        "from seatsim.fields import param\n\n"
+        "@damper('own', source='a test', current_order=1)\n"
+        "class Own(NamedTuple):\n"
+        "    c: Annotated[float, param('N s/(m A)', 'damping', low=0)] = 1000.0\n"
+        "    def force(self, x, v, i, heat, z):\n"
+        "        return self.c * heat.viscous * i * v\n\n"
+        "@law('half')\n"
+        "class Half(NamedTuple):\n"
+        "    share: Annotated[float, param('-', 'share', low=0, high=1)] = 0.5\n"
+        "    def wanted_current(self, y, state):\n"
+        "        return self.share\n"
+    )
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    settings = {"damper": {"model": "own_parts:Own"}, "controller": {"law": "own_parts:Half"}}
+    own = seatsim.run(seat_file, settings)
+    same = seatsim.run(
+        seat_file,
+        {
+            "damper": {"model": "bingham", "parameters": {
+                "c_a": 0.0, "c_b": 1000.0, "fc_a": 0.0, "fc_b": 0.0, "f0": 0.0, "v_ref": 1.0}},
+            "controller": {"law": "constant", "current": 0.5},
+        },
+    )  # fmt: skip
+    np.testing.assert_allclose(own["driver_acceleration"], same["driver_acceleration"], atol=1e-12)
+
+
+def test_a_result_gives_channels_with_units_and_a_table(seat_file):
+    result = seatsim.run(seat_file)
+    acceleration = result["driver_acceleration"]
+    assert (acceleration.unit, acceleration.name, acceleration.shape) == ("m/s^2", "driver_acceleration", (6001,))
+    assert result.table.driver_acceleration_rms[0] == pytest.approx(float(np.sqrt(np.mean(acceleration**2))))
+    assert (2 * acceleration).unit == "m/s^2"
+
+
+def test_the_public_names_exist():
+    assert all(getattr(seatsim, name) is not None for name in seatsim.__all__)
+    assert callable(seatsim.gap)
+
+
+def test_a_run_that_diverges_is_a_failure_in_one_sentence(seat_file):
+    settings = {"effects": [{"effect": "suspension.progressive_spring", "parameters": {"rise": 0.0}}],
+                "damper.parameters": {"c_a": 0.0, "c_b": 0.0, "alpha_a": 0.0, "alpha_b": 0.0, "k0": -1e7, "x0": 0.0,
+                                      "f0": 0.0, "A": 1.0, "beta": 0.0, "gamma": 0.0, "n": 1.0}}  # fmt: skip
+    with pytest.raises(seatsim.RunError, match="left all bounds at"):
+        seatsim.run(seat_file, settings)

@@ -1,0 +1,66 @@
+"""Files and tables of the command line."""
+
+import json
+
+import pandas as pd
+import pyarrow.parquet as pq
+import pytest
+
+from seatsim.cli import main
+
+
+def seatsim_command(monkeypatch, *arguments):
+    monkeypatch.setattr("sys.argv", ["seatsim", *map(str, arguments)])
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    return stopped.value.code
+
+
+def test_run_writes_table_histories_and_pictures(seat_file, monkeypatch, capsys):
+    out = seat_file.parent / "results"
+    variants = 'variants={"a": {}, "passive": {"controller": {"law": "constant", "current": 0.0}}}'
+    assert seatsim_command(monkeypatch, "run", seat_file, "--out", out, "--set", variants) == 0
+    printed = capsys.readouterr().out
+    assert "passive" in printed and "travel" in printed
+    table = pd.read_csv(out / "summary.csv")
+    assert list(table.variant) == ["a", "passive"]
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["runs"][0]["metrics"]["driver_acceleration_rms"]["unit"] == "m/s^2"
+    history = pq.read_table(out / "history.parquet")
+    assert history.schema.field("suspension_displacement").metadata == {b"unit": b"m"}
+    assert set(history["run"].to_pylist()) == {"seat (a)", "seat (passive)"}
+    assert sorted(path.suffix for path in out.iterdir()).count(".png") >= 5
+    assert not [path for path in out.iterdir() if path.name.startswith(".")]
+
+
+def test_a_failed_run_exits_with_1_and_keeps_the_others(seat_file, monkeypatch, capsys):
+    out = seat_file.parent / "results"
+    bad = '{"damper.parameters": {"c_a": 0.0, "c_b": 0.0, "alpha_a": 0.0, "alpha_b": 0.0, "k0": -1.0e+7, "x0": 0.0,' \
+          ' "f0": 0.0, "A": 1.0, "beta": 0.0, "gamma": 0.0, "n": 1.0}}'  # fmt: skip
+    status = seatsim_command(monkeypatch, "run", seat_file, "--out", out, "--set", f'variants={{"a": {{}}, "b": {bad}}}')
+    assert status == 1
+    assert "failed: seat (b)" in capsys.readouterr().err
+    assert len(pd.read_csv(out / "summary.csv")) == 1
+
+
+def test_compare_puts_several_files_in_one_table(seat_file, monkeypatch):
+    other = seat_file.with_name("other.yaml")
+    other.write_text(seat_file.read_text().replace("EM5", "EM6"))
+    out = seat_file.parent / "results"
+    assert seatsim_command(monkeypatch, "compare", seat_file, other, "--out", out) == 0
+    assert list(pd.read_csv(out / "summary.csv").scenario) == ["seat", "other"]
+
+
+def test_run_gives_each_of_several_files_a_folder(seat_file, monkeypatch):
+    other = seat_file.with_name("other.yaml")
+    other.write_text(seat_file.read_text())
+    out = seat_file.parent / "results"
+    assert seatsim_command(monkeypatch, "run", seat_file, other, "--out", out) == 0
+    assert sorted(path.name for path in out.iterdir()) == ["other", "seat"]
+
+
+def test_describe_names_every_key_with_its_unit(monkeypatch, capsys):
+    assert seatsim_command(monkeypatch, "describe") == 0
+    assert "bouc_wen" in capsys.readouterr().out
+    assert seatsim_command(monkeypatch, "describe", "plant") == 0
+    assert "frame_mass [kg]" in capsys.readouterr().out
