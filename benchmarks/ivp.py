@@ -109,14 +109,14 @@ class Method(NamedTuple):
 def simulate(model: Model, method: Method, acceleration: np.ndarray, sample_every: int) -> dict[str, np.ndarray]:
     """Simulate from rest; return the channels at the law's samples, shape (N - 1) // sample_every + 1."""
     floor, state = model.floor(acceleration), np.zeros(7)
-    length = sample_every * STEP
     states = [state]
     for start in range(0, len(acceleration) - 1, sample_every):
         x, v, _, _, y, z, _ = state.tolist()
-        command, t = model.inverse(x, v, y, z), start * STEP
+        command = model.inverse(x, v, y, z)
+        t, end = start * STEP, (start + sample_every) * STEP
         solution = solve_ivp(
-            model.rates, (t, t + length), state, method=method.name, rtol=method.rtol, atol=1e-3 * method.rtol,
-            first_step=None if method.name == "LSODA" else length, args=(command, floor),
+            model.rates, (t, end), state, method=method.name, rtol=method.rtol, atol=1e-3 * method.rtol,
+            first_step=None if method.name == "LSODA" else end - t, args=(command, floor),
         )  # fmt: skip
         state = solution.y[:, -1]
         states.append(state)

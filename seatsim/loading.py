@@ -87,8 +87,8 @@ def _damper(values: Any, source: Source, keys: KeyPath, extra: tuple[str, ...] =
     check_keys(values, ("model", "parameters", "temperature_factors", *extra), source, keys)
     cls = _find("damper", choose(values, "model", source, keys), source, (*keys, "model"))
     card = registry.card_of(cls)
-    required = getattr(cls, "_fields", ()) if "parameters" in values else ()
-    hint = "; state every parameter, or leave 'parameters' out for the model's default set"
+    required: tuple[str, ...] = cls._fields if card.complete else ()  # type: ignore[attr-defined]
+    hint = "; this model has no set of its own, state every parameter" if card.complete else ""
     record = build(cls, values.get("parameters", {}), source, (*keys, "parameters"), required, hint)
     if "temperature_factors" not in values:
         return DamperChoice(record, card.factors)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from seatsim.dampers.bench import centring
 from seatsim.registry import card_of, name_of
 from seatsim.scenario import Scenario
 from seatsim.simulation import History
@@ -27,7 +28,5 @@ def warnings_of(scenario: Scenario, history: History) -> tuple[str, ...]:
         for outside, what, consequence in checks
         if np.mean(outside) > SHARE
     ]
-    x = history["suspension_displacement"]
-    if card.centred and abs(np.mean(x)) > 0.5 * np.std(x):
-        found.append(f"{model}: the motion is not centred about rest; its branches hold for centred motion only")
-    return tuple(found)
+    drift = centring(history["suspension_displacement"], history["suspension_velocity"]) if card.centred else ""
+    return (*found, f"{model}: {drift}") if drift else tuple(found)

@@ -21,7 +21,8 @@ from controllers.synthesis.polish import polish
 _STABLE_ENOUGH = -1e-2
 _STABILISING_PATIENCE = 60
 _COARSE, _FINE = 1e-3, 1e-6
-_REFINED = 4
+_REFINED = 6
+_SAME = 2e-3
 _TURNS = 8
 
 
@@ -42,6 +43,11 @@ class Descent(NamedTuple):
     candidates: list[Candidate]
     abscissa: float
     starts: int
+
+    @property
+    def agrees(self) -> bool:
+        """Whether every start led to the same value."""
+        return len(self.candidates) == self.starts and len(_distinct(self.candidates)) == 1
 
     def with_more(self, more: Descent) -> Descent:
         """Put two explorations together."""
@@ -68,8 +74,17 @@ def explore(objective: Objective, starts: Iterable[Array], deadline: float) -> D
 
 
 def refine(objective: Objective, candidates: list[Candidate], deadline: float) -> Candidate:
-    """Lower the best few candidates to the end and return the best."""
-    return min((_lower(objective, candidate, deadline) for candidate in candidates[:_REFINED]), key=_gamma)
+    """Lower the best few candidates to the end and return the best; of those in one valley, only one."""
+    return min((_lower(objective, candidate, deadline) for candidate in _distinct(candidates)[:_REFINED]), key=_gamma)
+
+
+def _distinct(candidates: list[Candidate]) -> list[Candidate]:
+    """Candidates, best first, whose gamma differs by more than the coarse descent may leave."""
+    kept: list[Candidate] = []
+    for candidate in candidates:
+        if not kept or candidate.gamma > kept[-1].gamma * (1 + _SAME):
+            kept.append(candidate)
+    return kept
 
 
 def _lower(objective: Objective, candidate: Candidate, deadline: float) -> Candidate:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from itertools import islice
+from itertools import chain, islice
 from typing import Any, overload
 
 import numpy as np
@@ -18,11 +18,10 @@ from controllers.synthesis.norm import Peak, grid_norm, hinf_norm
 from controllers.synthesis.objective import Objective
 from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant, Loop, StateSpace
 from controllers.synthesis.scaling import Scaled, scale
-from controllers.synthesis.starts import starting_gains
+from controllers.synthesis.starts import convex_start, starting_gains
 from seatsim.errors import InputError, SynthesisError
 
-_STARTS, _FIRST_STARTS = 30, 6
-_AGREEMENT = 5e-3
+_FIRST_STARTS, _MORE_STARTS = 6, 24
 # Shares of the time budget: starts are explored until the first, refined until the second; the rest is for proofs.
 _EXPLORED, _REFINED = 0.4, 0.8
 
@@ -128,19 +127,16 @@ def _check_options(max_gain: float, time_budget: float) -> None:
 
 def _search(objective: Objective, scaled: Scaled, seed: int, begin: float, budget: float) -> Array:
     """Return the best gain in scaled coordinates. Few starts where all agree, many where they do not."""
-    starts = starting_gains(scaled.plant, seed, _STARTS)
-    until = begin + _EXPLORED * budget
+    plant, until = scaled.plant, begin + _EXPLORED * budget
+    starts = starting_gains(plant, seed)
     found = explore(objective, islice(starts, _FIRST_STARTS), until)
-    if not _agreed(found):
-        found = found.with_more(explore(objective, starts, until))
+    if not found.agrees:
+        size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
+        convex = convex_start(plant, found.candidates[0].gamma if found.candidates else size, until)
+        found = found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), until))
     if not found.candidates:
         raise SynthesisError(_not_stabilised(found, objective, scaled, budget))
     return objective.gain(refine(objective, found.candidates, begin + _REFINED * budget).entries)
-
-
-def _agreed(found: Descent) -> bool:
-    gammas = [candidate.gamma for candidate in found.candidates]
-    return len(gammas) == found.starts and gammas[-1] <= gammas[0] * (1 + _AGREEMENT)
 
 
 def _not_stabilised(found: Descent, objective: Objective, scaled: Scaled, budget: float) -> str:

@@ -1,31 +1,41 @@
-"""Where the search sets out from: no gain, projected state feedback, and random gains over decades."""
+"""Where the search sets out from: no gain, projected state feedback, random gains over decades, the single-step LMI."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import cycle
 
 import numpy as np
 import scipy.linalg
 
 from controllers.synthesis.plant import Array, GeneralisedPlant
 
-_DECADES = (-1.5, 1.5)
+# Spread of the random gains in scaled coordinates: shallow basins lie at any of these.
+_SPREADS = (1.0, 100.0, 10.0, 1000.0)
 
 
-def starting_gains(plant: GeneralisedPlant, seed: int, count: int) -> Iterator[Array]:
-    """Yield up to `count` gains (nu, ny) in scaled coordinates, the same ones for the same seed."""
+def starting_gains(plant: GeneralisedPlant, seed: int) -> Iterator[Array]:
+    """Yield gains (nu, ny) in scaled coordinates without end, the same ones for the same seed."""
     yield np.zeros(plant.free.shape)
     projected = projected_state_feedback(plant)
     if projected is not None:
         yield projected
     random = np.random.default_rng(seed)
-    for _ in range(count - 2):
-        size = 10 ** random.uniform(*_DECADES)
-        yield size * random.standard_normal(plant.free.shape) * plant.free
+    for spread in cycle(_SPREADS):
+        yield spread * random.standard_normal(plant.free.shape) * plant.free
+
+
+def convex_start(plant: GeneralisedPlant, gamma: float, deadline: float) -> Iterator[Array]:
+    """Yield the gain of the single-step LMI, or nothing where it has none; `gamma` is the norm's order of magnitude."""
+    from controllers.synthesis.lmi import single_step_gain
+
+    gain = single_step_gain(plant, gamma, deadline)
+    if gain is not None:
+        yield gain
 
 
 def projected_state_feedback(plant: GeneralisedPlant) -> Array | None:
-    """Return the output feedback nearest to the linear-quadratic state feedback: K = -B2' P pinv(C2); None where P does not exist."""
+    """Return the output feedback nearest to the linear-quadratic state feedback, K = -B2'P pinv(C2); None without P."""
     identity = np.eye(plant.order)
     try:
         P = scipy.linalg.solve_continuous_are(plant.A, plant.B2, identity, np.eye(plant.control_count))

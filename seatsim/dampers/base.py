@@ -34,7 +34,8 @@ class DamperCard(NamedTuple):
     initial: state at rest. current_order: degree (1 or 2) of the polynomial in the current that `force` is at
     fixed motion and state, 0 where it is none; it decides whether the inverse has a closed form. centred: the
     model branches on sgn(x) or sgn(dv/dt), so that it is wrong where the motion is not centred about x = 0.
-    The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it.
+    The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it. complete: the
+    model is a form without a parameter set of its own; a scenario states all of its parameters.
     """
 
     source: str
@@ -46,6 +47,7 @@ class DamperCard(NamedTuple):
     max_current: float
     temperatures: tuple[float, float]
     factors: TemperatureFactors
+    complete: bool
 
 
 def damper(
@@ -59,6 +61,7 @@ def damper(
     max_current: float = 2.0,
     temperatures: tuple[float, float] = (20.0, 80.0),
     factors: TemperatureFactors | None = None,
+    complete: bool = False,
 ) -> Callable[[T], T]:
     """Register a record class as the damper `model: name`; see `DamperCard` for the facts."""
     card = DamperCard(
@@ -71,5 +74,6 @@ def damper(
         max_current,
         temperatures,
         factors or TemperatureFactors(),
+        complete,
     )
     return register("damper", name, card)

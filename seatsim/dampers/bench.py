@@ -149,7 +149,6 @@ def centring(displacement: ArrayLike, velocity: ArrayLike) -> str:
     if drift <= DRIFT_LIMIT:
         return ""
     return (
-        f"the middles of the strokes lie {drift:.0%} of half a stroke from x = 0 (limit {DRIFT_LIMIT:.0%}): a"
-        " model that branches on the sign of the displacement is not valid here; prefer one with a state of"
-        " hysteresis"
+        f"the middles of the strokes lie more than {DRIFT_LIMIT:.0%} of half a stroke from x = 0: a model that"
+        " branches on the sign of the displacement is not passive here; prefer one with a state of hysteresis"
     )

@@ -21,7 +21,12 @@ CurrentLaw = tuple[
 ]
 
 
-@damper("bingham", source="Stanway, Sproston and Stevens 1987, J. Electrostatics 20:167", current_order=1)
+@damper(
+    "bingham",
+    source="Stanway, Sproston and Stevens 1987, J. Electrostatics 20:167",
+    current_order=1,
+    complete=True,
+)
 class Bingham(NamedTuple):
     """Bingham damper with laws linear in the current.
 

@@ -19,6 +19,7 @@ HYSTERESIS = "z, the hysteretic displacement"
     initial=(0.0,),
     state=HYSTERESIS,
     current_order=1,
+    complete=True,
 )
 class BoucWen(NamedTuple):
     """Simple Bouc-Wen damper with laws linear in the current.

@@ -75,10 +75,12 @@ def _bar_panel(axes: Axes, values: Array, compared: Compared, colours: Sequence[
     bars = axes.barh(np.arange(len(values)), np.nan_to_num(values), height=0.62, color=colours)
     texts = [f"{value:.{compared.decimals}f}" if np.isfinite(value) else "none" for value in values]
     axes.bar_label(bars, texts, padding=3, fontsize=9.5)
-    axes.set_xlim(0.0, 1.3 * float(np.max(np.nan_to_num(values))) or 1.0)
+    longest = float(np.max(np.nan_to_num(values)))
+    axes.set_xlim(0.0, 1.3 * longest or 1.0)
     axes.set_ylim(len(values) - 0.4, -0.6)
     axes.grid(False, axis="y")
     axes.locator_params(axis="x", nbins=4)
+    axes.set_xticks([tick for tick in axes.get_xticks() if tick <= longest])
     axes.set_xlabel(compared.axis)
 
 

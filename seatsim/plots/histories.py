@@ -42,6 +42,10 @@ CHANNELS = (
 TEMPERATURE = Channel("damper_temperature", "damper\ntemperature\n[°C]")
 LIMIT = Entry("travel limit", DARK, ":")
 GRID = Grid(heights=(), left=1.15, gap=(0.35, 0.32))
+HEIGHT = 1.75
+"""Height of a panel of several runs in inches."""
+OWN_AXIS = 0.35
+"""Room in inches above a panel with an axis of time of its own, for the axis of the one above."""
 LABEL = 0.55
 """Inches from a panel to the label of its axis, the same for all."""
 
@@ -49,7 +53,8 @@ LABEL = 0.55
 def time_histories(runs: Sequence[Run]) -> Figure:
     """Return driver acceleration, suspension displacement, damper force, current, and a changing temperature.
 
-    Close up is the window with the largest RMS of the first run's driver acceleration, within all runs.
+    Close up is the window with the largest RMS of the first run's driver acceleration, within all runs. What
+    was wanted and commanded is drawn for a single run only.
     """
     common = min(run.history["time"][-1] for run in runs)
     first = runs[0].history
@@ -112,7 +117,8 @@ def _several(runs: Sequence[Run], window: Window) -> Figure:
         f"{' Temperature: whole run.' if warming else ''}{labels.which(chosen, runs)}"
     )
     looks = style.entries(labels.labels(chosen))
-    grid = GRID._replace(heights=(1.75,) * (len(CHANNELS) + warming))
+    heights = (HEIGHT,) * len(CHANNELS) + (HEIGHT + OWN_AXIS,) * warming
+    grid = GRID._replace(heights=heights)
     legend = [*looks, LIMIT] if limits else looks
     page = style.page(f"Time histories: {labels.title(runs)}", note, grid, legend)
     panels = [row[0] for row in page.rows]
@@ -129,6 +135,9 @@ def _several(runs: Sequence[Run], window: Window) -> Figure:
 
 
 def _temperatures(axes: Axes, runs: Sequence[Run], looks: Sequence[Entry]) -> None:
+    """Draw the temperatures over whole runs, in the lower part of the panel's place."""
+    left, bottom, width, height = axes.get_position().bounds
+    axes.set_position((left, bottom, width, height * HEIGHT / (HEIGHT + OWN_AXIS)))
     for run, look in zip(runs, looks, strict=True):
         _trace(axes, run, TEMPERATURE, TEMPERATURE.name, slice(None), look)
     _label(axes, TEMPERATURE)

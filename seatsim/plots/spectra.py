@@ -13,6 +13,7 @@ from scipy import signal
 
 from seatsim import metrics
 from seatsim.errors import InputError
+from seatsim.metrics.transmissibility import AVERAGES, LONGEST
 from seatsim.plots import labels, style
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import Array
@@ -22,9 +23,6 @@ BAND = (0.3, 30.0)
 """Hz; what the seat can change, and more than the driver feels."""
 TICKS = (0.3, 0.5, 1, 2, 3, 5, 10, 20, 30)
 PER_OCTAVE = 12
-AVERAGES = 8
-LONGEST = 10.0
-"""Longest segment in s."""
 DECADES = 6.0
 """Decades below the highest density that are shown."""
 TRUSTED = 0.5

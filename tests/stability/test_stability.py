@@ -1,0 +1,95 @@
+"""Stability of the seat under output feedback: linear, sampled, and in full with clip, lag, delay and a wrong inverse."""
+
+import numpy as np
+import pytest
+
+import seatsim
+from controllers.margins import margins, sampled_radius
+from seatsim.coil import Coil
+from seatsim.plant import Plant, state_space
+
+GAIN = np.array([[2.0, 2147.6]])
+COIL = Coil(130.0, 1.0)
+MASSES = np.arange(40.0, 151.0, 5.0)
+
+
+def seat(driver_mass=80.0):
+    return Plant(20.0, driver_mass, 4600.0, 150.0, 60000.0, 1500.0)
+
+
+@pytest.mark.parametrize("mass", MASSES)
+def test_the_closed_loop_is_hurwitz(mass):
+    s = state_space(seat(mass))
+    assert np.linalg.eigvals(s.A + s.B2 @ GAIN @ s.C2).real.max() < 0
+
+
+@pytest.mark.parametrize("sample_time", [0.001, 0.005])
+@pytest.mark.parametrize("mass", MASSES)
+def test_the_sampled_loop_is_stable_with_a_sample_of_delay(mass, sample_time):
+    assert sampled_radius(seat(mass), GAIN, COIL, sample_time) < 1
+    assert sampled_radius(seat(mass), GAIN, COIL, sample_time, delay_samples=1) < 1
+
+
+@pytest.mark.parametrize("mass", [40.0, 80.0, 150.0])
+def test_margins(mass, capsys):
+    found = margins(seat(mass), GAIN, COIL)
+    with capsys.disabled():
+        print(f"\n{mass:.0f} kg: gain margin {found.gain:.3g}, phase {found.phase:.1f} deg, delay {1e3 * found.delay:.1f} ms")
+    assert found.gain > 2
+    assert found.phase > 45
+    assert found.delay > 0.02
+
+
+def test_the_delay_margin_is_where_the_sampled_loop_loses_stability():
+    delay = margins(seat(), GAIN, COIL).delay
+    step = 0.0005
+    assert sampled_radius(seat(), GAIN, COIL, step, delay_samples=int(0.97 * delay / step)) < 1
+    assert sampled_radius(seat(), GAIN, COIL, step, delay_samples=int(1.03 * delay / step)) > 1
+
+
+def test_the_literal_sign_of_the_paper_is_unstable():
+    s = state_space(seat())
+    assert np.linalg.eigvals(s.A - s.B2 @ GAIN @ s.C2).real.max() > 0
+
+
+def test_in_the_printed_state_matrix_the_driver_does_not_feel_the_controller():
+    s = state_space(seat(), "yu2019")
+    driver = [np.linalg.solve(8j * np.eye(4) - s.A - s.B2 @ (scale * GAIN) @ s.C2, s.B1) for scale in (0, 1, 5)]
+    answers = [s.C1[1] @ one for one in driver]
+    np.testing.assert_allclose(answers[1], answers[0], rtol=1e-9)
+    np.testing.assert_allclose(answers[2], answers[0], rtol=1e-9)
+
+
+BINGHAM = {"model": "original_bingham"}
+INVERSES = {"the damper itself": None, "a Bingham damper": BINGHAM, "no temperature": {**BINGHAM, "temperature": 20.0}}
+
+
+@pytest.mark.parametrize("inverse", INVERSES)
+@pytest.mark.parametrize(("damper", "temperature"), [("modified_bouc_wen", 20.0), ("modified_bouc_wen", 80.0), ("yu2019", 80.0)])
+@pytest.mark.parametrize("start", [0.0, 0.02])
+def test_no_limit_cycle_of_the_full_loop(seat_file, damper, temperature, inverse, start):
+    controller = {"law": "static_output_feedback", "gain": [2.0, 2147.6], "sample_time": 0.005}
+    if INVERSES[inverse]:
+        controller["inverse"] = INVERSES[inverse]
+    settings = {
+        "damper": {"model": damper, "temperature_factors": {"viscous": -0.0067, "yield_force": -0.0067}},
+        "temperature": temperature,
+        "actuator": {"rate": 130.0, "max_current": 1.0, "delay": 0.004},
+        "controller": controller,
+        "excitation": {"kind": "rest", "duration": 12.0},
+        "start": {"displacement": start},
+    }
+    result = seatsim.run(seat_file, settings)
+    last = slice(-2000, None)
+    assert np.max(np.abs(result["suspension_velocity"][last])) < 1e-3
+    travel = np.abs(result["suspension_displacement"])
+    assert travel[-1] <= travel[-4000] + 1e-6
+    assert np.max(np.abs(result["driver_acceleration"][last])) < 1e-2
+
+
+@pytest.mark.parametrize("law", [{"law": "skyhook", "damping": 2000.0}, {"law": "on_off_skyhook", "on": 1.0}])
+def test_switching_laws_come_to_rest(seat_file, law):
+    settings = {"controller": {**law, "sample_time": 0.005}, "excitation": {"kind": "rest", "duration": 12.0},
+                "start": {"displacement": 0.02}}  # fmt: skip
+    result = seatsim.run(seat_file, settings)
+    assert np.max(np.abs(result["suspension_velocity"][-2000:])) < 1e-3
