@@ -23,9 +23,9 @@ Pointer = ctypes.POINTER(ctypes.c_double)
 
 
 class _Setup(ctypes.Structure):
-    """`Setup` of the C files: 33 doubles in their order, then the steps per sample of the law."""
+    """`Setup` of the C files: 34 doubles in their order, then the steps per sample of the law."""
 
-    _fields_ = (("values", ctypes.c_double * 33), ("sample_every", ctypes.c_long))
+    _fields_ = (("values", ctypes.c_double * 34), ("sample_every", ctypes.c_long))
 
 
 def available() -> bool:
@@ -60,4 +60,4 @@ def _values(parts: Setup) -> _Setup:
         *PLANT[:6], *d.c0, *d.c1, *d.alpha, d.k0, d.k1, d.x0, d.f0, d.A, d.beta, d.gamma, d.n, d.law_end,
         coil.rate, coil.max_current, *GAIN, timing.step, timing.tolerance, 20.0,
     )  # fmt: skip
-    return _Setup((ctypes.c_double * 33)(*values), timing.sample_every)
+    return _Setup((ctypes.c_double * 34)(*values), timing.sample_every)

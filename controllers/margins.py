@@ -28,7 +28,7 @@ class Margins(NamedTuple):
 
 
 def margins(plant: Plant, gain: Array, coil: Coil) -> Margins:
-    """Return the margins of the continuous loop `L(s) = -K G(s) r / (s + r)`, with G from Fd to (x, v), r the coil's rate.
+    """Return the margins of the loop `L(s) = -K G(s) r / (s + r)`, with G from Fd to (x, v) and r the coil's rate.
 
     The delay margin is the least phase margin over its crossover frequency (rad/rad/s), over all crossovers.
     """
@@ -49,7 +49,9 @@ def margins(plant: Plant, gain: Array, coil: Coil) -> Margins:
     )
 
 
-def sampled_radius(plant: Plant, gain: Array, coil: Coil, sample_time: float, delay_samples: int = 0) -> float:
+def sampled_radius(
+    plant: Plant, gain: Array, coil: Coil, sample_time: float, delay_samples: int = 0
+) -> float:
     """Return the spectral radius of the sampled loop (below 1: stable): coil as a state, command held between samples.
 
     The exact zero-order hold of plant and coil over `sample_time`, with `delay_samples` whole samples of delay.

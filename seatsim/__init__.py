@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from seatsim.errors import InputError, RunError, SeatsimError, SynthesisError
-    from seatsim.replay import Gap, gap
     from seatsim.loading import load
     from seatsim.recording import Recording, load_recording
+    from seatsim.replay import Gap, gap
     from seatsim.result import Channel, Result, Run
     from seatsim.runs import compare, run
     from seatsim.scenario import Scenario

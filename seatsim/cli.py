@@ -26,12 +26,18 @@ app = typer.Typer(
 out = Console()
 err = Console(stderr=True)
 
-Scenarios = Annotated[list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)]
-OneScenario = Annotated[str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)]
+Scenarios = Annotated[
+    list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)
+]
+OneScenario = Annotated[
+    str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)
+]
 Out = Annotated[Path | None, typer.Option("--out", help="Folder for the files.", show_default="out/NAME")]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Replace a value by dotted key, such as plant.driver_mass=55."),
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="Replace a value by dotted key, such as plant.driver_mass=55."
+    ),
 ]
 
 
@@ -78,13 +84,15 @@ def synthesise(scenario: OneScenario, out_folder: Out = None, settings: Settings
 @app.command()
 def gap(scenario: OneScenario, recording: Path, out_folder: Out = None) -> None:
     """Replay a scenario against a recording and print the gap beside the noise floor."""
+    from seatsim.files import write_json
     from seatsim.replay import gap as find_gap
     from seatsim.replay import report
-    from seatsim.files import write_json
 
     found = find_gap(scenario, recording)
     out.print(report(found))
-    path = write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", found.as_dict())
+    path = write_json(
+        (out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", found.as_dict()
+    )
     out.print(f"written: {path}")
 
 

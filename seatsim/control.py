@@ -38,7 +38,7 @@ class Measurement(NamedTuple):
 
 
 class LawCard(NamedTuple):
-    """What is stated of a law: the initial value of its state, whether it replays a recording row by row, its source."""
+    """What is stated of a law: initial value of its state, whether it replays a recording row by row, its source."""
 
     initial: tuple[float, ...]
     replays: bool

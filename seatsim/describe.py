@@ -8,7 +8,8 @@ from typing import Any
 from seatsim import registry
 from seatsim.coil import Coil
 from seatsim.errors import InputError, nearest
-from seatsim.fields import FieldCard, describe as fields_of
+from seatsim.fields import FieldCard
+from seatsim.fields import describe as fields_of
 from seatsim.plant import Plant
 from seatsim.scenario import Solver, Start
 from seatsim.temperature import TemperatureFactors, Thermal
@@ -33,7 +34,9 @@ def describe(name: str = "") -> str:
     """
     if not name:
         lines = [f"{kind}: {', '.join(registry.names(kind))}" for kind in KINDS]
-        return "\n".join([*lines, f"section: {', '.join(SECTIONS)}", "", "seatsim describe NAME shows the keys of one."])
+        return "\n".join(
+            [*lines, f"section: {', '.join(SECTIONS)}", "", "seatsim describe NAME shows the keys of one."]
+        )
     if name in SECTIONS:
         return _page(name, "section", SECTIONS[name])
     for kind in KINDS:
@@ -48,9 +51,11 @@ def _page(name: str, kind: str, cls: type) -> str:
     lines = [f"{name} ({kind})", "", inspect.getdoc(cls) or ""]
     if card is not None and card.source:
         lines += ["", f"Source: {card.source}"]
-    if kind == "damper":
+    if card is not None and kind == "damper":
         low, high = card.temperatures
-        lines += [f"Range of the data: |v| <= {card.max_speed:g} m/s, 0 to {card.max_current:g} A, {low:g} to {high:g} degC"]
+        lines += [
+            f"Range of the data: |v| <= {card.max_speed:g} m/s, 0 to {card.max_current:g} A, {low:g} to {high:g} degC"
+        ]
         lines += [f"State: {card.state}"] if card.state else []
     return "\n".join([*lines, "", "Keys:", *(_line(field) for field in fields_of(cls))])
 

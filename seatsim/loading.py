@@ -26,8 +26,8 @@ EXAMPLES = (Path(__file__).parent / "examples", Path(__file__).parents[1] / "sce
 def load(path: str | Path, settings: Mapping[str, Any] | None = None) -> list[Scenario]:
     """Return the scenarios of a file, at least one.
 
-    `settings` replaces values by dotted key, such as `{"plant.driver_mass": 55.0}`. A path that does not exist is looked
-    up among the examples that come with seatsim.
+    `settings` replaces values by dotted key, such as `{"plant.driver_mass": 55.0}`. A path that does not exist is
+    looked up among the examples that come with seatsim.
 
     Raises:
         InputError: anything in the file is missing, unknown or not permitted.
@@ -53,7 +53,9 @@ def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
     bench = not {"plant", "controller", "excitation"} & set(data)
     if "published" in data:
         check_published(source, list(label))
-    for key in ("damper", "actuator", "temperature") + (() if bench else ("plant", "controller", "excitation")):
+    for key in ("damper", "actuator", "temperature") + (
+        () if bench else ("plant", "controller", "excitation")
+    ):
         if key not in data:
             raise source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator, temperature,"
                                    " controller and excitation")  # fmt: skip
@@ -87,7 +89,7 @@ def _damper(values: Any, source: Source, keys: KeyPath, extra: tuple[str, ...] =
     check_keys(values, ("model", "parameters", "temperature_factors", *extra), source, keys)
     cls = _find("damper", choose(values, "model", source, keys), source, (*keys, "model"))
     card = registry.card_of(cls)
-    required: tuple[str, ...] = cls._fields if card.complete else ()  # type: ignore[attr-defined]
+    required: tuple[str, ...] = getattr(cls, "_fields", ()) if card.complete else ()
     hint = "; this model has no set of its own, state every parameter" if card.complete else ""
     record = build(cls, values.get("parameters", {}), source, (*keys, "parameters"), required, hint)
     if "temperature_factors" not in values:
@@ -98,9 +100,9 @@ def _damper(values: Any, source: Source, keys: KeyPath, extra: tuple[str, ...] =
 
 def _temperature(value: Any, source: Source) -> float | Thermal:
     if isinstance(value, Mapping):
-        return build(Thermal, value, source, ("temperature",))
-    start = build(Thermal, {"start": value}, source, ("temperature",)).start
-    return float(start)
+        thermal: Thermal = build(Thermal, value, source, ("temperature",))
+        return thermal
+    return float(build(Thermal, {"start": value}, source, ("temperature",)).start)
 
 
 def _control(values: Any, source: Source) -> Control:
@@ -124,7 +126,9 @@ def _inverse(values: Any, source: Source) -> Inverse:
     if temperature == "measured":
         return Inverse(damper, None)
     if isinstance(temperature, bool) or not isinstance(temperature, int | float):
-        raise source.error((*keys, "temperature"), f"{temperature!r} is not permitted; a number in degC or 'measured'")
+        raise source.error(
+            (*keys, "temperature"), f"{temperature!r} is not permitted; a number in degC or 'measured'"
+        )
     return Inverse(damper, float(temperature))
 
 
@@ -141,7 +145,7 @@ def _excitation(values: Any, source: Source) -> Any:
 def _effects(values: Any, source: Source) -> tuple[Any, ...]:
     if not isinstance(values, list):
         raise source.error(("effects",), f"{values!r} is not a list; write '- effect: NAME' below it")
-    effects = []
+    effects: list[Any] = []
     for index, value in enumerate(values):
         keys: KeyPath = ("effects", index)
         mapping(value, source, keys)

@@ -32,7 +32,9 @@ def _saver(figure: Any) -> Callable[[Path], object]:
 
 
 def _summary(run: Run) -> dict[str, Any]:
-    metrics = {name: {"value": m.value, "unit": m.unit, "meaning": m.meaning} for name, m in run.metrics.items()}
+    metrics = {
+        name: {"value": m.value, "unit": m.unit, "meaning": m.meaning} for name, m in run.metrics.items()
+    }
     return {
         "scenario": run.scenario.name,
         "label": dict(run.scenario.label),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,9 @@ class Plant(NamedTuple):
     Upward positive about static equilibrium; the damper force Fd is positive when it opposes extension.
     """
 
-    frame_mass: Annotated[float, param("kg", "mass ms of seat frame and moving suspension", above=0, high=1e4)]
+    frame_mass: Annotated[
+        float, param("kg", "mass ms of seat frame and moving suspension", above=0, high=1e4)
+    ]
     driver_mass: Annotated[float, param("kg", "mass m of the driver on the cushion", above=0, high=1e4)]
     suspension_stiffness: Annotated[float, param("N/m", "spring and gas stiffness kf", low=0, high=1e8)]
     suspension_damping: Annotated[float, param("N s/m", "uncontrolled damping cf", low=0, high=1e7)]
@@ -35,7 +37,9 @@ class Plant(NamedTuple):
         ],
         param("m", "travel between the end stops; excursions beyond it are counted"),
     ] = (-10.0, 10.0)
-    damper_ratio: Annotated[float, param("-", "damper stroke per suspension displacement", above=0, high=10)] = 1.0
+    damper_ratio: Annotated[
+        float, param("-", "damper stroke per suspension displacement", above=0, high=10)
+    ] = 1.0
 
 
 class StateSpace(NamedTuple):
@@ -79,9 +83,12 @@ def state_space(plant: Plant, variant: Literal["exact", "yu2019"] = "exact") -> 
     return StateSpace(a, b1, b2, c1, c2)
 
 
-def control_system(plant: Plant) -> "control.StateSpace":  # noqa: F821
-    """Return the exact plant as `control.ss`: inputs (floor_acceleration, damper_force), outputs (suspension
-    displacement, suspension velocity, frame acceleration, driver acceleration)."""
+def control_system(plant: Plant) -> Any:
+    """Return the exact plant as a `control.StateSpace` with named signals.
+
+    Inputs: floor acceleration, damper force. Outputs: suspension displacement and velocity, frame and driver
+    acceleration.
+    """
     import control
 
     s = state_space(plant)
@@ -95,7 +102,12 @@ def control_system(plant: Plant) -> "control.StateSpace":  # noqa: F821
         c,
         d,
         inputs=["floor_acceleration", "damper_force"],
-        outputs=["suspension_displacement", "suspension_velocity", "frame_acceleration", "driver_acceleration"],
+        outputs=[
+            "suspension_displacement",
+            "suspension_velocity",
+            "frame_acceleration",
+            "driver_acceleration",
+        ],
     )
 
 

@@ -28,7 +28,9 @@ def check_published(source: Source, labels: Sequence[str]) -> None:
     check_keys(published, ("source", "rows"), source, ("published",))
     rows = published.get("rows")
     if not isinstance(rows, list) or not rows:
-        raise source.error(("published", "rows"), "a list of at least one row, such as '- {variant: I, seat_factor: 0.8}'")
+        raise source.error(
+            ("published", "rows"), "a list of at least one row, such as '- {variant: I, seat_factor: 0.8}'"
+        )
     for index, row in enumerate(rows):
         keys = ("published", "rows", index)
         check_keys(mapping(row, source, keys), [*labels, *METRICS], source, keys)
@@ -37,8 +39,14 @@ def check_published(source: Source, labels: Sequence[str]) -> None:
 def published_tables(runs: Sequence[Run]) -> list[Table]:
     """Return one table for each file with published figures: ours, published, and the difference, metric by metric."""
     sources = {id(run.scenario.source): run.scenario.source for run in runs if run.scenario.source}
-    files = {str(source.path): source.data["published"] for source in sources.values() if "published" in source.data}
-    return [_table(published, [run for run in runs if _path(run) == path]) for path, published in files.items()]
+    files = {
+        str(source.path): source.data["published"]
+        for source in sources.values()
+        if "published" in source.data
+    }
+    return [
+        _table(published, [run for run in runs if _path(run) == path]) for path, published in files.items()
+    ]
 
 
 def _path(run: Run) -> str:
@@ -46,9 +54,15 @@ def _path(run: Run) -> str:
 
 
 def _table(published: Mapping[str, Any], runs: Sequence[Run]) -> Table:
-    table = Table(title=f"beside {published.get('source', 'published figures')}", title_justify="left", box=box.SIMPLE_HEAD)
+    table = Table(
+        title=f"beside {published.get('source', 'published figures')}",
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+    )
     for heading in ("run", "metric", "ours", "published", "difference"):
-        table.add_column(heading, justify="left" if heading in ("run", "metric") else "right", no_wrap=heading != "run")
+        table.add_column(
+            heading, justify="left" if heading in ("run", "metric") else "right", no_wrap=heading != "run"
+        )
     for row in published["rows"]:
         for run in runs:
             label = run.scenario.label

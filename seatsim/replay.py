@@ -36,8 +36,11 @@ NOISE_FACTOR = 3.0
 
 @dataclass(frozen=True)
 class Gap:
-    """`overall` gap, gap per channel, and noise floor (per channel and `overall`), in standard deviations of what was
-    measured: `gap_c = rms(measured - simulated) / std(measured)`, `overall = sqrt(mean of gap_c^2)`."""
+    """The gap of a simulation, in standard deviations of what was measured.
+
+    `channels` holds `rms(measured - simulated) / std(measured)` by channel, `overall` is `sqrt(mean of its squares)`;
+    `floor` holds the same two for the stated noise alone.
+    """
 
     overall: float
     channels: dict[str, float]
@@ -61,7 +64,9 @@ def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs
         scenario = single(scenario)
     names = list(runs) or list(recording.runs)
     measured, simulated = pooled(scenario, recording, names)
-    channels = {name: _rms(measured[name] - simulated[name]) / float(np.std(measured[name])) for name in measured}
+    channels = {
+        name: _rms(measured[name] - simulated[name]) / float(np.std(measured[name])) for name in measured
+    }
     floors = {name: recording.channels[name].noise_rms / float(np.std(measured[name])) for name in measured}
     return Gap(_overall(channels), channels, {"overall": _overall(floors), "channels": floors})
 
@@ -70,7 +75,9 @@ def single(path: str | Path, settings: Mapping[str, Any] | None = None) -> Scena
     """Load a file that holds one run."""
     scenarios = load(path, settings)
     if len(scenarios) != 1:
-        raise InputError(f"{path}: holds {len(scenarios)} runs; a replay needs a file without sweep or variants")
+        raise InputError(
+            f"{path}: holds {len(scenarios)} runs; a replay needs a file without sweep or variants"
+        )
     return scenarios[0]
 
 
@@ -84,7 +91,9 @@ def pooled(
     simulated = {name: np.concatenate([s[name] for _, s in pairs]) for name in names}
     loud = [n for n in names if _is_loud(measured[n], recording.channels[n].noise_rms)]
     if not loud:
-        raise InputError(f"{recording.folder}: no recorded output stands above its noise; there is nothing to compare")
+        raise InputError(
+            f"{recording.folder}: no recorded output stands above its noise; there is nothing to compare"
+        )
     return {n: measured[n] for n in loud}, {n: simulated[n] for n in loud}
 
 
@@ -96,11 +105,15 @@ def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str
     names = [name for name in COMPARED[recording.header.rig] if name in measured]
     rows = len(next(iter(measured.values())))
     if rows < skip + 2:
-        raise InputError(f"{recording.folder}, run {run}: {rows} rows are too short; its first second is left out")
+        raise InputError(
+            f"{recording.folder}, run {run}: {rows} rows are too short; its first second is left out"
+        )
     return {name: measured[name][skip:] for name in names}, {name: simulated[name][skip:] for name in names}
 
 
-def _replay_seat(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str, Array], dict[str, Array]]:
+def _replay_seat(
+    scenario: Scenario, recording: Recording, run: str
+) -> tuple[dict[str, Array], dict[str, Array]]:
     history = simulate(dataclasses.replace(scenario, excitation=RecordedRun(str(recording.folder), run)))
     every = round(1.0 / (recording.header.sample_rate * history.step))
     return recording.table(run), {name: history[name][::every] for name in COMPARED["seat"]}

@@ -19,7 +19,9 @@ class Solver(NamedTuple):
     """Settings of the time integration; the defaults meet the accuracy stated in the documentation."""
 
     step: Annotated[float, param("s", "step of loop and history", above=0, high=0.01)] = 0.001
-    tolerance: Annotated[float, param("-", "relative error of a sub-step's velocities", above=0, high=1)] = 1e-4
+    tolerance: Annotated[float, param("-", "relative error of a sub-step's velocities", above=0, high=1)] = (
+        1e-4
+    )
 
 
 class Start(NamedTuple):
@@ -69,8 +71,8 @@ class Scenario:
     control: Control | None = None
     excitation: Any = None
     effects: tuple[Any, ...] = ()
-    solver: Solver = Solver()
-    start: Start = Start()
+    solver: Solver = field(default_factory=Solver)
+    start: Start = field(default_factory=Start)
     seed: int = 0
     label: Mapping[str, Any] = field(default_factory=dict)
     source: Source | None = None
@@ -78,7 +80,7 @@ class Scenario:
     @property
     def title(self) -> str:
         """Name of the scenario with what sets this run apart."""
-        parts = [str(v) if k == "variant" else f"{k.split('.')[-1]} {v:g}" for k, v in self.label.items()]
+        parts = [str(v) if k == "variant" else f"{k.split('.')[-1]} {v}" for k, v in self.label.items()]
         return f"{self.name} ({', '.join(parts)})" if parts else self.name
 
     @contextmanager

@@ -46,13 +46,19 @@ def simulate(scenario: Scenario) -> History:
         RunError: the solution grew beyond all bounds.
     """
     if scenario.plant is None or scenario.control is None:
-        raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")
+        raise InputError(
+            f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'"
+        )
     step = scenario.solver.step
     with scenario.placed("excitation"):
         floor: Floor = scenario.excitation.floor(step, scenario.seed)
     setup = _setup(scenario, scenario.plant, scenario.control)
     inputs = _inputs(scenario, scenario.control, floor)
-    states = (card_of(type(scenario.damper.record)).initial, _believed(scenario), card_of(type(scenario.control.law)).initial)
+    states = (
+        card_of(type(scenario.damper.record)).initial,
+        _believed(scenario),
+        card_of(type(scenario.control.law)).initial,
+    )
     out = np.empty((len(floor.acceleration), len(CHANNELS)))
     plugged = (type(scenario.damper.record), type(setup.law), type(setup.belief.damper))
     reached = compiled(run_loop, plugged)(setup, inputs, *states, out)
@@ -74,7 +80,9 @@ def _setup(scenario: Scenario, plant: Plant, control: Control) -> Setup:
     heated = isinstance(scenario.temperature, Thermal)
     thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal()
     timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
-    return Setup(rig, scenario.coil, scenario.damper.factors, thermal, law, _belief(scenario, control), timing)
+    return Setup(
+        rig, scenario.coil, scenario.damper.factors, thermal, law, _belief(scenario, control), timing
+    )
 
 
 def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
@@ -83,7 +91,9 @@ def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
         return Truth(record, card_of(type(record)).current_order)
     record, factors = control.inverse.damper.record, control.inverse.damper.factors
     temperature = control.inverse.temperature
-    return Belief(record, card_of(type(record)).current_order, factors, np.nan if temperature is None else temperature)
+    return Belief(
+        record, card_of(type(record)).current_order, factors, np.nan if temperature is None else temperature
+    )
 
 
 def _believed(scenario: Scenario) -> tuple[float, ...]:
@@ -107,21 +117,27 @@ def _sample_every(step: float, control: Control) -> int:
 
 def _inputs(scenario: Scenario, control: Control, floor: Floor) -> Inputs:
     fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
-    measured = floor.temperature is not None and not isinstance(scenario.temperature, Thermal)
-    temperature = floor.temperature if measured else np.full(len(floor.acceleration), fixed)
+    temperature = np.full(len(floor.acceleration), fixed)
+    if floor.temperature is not None and not isinstance(scenario.temperature, Thermal):
+        temperature = floor.temperature
     command = NONE if floor.command is None else floor.command
     replays = card_of(type(control.law)).replays
-    direct = replays and floor.command is None and floor.coil_current is not None
-    start = 0.0 if floor.coil_current is None else float(floor.coil_current[0])
-    prescribed = floor.coil_current if direct else NONE
-    return Inputs(floor.acceleration, floor.velocity, temperature, command, prescribed, start, *scenario.start)
+    flowing = NONE if floor.coil_current is None else floor.coil_current
+    start = float(flowing[0]) if flowing.size else 0.0
+    prescribed = flowing if replays and floor.command is None else NONE
+    return Inputs(
+        floor.acceleration, floor.velocity, temperature, command, prescribed, start, *scenario.start
+    )
 
 
 def _history(plant: Plant, step: float, out: Array) -> History:
     """Return the recorded channels with the time and the energy stored in masses, suspension and cushion springs."""
     channels: dict[str, Any] = {"time": np.arange(len(out)) * step}
     channels |= {name: np.ascontiguousarray(out[:, column]) for column, name in enumerate(CHANNELS)}
-    v, driver = channels["suspension_velocity"], channels["suspension_velocity"] + channels["cushion_velocity"]
+    v, driver = (
+        channels["suspension_velocity"],
+        channels["suspension_velocity"] + channels["cushion_velocity"],
+    )
     x, cushion = channels["suspension_displacement"], channels["cushion_displacement"]
     channels["energy_stored"] = 0.5 * (
         plant.frame_mass * v**2

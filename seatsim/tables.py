@@ -51,8 +51,6 @@ def comparison(runs: Sequence[Run], title: str) -> Table:
     return table
 
 
-
-
 def _label_keys(runs: Sequence[Run]) -> list[str]:
     keys: dict[str, None] = {}
     if len({run.scenario.name for run in runs}) > 1:

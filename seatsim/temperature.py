@@ -20,8 +20,8 @@ class TemperatureFactors(NamedTuple):
     """Exponential temperature factors of a damper, `q(T) = q(T0) exp(delta (T - T0))`.
 
     Source: Yu et al. 2019 (Front. Mater. 6:227) eqs 9-11, where delta1 scales c, delta2 k and delta3 alpha. The paper
-    prints no values; its 33 % loss of force and energy from 20 to 80 degC gives delta = ln(0.67)/60 K = -0.0067 1/K when
-    all three are equal (derived). Valid for 20-80 degC.
+    prints no values; its 33 % loss of force and energy from 20 to 80 degC gives delta = ln(0.67)/60 K = -0.0067 1/K
+    when all three are equal (derived). Valid for 20-80 degC.
     """
 
     viscous: Annotated[float, param("1/K", "delta1, of the viscous coefficients", low=-0.1, high=0.1)] = 0.0

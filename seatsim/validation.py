@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any, TypeVar
+from typing import Any
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -13,12 +13,10 @@ from seatsim.errors import nearest
 from seatsim.fields import adapter, describe
 from seatsim.yaml_source import KeyPath, Source
 
-T = TypeVar("T")
-
 
 def build(
-    record: type[T], values: Any, source: Source, keys: KeyPath, required: Iterable[str] = (), hint: str = ""
-) -> T:
+    record: type, values: Any, source: Source, keys: KeyPath, required: Iterable[str] = (), hint: str = ""
+) -> Any:
     """Return the `record` with the given values, which stand under `keys` in the source.
 
     `required` names fields that must be given although the record has defaults; `hint` is added to errors of a
@@ -32,12 +30,13 @@ def build(
         if name not in values:
             raise source.error(keys, f"key '{name}' is missing{hint}")
     try:
-        result: T = adapter(record).validate_python(_tuples(values))
-        return result
+        return adapter(record).validate_python(_tuples(values))
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = (*keys, *(part for part in first["loc"] if not str(part).startswith("function-")))
-        raise source.error(where, _problem(record, first) + (hint if first["type"] == "missing" else "")) from None
+        raise source.error(
+            where, _problem(record, first) + (hint if first["type"] == "missing" else "")
+        ) from None
 
 
 def mapping(values: Any, source: Source, keys: KeyPath) -> Mapping[str, Any]:
@@ -52,7 +51,9 @@ def check_keys(values: Mapping[str, Any], known: Iterable[str], source: Source, 
     permitted = list(known)
     for key in values:
         if key not in permitted:
-            raise source.error((*keys, key), f"unknown key{nearest(key, permitted)}; permitted: {', '.join(permitted)}")
+            raise source.error(
+                (*keys, key), f"unknown key{nearest(key, permitted)}; permitted: {', '.join(permitted)}"
+            )
 
 
 def choose(values: Mapping[str, Any], key: str, source: Source, keys: KeyPath) -> str:
@@ -105,5 +106,3 @@ def _tuples(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {key: _tuples(item) for key, item in value.items()}
     return tuple(_tuples(item) for item in value) if isinstance(value, list | tuple) else value
-
-

@@ -20,13 +20,23 @@ def warnings_of(scenario: Scenario, history: History) -> tuple[str, ...]:
     ratio = scenario.plant.damper_ratio if scenario.plant else 1.0
     speed = ratio * np.abs(history["suspension_velocity"])
     checks = [
-        (speed > card.max_speed, f"faster than {card.max_speed:g} m/s", "the force there is an extrapolation"),
-        (history["coil_current"] > card.max_current * (1 + 1e-9), f"above {card.max_current:g} A", "its laws end there"),
+        (
+            speed > card.max_speed,
+            f"faster than {card.max_speed:g} m/s",
+            "the force there is an extrapolation",
+        ),
+        (
+            history["coil_current"] > card.max_current * (1 + 1e-9),
+            f"above {card.max_current:g} A",
+            "its laws end there",
+        ),
     ]
     found = [
         f"{model}: more than {SHARE:.0%} of a run is {what}, beyond the data behind the model; {consequence}"
         for outside, what, consequence in checks
         if np.mean(outside) > SHARE
     ]
-    drift = centring(history["suspension_displacement"], history["suspension_velocity"]) if card.centred else ""
+    drift = (
+        centring(history["suspension_displacement"], history["suspension_velocity"]) if card.centred else ""
+    )
     return (*found, f"{model}: {drift}") if drift else tuple(found)

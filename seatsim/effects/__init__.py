@@ -1,0 +1,1 @@
+"""Small physical changes of the rig, one file per block."""

@@ -11,8 +11,10 @@ from seatsim.kernel.rig import Rig
 
 @effect("suspension.friction", source="Coulomb's law, set-valued at rest")
 class Friction(NamedTuple):
-    """Rate-independent friction in the linkage, not seen by the damper's load cell: `f = force sgn(v)`, `|f| <= force`
-    at v = 0."""
+    """Rate-independent friction in the linkage, not seen by the damper's load cell.
+
+    `f = force sgn(v)`; at v = 0 whatever holds the suspension, up to `force`.
+    """
 
     force: Annotated[float, param("N", "friction of the linkage", low=0, high=1e4)]
 
@@ -36,8 +38,10 @@ class ProgressiveSpring(NamedTuple):
 
 @effect("suspension.end_stop", source="unilateral spring with Hunt-Crossley damping, k d (1 + c d')")
 class EndStop(NamedTuple):
-    """Buffers at the ends of the travel: `f = stiffness d (1 + damping d')`, never pulling, where d is the depth beyond
-    `low` or `high`."""
+    """Buffers at the ends of the travel.
+
+    `f = stiffness d (1 + damping d')`, never pulling, where d is the depth beyond `low` or `high`.
+    """
 
     low: Annotated[float, param("m", "travel at which the lower buffer is touched", low=-1, high=0)]
     high: Annotated[float, param("m", "travel at which the upper buffer is touched", low=0, high=1)]

@@ -45,7 +45,7 @@ class RecordedRun(NamedTuple):
         if parts < 1 or abs(parts * step - interval) > 1e-9 * interval:
             best = interval / max(1, math.ceil(interval / step - 1e-9))
             raise InputError(
-                f"{self.path}: rows every {interval:g} s are not a multiple of solver.step {step:g} s; set it to {best:g}"
+                f"{self.path}: rows every {interval:g} s are no multiple of solver.step {step:g} s; set it to {best:g}"
             )
         finer = {name: _linear(values, parts) for name, values in table.items()}
         acceleration = finer["floor_acceleration"]

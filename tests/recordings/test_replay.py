@@ -14,7 +14,10 @@ from seatsim.recording_writer import save_recording
 
 CHANNELS = ["floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement",
             "damper_force", "current_command", "coil_current", "damper_temperature"]  # fmt: skip
-VARIANTS = {"feedback": {}, "switched": {"controller": {"law": "on_off_skyhook", "on": 0.6, "sample_time": 0.002}}}
+VARIANTS = {
+    "feedback": {},
+    "switched": {"controller": {"law": "on_off_skyhook", "on": 0.6, "sample_time": 0.002}},
+}
 
 
 @pytest.fixture
@@ -23,7 +26,9 @@ def recorded(seat_file):
     return save_recording(result, seat_file.parent / "recorded", CHANNELS)
 
 
-@pytest.mark.parametrize("absent", [[], ["damper_force"], ["coil_current"], ["current_command"], ["damper_temperature"]])
+@pytest.mark.parametrize(
+    "absent", [[], ["damper_force"], ["coil_current"], ["current_command"], ["damper_temperature"]]
+)
 def test_the_replay_of_an_own_noiseless_recording_leaves_no_gap(seat_file, absent):
     result = seatsim.run(seat_file, {"variants": VARIANTS})
     kept = [name for name in CHANNELS if name not in absent]
@@ -85,7 +90,10 @@ def test_a_wrong_header_is_one_clear_error(recorded, old, new, expected):
     ("damage", "expected"),
     [
         (lambda frame: frame.drop(columns="driver_acceleration"), "column 'driver_acceleration' is missing"),
-        (lambda frame: frame.assign(driver_acceleration=frame.driver_acceleration.where(frame.index != 7)), "line 9"),
+        (
+            lambda frame: frame.assign(driver_acceleration=frame.driver_acceleration.where(frame.index != 7)),
+            "line 9",
+        ),
         (lambda frame: frame.iloc[:0], "holds 0 rows"),
         (lambda frame: frame.iloc[:500], "too short"),
     ],
@@ -108,8 +116,12 @@ def test_a_bench_recording_is_replayed_from_displacement_and_command(tmp_path):
     rows = np.arange(0.0, 6.0, 0.002)
     fine = np.arange(2 * len(rows) - 1) * 0.001
     omega = 2 * np.pi * 1.5
-    force = bench_force(BoucWen(), 0.01 * np.sin(omega * fine), 0.01 * omega * np.cos(omega * fine), 0.6, 20.0, 0.002)
-    frame = pd.DataFrame({"displacement": 0.01 * np.sin(omega * rows), "coil_current": 0.6, "damper_force": force})
+    force = bench_force(
+        BoucWen(), 0.01 * np.sin(omega * fine), 0.01 * omega * np.cos(omega * fine), 0.6, 20.0, 0.002
+    )
+    frame = pd.DataFrame(
+        {"displacement": 0.01 * np.sin(omega * rows), "coil_current": 0.6, "damper_force": force}
+    )
     frame.to_csv(tmp_path / "a.csv", index=False)
     (tmp_path / "nominal.yaml").write_text(
         "damper: {model: bouc_wen}\nactuator: {rate: 130.0, max_current: 1.0}\ntemperature: 20.0\n"

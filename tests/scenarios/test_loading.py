@@ -18,7 +18,7 @@ def test_a_sweep_makes_every_combination_in_order(seat_file):
     assert [(run.label["variant"], run.temperature, run.plant.driver_mass) for run in runs] == [
         ("light", 20.0, 55.0), ("light", 80.0, 55.0), ("heavy", 20.0, 120.0), ("heavy", 80.0, 120.0),
     ]  # fmt: skip
-    assert runs[1].title == "seat (light, temperature 80)"
+    assert runs[1].title == "seat (light, temperature 80.0)"
 
 
 def test_settings_replace_values_before_anything_is_read(seat_file):
@@ -76,7 +76,11 @@ def test_a_users_own_damper_and_law_run_like_built_in_ones(seat_file, monkeypatc
 def test_a_result_gives_channels_with_units_and_a_table(seat_file):
     result = seatsim.run(seat_file)
     acceleration = result["driver_acceleration"]
-    assert (acceleration.unit, acceleration.name, acceleration.shape) == ("m/s^2", "driver_acceleration", (6001,))
+    assert (acceleration.unit, acceleration.name, acceleration.shape) == (
+        "m/s^2",
+        "driver_acceleration",
+        (6001,),
+    )
     assert result.table.driver_acceleration_rms[0] == pytest.approx(float(np.sqrt(np.mean(acceleration**2))))
     assert (2 * acceleration).unit == "m/s^2"
 

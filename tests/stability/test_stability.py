@@ -1,4 +1,4 @@
-"""Stability of the seat under output feedback: linear, sampled, and in full with clip, lag, delay and a wrong inverse."""
+"""Stability of the seat under output feedback: linear, sampled, and in full with clip, lag, delay, wrong inverse."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,9 @@ def test_the_sampled_loop_is_stable_with_a_sample_of_delay(mass, sample_time):
 def test_margins(mass, capsys):
     found = margins(seat(mass), GAIN, COIL)
     with capsys.disabled():
-        print(f"\n{mass:.0f} kg: gain margin {found.gain:.3g}, phase {found.phase:.1f} deg, delay {1e3 * found.delay:.1f} ms")
+        print(
+            f"\n{mass:.0f} kg: gain {found.gain:.3g}, phase {found.phase:.1f} deg, delay {1e3 * found.delay:.1f} ms"
+        )
     assert found.gain > 2
     assert found.phase > 45
     assert found.delay > 0.02
@@ -54,18 +56,26 @@ def test_the_literal_sign_of_the_paper_is_unstable():
 
 def test_in_the_printed_state_matrix_the_driver_does_not_feel_the_controller():
     s = state_space(seat(), "yu2019")
-    driver = [np.linalg.solve(8j * np.eye(4) - s.A - s.B2 @ (scale * GAIN) @ s.C2, s.B1) for scale in (0, 1, 5)]
+    driver = [
+        np.linalg.solve(8j * np.eye(4) - s.A - s.B2 @ (scale * GAIN) @ s.C2, s.B1) for scale in (0, 1, 5)
+    ]
     answers = [s.C1[1] @ one for one in driver]
     np.testing.assert_allclose(answers[1], answers[0], rtol=1e-9)
     np.testing.assert_allclose(answers[2], answers[0], rtol=1e-9)
 
 
 BINGHAM = {"model": "original_bingham"}
-INVERSES = {"the damper itself": None, "a Bingham damper": BINGHAM, "no temperature": {**BINGHAM, "temperature": 20.0}}
+INVERSES = {
+    "the damper itself": None,
+    "a Bingham damper": BINGHAM,
+    "no temperature": {**BINGHAM, "temperature": 20.0},
+}
 
 
 @pytest.mark.parametrize("inverse", INVERSES)
-@pytest.mark.parametrize(("damper", "temperature"), [("modified_bouc_wen", 20.0), ("modified_bouc_wen", 80.0), ("yu2019", 80.0)])
+@pytest.mark.parametrize(
+    ("damper", "temperature"), [("modified_bouc_wen", 20.0), ("modified_bouc_wen", 80.0), ("yu2019", 80.0)]
+)
 @pytest.mark.parametrize("start", [0.0, 0.02])
 def test_no_limit_cycle_of_the_full_loop(seat_file, damper, temperature, inverse, start):
     controller = {"law": "static_output_feedback", "gain": [2.0, 2147.6], "sample_time": 0.005}
