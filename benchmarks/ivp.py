@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 import numba
 import numpy as np
+from problem import DAMPER, GAIN, PLANT, STEP
 from scipy.integrate import solve_ivp
 
-from problem import DAMPER, GAIN, PLANT, STEP
 from seatsim.coil import Coil
 
 MS, M, KF, CF, KC, CC = PLANT[:6]

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-
 from problem import DAMPER, GAIN, PLANT
+
 from seatsim.kernel.loop import CHANNELS, Setup
 
 FLAGS = ("-O3", "-march=native", "-std=c11", "-Wall", "-Wextra", "-shared", "-fPIC")

@@ -1,8 +1,8 @@
 """Time from a call to the first sample in a fresh process: `python benchmarks/startup.py`.
 
 Processes share one cache folder, empty at first: the first compiles, the others load. Printed are the import, the
-call itself (digest of the sources, compiled code from disk, a run of two samples), and a run through the command
-line, from the shell's point of view.
+call (digest of the sources, compiled code from disk, a run of two samples), and `seatsim.run` of the quickstart with
+four runs, from its import to its table.
 """
 
 from __future__ import annotations
@@ -11,10 +11,9 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
-PROCESSES = 6
+PROCESSES = 4
 CALL = """
 import time
 start = time.perf_counter()
@@ -26,26 +25,30 @@ imported = time.perf_counter()
 seatsim_run(acceleration, parts)[0]()
 print(imported - start, time.perf_counter() - imported)
 """
+RUN = """
+import time
+start = time.perf_counter()
+import seatsim
+seatsim.run("quickstart").table
+print(time.perf_counter() - start)
+"""
 
 
 def main() -> None:
     """Measure and print."""
-    scenario = Path(__file__).parents[1] / "scenarios" / "quickstart.yaml"
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | {"SEATSIM_CACHE_DIR": folder}
-        for process in range(PROCESSES):
-            imported, called = map(float, python(["-c", CALL], environment).split())
-            print(f"process {process + 1}: import {imported:.2f} s, from call to first sample {called:.3f} s")
-        for process in range(PROCESSES // 2):
-            start = time.perf_counter()
-            python(["-m", "seatsim.cli", "run", str(scenario)], environment)
-            print(f"command line, process {process + 1}: {time.perf_counter() - start:.2f} s in all")
+        for process in range(1, PROCESSES + 1):
+            imported, called = map(float, python(CALL, environment).split())
+            print(f"process {process}: import {imported:.2f} s, from call to first sample {called:.3f} s")
+        for process in range(1, PROCESSES + 1):
+            print(f"process {process}: quickstart {float(python(RUN, environment)):.2f} s")
 
 
-def python(arguments: list[str], environment: dict[str, str]) -> str:
+def python(code: str, environment: dict[str, str]) -> str:
     """Run Python in this folder and return what it prints."""
     folder = Path(__file__).parent
-    command = [sys.executable, *arguments]
+    command = [sys.executable, "-c", code]
     return subprocess.run(command, env=environment, cwd=folder, check=True, capture_output=True, text=True).stdout
 
 

@@ -36,7 +36,7 @@ def save_recording(
     first = result.runs[0]
     for name, run in zip(names, result.runs, strict=True):
         frame = pd.DataFrame({key: np.asarray(run[key]) for key in ("time", *channels)})
-        write_whole(folder / f"{name}.csv.gz", partial(frame.to_csv, index=False))
+        write_whole(folder / f"{name}.csv.gz", partial(frame.to_csv, index=False, float_format="%.7g"))
     values = first.scenario.source.data if first.scenario.source else {}
     kept = ("plant", "damper", "actuator", "effects", "solver")
     nominal = {key: values[key] for key in kept if key in values}

@@ -86,7 +86,7 @@ def _reachable(modules: Iterable[ModuleType]) -> set[ModuleType]:
 
 
 def _imported(module: ModuleType) -> Iterator[str]:
-    """Yield the full names of what the module's source imports outside functions."""
+    """Yield the full names of what the module's source imports, outside functions and not for type checkers only."""
     waiting: list[ast.AST] = [ast.parse(Path(str(module.__file__)).read_bytes())]
     while waiting:
         node = waiting.pop()
@@ -96,7 +96,9 @@ def _imported(module: ModuleType) -> Iterator[str]:
             origin = resolve_name("." * node.level + (node.module or ""), module.__package__)
             yield origin
             yield from (f"{origin}.{alias.name}" for alias in node.names)
-        elif isinstance(node, ast.Module | ast.If | ast.Try | ast.ExceptHandler | ast.With | ast.ClassDef):
+        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            waiting += node.orelse
+        elif isinstance(node, ast.Module | ast.stmt | ast.ExceptHandler) and not isinstance(node, ast.FunctionDef):
             waiting += ast.iter_child_nodes(node)
 
 
@@ -127,7 +129,7 @@ def _code(code: CodeType) -> Iterator[bytes]:
         if isinstance(constant, CodeType):
             yield from _code(constant)
         else:
-            yield repr(constant).encode()
+            yield repr(sorted(constant, key=repr) if isinstance(constant, frozenset) else constant).encode()
 
 
 def _source(module: ModuleType) -> Path | None:
