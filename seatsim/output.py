@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,24 +12,24 @@ import numpy as np
 from seatsim.files import write_json, write_whole
 from seatsim.result import UNITS, Result, Run
 
+PICTURE: dict[str, Any] = {"dpi": 110, "metadata": {"Software": "seatsim"}, "pil_kwargs": {"compress_level": 3}}
+"""How pictures are saved: the same bytes for the same result."""
+
 
 def write_result(result: Result, folder: Path) -> list[Path]:
     """Write `summary.csv`, `summary.json`, `history.parquet` and the pictures of a result; return their paths."""
-    from seatsim.plots import draw
+    with ThreadPoolExecutor(max_workers=1) as pool:
+        # Compressing the histories leaves the processor to the pictures.
+        history = pool.submit(write_whole, folder / "history.parquet", partial(_write_history, result))
+        from seatsim.plots import draw
 
-    paths = [
-        write_whole(folder / "summary.csv", lambda part: result.table.to_csv(part, index=False)),
-        write_json(folder / "summary.json", {"runs": [_summary(run) for run in result.runs]}),
-        write_whole(folder / "history.parquet", lambda part: _write_history(result, part)),
-    ]
-    for name, figure in draw(result).items():
-        draw_to = _saver(figure)
-        paths.append(write_whole(folder / f"{name}.png", draw_to))
-    return paths
-
-
-def _saver(figure: Any) -> Callable[[Path], object]:
-    return lambda part: figure.savefig(part, dpi=110, metadata={"Software": "seatsim"})
+        paths = [
+            write_whole(folder / "summary.csv", partial(result.table.to_csv, index=False)),
+            write_json(folder / "summary.json", {"runs": [_summary(run) for run in result.runs]}),
+        ]
+        for name, figure in draw(result).items():
+            paths.append(write_whole(folder / f"{name}.png", partial(figure.savefig, **PICTURE)))
+        return [*paths[:2], history.result(), *paths[2:]]
 
 
 def _summary(run: Run) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """BFGS with a weak Wolfe line search, which also works on functions with kinks.
 
-Source: Lewis & Overton 2013, Math. Program. 141:135 (the kink slows no step: the search needs only values and the gradient of the side it is on).
+Values and the gradient of whatever side of a kink it stands on are all that the search needs.
+Source: Lewis & Overton 2013, Math. Program. 141:135.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ def minimise(
 ) -> Point:
     """Descend from `start`, where `function` must be finite.
 
-    Ends where the value is at most `enough`, `patience` steps together gain less than `progress`, no step descends,
-    or `time.monotonic()` passes `deadline`.
+    Ends where the value is at most `enough`, `patience` steps together gain less than `progress`, no step
+    descends, or `time.monotonic()` passes `deadline`.
     """
     here = Point(start, *function(start))
     inverse = np.eye(len(start))
@@ -90,7 +91,6 @@ def _update(inverse: Array, here: Point, following: Point, fresh: bool) -> Array
     if fresh:
         inverse = np.eye(len(s)) * curvature / float(y @ y)
     Hy = inverse @ y
-    answer: Array = (
-        inverse + (1 + float(y @ Hy) / curvature) * np.outer(s, s) / curvature - (np.outer(Hy, s) + np.outer(s, Hy)) / curvature
-    )
+    along = (1 + float(y @ Hy) / curvature) * np.outer(s, s)
+    answer: Array = inverse + (along - np.outer(Hy, s) - np.outer(s, Hy)) / curvature
     return answer

@@ -2,9 +2,10 @@
 
 With T the closed loop of any one gain, every other controller gives T + T12 Q T21 at each frequency, so that
 
-    gamma >= sup over omega of max(sigma_max(N' T), sigma_max(T M)),   N' T12 = 0,  T21 M = 0,  N, M orthonormal.
+    gamma >= sup over omega of max(sigma_max(N'T), sigma_max(T M)),  N'T12 = 0, T21 M = 0, N, M orthonormal.
 
-Weaker than the full-order LMI bound, but exact to rounding and cheap at any order. Source: Parrott's theorem (Zhou, Doyle & Glover 1996, section 2.11).
+Weaker than the full-order LMI bound, but exact to rounding and cheap at any order.
+Source: Parrott's theorem, in Zhou, Doyle & Glover 1996, Robust and Optimal Control, section 2.11.
 """
 
 from __future__ import annotations
@@ -22,7 +23,11 @@ Response = NDArray[np.complex128]
 
 
 def lower_bound(plant: GeneralisedPlant, stabilising: Array, certificate: Certificate | None, deadline: float) -> float:
-    """Return the larger of the pointwise and the full-order LMI bound; the latter only with a certificate and time left."""
+    """Return the larger of the pointwise and the full-order LMI bound.
+
+    `stabilising` is a gain (nu, ny) whose loop the certificate is for. The LMI is solved only where there is a
+    certificate, in whose coordinates it is well scaled, and time left before `deadline` (`time.monotonic()`).
+    """
     bound = pointwise_bound(plant, stabilising)
     if certificate is not None and time.monotonic() < deadline:
         from controllers.synthesis.lmi import full_order_bound
@@ -43,7 +48,7 @@ def pointwise_bound(plant: GeneralisedPlant, stabilising: Array) -> float:
 
 
 def _unreached(path: Response, T: Response) -> float:
-    """Largest singular value, over all frequencies, of the rows of T that `path` (m, nz, nu) does not reach."""
+    """Largest singular value, over all frequencies, of what `path` (m, nz, nu) does not reach of T."""
     reached = path.shape[2]
     if path.shape[1] <= reached:
         return 0.0

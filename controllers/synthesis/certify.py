@@ -2,7 +2,7 @@
 
     P > 0,   M(P) = [A'P + PA, PB, C'; B'P, -gamma I, D'; C, D, -gamma I] < 0
 
-proves ||T|| < gamma and stability. Whoever has P need only look at eigenvalues. P comes from the Riccati equation
+proves ||T|| < gamma and stability; whoever has P need only look at eigenvalues. P comes from the equation
 
     A'P + PA + C'C / gamma + e I + (PB + C'D / gamma) (gamma I - D'D / gamma)^-1 (PB + C'D / gamma)' = 0
 
@@ -26,8 +26,8 @@ _DELTAS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 class Certificate:
     """Proof that the closed loop is stable with H-infinity norm below `gamma`.
 
-    `matrix` is P (n, n) in the user's states, `gamma = (1 + delta)` times the design's, and `largest_eigenvalue`, negative,
-    is that of M(P) in the coordinates of `largest_lmi_eigenvalue`.
+    `matrix` is P (n, n) in the user's states, `gamma` is (1 + delta) times the design's, and `largest_eigenvalue`,
+    negative, is that of M(P) as `largest_lmi_eigenvalue` defines it.
     """
 
     matrix: Array
@@ -37,7 +37,7 @@ class Certificate:
 
 
 def certify(loop: Loop, gamma: float) -> Certificate | None:
-    """Return the certificate with the smallest delta of 1e-7, 1e-6 ... 1e-2 that double precision can verify; None if none."""
+    """Return the certificate with the smallest delta of 1e-7 ... 1e-2 that double precision can verify, else None."""
     for delta in _DELTAS:
         level = gamma * (1 + delta)
         matrix = _bounded_real_matrix(loop, level, delta)
@@ -50,18 +50,21 @@ def certify(loop: Loop, gamma: float) -> Certificate | None:
 
 
 def largest_lmi_eigenvalue(loop: Loop, matrix: Array, gamma: float) -> float:
-    """Return the largest eigenvalue of M(P), with gamma scaled to 1 and states and time to P = I, ||A|| = 1.
+    """Return the largest eigenvalue of M(P) in scaled coordinates: gamma = 1, states with P = I, time with ||A|| = 1.
 
-    Infinity where P is not positive definite. The sign is that of the LMI in raw units, but safe from their rounding.
+    Its sign is that of the LMI in raw units. An allowance for rounding, 10 eps times the condition of the change of
+    coordinates, is added. Infinity where P is not positive definite.
     """
     try:
         loop = recentre(loop, matrix)
     except np.linalg.LinAlgError:
         return np.inf
+    diagonal = np.sqrt(np.diag(matrix))
+    allowance = 10 * np.finfo(float).eps * np.sqrt(np.linalg.cond(matrix / np.outer(diagonal, diagonal)))
     rate = float(np.linalg.norm(loop.A, 2))
     A, B, C, D = loop.A / rate, loop.B / np.sqrt(gamma * rate), loop.C / np.sqrt(gamma * rate), loop.D / gamma
     M = np.block([[A + A.T, B, C.T], [B.T, -np.eye(B.shape[1]), D.T], [C, D, -np.eye(len(C))]])
-    return float(np.linalg.eigvalsh(M)[-1])
+    return float(np.linalg.eigvalsh(M)[-1] + allowance)
 
 
 def recentre(loop: Loop, matrix: Array) -> Loop:
@@ -76,7 +79,7 @@ def recentre(loop: Loop, matrix: Array) -> Loop:
 
 
 def _bounded_real_matrix(loop: Loop, level: float, delta: float) -> Array | None:
-    """Solve the Riccati equation in balanced states, then once more where its first solution is the identity."""
+    """Solve the Riccati equation in balanced states, then once more in those where its solution is the identity."""
     states = balanced(loop)[1]
     matrix = np.diag(states**-2.0)
     try:
@@ -93,7 +96,7 @@ def _bounded_real_matrix(loop: Loop, level: float, delta: float) -> Array | None
 def _riccati(loop: Loop, level: float, delta: float) -> Array:
     n, nw = loop.B.shape
     B, C, D = loop.B / np.sqrt(level), loop.C / np.sqrt(level), loop.D / level
-    # With output sqrt(slack) x added, the squared norm grows by at most slack * reach^2 = delta, and stays below 1.
+    # With the output sqrt(slack) x added, the squared norm grows by slack * reach^2 <= delta, and stays below 1.
     reach = hinf_norm(Loop(loop.A, B, np.eye(n), np.zeros((n, nw)))).value
     slack = delta / max(reach, 1.0) ** 2
     P: Array = scipy.linalg.solve_continuous_are(

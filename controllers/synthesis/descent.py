@@ -1,7 +1,7 @@
 """Multi-start descent on the exact H-infinity norm, in scaled coordinates.
 
-From every start: BFGS on the spectral abscissa until the loop is stable, then BFGS on log gamma, coarsely. The best few are
-then lowered to the end, by BFGS and polish in turn.
+From every start: BFGS on the spectral abscissa until the loop is stable, then BFGS on log gamma, coarsely. The best
+few are then lowered to the end, by BFGS and polish in turn.
 Source: Apkarian & Noll 2006, IEEE Trans. Autom. Control 51:71; Burke, Henrion, Lewis & Overton 2006 (HIFOO).
 """
 
@@ -38,7 +38,10 @@ def _gamma(candidate: Candidate) -> float:
 
 
 class Descent(NamedTuple):
-    """Candidates, best first; where there are none, `abscissa` tells how near to stability the search came."""
+    """Candidates, best first; where there are none, `abscissa` tells how near to stability the search came.
+
+    `starts` counts what was tried.
+    """
 
     candidates: list[Candidate]
     abscissa: float
@@ -60,9 +63,8 @@ def explore(objective: Objective, starts: Iterable[Array], deadline: float) -> D
     candidates: list[Candidate] = []
     abscissa, tried = float("inf"), 0
     for start in starts:
-        point = minimise(
-            objective.abscissa, objective.angles(start[objective.free]), deadline, _STABLE_ENOUGH, _STABILISING_PATIENCE, 1e-4
-        )
+        theta = objective.angles(start[objective.free])
+        point = minimise(objective.abscissa, theta, deadline, _STABLE_ENOUGH, _STABILISING_PATIENCE, 1e-4)
         abscissa, tried = min(abscissa, point.value), tried + 1
         if point.value < -STABILITY_MARGIN:
             lowest = minimise(objective.log_norm, point.x, deadline, progress=_COARSE)
@@ -75,7 +77,8 @@ def explore(objective: Objective, starts: Iterable[Array], deadline: float) -> D
 
 def refine(objective: Objective, candidates: list[Candidate], deadline: float) -> Candidate:
     """Lower the best few candidates to the end and return the best; of those in one valley, only one."""
-    return min((_lower(objective, candidate, deadline) for candidate in _distinct(candidates)[:_REFINED]), key=_gamma)
+    chosen = _distinct(candidates)[:_REFINED]
+    return min((_lower(objective, candidate, deadline) for candidate in chosen), key=_gamma)
 
 
 def _distinct(candidates: list[Candidate]) -> list[Candidate]:

@@ -1,7 +1,7 @@
 """Linear matrix inequalities: the only module that imports cvxpy, so import it where it is used.
 
-All problems are posed in states where a known Lyapunov matrix is about the identity, with gamma near 1: in raw units
-solvers fail.
+All problems are posed in states where a known Lyapunov matrix is about the identity, with gamma near 1: in raw
+units solvers fail.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any
 import cvxpy as cp
 import numpy as np
 import scipy.linalg
+from numpy.typing import NDArray
 
 from controllers.synthesis.plant import Array, GeneralisedPlant
 
@@ -26,23 +27,23 @@ def full_order_bound(plant: GeneralisedPlant, lyapunov: Array, gamma: float, dea
     """Return the best gamma that any linear controller reaches (order n suffices); 0 where the solver fails.
 
         minimise g over R, S:  [R I; I S] >= 0,
-        NR' [A R + R A', R C1', B1; C1 R, -g I, D11; B1', D11', -g I] NR <= 0,   NR spans the kernel of [B2' D12' 0],
-        NS' [A'S + S A, S B1, C1'; B1'S, -g I, D11'; C1, D11, -g I] NS <= 0,     NS spans the kernel of [C2 D21 0].
+        NR' [A R + R A', R C1', B1; C1 R, -g I, D11; B1', D11', -g I] NR <= 0,   NR = kernel of [B2' D12' 0],
+        NS' [A'S + S A, S B1, C1'; B1'S, -g I, D11'; C1, D11, -g I] NS <= 0,     NS = kernel of [C2 D21 0].
 
-    `lyapunov` (n, n) certifies some static gain at `gamma`, so that in its coordinates R = S = I is feasible at g = 1.
-    R and S often run to 1e5: the problem is solved again with R = r R~ r', S = s S~ s' until its value settles.
+    `lyapunov` (n, n) certifies some static gain at `gamma`, so that in its coordinates R = S = I is feasible at
+    g = 1. R and S often run to 1e5: solved again with R = r R~ r', S = s S~ s' until the value settles.
     Source: Gahinet & Apkarian 1994, Int. J. Robust Nonlinear Control 4:421, theorem 4.3.
     """
     p = _recentred(plant, lyapunov, gamma)
     one = np.eye(p.order)
     r, s, value = one, one, 0.0
     for _ in range(_PASSES):
-        R, S, g = cp.Variable(one.shape, symmetric=True), cp.Variable(one.shape, symmetric=True), cp.Variable()
-        ri, si = np.linalg.inv(r), np.linalg.inv(s)
+        R, S = cp.Variable(one.shape, symmetric=True), cp.Variable(one.shape, symmetric=True)
+        g, ri, si = cp.Variable(), np.linalg.inv(r), np.linalg.inv(s)
         constraints = [
             cp.bmat([[R, ri @ si.T], [si @ ri.T, S]]) >> 0,
-            _projected((ri @ p.A @ r).T, p.C1 @ r, ri @ p.B1, p.D11, np.hstack([(ri @ p.B2).T, p.D12.T]), R, g) << 0,
-            _projected(s.T @ p.A @ si.T, p.B1.T @ s, si @ p.C1.T, p.D11.T, np.hstack([p.C2 @ si.T, p.D21]), S, g) << 0,
+            _projected(_moved(_transposed(p), ri.T), R, g) << 0,
+            _projected(_moved(p, si.T), S, g) << 0,
         ]
         if not _solve(g, constraints, deadline):
             break
@@ -60,14 +61,15 @@ def single_step_gain(plant: GeneralisedPlant, gamma: float, deadline: float) -> 
         minimise g over X > 0, Y:
         [A X + X A' + B2 Y + Y'B2', B1, X C1' + Y'D12'; B1', -g I, D11'; C1 X + D12 Y, D11, -g I] < 0,
 
-    first with X, Y free (state feedback, solution X*), then in states where X* = I with X = Q XQ Q' + R XR R', Y = YR R',
-    C2 Q = 0, C2 R = I: then Y = K C2 X with K = YR XR^-1. `gamma` sets the scale of g. The effect of D21 on the norm
-    is left out, unless D12 = 0, where the transposed problem takes it in. Not every stabilisable plant has such a gain.
+    first with X, Y free (state feedback, solution X*), then in states where X* = I with X = Q XQ Q' + R XR R',
+    Y = YR R', C2 Q = 0, C2 R = I: then Y = K C2 X with K = YR XR^-1. `gamma` sets the scale of g. The effect of D21
+    on the norm is left out, unless D12 = 0, where the transposed problem takes it in. Not every plant that can be
+    stabilised has such a gain.
     Source: Rubio-Massegu, Palacios-Quinonero, Rossell & Karimi 2013, Math. Probl. Eng. 2013:907056.
     """
     if np.any(plant.D21) and not np.any(plant.D12):
-        gain = single_step_gain(_transposed(plant), gamma, deadline)
-        return None if gain is None else gain.T
+        swapped = single_step_gain(_transposed(plant), gamma, deadline)
+        return None if swapped is None else swapped.T
     if np.linalg.matrix_rank(plant.C2) < plant.measured_count:
         return None
     one = np.eye(plant.order)
@@ -111,39 +113,40 @@ def _centre(plant: GeneralisedPlant, gamma: float, g: float, X: Any, Y: Any, dea
 
 
 def _bounded_real(plant: GeneralisedPlant, gamma: float, X: Any, Y: Any, g: Any) -> Any:
-    B1, C1, D11, D12 = plant.B1 / np.sqrt(gamma), plant.C1 / np.sqrt(gamma), plant.D11 / gamma, plant.D12 / np.sqrt(gamma)
-    flow, seen = plant.A @ X + plant.B2 @ Y, C1 @ X + D12 @ Y
+    B1, D11 = plant.B1 / np.sqrt(gamma), plant.D11 / gamma
+    flow, seen = plant.A @ X + plant.B2 @ Y, (plant.C1 @ X + plant.D12 @ Y) / np.sqrt(gamma)
     H = cp.bmat(
         [
             [flow + flow.T, B1, seen.T],
             [B1.T, -g * np.eye(B1.shape[1]), D11.T],
-            [seen, D11, -g * np.eye(len(C1))],
+            [seen, D11, -g * np.eye(len(D11))],
         ]
     )
     return (H + H.T) / 2
 
 
-def _projected(A: Array, inner: Array, outer: Array, D: Array, blocked: Array, X: Any, g: Any) -> Any:
-    """N' [A'X + X A, X inner', outer; inner X, -g I, D; outer', D', -g I] N with N the kernel of [blocked, 0]."""
-    rows, columns = D.shape
+def _projected(plant: GeneralisedPlant, X: Any, g: Any) -> Any:
+    """N' [A'X + X A, X B1, C1'; B1'X, -g I, D11'; C1, D11, -g I] N with N the kernel of [C2, D21, 0]."""
+    A, B1, C1, D11 = plant.A, plant.B1, plant.C1, plant.D11
     full = cp.bmat(
         [
-            [A.T @ X + X @ A, X @ inner.T, outer],
-            [inner @ X, -g * np.eye(rows), D],
-            [outer.T, D.T, -g * np.eye(columns)],
+            [A.T @ X + X @ A, X @ B1, C1.T],
+            [B1.T @ X, -g * np.eye(B1.shape[1]), D11.T],
+            [C1, D11, -g * np.eye(len(C1))],
         ]
     )
-    N = scipy.linalg.block_diag(scipy.linalg.null_space(blocked), np.eye(columns))
+    kernel = scipy.linalg.null_space(np.hstack([plant.C2, plant.D21]))
+    N = scipy.linalg.block_diag(kernel, np.eye(len(C1)))
     product = N.T @ full @ N
     return (product + product.T) / 2
 
 
 def _recentred(plant: GeneralisedPlant, lyapunov: Array, gamma: float) -> GeneralisedPlant:
-    """Return the plant in states L'x (lyapunov = L L') and time such that ||A|| = 1, w and z scaled so that `gamma` becomes 1.
+    """Return the plant in states L'x (lyapunov = L L'), in time such that ||A|| = 1, with w and z such that gamma = 1.
 
     Columns of B2 and rows of C2 have unit length; gains are not kept track of.
     """
-    p = _moved(plant, scipy.linalg.solve_triangular(np.linalg.cholesky(lyapunov), np.eye(plant.order), lower=True).T)
+    p = _moved(plant, np.linalg.inv(np.linalg.cholesky(lyapunov)).T)
     rate = np.linalg.norm(p.A, 2)
     state, size = np.sqrt(rate), np.sqrt(gamma)
     controls, measured = _lengths(p.B2) / state, _lengths(p.C2.T)[:, None] / state
@@ -159,13 +162,12 @@ def _recentred(plant: GeneralisedPlant, lyapunov: Array, gamma: float) -> Genera
     )
 
 
-def _moved(plant: GeneralisedPlant, T: Array) -> GeneralisedPlant:
+def _moved(plant: GeneralisedPlant, T: NDArray[Any]) -> GeneralisedPlant:
     """Return the plant in states x~ with x = T x~."""
     inverse = np.linalg.inv(T)
     A, B1, B2 = inverse @ plant.A @ T, inverse @ plant.B1, inverse @ plant.B2
-    return GeneralisedPlant(
-        A, B1, B2, plant.C1 @ T, plant.C2 @ T, plant.D11, plant.D12, plant.D21, plant.structure
-    )
+    C1, C2 = plant.C1 @ T, plant.C2 @ T
+    return GeneralisedPlant(A, B1, B2, C1, C2, plant.D11, plant.D12, plant.D21, plant.structure)
 
 
 def _transposed(plant: GeneralisedPlant) -> GeneralisedPlant:

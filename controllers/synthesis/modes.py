@@ -1,14 +1,17 @@
-"""Can any gain stabilise the plant? The tests of Popov, Belevitch and Hautus, and their form for structured gains.
+"""Can any gain stabilise the plant? The tests of Popov, Belevitch and Hautus, also for structured gains.
 
-A mode s of A with Re s >= 0 stays where it is, whatever the gain, if rank [A - s I, B2] < n (u does not reach it) or
-rank [A - s I; C2] < n (y does not see it). With a structured gain it may stay although both ranks are full.
+A mode s of A with Re s >= 0 stays where it is, whatever the gain, if rank [A - s I, B2] < n (u does not reach it)
+or rank [A - s I; C2] < n (y does not see it). With a structured gain it may stay although both ranks are full.
 """
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
-from controllers.synthesis.plant import Array
+import numpy as np
+from numpy.typing import NDArray
+
+from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.scaling import Scaled
 from seatsim.errors import SynthesisError
 
@@ -27,26 +30,26 @@ def require_stabilisable(scaled: Scaled) -> None:
     for mode in modes[modes.real >= -_RANK_TOLERANCE]:
         shifted = plant.A - mode * np.eye(plant.order)
         if _loses_rank(np.hstack([shifted, plant.B2])):
-            raise _fixed(mode * scaled.rate, "the control input does not reach it (the plant is not stabilisable)")
+            raise _fixed(mode * scaled.rate, "is not reached by the control input (not stabilisable)")
         if _loses_rank(np.vstack([shifted, plant.C2]).T):
-            raise _fixed(mode * scaled.rate, "the measurement does not see it (the plant is not detectable)")
-        if not plant.free.all() and _stays(plant.A, plant.B2, plant.C2, plant.free, mode):
-            raise _fixed(mode * scaled.rate, "no gain of this structure moves it (a fixed mode of the structure)")
+            raise _fixed(mode * scaled.rate, "is not seen by the measurement (not detectable)")
+        if not plant.free.all() and _stays(plant, mode):
+            raise _fixed(mode * scaled.rate, "is moved by no gain of this structure (a fixed mode)")
 
 
-def _loses_rank(wide: Array) -> bool:
+def _loses_rank(wide: NDArray[Any]) -> bool:
     values = np.linalg.svd(wide, compute_uv=False)
     return bool(values[-1] <= _RANK_TOLERANCE * values[0])
 
 
-def _stays(A: Array, B2: Array, C2: Array, free: Array, mode: complex) -> bool:
+def _stays(plant: GeneralisedPlant, mode: complex) -> bool:
     """Whether three random gains of the structure all leave an eigenvalue at `mode`."""
     random = np.random.default_rng(0)
-    loops = [A + B2 @ (random.standard_normal(free.shape) * free) @ C2 for _ in range(3)]
-    distances = [np.abs(np.linalg.eigvals(loop) - mode).min() for loop in loops]
+    loops = [plant.close(random.standard_normal(plant.free.shape) * plant.free) for _ in range(3)]
+    distances = [np.abs(loop.poles - mode).min() for loop in loops]
     return bool(max(distances) <= _FIXED_TOLERANCE * max(1.0, abs(mode)))
 
 
 def _fixed(mode: complex, reason: str) -> SynthesisError:
     where = f"{mode.real:.4g}" if abs(mode.imag) < 1e-12 else f"{mode.real:.4g} +- {abs(mode.imag):.4g}j"
-    return SynthesisError(f"no gain can stabilise this plant: {reason} at its mode {where} 1/s")
+    return SynthesisError(f"no gain can stabilise this plant: its mode {where} 1/s {reason}")

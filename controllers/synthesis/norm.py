@@ -40,21 +40,23 @@ def response(loop: Loop, frequencies: ArrayLike) -> NDArray[np.complex128]:
 
 def largest_gains(loop: Loop, frequencies: ArrayLike) -> Array:
     """Return sigma_max(T(j omega)) at frequencies in rad/s."""
-    values: Array = np.linalg.svd(response(loop, frequencies), compute_uv=False)[:, 0]
+    values: Array = np.linalg.svd(response(loop, frequencies), compute_uv=False)[:, 0].astype(float)
     return values
 
 
 def balanced(loop: Loop) -> tuple[Loop, Array]:
     """Return the loop in balanced states x~, and the factors of x = diag(factors) x~."""
-    _, (states, _) = scipy.linalg.matrix_balance(loop.A, permute=False, separate=True)
+    _, (factors, _) = scipy.linalg.matrix_balance(loop.A, permute=False, separate=True)
+    states: Array = np.asarray(factors, dtype=float)
     return Loop(loop.A * states / states[:, None], loop.B / states[:, None], loop.C * states, loop.D), states
 
 
 def hinf_norm(loop: Loop, guesses: ArrayLike = (), tolerance: float = 1e-10) -> Peak:
     """Return the H-infinity norm and its peak frequency by bisection on the Hamiltonian matrix.
 
-    The value is attained at the frequency returned, and no frequency exceeds it by more than `tolerance` (relative) or
-    the rounding of the Hamiltonian's eigenvalues. `guesses` are frequencies to look at first. An unstable loop has norm infinity.
+    The value is attained at the frequency returned; no frequency exceeds it by more than `tolerance` (relative) or the
+    rounding of the Hamiltonian's eigenvalues. `guesses` are frequencies to look at first. An unstable loop has an
+    infinite norm.
     """
     loop, _ = balanced(loop)
     poles = np.linalg.eigvals(loop.A)
@@ -117,11 +119,8 @@ def local_peaks(loop: Loop, level: float) -> list[Peak]:
     values = largest_gains(loop, omega)
     left, right = np.append(-np.inf, values[:-1]), np.append(values[1:], -np.inf)
     # On a plateau, rounding alone makes tops: one side at least must fall off by more.
-    tops = np.flatnonzero(
-        (values >= np.maximum(left, right))
-        & (values > np.minimum(left, right) * (1 + _ROUNDING))
-        & (values >= level * values.max())
-    )
+    clear = (values >= np.maximum(left, right)) & (values > np.minimum(left, right) * (1 + _ROUNDING))
+    tops = np.union1d(np.flatnonzero(clear & (values >= level * values.max())), values.argmax())
     # The grid ends with infinity, which has no neighbourhood to refine.
     inner = tops[tops < len(omega) - 2]
     refined = _zoom(loop, omega[np.maximum(inner - 1, 0)], omega[inner + 1])

@@ -9,6 +9,8 @@ Source: Apkarian & Noll 2006, IEEE Trans. Autom. Control 51:71; Burke, Henrion, 
 
 from __future__ import annotations
 
+from typing import Any, cast
+
 import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike
@@ -25,8 +27,8 @@ _INSIDE = 0.999
 class Objective:
     """Abscissa and norm as functions of the free gains, a vector of length `size`, in scaled coordinates.
 
-    `limits` (nu, ny) bounds the magnitude of every gain. The search runs over angles theta with gain = limit sin(theta / limit):
-    nearly the identity for small gains, and a gain at its limit is an ordinary stationary point.
+    `limits` (nu, ny) bounds the magnitude of every gain. The search runs over angles theta with gain =
+    limit sin(theta / limit): nearly the identity for small gains, and a limit is an ordinary stationary point.
     """
 
     def __init__(self, plant: GeneralisedPlant, limits: Array) -> None:
@@ -36,29 +38,29 @@ class Objective:
         self.size = len(self.limits)
 
     def gain(self, entries: Array) -> Array:
-        """Gain matrix with these free entries."""
+        """Return the gain matrix with these free entries."""
         K = np.zeros(self.free.shape)
         K[self.free] = entries
         return K
 
     def loop(self, entries: Array) -> Loop:
-        """Closed loop with these free entries."""
+        """Return the closed loop with these free entries."""
         return self.plant.close(self.gain(entries))
 
     def entries(self, theta: Array) -> Array:
-        """Free entries of the gain at angles theta."""
+        """Return the free entries of the gain at angles theta."""
         values: Array = self.limits * np.sin(theta / self.limits)
         return values
 
     def angles(self, entries: Array) -> Array:
-        """Angles of free entries; beyond the limits, of the nearest entries within."""
+        """Return the angles of free entries; beyond the limits, of the nearest entries within."""
         values: Array = self.limits * np.arcsin(np.clip(entries / self.limits, -_INSIDE, _INSIDE))
         return values
 
     def abscissa(self, theta: Array) -> tuple[float, Array]:
-        """Spectral abscissa and its gradient by theta."""
+        """Return the spectral abscissa and its gradient by theta."""
         loop = self.loop(self.entries(theta))
-        values, left, right = scipy.linalg.eig(loop.A, left=True, right=True)
+        values, left, right = cast(Any, scipy.linalg.eig(loop.A, left=True, right=True))
         place = int(values.real.argmax())
         row, column = left[:, place].conj() @ self.plant.B2, self.plant.C2 @ right[:, place]
         overlap = left[:, place].conj() @ right[:, place]
@@ -69,7 +71,7 @@ class Objective:
         return float(values.real[place]), self._by_theta(slope, theta)
 
     def log_norm(self, theta: Array) -> tuple[float, Array]:
-        """Logarithm of the H-infinity norm and its gradient by theta; infinity where the loop is not stable."""
+        """Return the logarithm of the H-infinity norm and its gradient by theta; infinity where not stable."""
         loop = self.loop(self.entries(theta))
         if loop.abscissa >= -STABILITY_MARGIN:
             return np.inf, np.zeros(self.size)
@@ -80,7 +82,7 @@ class Objective:
         return float(np.log(peak.value)), self._by_theta(slopes[0, 0] / values[0, 0], theta)
 
     def singular_values(self, loop: Loop, frequencies: ArrayLike, count: int) -> tuple[Array, Array]:
-        """The `count` largest singular values of T at each frequency, (m, count), and their gradients by K, (m, count, nu, ny)."""
+        """Return the `count` largest singular values of T, (m, count), and their gradients by K, (m, count, nu, ny)."""
         plant = self.plant
         U, values, Vh = np.linalg.svd(response(loop, frequencies), full_matrices=False)
         from_control = response(Loop(loop.A, plant.B2, loop.C, plant.D12), frequencies)

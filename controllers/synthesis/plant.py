@@ -4,11 +4,13 @@
     z  = C1 x + D11 w + D12 u     z: what is to stay small
     y  = C2 x + D21 w             y: what is measured (no direct path from u to y)
     u  = K y
+
+B2, C2 are COMPleib's B, C.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -76,7 +78,8 @@ class GeneralisedPlant:
         for name in MATRICES:
             object.__setattr__(self, name, _matrix(name, getattr(self, name)))
         _check_shapes(self)
-        object.__setattr__(self, "structure", _structure(self.structure, self.control_count, self.measured_count))
+        shape = (self.control_count, self.measured_count)
+        object.__setattr__(self, "structure", _structure(self.structure, shape))
 
     @property
     def order(self) -> int:
@@ -86,7 +89,7 @@ class GeneralisedPlant:
     @property
     def control_count(self) -> int:
         """Number of control inputs nu."""
-        return self.B2.shape[1]
+        return int(self.B2.shape[1])
 
     @property
     def measured_count(self) -> int:
@@ -104,9 +107,8 @@ class GeneralisedPlant:
         """Return the loop of `u = gain @ y`: A + B2 K C2, B1 + B2 K D21, C1 + D12 K C2, D11 + D12 K D21."""
         K = np.asarray(gain, dtype=float)
         left, right = self.B2 @ K, self.D12 @ K
-        return Loop(
-            self.A + left @ self.C2, self.B1 + left @ self.D21, self.C1 + right @ self.C2, self.D11 + right @ self.D21
-        )
+        A, B = self.A + left @ self.C2, self.B1 + left @ self.D21
+        return Loop(A, B, self.C1 + right @ self.C2, self.D11 + right @ self.D21)
 
     @classmethod
     def from_state_space(
@@ -132,12 +134,14 @@ class GeneralisedPlant:
 
 
 def _matrix(name: str, value: Any) -> Array:
+    if np.iscomplexobj(value):
+        raise InputError(f"{name} is complex; a matrix of real numbers is wanted")
     try:
         matrix = np.array(value, dtype=float)
     except (TypeError, ValueError) as error:
         raise InputError(f"{name} is not a matrix of real numbers: {error}") from error
     if matrix.ndim != 2 or 0 in matrix.shape:
-        raise InputError(f"{name} has shape {matrix.shape}; a matrix with at least one row and one column is wanted")
+        raise InputError(f"{name} has shape {matrix.shape}; a matrix with a row and a column at least is wanted")
     if not np.isfinite(matrix).all():
         row, column = np.argwhere(~np.isfinite(matrix))[0]
         raise InputError(f"{name}[{row}, {column}] is {matrix[row, column]}; finite numbers are wanted")
@@ -149,7 +153,6 @@ def _check_shapes(plant: GeneralisedPlant) -> None:
     n, nw, nu = len(plant.A), plant.B1.shape[1], plant.B2.shape[1]
     nz, ny = len(plant.C1), len(plant.C2)
     wanted = ((n, n), (n, nw), (n, nu), (nz, n), (ny, n), (nz, nw), (nz, nu), (ny, nw))
-    assert len(wanted) == len(MATRICES) == len(fields(plant)) - 1
     for name, shape in zip(MATRICES, wanted, strict=True):
         found = getattr(plant, name).shape
         if found != shape:
@@ -159,12 +162,12 @@ def _check_shapes(plant: GeneralisedPlant) -> None:
             )
 
 
-def _structure(value: Any, rows: int, columns: int) -> NDArray[np.bool_] | None:
+def _structure(value: Any, shape: tuple[int, int]) -> NDArray[np.bool_] | None:
     if value is None:
         return None
     mask = _matrix("structure", value)
-    if mask.shape != (rows, columns) or not np.isin(mask, (0.0, 1.0)).all():
-        raise InputError(f"structure must be a ({rows}, {columns}) matrix of True (free) and False (zero), got {value!r}")
+    if mask.shape != shape or not np.isin(mask, (0.0, 1.0)).all():
+        raise InputError(f"structure must be a {shape} matrix of True (free) and False (stays zero), got {value!r}")
     if not mask.any():
         raise InputError("structure leaves no gain free")
     return mask.astype(bool)
@@ -172,6 +175,7 @@ def _structure(value: Any, rows: int, columns: int) -> NDArray[np.bool_] | None:
 
 def _check_split(disturbances: int, performance: int, shape: tuple[int, ...]) -> None:
     outputs, inputs = shape
-    for name, count, total in (("disturbance inputs", disturbances, inputs), ("performance outputs", performance, outputs)):
+    parts = (("disturbance inputs", disturbances, inputs), ("performance outputs", performance, outputs))
+    for name, count, total in parts:
         if not 0 < count < total:
-            raise InputError(f"{count} {name} of {total}: at least one must be on each side of the split")
+            raise InputError(f"split: {count} {name} of {total}; at least one must be on each side")

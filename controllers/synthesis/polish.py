@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import time
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
@@ -67,7 +68,7 @@ def _renewed(objective: Objective, entries: Array, old: Array) -> Array:
 
 
 def _solve(objective: Objective, entries: Array, frequencies: Array, level: float, trust: float) -> tuple[Array, float]:
-    """Lower the highest peak at fixed frequencies; return the entries and that peak. Variables: steps in `unit`, t / level - 1."""
+    """Lower the highest peak at fixed frequencies; return entries and that peak. Variables: steps, t / level - 1."""
     largest = np.abs(entries).max()
     unit = np.maximum(np.abs(entries), 0.1 * largest) if largest > 0 else np.ones(len(entries))
     low = np.maximum((-objective.limits - entries) / unit, -trust)
@@ -81,7 +82,7 @@ def _solve(objective: Objective, entries: Array, frequencies: Array, level: floa
         by_step = slopes[..., objective.free].reshape(values.size, -1) * unit / level
         return 1 + x[-1] - values.ravel() / level, np.hstack([-by_step, np.ones((values.size, 1))])
 
-    found = minimize(
+    found: Any = minimize(  # type: ignore[call-overload]
         lambda x: x[-1],
         np.zeros(len(entries) + 1),
         jac=lambda x: np.eye(len(x))[-1],

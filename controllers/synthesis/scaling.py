@@ -1,6 +1,7 @@
 """Scaled coordinates, in which synthesis works: LMIs and searches fail in raw SI units.
 
-    x = diag(states) x~,  u = diag(controls) u~,  y~ = diag(measured) y,  t~ = rate t,  K = diag(controls) K~ diag(measured)
+    x = diag(states) x~,  u = diag(controls) u~,  y~ = diag(measured) y,  t~ = rate t,
+    K = diag(controls) K~ diag(measured)
 
 All factors are powers of two, so that scaling costs no rounding. w and z are left alone: gamma is the same number.
 """
@@ -42,9 +43,7 @@ def scale(plant: GeneralisedPlant) -> Scaled:
         states = states * step
         if np.all(step == 1.0):
             break
-    states = states * _power_of_two(
-        np.sqrt(_size(plant.B1 / states[:, None] / rate) / _size(plant.C1 * states))
-    )
+    states = states * _power_of_two(np.sqrt(_size(plant.B1 / states[:, None] / rate) / _size(plant.C1 * states)))
     controls, measured = _input_output(plant, states, rate)
     moved = GeneralisedPlant(
         plant.A * states / states[:, None] / rate,
@@ -75,7 +74,8 @@ def _balancing_step(plant: GeneralisedPlant, states: Array, rate: float) -> Arra
     r, c = np.linalg.norm(rows, axis=1), np.linalg.norm(columns, axis=0)
     ratio = np.divide(r, c, out=np.ones_like(r), where=(r > 0) & (c > 0))
     # A quarter of the exponent at a time: all states move at once, and full steps would overshoot.
-    return np.exp2(np.round(np.log2(ratio) / 4))
+    step: Array = np.exp2(np.round(np.log2(ratio) / 4))
+    return step
 
 
 def _mean_rate(A: Array) -> float:

@@ -16,14 +16,15 @@ from controllers.synthesis.design import Design
 from controllers.synthesis.modes import require_stabilisable
 from controllers.synthesis.norm import Peak, grid_norm, hinf_norm
 from controllers.synthesis.objective import Objective
-from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant, Loop, StateSpace
-from controllers.synthesis.scaling import Scaled, scale
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant, Loop, StateSpace
+from controllers.synthesis.scaling import scale
 from controllers.synthesis.starts import convex_start, starting_gains
 from seatsim.errors import InputError, SynthesisError
 
 _FIRST_STARTS, _MORE_STARTS = 6, 24
 # Shares of the time budget: starts are explored until the first, refined until the second; the rest is for proofs.
 _EXPLORED, _REFINED = 0.4, 0.8
+_ROUNDING = 1e-10
 
 
 @overload
@@ -68,10 +69,12 @@ def synthesise(
 ) -> Design:
     """Find the static output feedback `u = gain @ y` with the smallest H-infinity norm from w to z.
 
-    The plant is given by its eight matrices (shapes: `GeneralisedPlant`), as a `GeneralisedPlant` (also with a structure:
-    gains that stay zero), or as a `control.StateSpace` with inputs [w; u], outputs [z; y] and `split = (nw, nz)`.
-    `max_gain` bounds every |gain_ij| in the user's units; `time_budget` in s; the same seed gives the same design, unless
-    time runs out. The problem is not convex: the answer is a certified local optimum, the best of several starts.
+    The plant is given by its eight matrices (shapes: `GeneralisedPlant`), as a `GeneralisedPlant` (which may also keep
+    gains at zero), or as a `control.StateSpace` with inputs [w; u], outputs [z; y] and `split = (nw, nz)`.
+    `max_gain` bounds every |gain_ij| in the user's units: many infima lie at infinite gain, so quote gamma with it.
+    `time_budget` in s: the search stops there, a computation under way may take a few seconds more. The same seed
+    gives the same design, unless time runs out. The problem is not convex: the answer is the best of several starts,
+    a local optimum with a certificate of its own gamma.
 
     Raises:
         InputError: a matrix, the split or an option is wrong.
@@ -83,8 +86,11 @@ def synthesise(
     scaled = scale(plant)
     require_stabilisable(scaled)
     objective = Objective(scaled.plant, scaled.scaled_gain(np.full(plant.free.shape, float(max_gain))))
-    scaled_gain = _search(objective, scaled, seed, begin, time_budget)
-    gain = np.clip(scaled.physical_gain(scaled_gain), -max_gain, max_gain)
+    found = _explore(objective, scaled.plant, seed, begin + _EXPLORED * time_budget)
+    if not found.candidates:
+        raise SynthesisError(_not_stabilised(found, scaled.rate, max_gain, time_budget))
+    best = objective.gain(refine(objective, found.candidates, begin + _REFINED * time_budget).entries)
+    gain = np.clip(scaled.physical_gain(best), -max_gain, max_gain)
     loop = plant.close(gain)
     peak = verified_norm(loop)
     certificate = certify(loop, peak.value)
@@ -92,7 +98,7 @@ def synthesise(
         gain=gain,
         gamma=peak.value,
         max_gain=float(max_gain),
-        lower_bound=lower_bound(plant, gain, certificate, begin + time_budget),
+        lower_bound=min(lower_bound(plant, gain, certificate, begin + time_budget), peak.value),
         certificate=certificate,
         peak_frequency=peak.frequency,
         poles=loop.poles,
@@ -100,9 +106,9 @@ def synthesise(
 
 
 def verified_norm(loop: Loop) -> Peak:
-    """Return the H-infinity norm on which bisection and frequency grid agree: where the grid finds more, it leads."""
-    grid = grid_norm(loop)
-    return max(hinf_norm(loop, guesses=[grid.frequency]), grid)
+    """Return the H-infinity norm on which bisection and frequency grid agree; where the grid finds more, it leads."""
+    norm, grid = hinf_norm(loop), grid_norm(loop)
+    return norm if norm.value >= grid.value * (1 - _ROUNDING) else hinf_norm(loop, guesses=[grid.frequency])
 
 
 def _as_plant(parts: tuple[Any, ...], split: tuple[int, int] | None) -> GeneralisedPlant:
@@ -125,23 +131,19 @@ def _check_options(max_gain: float, time_budget: float) -> None:
             raise InputError(f"{name} is {value}; a finite number above 0 is wanted")
 
 
-def _search(objective: Objective, scaled: Scaled, seed: int, begin: float, budget: float) -> Array:
-    """Return the best gain in scaled coordinates. Few starts where all agree, many where they do not."""
-    plant, until = scaled.plant, begin + _EXPLORED * budget
+def _explore(objective: Objective, plant: GeneralisedPlant, seed: int, deadline: float) -> Descent:
+    """Descend from a few starts where all lead to the same value, from many where they do not."""
     starts = starting_gains(plant, seed)
-    found = explore(objective, islice(starts, _FIRST_STARTS), until)
-    if not found.agrees:
-        size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
-        convex = convex_start(plant, found.candidates[0].gamma if found.candidates else size, until)
-        found = found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), until))
-    if not found.candidates:
-        raise SynthesisError(_not_stabilised(found, objective, scaled, budget))
-    return objective.gain(refine(objective, found.candidates, begin + _REFINED * budget).entries)
+    found = explore(objective, islice(starts, _FIRST_STARTS), deadline)
+    if found.agrees:
+        return found
+    size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
+    convex = convex_start(plant, found.candidates[0].gamma if found.candidates else size, deadline)
+    return found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline))
 
 
-def _not_stabilised(found: Descent, objective: Objective, scaled: Scaled, budget: float) -> str:
-    limit = float(scaled.physical_gain(objective.gain(objective.limits)).max())
+def _not_stabilised(found: Descent, rate: float, max_gain: float, budget: float) -> str:
     return (
-        f"no stabilising gain with |gain| <= {limit:.4g} was found from {found.starts} starts in at most {budget:g} s: "
-        f"the least spectral abscissa reached is {found.abscissa * scaled.rate:.3g} 1/s"
+        f"no stabilising gain with |gain| <= {max_gain:g} was found from {found.starts} starts in at most "
+        f"{budget:g} s; the least spectral abscissa reached is {found.abscissa * rate:.3g} 1/s"
     )

@@ -14,6 +14,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,7 +22,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, least_squares
 
-import seatsim
 from controllers import synthesise
 from controllers.static_output_feedback import Weights, generalised
 from seatsim.dampers.asymmetric import Yu2019
@@ -76,7 +76,7 @@ def figures(scenario: Scenario) -> Figures:
 
 def scenarios(settings: Settings, temperature: float = 80.0) -> dict[str, Scenario]:
     """Return the study's three models at one temperature, under other settings."""
-    return {str(s.label["variant"]): s for s in load(STUDY, {**settings, "temperature": temperature})}
+    return {str(s.label["variant"]): s for s in load(STUDY, {**settings, "temperature": [temperature]})}
 
 
 def with_damper(scenario: Scenario, record: Yu2019) -> Scenario:
@@ -89,13 +89,22 @@ def with_damper(scenario: Scenario, record: Yu2019) -> Scenario:
     return replace(scenario, damper=replace(scenario.damper, record=record), control=control)
 
 
+def study_damper() -> Yu2019:
+    """Return the study's damper, whose backbones P and N stand in the ratio 1.1 to 0.9."""
+    damper = scenarios({})["III"].damper.record
+    assert isinstance(damper, Yu2019)
+    return damper
+
+
 def asymmetric(part: float) -> Yu2019:
-    """Return the default damper with backbones P and N in the ratio (1 + part) to (1 - part); 0.1 is the default."""
-    damper = Yu2019()
-    p, n = (tuple(c * scale for c in side) for side, scale in ((damper.p, (1 + part) / 1.1), (damper.n, (1 - part) / 0.9)))
+    """Return the study's damper with backbones P and N in the ratio (1 + part) to (1 - part)."""
+    damper = study_damper()
+    p = tuple(c * (1 + part) / 1.1 for c in damper.p)
+    n = tuple(c * (1 - part) / 0.9 for c in damper.n)
     return damper._replace(p=p, n=n)
 
 
+@cache
 def seats_of_gain(mass: float, weight: float) -> tuple[float, float]:
     """Return the suspension's stiffness and damping for which the published K is the H-infinity optimum.
 
@@ -122,7 +131,7 @@ def excess(seat: Seat, settings: Settings, damper: Yu2019) -> float:
 
 def solved_with_gain(mass: float, settings: Settings, damper: Yu2019 | None = None) -> Seat:
     """Return stiffness, damping and speed from model I's two figures and from K being the optimum."""
-    settings, damper = {**settings, "plant.driver_mass": mass}, damper or Yu2019()
+    settings, damper = {**settings, "plant.driver_mass": mass}, damper or study_damper()
 
     def seat(weight: float) -> Seat:
         return Seat(*seats_of_gain(mass, weight), 14.0, weight)
@@ -136,7 +145,7 @@ def solved_with_gain(mass: float, settings: Settings, damper: Yu2019 | None = No
 
 def solved(mass: float, damping: float, settings: Settings, damper: Yu2019 | None = None) -> Seat:
     """Return stiffness and speed from model I's two figures, for a given damping."""
-    settings, damper = {**settings, "plant.driver_mass": mass}, damper or Yu2019()
+    settings, damper = {**settings, "plant.driver_mass": mass}, damper or study_damper()
 
     def seat(stiffness: float) -> Seat:
         return Seat(stiffness, damping, 14.0)
@@ -153,7 +162,7 @@ def row(settings: Settings, damper: Yu2019 | None = None) -> str:
     """Return the three models at 80 degC as text, with their errors against the paper."""
     cells = []
     for name, scenario in scenarios(settings).items():
-        got = figures(with_damper(scenario, damper or Yu2019()))
+        got = figures(with_damper(scenario, damper or study_damper()))
         errors = [100 * (ours / paper - 1) for ours, paper in zip(got[:2], PUBLISHED[name], strict=True)]
         cells.append(f"{name} {got.acceleration:.3f} {got.displacement:.2f} ({errors[0]:+.1f} {errors[1]:+.1f} %)")
     return " | ".join(cells)
@@ -169,7 +178,10 @@ def masses() -> None:
     """Print the constants and the predictions for other drivers."""
     for mass in (70.0, 80.0, 90.0, 100.0, 120.0):
         seat = solved_with_gain(mass, {})
-        print(f"m {mass:.0f}: kf {seat.stiffness:.0f} cf {seat.damping:.0f} V {seat.speed:.2f} e1 {seat.weight:.1f}: ", end="")
+        print(
+            f"m {mass:.0f}: kf {seat.stiffness:.0f} cf {seat.damping:.0f} V {seat.speed:.2f} e1 {seat.weight:.1f}: ",
+            end="",
+        )
         print(row({"plant.driver_mass": mass, **seat.settings()}))
 
 
@@ -186,9 +198,11 @@ def asymmetry() -> None:
     """Print the predictions for other degrees of asymmetry, at the study's mass and damping."""
     for part in (0.05, 0.1, 0.2, 0.3, 0.4, 0.5):
         damper = asymmetric(part)
-        seat = solved(80.0, 186.0, {}, damper)
+        seat = solved(80.0, 191.0, {}, damper)
         r2, md, _ = indices(_loops(damper), _loops(damper._replace(asymmetry=0.0)))
-        print(f"{part:.2f} (symmetric part R2 {r2:.4f} MD {md:.3f}): kf {seat.stiffness:.0f} V {seat.speed:.2f}: ", end="")
+        print(
+            f"{part:.2f} (symmetric part R2 {r2:.4f} MD {md:.3f}): kf {seat.stiffness:.0f} V {seat.speed:.2f}: ", end=""
+        )
         print(row(seat.settings(), damper))
 
 
@@ -198,7 +212,9 @@ def means() -> None:
         for name, scenario in scenarios({}, temperature).items():
             got = figures(scenario)
             spread = (got.displacement**2 - got.mean**2) ** 0.5
-            print(f"{temperature:.0f} degC {name}: RMS {got.displacement:.2f}, mean {got.mean:+.2f}, without it {spread:.2f}")
+            print(
+                f"{temperature:.0f} degC {name}: {got.displacement:.2f}, mean {got.mean:+.2f}, without it {spread:.2f}"
+            )
 
 
 def settings() -> None:
@@ -210,7 +226,6 @@ def settings() -> None:
         "sample time 10 ms": {"controller.sample_time": 0.01},
         "current to 0.8 A": {"actuator.max_current": 0.8},
         "current to 2.0 A": {"actuator.max_current": 2.0},
-        "frame 30 kg": {"plant.frame_mass": 30.0},
         "cushion 30 kN/m": {"plant.cushion_stiffness": 30000.0},
         "another road": {"seed": 2},
     }
@@ -228,7 +243,9 @@ def indices(test: Array, model: Array) -> tuple[float, float, float]:
 def conventional_fit(damper: Yu2019) -> tuple[Yu2017, tuple[float, float, float]]:
     """Return eq 5 fitted to a damper's loops over the paper's bench tests at 20 degC, and its indices."""
     tests = _tests(damper)
-    force, v, x = (np.concatenate([getattr(t, name)[:-1] for t, _ in tests]) for name in ("force", "velocity", "displacement"))
+    force, v, x = (
+        np.concatenate([getattr(t, name)[:-1] for t, _ in tests]) for name in ("force", "velocity", "displacement")
+    )
     size = len(tests[0][0].force) - 1
     current = np.repeat([i for _, i in tests], size)
     peak = np.repeat([t.velocity.max() for t, _ in tests], size)
@@ -247,7 +264,7 @@ def conventional_fit(damper: Yu2019) -> tuple[Yu2017, tuple[float, float, float]
 
 def conventional() -> None:
     """Print eq 5 fitted to the damper, its indices, and the study with it as model I's inverse."""
-    found, (r2, md, rmse) = conventional_fit(Yu2019())
+    found, (r2, md, rmse) = conventional_fit(study_damper())
     print({name: float(f"{value:.4g}") for name, value in found._asdict().items()})
     print(f"R2 {r2:.4f}, MD {md:.4f}, RMSE {rmse:.1f} N")
     scenario = scenarios({})["I"]

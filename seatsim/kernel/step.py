@@ -7,12 +7,13 @@ sub-step a step at four evaluations; a stiff damper, a branch or an end stop tak
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from seatsim.coil import Coil, relax
 from seatsim.kernel.generic import Tuple, axpy, combine
 from seatsim.kernel.options import jit, jit_apart
-from seatsim.kernel.rig import Flow, Rig, derivative
+from seatsim.kernel.rig import HELD, Flow, Rig, derivative
 from seatsim.temperature import Heat
 
 relaxed = jit(relax)
@@ -20,12 +21,10 @@ FLOOR_OF_ERROR_SCALE = 0.01
 """m/s added to the speed that the tolerance is relative to."""
 SMALLEST = 2.0**-26
 """Shortest sub-step as a fraction of the step."""
-NEWTON_STEPS = 5
-"""Most corrections of the instant at which sliding ends."""
-BREAKAWAY = 2.0**-7
-"""Fraction of the step to which the instant of breaking away is resolved: the error estimate does not see it."""
-REST = 1e-12
-"""Speed in m/s that counts as rest there."""
+SHARP = 1e-10
+"""Speed in m/s, and excess of the friction in N, to which the ends of sliding and of rest are resolved."""
+TRIES = 60
+"""Most sub-steps on the way to such an end."""
 
 
 class Drive(NamedTuple):
@@ -83,7 +82,25 @@ def _currents(coil: Coil, drive: Drive, time: float, h: float) -> tuple[float, f
 def start(rig: Rig, state: Tuple, floor: float, current: float, heat: Heat, substep: float) -> Progress:
     """Return the progress of a rig in `state`, sliding or at rest."""
     rates, flow = derivative(rig, state, floor, current, heat, 0.0)
-    return Progress(state, rates, flow, 0.0, substep)
+    return Progress(state, rates, flow, _phase(state, rates, flow), substep)
+
+
+@jit
+def _phase(state: Tuple, rates: Tuple, flow: Flow) -> float:
+    """Return whether the suspension is held or in which direction it slides, 0 where there is no friction."""
+    if flow.friction_limit <= 0.0:
+        return 0.0
+    if state[1] == 0.0 and rates[1] == 0.0:
+        return HELD
+    return math.copysign(1.0, rates[1] if state[1] == 0.0 else state[1])
+
+
+@jit
+def _margin(slip: float, state: Tuple, flow: Flow) -> float:
+    """Return how far the phase is from its end, below zero beyond it: friction left in N, or speed of sliding."""
+    if slip == HELD:
+        return flow.friction_limit - abs(flow.friction)
+    return slip * state[1]
 
 
 @jit
@@ -141,35 +158,47 @@ def _divided(
             continue
         if not error < 1e12:
             return now, current, False
-        slip = now.slip if flow.friction_limit > 0.0 else 0.0
-        if flow.friction_limit > 0.0:
-            held = now.state[1] == 0.0 and now.rates[1] == 0.0
-            if held and state[1] != 0.0 and h > BREAKAWAY * drive.length:
-                h *= 0.5
-                continue
-            if slip * state[1] < 0.0:
-                # The sliding ends inside this sub-step: go to that instant, then let the friction decide anew.
-                longest, last = h, False
-                h *= _crossing(now.state[1], now.rates[1], state[1], rates[1], h)
-                for _ in range(NEWTON_STEPS):
-                    h = min(max(h, SMALLEST * drive.length), longest)
-                    state, rates, flow, k4, i_end = _try(rig, coil, drive, heat, now, time, h)
-                    if abs(state[1]) <= REST or rates[1] == 0.0:
-                        break
-                    h -= state[1] / rates[1]
-                state = _at_rest(state)
-            elif slip == 0.0 and state[1] * now.rates[1] <= 0.0 and now.state[1] == 0.0:
-                state = _at_rest(state)
-            slip = 0.0 if state[1] == 0.0 else (1.0 if state[1] > 0.0 else -1.0)
-            if slip != now.slip:
-                end = drive.floor + drive.floor_rise * (time + h) / drive.length
-                rates, flow = derivative(rig, state, end, i_end, heat, slip)
-        now = Progress(state, rates, flow, slip, h)
+        tried = h
+        if _margin(now.slip, state, flow) < 0.0:
+            h, state, flow, i_end = _end_of_phase(rig, coil, drive, heat, now, time, h, state, flow)
+            last = last and h == tried
+            if now.slip != HELD:
+                state = state[:1] + (0.0,) + state[2:]
+            onward = math.copysign(1.0, flow.friction) if now.slip == HELD else 0.0
+            end = drive.floor + drive.floor_rise * (time + h) / drive.length
+            rates, flow = derivative(rig, state, end, i_end, heat, onward)
+        now = Progress(state, rates, flow, _phase(state, rates, flow), h)
         time += h
         current = i_end
         remaining = 0.0 if last else drive.length - time
-        h = _longer(h, error, drive.length)
+        h = _longer(tried, error, drive.length)
     return Progress(now.state, now.rates, now.flow, now.slip, h), current, True
+
+
+@jit
+def _end_of_phase(
+    rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, time: float, h: float, state: Tuple, flow: Flow
+) -> tuple[float, Tuple, Flow, float]:
+    """Return the time until sliding or rest ends, the state, flow and current then, by the Illinois method.
+
+    The end lies within `h`, after which `state` and `flow` were found.
+    """
+    low, high, side = 0.0, h, 0
+    m_low, m_high = _margin(now.slip, now.state, now.flow), _margin(now.slip, state, flow)
+    i_end = drive.current
+    for _ in range(TRIES):
+        h = (low * m_high - high * m_low) / (m_high - m_low) if m_low > 0.0 else 0.5 * (low + high)
+        state, _, flow, _, i_end = _try(rig, coil, drive, heat, now, time, h)
+        margin = _margin(now.slip, state, flow)
+        if abs(margin) <= SHARP or high - low <= SMALLEST * drive.length:
+            break
+        if margin > 0.0:
+            m_high *= 0.5 if side > 0 else 1.0
+            low, m_low, side = h, margin, 1
+        else:
+            m_low *= 0.5 if side < 0 else 1.0
+            high, m_high, side = h, margin, -1
+    return h, state, flow, i_end
 
 
 @jit
@@ -179,24 +208,3 @@ def _longer(h: float, error: float, length: float) -> float:
         return length
     factor = 4.0 if error < 1e-3 else min(4.0, max(0.2, 0.9 / error**0.25))
     return min(h * factor, length)
-
-
-@jit
-def _at_rest(state: Tuple) -> Tuple:
-    """Return the state with the suspension velocity set to zero."""
-    return state[:1] + (0.0,) + state[2:]
-
-
-@jit
-def _crossing(v0: float, a0: float, v1: float, a1: float, h: float) -> float:
-    """Return the fraction of the sub-step at which the Hermite cubic through both ends' velocities is zero."""
-    low, high = 0.0, 1.0
-    for _ in range(50):
-        t = 0.5 * (low + high)
-        u = 1.0 - t
-        v = u * u * (v0 * (1.0 + 2.0 * t) + h * a0 * t) + t * t * (v1 * (3.0 - 2.0 * t) - h * a1 * u)
-        if v * v0 > 0.0:
-            low = t
-        else:
-            high = t
-    return 0.5 * (low + high)

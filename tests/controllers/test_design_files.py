@@ -1,0 +1,65 @@
+"""Designs on disk: exact, whole or absent, and readable without the solvers."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from controllers import Design, synthesise
+from seatsim.errors import InputError
+
+
+@pytest.fixture
+def design(seat):
+    return synthesise(seat(30.0))
+
+
+def test_round_trip_is_exact(design, tmp_path):
+    design.save(tmp_path / "design.yaml")
+    again = Design.load(tmp_path / "design.yaml")
+    assert list(tmp_path.iterdir()) == [tmp_path / "design.yaml"]
+    for name in ("gain", "poles"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(design, name))
+    for name in ("gamma", "max_gain", "lower_bound", "peak_frequency"):
+        assert getattr(again, name) == getattr(design, name)
+    np.testing.assert_array_equal(again.certificate.matrix, design.certificate.matrix)
+    assert again.certificate.gamma == design.certificate.gamma
+    assert again.certificate.largest_eigenvalue == design.certificate.largest_eigenvalue
+
+
+def test_round_trip_without_certificate_and_with_peak_at_infinity(design, tmp_path):
+    bare = Design(design.gain, 1.0, 1e6, 0.0, None, np.inf, design.poles)
+    bare.save(tmp_path / "design.yaml")
+    again = Design.load(tmp_path / "design.yaml")
+    assert again.certificate is None and again.peak_frequency == np.inf
+
+
+def test_nothing_is_left_where_writing_fails(design, tmp_path):
+    (tmp_path / "design.yaml").mkdir()
+    with pytest.raises(OSError):
+        design.save(tmp_path / "design.yaml")
+    assert [path.name for path in tmp_path.iterdir()] == ["design.yaml"]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("gain: [[1.0]]", "lacks the key 'poles'"), ("[1, 2]", "not a design"), ("a: [", "cannot read"), ("", "not a design")],
+)
+def test_broken_files_are_named(tmp_path, text, words):
+    path = tmp_path / "design.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=words) as caught:
+        Design.load(path)
+    assert str(path) in str(caught.value)
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(InputError, match="cannot read"):
+        Design.load(tmp_path / "none.yaml")
+
+
+def test_loading_needs_no_solver(design, tmp_path):
+    design.save(tmp_path / "design.yaml")
+    code = "import sys; from controllers import Design, synthesise; Design.load(sys.argv[1]); assert 'cvxpy' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code, str(tmp_path / "design.yaml")], check=True)

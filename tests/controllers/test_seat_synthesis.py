@@ -1,0 +1,87 @@
+"""The seat problem: known optima, certificate, structure, what the gain can and cannot change."""
+
+import time
+
+import numpy as np
+import pytest
+
+from controllers import synthesise
+from controllers.synthesis.certify import largest_lmi_eigenvalue
+from controllers.synthesis.norm import grid_norm, hinf_norm
+
+OPTIMA = {10.0: (1.0681900, [-1937.2, 2013.9]), 30.0: (1.1359585, [967.0, 2339.1]), 50.0: (1.1848133, [3268.6, 2613.3])}
+# From the Riccati equations in 60 digits, with control and noise weights of 1e-7; e1 = 10 from the LMI.
+FULL_ORDER = {10.0: 1.0000889, 30.0: 1.0007985, 50.0: 1.0022106}
+STATED = {10.0: (3.838, 1.110), 30.0: (4.423, 1.194), 50.0: (5.408, 1.477)}
+
+
+@pytest.mark.parametrize("e1", OPTIMA)
+def test_reaches_the_optimum_and_proves_it(seat, e1):
+    plant = seat(e1)
+    design = synthesise(plant)
+    loop = plant.close(design.gain)
+    gamma, gain = OPTIMA[e1]
+    assert design.gamma == pytest.approx(gamma, rel=1e-6)
+    np.testing.assert_allclose(design.gain, [gain], rtol=2e-4)
+    assert grid_norm(loop).value == pytest.approx(design.gamma, rel=1e-6)
+    assert hinf_norm(loop).value == pytest.approx(design.gamma, rel=1e-6)
+    assert design.poles.real.max() < 0
+    proof = design.certificate
+    assert proof.delta <= 1e-6 and proof.gamma == pytest.approx(design.gamma * (1 + proof.delta), rel=1e-12)
+    assert proof.largest_eigenvalue < 0
+    assert largest_lmi_eigenvalue(loop, proof.matrix, proof.gamma) == proof.largest_eigenvalue
+    assert design.lower_bound == pytest.approx(FULL_ORDER[e1], rel=1e-5)
+
+
+@pytest.mark.parametrize("e1", OPTIMA)
+def test_norms_of_stated_gains(seat, e1):
+    norms = [hinf_norm(seat(e1).close([gain])).value for gain in ([0.0, 0.0], [2.0, 2147.6])]
+    np.testing.assert_allclose(norms, STATED[e1], atol=5e-4)
+
+
+def test_takes_seconds_once_imported(seat):
+    synthesise(seat(20.0))
+    begin = time.monotonic()
+    synthesise(seat(30.0))
+    assert time.monotonic() - begin < 5
+
+
+def test_damper_alone_keeps_the_stiffness_gain_at_zero(seat):
+    design = synthesise(seat(30.0, structure=[[False, True]]))
+    assert design.gain[0, 0] == 0
+    # One gain left: the minimum along it, by scanning.
+    scan = [hinf_norm(seat(30.0).close([[0.0, k2]])).value for k2 in np.arange(1000.0, 3000.0, 5.0)]
+    assert design.gamma == pytest.approx(min(scan), rel=1e-5)
+    assert design.gamma <= min(scan)
+
+
+def test_gain_only_completes_spring_and_damper(seat):
+    soft, hard = synthesise(seat(30.0)), synthesise(seat(30.0, kf=8000.0, cf=450.0))
+    assert hard.gamma == pytest.approx(soft.gamma, rel=1e-6)
+    np.testing.assert_allclose(soft.gain - hard.gain, [[3400.0, 250.0]], rtol=1e-2)
+
+
+def test_respects_the_largest_gain(seat):
+    design = synthesise(seat(50.0), max_gain=1500.0)
+    assert np.abs(design.gain).max() <= 1500.0
+    assert design.gain[0, 1] == pytest.approx(1500.0, rel=1e-6)
+    assert design.gamma > OPTIMA[50.0][0] * 1.01
+
+
+def test_same_seed_same_design(seat):
+    first, second = (synthesise(seat(10.0), seed=3) for _ in range(2))
+    np.testing.assert_array_equal(first.gain, second.gain)
+    assert first.gamma == second.gamma
+
+
+def test_matrices_plant_and_state_space_agree(seat):
+    control = pytest.importorskip("control")
+    p = seat(30.0)
+    D = np.block([[p.D11, p.D12], [p.D21, np.zeros((2, 1))]])
+    system = control.ss(p.A, np.hstack([p.B1, p.B2]), np.vstack([p.C1, p.C2]), D)
+    designs = [
+        synthesise(p),
+        synthesise(p.A, p.B1, p.B2, p.C1, p.C2, p.D11, p.D12, p.D21),
+        synthesise(system, split=(1, 2)),
+    ]
+    assert len({design.gain.tobytes() for design in designs}) == 1

@@ -1,0 +1,86 @@
+"""A rig in a few words: set up, run, and check the energy of what the compiled loop is asked to do."""
+
+import numpy as np
+
+from controllers.constant import Replay
+from seatsim.coil import Coil
+from seatsim.kernel.belief import Truth
+from seatsim.kernel.compilation import compiled
+from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
+from seatsim.kernel.rig import Rig
+from seatsim.plant import Plant
+from seatsim.registry import card_of
+from seatsim.suspension import SuspensionExtras
+from seatsim.temperature import TemperatureFactors, Thermal
+
+STEP = 1e-3
+SEAT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
+NONE = np.zeros(0)
+METRICS = (
+    "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current",
+)  # fmt: skip
+
+
+def truth(damper):
+    """The inverse knows the damper."""
+    return Truth(damper, card_of(type(damper)).current_order)
+
+
+def rough(duration, step=STEP, rms=1.0, seed=0, low=1.0, high=12.0):
+    """Random floor acceleration of 60 tones that fades in over half a second, shape (N,)."""
+    rng = np.random.default_rng(seed)
+    time = step * np.arange(round(duration / step) + 1)
+    tones = np.cos(np.outer(time, 2 * np.pi * rng.uniform(low, high, 60)) + rng.uniform(0, 2 * np.pi, 60))
+    return rms * np.sqrt(2 / 60) * tones.sum(axis=1) * np.minimum(1.0, 2 * time)
+
+
+def refined(rows, times):
+    """The same piecewise linear function, sampled `times` as often."""
+    fine = np.arange((len(rows) - 1) * times + 1) / times
+    return np.interp(fine, np.arange(len(rows)), rows)
+
+
+def run(
+    damper, law, floor, *, step=STEP, every=1, tolerance=1e-4, coil=Coil(), plant=SEAT, belief=None,
+    extras=SuspensionExtras(), thermal=None, factors=TemperatureFactors(), temperature=20.0, replayed=NONE,
+    prescribed=NONE, **start,
+):  # fmt: skip
+    """Run and return the history by channel, with `velocity` of the floor taken by the trapezoidal rule."""
+    rows = len(floor)
+    velocity = np.concatenate([[0.0], np.cumsum(0.5 * (floor[1:] + floor[:-1])) * step])
+    inputs = Inputs(floor, velocity, np.full(rows, temperature), replayed, prescribed, **start)
+    timing = Timing(step, every, tolerance, thermal is not None)
+    belief = truth(damper) if belief is None else belief
+    setup = Setup(Rig(plant, damper, extras), coil, factors, thermal or Thermal(), law, belief, timing)
+    out = np.empty((rows, len(CHANNELS)))
+    loop = compiled(run_loop, (type(damper), type(law), type(belief.damper)))
+    rest, believed = (card_of(type(part)).initial for part in (damper, belief.damper))
+    assert loop(setup, inputs, rest, believed, (), out) == rows
+    return dict(zip(CHANNELS, out.T, strict=True)) | {"floor_velocity": velocity}
+
+
+def driven(damper, floor, commands, **options):
+    """Run with a given sequence of commanded currents in A, or with one that stands all the time."""
+    commands = np.broadcast_to(np.asarray(commands, dtype=float), floor.shape).copy()
+    return run(damper, Replay(), floor, replayed=commands, **options)
+
+
+def imbalance(history, plant=SEAT):
+    """Energy that is missing at the end, over the work of the floor or the energy dissipated if that is more."""
+    v, w = (history[name][-1] for name in ("suspension_velocity", "cushion_velocity"))
+    x, y = (history[name][-1] for name in ("suspension_displacement", "cushion_displacement"))
+    kinetic = 0.5 * plant.frame_mass * v**2 + 0.5 * plant.driver_mass * (v + w) ** 2
+    elastic = 0.5 * plant.suspension_stiffness * x**2 + 0.5 * plant.cushion_stiffness * y**2
+    supplied = history["energy_floor"][-1]
+    spent = sum(history[f"energy_{part}"][-1] for part in ("damper", "suspension", "cushion"))
+    return abs(supplied - spent - kinetic - elastic) / max(abs(supplied), abs(spent))
+
+
+def rms(values):
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def deviations(history, reference, names=METRICS):
+    """Relative deviation of each rms value from the reference's."""
+    return {name: abs(rms(history[name]) / rms(reference[name]) - 1.0) for name in names}
