@@ -20,7 +20,8 @@ def main() -> None:
     pages = [Path(name) for name in sys.argv[1:]] or sorted(DOCS.glob("*.md"))
     for page in pages:
         with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "scenarios").symlink_to(DOCS.parent / "scenarios")
+            for name in ("scenarios", "docs"):
+                (Path(folder) / name).symlink_to(DOCS.parent / name)
             for skipped, language, code in BLOCK.findall(page.read_text(encoding="utf-8")):
                 if not skipped:
                     run(language, code, folder, page)

@@ -33,7 +33,8 @@ def check_published(source: Source, labels: Sequence[str]) -> None:
         )
     for index, row in enumerate(rows):
         keys = ("published", "rows", index)
-        check_keys(mapping(row, source, keys), [*labels, *METRICS], source, keys)
+        naming = [key for key in mapping(row, source, keys) if key in labels or "." in key]
+        check_keys(row, [*naming, "variant", "temperature", *METRICS], source, keys)
 
 
 def published_tables(runs: Sequence[Run]) -> list[Table]:

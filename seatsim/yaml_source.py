@@ -59,7 +59,9 @@ class Source:
     def _plain(self, node: Any, keys: KeyPath) -> Any:
         if isinstance(node, CommentedMap):
             for key in node:
-                self.lines[(*keys, key)] = node.lc.key(key)[0] + 1
+                # A key that came with a merge (`<<`) has no place of its own: it stands where its mapping does.
+                line = node.lc.key(key)[0] if key in (node.lc.data or ()) else node.lc.line
+                self.lines[(*keys, key)] = line + 1
             return {key: self._plain(value, (*keys, key)) for key, value in node.items()}
         if isinstance(node, CommentedSeq):
             for index in range(len(node)):

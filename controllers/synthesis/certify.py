@@ -38,7 +38,7 @@ class Certificate:
 
 def certify(loop: Loop, gamma: float) -> Certificate | None:
     """Return the certificate with the smallest delta of 1e-7 ... 1e-2 that double precision can verify, else None."""
-    for delta in _DELTAS:
+    for delta in _DELTAS if gamma > 0 else ():
         level = gamma * (1 + delta)
         matrix = _bounded_real_matrix(loop, level, delta)
         if matrix is None:

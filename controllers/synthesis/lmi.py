@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from controllers.synthesis.plant import Array, GeneralisedPlant
 
 _PASSES, _SETTLED = 4, 1e-5
-# Bounds on the eigenvalues of the Lyapunov matrix of the state feedback, in balanced states.
-_LOW, _HIGH = 1e-4, 1e4
+# Eigenvalues of the Lyapunov matrix stay between 1 / width and width, in states where it is about the identity.
+_WIDTH = 1e3
 _RELAXED = 2.0
+_STRICT = 1e-7
 
 
 def full_order_bound(plant: GeneralisedPlant, lyapunov: Array, gamma: float, deadline: float) -> float:
@@ -64,52 +65,46 @@ def single_step_gain(plant: GeneralisedPlant, gamma: float, deadline: float) -> 
     first with X, Y free (state feedback, solution X*), then in states where X* = I with X = Q XQ Q' + R XR R',
     Y = YR R', C2 Q = 0, C2 R = I: then Y = K C2 X with K = YR XR^-1. `gamma` sets the scale of g. The effect of D21
     on the norm is left out, unless D12 = 0, where the transposed problem takes it in. Not every plant that can be
-    stabilised has such a gain.
+    stabilised has such a gain; none is sought for structured gains or linearly dependent measurements.
     Source: Rubio-Massegu, Palacios-Quinonero, Rossell & Karimi 2013, Math. Probl. Eng. 2013:907056.
     """
     if np.any(plant.D21) and not np.any(plant.D12):
         swapped = single_step_gain(_transposed(plant), gamma, deadline)
         return None if swapped is None else swapped.T
-    if np.linalg.matrix_rank(plant.C2) < plant.measured_count:
+    if not plant.free.all() or np.linalg.matrix_rank(plant.C2) < plant.measured_count:
         return None
-    one = np.eye(plant.order)
-    X, Y = cp.Variable(one.shape, symmetric=True), cp.Variable((plant.control_count, plant.order))
-    best = _lower(plant, gamma, X, Y, [X >> _LOW * one, X << _HIGH * one], deadline)
-    if best is None or not _centre(plant, gamma, _RELAXED * best, X, Y, deadline):
+    X, Y = cp.Variable((plant.order, plant.order), symmetric=True), cp.Variable((plant.control_count, plant.order))
+    if not _lower(plant, gamma, X, Y, deadline):
         return None
-    p = _moved(plant, _root(X.value))
-    XR, YR, X, Y = _structured(p)
-    if _lower(p, gamma, X, Y, [X >> 1e-6 * one], deadline) is None:
+    moved = _moved(plant, _root(X.value))
+    XR, YR, X, Y = _structured(moved)
+    if not _lower(moved, gamma, X, Y, deadline):
         return None
     gain: Array = YR.value @ np.linalg.inv(XR.value)
-    return gain * plant.free
+    return gain
 
 
 def _structured(plant: GeneralisedPlant) -> tuple[Any, Any, Any, Any]:
-    """Variables XR, YR and the expressions X, Y they make; a diagonal XR hands the structure of YR on to the gain."""
+    """Variables XR, YR and the expressions X, Y they make."""
     R, Q = np.linalg.pinv(plant.C2), scipy.linalg.null_space(plant.C2)
     ny = plant.measured_count
-    XR = cp.Variable((ny, ny), symmetric=True) if plant.free.all() else cp.diag(cp.Variable(ny))
-    YR = cp.multiply(plant.free.astype(float), cp.Variable(plant.free.shape))
+    XR, YR = cp.Variable((ny, ny), symmetric=True), cp.Variable(plant.free.shape)
     X = R @ XR @ R.T
     if Q.shape[1]:
         X = X + Q @ cp.Variable((Q.shape[1], Q.shape[1]), symmetric=True) @ Q.T
     return XR, YR, X, YR @ R.T
 
 
-def _lower(plant: GeneralisedPlant, gamma: float, X: Any, Y: Any, sizes: list[Any], deadline: float) -> float | None:
-    """Minimise g over X and Y subject to the bounded-real inequality of the closed loop."""
-    g = cp.Variable()
-    H = _bounded_real(plant, gamma, X, Y, g)
-    return float(g.value) if _solve(g, [H << -1e-7 * np.eye(H.shape[0]), *sizes], deadline) else None
-
-
-def _centre(plant: GeneralisedPlant, gamma: float, g: float, X: Any, Y: Any, deadline: float) -> bool:
-    """Move X and Y away from the edge: the inequality holds at a fixed g with the largest margin."""
-    margin = cp.Variable()
-    H = _bounded_real(plant, gamma, X, Y, g)
+def _lower(plant: GeneralisedPlant, gamma: float, X: Any, Y: Any, deadline: float) -> bool:
+    """Minimise g over X and Y; then, at a somewhat larger g, move them away from the edge and its extremes."""
+    g, margin = cp.Variable(), cp.Variable()
     one = np.eye(plant.order)
-    return _solve(-margin, [H << -margin * np.eye(H.shape[0]), X >> _LOW * one, X << _HIGH * one], deadline)
+    sizes = [X >> one / _WIDTH, X << one * _WIDTH]
+    H = _bounded_real(plant, gamma, X, Y, g)
+    if not _solve(g, [H << -_STRICT * np.eye(H.shape[0]), *sizes], deadline):
+        return False
+    H = _bounded_real(plant, gamma, X, Y, _RELAXED * float(g.value))
+    return _solve(-margin, [H << -margin * np.eye(H.shape[0]), *sizes], deadline)
 
 
 def _bounded_real(plant: GeneralisedPlant, gamma: float, X: Any, Y: Any, g: Any) -> Any:

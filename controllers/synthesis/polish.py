@@ -29,12 +29,14 @@ _PROGRESS = 1e-7
 
 
 def polish(objective: Objective, entries: Array, deadline: float) -> Array:
-    """Return free entries whose norm is no higher than at `entries`, where the loop must be stable."""
+    """Return free entries whose norm is no higher than at `entries`; unstable ones come back as they are."""
     level = _norm(objective, entries)
+    if not 0 < level < np.inf:
+        return entries
     frequencies = _peaks(objective, entries)
     trust = _TRUST
     for _ in range(_ROUNDS):
-        if time.monotonic() > deadline or not 0 < level < np.inf:
+        if time.monotonic() > deadline or level == 0:
             break
         trial, promised = _solve(objective, entries, frequencies, level, trust)
         reached = _norm(objective, trial)
@@ -82,15 +84,19 @@ def _solve(objective: Objective, entries: Array, frequencies: Array, level: floa
         by_step = slopes[..., objective.free].reshape(values.size, -1) * unit / level
         return 1 + x[-1] - values.ravel() / level, np.hstack([-by_step, np.ones((values.size, 1))])
 
-    found: Any = minimize(  # type: ignore[call-overload]
-        lambda x: x[-1],
-        np.zeros(len(entries) + 1),
-        jac=lambda x: np.eye(len(x))[-1],
-        method="SLSQP",
-        bounds=[*zip(low, high, strict=True), (None, None)],
-        constraints={"type": "ineq", "fun": lambda x: room(x.tobytes())[0], "jac": lambda x: room(x.tobytes())[1]},
-        options={"maxiter": 50, "ftol": 1e-12},
-    )
+    try:
+        found: Any = minimize(  # type: ignore[call-overload]
+            lambda x: x[-1],
+            np.zeros(len(entries) + 1),
+            jac=lambda x: np.eye(len(x))[-1],
+            method="SLSQP",
+            bounds=[*zip(low, high, strict=True), (None, None)],
+            constraints={"type": "ineq", "fun": lambda x: room(x.tobytes())[0], "jac": lambda x: room(x.tobytes())[1]},
+            options={"maxiter": 50, "ftol": 1e-12},
+        )
+    except np.linalg.LinAlgError:
+        # A trial loop has a pole at one of the frequencies: nothing to gain this way.
+        return entries, level
     step = np.clip(found.x[:-1], low, high)
     values, _ = objective.singular_values(objective.loop(entries + unit * step), frequencies, 1)
     return entries + unit * step, float(values.max())

@@ -138,7 +138,8 @@ def _explore(objective: Objective, plant: GeneralisedPlant, seed: int, deadline:
     if found.agrees:
         return found
     size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
-    convex = convex_start(plant, found.candidates[0].gamma if found.candidates else size, deadline)
+    gamma = found.candidates[0].gamma if found.candidates else size
+    convex = convex_start(plant, max(gamma, 1e-9 * size), deadline)
     return found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline))
 
 

@@ -158,16 +158,17 @@ def _divided(
             continue
         if not error < 1e12:
             return now, current, False
-        tried = h
-        if _margin(now.slip, state, flow) < 0.0:
+        tried, slip = h, now.slip
+        if _margin(slip, state, flow) < 0.0:
             h, state, flow, i_end = _end_of_phase(rig, coil, drive, heat, now, time, h, state, flow)
             last = last and h == tried
-            if now.slip != HELD:
-                state = state[:1] + (0.0,) + state[2:]
-            onward = math.copysign(1.0, flow.friction) if now.slip == HELD else 0.0
+            state = state[:1] + (0.0,) + state[2:]
+            slip = math.copysign(1.0, flow.friction) if slip == HELD else 0.0
             end = drive.floor + drive.floor_rise * (time + h) / drive.length
-            rates, flow = derivative(rig, state, end, i_end, heat, onward)
-        now = Progress(state, rates, flow, _phase(state, rates, flow), h)
+            rates, flow = derivative(rig, state, end, i_end, heat, slip)
+        if slip == 0.0 or flow.friction_limit <= 0.0:
+            slip = _phase(state, rates, flow)
+        now = Progress(state, rates, flow, slip, h)
         time += h
         current = i_end
         remaining = 0.0 if last else drive.length - time

@@ -44,7 +44,12 @@ def test_nothing_is_left_where_writing_fails(design, tmp_path):
 
 @pytest.mark.parametrize(
     ("text", "words"),
-    [("gain: [[1.0]]", "lacks the key 'poles'"), ("[1, 2]", "not a design"), ("a: [", "cannot read"), ("", "not a design")],
+    [
+        ("gain: [[1.0]]", "lacks the key 'poles'"),
+        ("[1, 2]", "not a design"),
+        ("a: [", "cannot read"),
+        ("", "not a design"),
+    ],
 )
 def test_broken_files_are_named(tmp_path, text, words):
     path = tmp_path / "design.yaml"
@@ -61,5 +66,10 @@ def test_missing_file(tmp_path):
 
 def test_loading_needs_no_solver(design, tmp_path):
     design.save(tmp_path / "design.yaml")
-    code = "import sys; from controllers import Design, synthesise; Design.load(sys.argv[1]); assert 'cvxpy' not in sys.modules"
+    code = """
+import sys
+from controllers import Design, synthesise
+Design.load(sys.argv[1])
+assert "cvxpy" not in sys.modules
+"""
     subprocess.run([sys.executable, "-c", code, str(tmp_path / "design.yaml")], check=True)

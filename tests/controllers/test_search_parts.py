@@ -1,6 +1,7 @@
 """Gradients, scaling, starts and the convex start."""
 
 import time
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -56,7 +57,7 @@ def test_scaling_keeps_the_norm_and_maps_the_gain(seat):
 
 def test_starts_are_seeded_and_respect_the_structure(random_plant):
     plant = random_plant(0, structure=[[1, 0], [1, 1]])
-    first, second = ([next(s) for _ in range(1) for s in [g] * 7] for g in (starting_gains(plant, 5), starting_gains(plant, 5)))
+    first, second = (list(islice(starting_gains(plant, 5), 7)) for _ in range(2))
     np.testing.assert_array_equal(first, second)
     assert not np.any(np.array(first)[:, 0, 1])
 
@@ -73,13 +74,13 @@ def test_convex_start_stabilises_the_seat(seat, e1):
     assert hinf_norm(plant.close(gain)).value < hinf_norm(plant.close(0 * gain)).value
 
 
-def test_convex_start_takes_structure_and_measurement_noise(seat, random_plant):
-    damper_only = single_step_gain(scale(seat(30.0, structure=[[0, 1]])).plant, 1.0, time.monotonic() + 20)
-    assert damper_only[0, 0] == 0 < damper_only[0, 1]
+def test_convex_start_takes_in_measurement_noise(random_plant):
     noisy = random_plant(3, n=2, ny=2, nu=1)
     object.__setattr__(noisy, "D12", 0 * noisy.D12)
-    assert single_step_gain(noisy, 1.0, time.monotonic() + 20).shape == (1, 2)
+    gain = single_step_gain(noisy, 1.0, time.monotonic() + 20)
+    assert gain.shape == (1, 2) and noisy.close(gain).abscissa < 0
 
 
-def test_convex_start_gives_up_in_time(seat):
+def test_convex_start_knows_what_it_cannot(seat):
+    assert single_step_gain(scale(seat(30.0, structure=[[0, 1]])).plant, 1.0, time.monotonic() + 20) is None
     assert single_step_gain(scale(seat(30.0)).plant, 1.0, time.monotonic() - 1) is None

@@ -1,12 +1,12 @@
 """Every number of docs/yu2019.md that a scenario file alone does not give.
 
-python scenarios/yu2019/reproduction.py constants     the open constants, solved on model I's two figures and on K
-python scenarios/yu2019/reproduction.py masses        the same for other drivers
-python scenarios/yu2019/reproduction.py damping       model I's figures only, without the condition on K
-python scenarios/yu2019/reproduction.py asymmetry     other degrees of asymmetry of the damper
-python scenarios/yu2019/reproduction.py means         displacement with and without its mean
-python scenarios/yu2019/reproduction.py settings      coil, controller, current limit, road
-python scenarios/yu2019/reproduction.py conventional  Table 1, and the paper's eq 5 as model I
+python docs/yu2019/reproduction.py constants     the open constants, solved on model I's two figures and on K
+python docs/yu2019/reproduction.py masses        the same for other drivers
+python docs/yu2019/reproduction.py damping       model I's figures only, without the condition on K
+python docs/yu2019/reproduction.py asymmetry     other degrees of asymmetry of the damper
+python docs/yu2019/reproduction.py means         displacement with and without its mean
+python docs/yu2019/reproduction.py settings      coil, controller, current limit, road
+python docs/yu2019/reproduction.py conventional  Table 1, and the paper's eq 5 as model I
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from scipy.optimize import brentq, least_squares
 from controllers import synthesise
 from controllers.static_output_feedback import Weights, generalised
 from seatsim.dampers.asymmetric import Yu2019
-from seatsim.dampers.bench import sine_test
+from seatsim.dampers.bench import SineTest, sine_test
 from seatsim.dampers.hysteresis_division import Yu2017
 from seatsim.loading import load
 from seatsim.plant import Plant
@@ -35,7 +35,7 @@ from seatsim.simulation import simulate
 Array = NDArray[np.float64]
 Settings = Mapping[str, Any]
 
-STUDY = Path(__file__).with_name("study.yaml")
+STUDY = Path(__file__).resolve().parents[2] / "scenarios" / "yu2019" / "study.yaml"
 GAIN = (2.0, 2147.6)
 MODELS = ("I", "II", "III")
 PUBLISHED = {"I": (0.908, 4.7), "II": (0.965, 5.6), "III": (0.878, 3.9)}
@@ -99,8 +99,8 @@ def study_damper() -> Yu2019:
 def asymmetric(part: float) -> Yu2019:
     """Return the study's damper with backbones P and N in the ratio (1 + part) to (1 - part)."""
     damper = study_damper()
-    p = tuple(c * (1 + part) / 1.1 for c in damper.p)
-    n = tuple(c * (1 - part) / 0.9 for c in damper.n)
+    p: Any = tuple(c * (1 + part) / 1.1 for c in damper.p)
+    n: Any = tuple(c * (1 - part) / 0.9 for c in damper.n)
     return damper._replace(p=p, n=n)
 
 
@@ -199,7 +199,7 @@ def asymmetry() -> None:
     for part in (0.05, 0.1, 0.2, 0.3, 0.4, 0.5):
         damper = asymmetric(part)
         seat = solved(80.0, 191.0, {}, damper)
-        r2, md, _ = indices(_loops(damper), _loops(damper._replace(asymmetry=0.0)))
+        r2, md, _ = indices(loops(damper), loops(damper._replace(asymmetry=0.0)))
         print(
             f"{part:.2f} (symmetric part R2 {r2:.4f} MD {md:.3f}): kf {seat.stiffness:.0f} V {seat.speed:.2f}: ", end=""
         )
@@ -242,7 +242,7 @@ def indices(test: Array, model: Array) -> tuple[float, float, float]:
 
 def conventional_fit(damper: Yu2019) -> tuple[Yu2017, tuple[float, float, float]]:
     """Return eq 5 fitted to a damper's loops over the paper's bench tests at 20 degC, and its indices."""
-    tests = _tests(damper)
+    tests = bench_tests(damper)
     force, v, x = (
         np.concatenate([getattr(t, name)[:-1] for t, _ in tests]) for name in ("force", "velocity", "displacement")
     )
@@ -256,8 +256,11 @@ def conventional_fit(damper: Yu2019) -> tuple[Yu2017, tuple[float, float, float]
         backbone = (1.0 - np.exp(-np.exp(q[5]) * speed)) / (1.0 + np.exp(-np.exp(q[6]) * speed)) * np.sign(v)
         return np.asarray(height * (backbone + q[7] * np.exp(-(v**2) / np.exp(q[8])) * branch))
 
+    def miss(q: Array) -> Array:
+        return np.asarray(model(q) - force)
+
     first = (600.0, 100.0, np.log(39.0), -550.0, -0.3, 4.0, 3.0, 0.3, np.log(1e-4))
-    q = least_squares(lambda q: model(q) - force, first, x_scale=np.maximum(np.abs(first), 0.1), max_nfev=5000).x
+    q = least_squares(miss, first, x_scale=np.maximum(np.abs(first), 0.1), max_nfev=5000).x
     found = Yu2017(q[0], q[1], -np.exp(q[2]), q[3], q[4], -np.exp(q[5]), -np.exp(q[6]), q[7], 0.0, np.exp(q[8]))
     return found, indices(force, model(q))
 
@@ -274,15 +277,17 @@ def conventional() -> None:
     print(f"80 degC: {got.acceleration:.3f} m/s^2, {got.displacement:.2f} mm, mean {got.mean:+.2f} mm")
 
 
-def _tests(damper: Yu2019) -> list[tuple[Any, float]]:
+def bench_tests(damper: Yu2019) -> list[tuple[SineTest, float]]:
+    """Return the paper's bench tests of a damper at 20 degC, each with its current in A."""
     return [
         (sine_test(damper, x, f, i, 20.0, cycles=5, samples=200), i)
         for x in (0.004, 0.006, 0.008) for f in (0.5, 0.6, 0.7) for i in (0.0, 0.4, 0.8, 1.2)
     ]  # fmt: skip
 
 
-def _loops(damper: Yu2019) -> Array:
-    return np.concatenate([test.force[:-1] for test, _ in _tests(damper)])
+def loops(damper: Yu2019) -> Array:
+    """Return the force in N over all bench tests."""
+    return np.concatenate([test.force[:-1] for test, _ in bench_tests(damper)])
 
 
 PARTS = (constants, masses, damping, asymmetry, means, settings, conventional)

@@ -1,8 +1,8 @@
 """The linear argument of docs/yu2019.md: what a third less damping does to acceleration and displacement.
 
-python scenarios/yu2019/linear.py floors     the ratio of model II to III, by floor and spring, and the best damping
-python scenarios/yu2019/linear.py bounds     the largest ratio that any floor can give
-python scenarios/yu2019/linear.py signs      the paper's signs, and its eq 15
+python docs/yu2019/linear.py floors     the ratio of model II to III, by floor and spring, and the best damping
+python docs/yu2019/linear.py bounds     the largest ratio that any floor can give
+python docs/yu2019/linear.py signs      the paper's signs, and its eq 15
 """
 
 from __future__ import annotations
@@ -59,20 +59,33 @@ def ratio(plant: Plant, density: Density) -> Pair:
     return Pair(ours.acceleration / theirs.acceleration, ours.displacement / theirs.displacement)
 
 
-def bound(plant: Plant) -> tuple[Pair, float]:
-    """Return the largest ratios of II to III on any floor, and the frequency in Hz of that of the acceleration.
+class Bound(NamedTuple):
+    """Largest ratios of model II to III on any floor, and the frequency in Hz of that of the acceleration."""
 
-    A ratio of variances on a floor is a mean of the squared ratios of the responses, weighted with a positive spectrum.
+    acceleration: float
+    frequency: float
+    displacement: float
+
+
+def bound(plant: Plant) -> Bound:
+    """Return what no floor exceeds.
+
+    A ratio of variances on a floor is a mean of the squared ratios of the responses, weighted with a positive
+    spectrum; a narrow band comes as close as one likes to the largest.
     """
     two, three = response(plant, LEFT_AT_80), response(plant, 1.0)
-    acceleration = two.acceleration / three.acceleration
+    acceleration, displacement = two.acceleration / three.acceleration, two.displacement / three.displacement
     worst = int(np.argmax(acceleration))
-    return Pair(acceleration[worst], np.max(two.displacement / three.displacement)), float(FREQUENCY[worst])
+    return Bound(float(acceleration[worst]), float(FREQUENCY[worst]), float(np.max(displacement)))
 
 
 def least_spring(plant: Plant, wanted: float) -> float:
     """Return the softest spring in N/m with which some floor gives model II that much more acceleration than III."""
-    return float(brentq(lambda k: bound(plant._replace(suspension_stiffness=k))[0].acceleration - wanted, 500.0, 1e5))
+
+    def excess(stiffness: float) -> float:
+        return bound(plant._replace(suspension_stiffness=stiffness)).acceleration - wanted
+
+    return float(brentq(excess, 500.0, 1e5))
 
 
 def best_damping(plant: Plant, density: Density) -> float:
@@ -148,10 +161,8 @@ def floors() -> None:
 def bounds() -> None:
     """Print the bounds for every spring, and the softest spring for the paper's ratio."""
     for k in SPRINGS:
-        largest, at = bound(SEAT._replace(suspension_stiffness=k))
-        print(
-            f"{k:.0f}: acceleration {largest.acceleration:.3f} at {at:.2f} Hz, displacement {largest.displacement:.3f}"
-        )
+        b = bound(SEAT._replace(suspension_stiffness=k))
+        print(f"{k:.0f}: acceleration {b.acceleration:.3f} at {b.frequency:.2f} Hz, displacement {b.displacement:.3f}")
     for mass in (60.0, 80.0, 100.0):
         springs = [
             least_spring(SEAT._replace(driver_mass=mass, suspension_damping=c), 0.965 / 0.878)

@@ -1,0 +1,201 @@
+"""The reproduction study of Yu et al. 2019: what docs/yu2019.md says follows, and what it says does not."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from controllers import synthesise
+from controllers.static_output_feedback import Weights, generalised
+from seatsim.loading import load
+
+FOLDER = Path(__file__).resolve().parents[2] / "docs" / "yu2019"
+TEMPERATURES = (20.0, 40.0, 60.0, 80.0)
+MODELS = ("I", "II", "III")
+
+
+def module(name):
+    spec = importlib.util.spec_from_file_location(f"yu2019_{name}", FOLDER / f"{name}.py")
+    loaded = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = loaded
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
+linear, reproduction = module("linear"), module("reproduction")
+
+
+def table(settings):
+    """Acceleration and displacement by (model, temperature)."""
+    found = {t: reproduction.scenarios(settings, t) for t in TEMPERATURES}
+    return {(m, t): reproduction.figures(found[t][m]) for t in TEMPERATURES for m in MODELS}
+
+
+@pytest.fixture(scope="module")
+def study():
+    return table({})
+
+
+@pytest.fixture(scope="module")
+def stiff():
+    return table({"plant.suspension_stiffness": 8000.0})
+
+
+def errors(found, model):
+    ours = found[model, 80.0][:2]
+    return [100 * (a / b - 1) for a, b in zip(ours, reproduction.PUBLISHED[model], strict=True)]
+
+
+def test_model_one_is_met_at_80_degrees(study):
+    assert errors(study, "I") == pytest.approx([0.0, 0.0], abs=0.5)
+
+
+@pytest.mark.parametrize(("model", "stated"), [("II", (-9.3, 8.4)), ("III", (3.4, 12.1))])
+def test_predictions_miss_by_what_the_documentation_states(study, model, stated):
+    assert errors(study, model) == pytest.approx(stated, abs=0.3)
+
+
+def test_model_three_has_the_least_displacement_at_every_temperature(study):
+    for t in TEMPERATURES:
+        least = study["III", t].displacement
+        assert study["I", t].displacement > 1.05 * least
+        assert study["II", t].displacement >= (least if t == 20.0 else 1.05 * least)
+
+
+def test_models_two_and_three_are_the_same_inverse_at_20_degrees(study):
+    assert study["II", 20.0] == study["III", 20.0]
+
+
+def test_displacement_of_model_two_grows_with_temperature(study):
+    grown = [study["II", t].displacement for t in TEMPERATURES]
+    assert np.all(np.diff(grown) > 0.4)
+    assert grown[-1] / study["III", 80.0].displacement == pytest.approx(5.6 / 3.9, rel=0.05)
+
+
+def test_order_of_accelerations_does_not_follow(study):
+    for t in (40.0, 60.0, 80.0):
+        assert study["II", t].acceleration < study["III", t].acceleration
+    for t in TEMPERATURES:
+        assert study["I", t].acceleration == pytest.approx(study["III", t].acceleration, rel=1e-3)
+
+
+def test_what_sets_one_apart_from_three_is_a_static_offset(study):
+    one, three = study["I", 80.0], study["III", 80.0]
+    assert one.mean == pytest.approx(-1.62, abs=0.05)
+    spread = (one.displacement**2 - one.mean**2) ** 0.5
+    assert spread == pytest.approx(three.displacement, rel=0.015)
+
+
+def test_a_stiff_spring_makes_three_the_best_in_both_columns(stiff):
+    for t in TEMPERATURES:
+        for column in (0, 1):
+            least = min(stiff[m, t][column] for m in MODELS)
+            assert stiff["III", t][column] <= 1.0005 * least
+    for column in (0, 1):
+        assert np.all(np.diff([stiff["II", t][column] for t in TEMPERATURES]) > 0.0)
+
+
+def test_a_stiff_spring_takes_the_difference_of_one_and_three_away(stiff):
+    assert stiff["I", 80.0].displacement / stiff["III", 80.0].displacement < 1.03
+
+
+def test_a_damper_three_times_as_asymmetric_comes_within_five_percent():
+    runs = [s for s in load(FOLDER / "more-asymmetric.yaml") if s.label["temperature"] == 80.0]
+    found = {(s.label["variant"], 80.0): reproduction.figures(s) for s in runs}
+    for model, stated in (("I", (0.0, 0.0)), ("II", (-4.3, -2.4)), ("III", (3.4, 1.9))):
+        assert errors(found, model) == pytest.approx(stated, abs=0.3)
+    assert found["II", 80.0].acceleration > 1.01 * found["III", 80.0].acceleration
+    assert found["I", 80.0].acceleration == pytest.approx(found["III", 80.0].acceleration, rel=1e-3)
+
+
+def test_linear_ratios_are_those_of_the_simulation(study, stiff):
+    for found, stiffness in ((study, 3800.0), (stiff, 8000.0)):
+        expected = linear.ratio(linear.SEAT._replace(suspension_stiffness=stiffness), linear.FLOORS["road, truck cab"])
+        two, three = found["II", 80.0], found["III", 80.0]
+        assert two.acceleration / three.acceleration == pytest.approx(expected.acceleration, rel=0.005)
+        assert two.displacement / three.displacement == pytest.approx(expected.displacement, rel=0.01)
+
+
+def test_no_floor_gives_the_published_ratio_of_accelerations_on_the_study_s_seat():
+    largest = linear.bound(linear.SEAT)
+    assert largest.acceleration < 1.05 < 0.965 / 0.878
+    assert linear.least_spring(linear.SEAT, 0.965 / 0.878) == pytest.approx(10.9e3, rel=0.01)
+    assert largest.displacement == pytest.approx((191.0 + 2147.6) / (191.0 + 0.67 * 2147.6), rel=0.003)
+
+
+@pytest.mark.parametrize("name", list(linear.FLOORS))
+@pytest.mark.parametrize("stiffness", [2000.0, 8000.0, 20000.0])
+def test_less_damping_gives_more_displacement_on_every_floor(name, stiffness):
+    found = linear.ratio(linear.SEAT._replace(suspension_stiffness=stiffness), linear.FLOORS[name])
+    largest = linear.bound(linear.SEAT._replace(suspension_stiffness=stiffness))
+    assert 1.0 < found.displacement <= largest.displacement
+    assert found.acceleration <= largest.acceleration
+
+
+@pytest.mark.parametrize("mass", [55.0, 80.0, 120.0])
+@pytest.mark.parametrize("stiffness", [2000.0, 4600.0, 12000.0])
+@pytest.mark.parametrize("damping", [0.0, 191.0, 500.0])
+def test_the_gain_stabilises_the_exact_plant_and_not_as_printed(mass, stiffness, damping):
+    plant = linear.SEAT._replace(driver_mass=mass, suspension_stiffness=stiffness, suspension_damping=damping)
+    growth = {name: np.linalg.eigvals(a).real.max() for name, a in linear.literal(plant).items()}
+    assert growth["opposing"] < -0.1
+    assert growth["eqs 13, 18"] > 1.0
+    assert growth["eq 19"] > 1.0
+
+
+def test_acceleration_of_eq_15_does_not_depend_on_the_gain():
+    without = linear.acceleration_of_eq_15(linear.SEAT, 0.0)
+    np.testing.assert_allclose(linear.acceleration_of_eq_15(linear.SEAT, 5.0), without, rtol=1e-9)
+
+
+def test_the_published_gain_is_the_optimum_for_the_study_s_seat():
+    plant = load(FOLDER / "gain.yaml")[0].plant
+    assert plant == reproduction.scenarios({})["III"].plant
+    gain = synthesise(generalised(plant, Weights(travel=17.0))).gain
+    assert gain[0] == pytest.approx(reproduction.GAIN, abs=20.0)
+
+
+def test_the_optimum_fixes_only_the_sums_of_spring_and_damper_with_the_gain():
+    sums = []
+    for stiffness, damping in ((3800.0, 191.0), (9000.0, 50.0)):
+        plant = linear.SEAT._replace(suspension_stiffness=stiffness, suspension_damping=damping)
+        sums.append(synthesise(generalised(plant, Weights(travel=17.0))).gain[0] + (stiffness, damping))
+    assert sums[0] == pytest.approx(sums[1], rel=0.01)
+
+
+def test_the_symmetric_part_misses_what_table_1_says_of_the_conventional_model():
+    damper = reproduction.study_damper()
+    r2, md, _ = reproduction.indices(reproduction.loops(damper), reproduction.loops(damper._replace(asymmetry=0.0)))
+    assert r2 == pytest.approx(0.9894, abs=0.002)
+    assert md == pytest.approx(0.0969, abs=0.02)
+
+
+def test_the_conventional_model_fits_as_well_as_table_1_says():
+    _, (r2, md, rmse) = reproduction.conventional_fit(reproduction.study_damper())
+    assert r2 == pytest.approx(0.9894, abs=0.001)
+    assert md == pytest.approx(0.0969, abs=0.02)
+    assert rmse < 30.0 < 88.2
+
+
+def test_models_differ_in_what_the_study_says_only():
+    for scenario in load(FOLDER / "study.yaml"):
+        model, inverse, damper = scenario.label["variant"], scenario.control.inverse, scenario.damper
+        assert inverse.damper.record == damper.record._replace(asymmetry=0.0 if model == "I" else 1.0)
+        assert inverse.damper.factors == damper.factors
+        assert inverse.temperature == (20.0 if model == "II" else None)
+
+
+def test_the_variations_leave_the_rest_as_it_is():
+    study = reproduction.scenarios({})["III"]
+    for name in ("spring", "more-asymmetric"):
+        for scenario in load(FOLDER / f"{name}.yaml"):
+            assert scenario.plant._replace(suspension_stiffness=3800.0) == study.plant
+            assert scenario.coil == study.coil
+            assert scenario.control.law == study.control.law
+    assert {s.damper.record for s in load(FOLDER / "spring.yaml")} == {study.damper.record}
+    for scenario in load(FOLDER / "more-asymmetric.yaml"):
+        expected = reproduction.asymmetric(0.3)
+        assert scenario.damper.record.p == pytest.approx(expected.p, rel=1e-3)
+        assert scenario.damper.record.n == pytest.approx(expected.n, rel=1e-3)
