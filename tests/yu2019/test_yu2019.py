@@ -11,13 +11,14 @@ from controllers import synthesise
 from controllers.static_output_feedback import Weights, generalised
 from seatsim.loading import load
 
-FOLDER = Path(__file__).resolve().parents[2] / "docs" / "yu2019"
+ROOT = Path(__file__).resolve().parents[2]
+SCENARIOS, SCRIPTS = ROOT / "scenarios" / "yu2019", ROOT / "docs" / "yu2019"
 TEMPERATURES = (20.0, 40.0, 60.0, 80.0)
 MODELS = ("I", "II", "III")
 
 
 def module(name):
-    spec = importlib.util.spec_from_file_location(f"yu2019_{name}", FOLDER / f"{name}.py")
+    spec = importlib.util.spec_from_file_location(f"yu2019_{name}", SCRIPTS / f"{name}.py")
     loaded = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = loaded
     spec.loader.exec_module(loaded)
@@ -102,7 +103,7 @@ def test_a_stiff_spring_takes_the_difference_of_one_and_three_away(stiff):
 
 
 def test_a_damper_three_times_as_asymmetric_comes_within_five_percent():
-    runs = [s for s in load(FOLDER / "more-asymmetric.yaml") if s.label["temperature"] == 80.0]
+    runs = [s for s in load(SCENARIOS / "more-asymmetric.yaml") if s.label["temperature"] == 80.0]
     found = {(s.label["variant"], 80.0): reproduction.figures(s) for s in runs}
     for model, stated in (("I", (0.0, 0.0)), ("II", (-4.3, -2.4)), ("III", (3.4, 1.9))):
         assert errors(found, model) == pytest.approx(stated, abs=0.3)
@@ -151,7 +152,7 @@ def test_acceleration_of_eq_15_does_not_depend_on_the_gain():
 
 
 def test_the_published_gain_is_the_optimum_for_the_study_s_seat():
-    plant = load(FOLDER / "gain.yaml")[0].plant
+    plant = load(SCENARIOS / "gain.yaml")[0].plant
     assert plant == reproduction.scenarios({})["III"].plant
     gain = synthesise(generalised(plant, Weights(travel=17.0))).gain
     assert gain[0] == pytest.approx(reproduction.GAIN, abs=20.0)
@@ -180,7 +181,7 @@ def test_the_conventional_model_fits_as_well_as_table_1_says():
 
 
 def test_models_differ_in_what_the_study_says_only():
-    for scenario in load(FOLDER / "study.yaml"):
+    for scenario in load(SCENARIOS / "study.yaml"):
         model, inverse, damper = scenario.label["variant"], scenario.control.inverse, scenario.damper
         assert inverse.damper.record == damper.record._replace(asymmetry=0.0 if model == "I" else 1.0)
         assert inverse.damper.factors == damper.factors
@@ -190,12 +191,12 @@ def test_models_differ_in_what_the_study_says_only():
 def test_the_variations_leave_the_rest_as_it_is():
     study = reproduction.scenarios({})["III"]
     for name in ("spring", "more-asymmetric"):
-        for scenario in load(FOLDER / f"{name}.yaml"):
+        for scenario in load(SCENARIOS / f"{name}.yaml"):
             assert scenario.plant._replace(suspension_stiffness=3800.0) == study.plant
             assert scenario.coil == study.coil
             assert scenario.control.law == study.control.law
-    assert {s.damper.record for s in load(FOLDER / "spring.yaml")} == {study.damper.record}
-    for scenario in load(FOLDER / "more-asymmetric.yaml"):
+    assert {s.damper.record for s in load(SCENARIOS / "spring.yaml")} == {study.damper.record}
+    for scenario in load(SCENARIOS / "more-asymmetric.yaml"):
         expected = reproduction.asymmetric(0.3)
         assert scenario.damper.record.p == pytest.approx(expected.p, rel=1e-3)
         assert scenario.damper.record.n == pytest.approx(expected.n, rel=1e-3)
