@@ -49,9 +49,7 @@ def margins(plant: Plant, gain: Array, coil: Coil) -> Margins:
     )
 
 
-def sampled_radius(
-    plant: Plant, gain: Array, coil: Coil, sample_time: float, delay_samples: int = 0
-) -> float:
+def sampled_radius(plant: Plant, gain: Array, coil: Coil, sample_time: float, delay_samples: int = 0) -> float:
     """Return the spectral radius of the sampled loop (below 1: stable): coil as a state, command held between samples.
 
     The exact zero-order hold of plant and coil over `sample_time`, with `delay_samples` whole samples of delay.

@@ -23,12 +23,8 @@ SOURCE = "Yu et al. 2019, eqs 15-19, on the exact plant and with u = +K y for th
 class Weights(NamedTuple):
     """Weights of the performance output `z = (travel x, acceleration zc'')` (Yu et al. 2019, eq 17)."""
 
-    travel: Annotated[float, param("1/s^2", "weight e1 of the suspension displacement", low=0, high=1e6)] = (
-        22.6
-    )
-    acceleration: Annotated[float, param("-", "weight e2 of the driver's acceleration", low=0, high=1e6)] = (
-        1.0
-    )
+    travel: Annotated[float, param("1/s^2", "weight e1 of the suspension displacement", low=0, high=1e6)] = 22.6
+    acceleration: Annotated[float, param("-", "weight e2 of the driver's acceleration", low=0, high=1e6)] = 1.0
 
 
 class OutputFeedback(NamedTuple):
@@ -51,9 +47,7 @@ class StaticOutputFeedback(NamedTuple):
 
     gain: Annotated[tuple[float, float] | None, Field(description="gain on (x, v) in N/m and N s/m")] = None
     design: Annotated[str | None, Field(description="path of a saved design")] = None
-    weights: Annotated[
-        Weights | None, Field(description="weights of a synthesis at the start of the run")
-    ] = None
+    weights: Annotated[Weights | None, Field(description="weights of a synthesis at the start of the run")] = None
 
     def prepared(self, plant: Plant) -> OutputFeedback:
         """Return the compiled form for a plant, after synthesis where weights are given."""

@@ -18,9 +18,7 @@ from seatsim.temperature import Thermal
 Array = NDArray[Any]
 
 
-def replay_bench(
-    scenario: Scenario, recording: Recording, run: str
-) -> tuple[dict[str, Array], dict[str, Array]]:
+def replay_bench(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return the recorded channels of a bench run, and the simulated `damper_force` and `coil_current` at its rows.
 
     Displacement follows a quintic spline smoothed to within its stated noise, velocity its derivative or, where it is
@@ -33,9 +31,7 @@ def replay_bench(
     rows = np.arange(len(table["displacement"])) * interval
     fine = np.arange(2 * len(rows) - 1) * 0.5 * interval
     position = _smooth(rows, table["displacement"], recording.channels["displacement"].noise_rms)
-    velocity = (
-        CubicSpline(rows, table["velocity"])(fine) if "velocity" in table else position.derivative()(fine)
-    )
+    velocity = CubicSpline(rows, table["velocity"])(fine) if "velocity" in table else position.derivative()(fine)
     current = _current(scenario.coil, table, recording.voltage_gain or 1.0, rows, fine)
     force = bench_force(
         scenario.damper.record, position(fine), velocity, current, _temperature(scenario, table, rows, fine), interval,
@@ -54,9 +50,7 @@ def _current(coil: Coil, table: Mapping[str, Array], gain: float, rows: Array, f
     if command is None and "command_voltage" in table:
         command = gain * table["command_voltage"]
     if command is None:
-        return (
-            np.interp(fine, rows, table["coil_current"]) if "coil_current" in table else np.zeros(len(fine))
-        )
+        return np.interp(fine, rows, table["coil_current"]) if "coil_current" in table else np.zeros(len(fine))
     held = np.searchsorted(rows, fine - coil.delay + 1e-9 * rows[1], side="right") - 1
     wanted = np.where(held < 0, 0.0, np.clip(command, 0.0, coil.max_current)[np.maximum(held, 0)])
     current = np.empty(len(fine))

@@ -26,18 +26,12 @@ app = typer.Typer(
 out = Console()
 err = Console(stderr=True)
 
-Scenarios = Annotated[
-    list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)
-]
-OneScenario = Annotated[
-    str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)
-]
+Scenarios = Annotated[list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)]
+OneScenario = Annotated[str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)]
 Out = Annotated[Path | None, typer.Option("--out", help="Folder for the files.", show_default="out/NAME")]
 Settings = Annotated[
     list[str] | None,
-    typer.Option(
-        "--set", metavar="KEY=VALUE", help="Replace a value by dotted key, such as plant.driver_mass=55."
-    ),
+    typer.Option("--set", metavar="KEY=VALUE", help="Replace a value by dotted key, such as plant.driver_mass=55."),
 ]
 
 
@@ -90,9 +84,7 @@ def gap(scenario: OneScenario, recording: Path, out_folder: Out = None) -> None:
 
     found = find_gap(scenario, recording)
     out.print(report(found))
-    path = write_json(
-        (out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", found.as_dict()
-    )
+    path = write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", found.as_dict())
     out.print(f"written: {path}")
 
 

@@ -45,8 +45,6 @@ class LawCard(NamedTuple):
     source: str
 
 
-def law(
-    name: str, initial: tuple[float, ...] = (), replays: bool = False, source: str = ""
-) -> Callable[[T], T]:
+def law(name: str, initial: tuple[float, ...] = (), replays: bool = False, source: str = "") -> Callable[[T], T]:
     """Register a record class as the control law `law: name` with the `initial` value of its state."""
     return register("law", name, LawCard(initial, replays, source))

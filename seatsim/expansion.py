@@ -48,9 +48,7 @@ def _replace(source: Source, dotted: str, value: Any, origin: KeyPath) -> None:
     node = source.data
     for depth, key in enumerate(keys[:-1]):
         if not isinstance(node.get(key, {}), dict):
-            raise source.error(
-                keys[: depth + 1], f"'{dotted}' leads into a value that has no keys{nearest(key, node)}"
-            )
+            raise source.error(keys[: depth + 1], f"'{dotted}' leads into a value that has no keys{nearest(key, node)}")
         node = node.setdefault(key, {})
     node[keys[-1]] = value
     line = source.lines.get((*origin, dotted), source.lines.get(origin, 1))

@@ -25,9 +25,7 @@ def param(
     above: float | None = None,
 ) -> Any:
     """Describe one field: SI `unit`, `meaning`, and bounds (`low <= value <= high`, `value > above`)."""
-    return Field(
-        description=meaning, json_schema_extra={"unit": unit}, ge=low, le=high, gt=above, strict=True
-    )
+    return Field(description=meaning, json_schema_extra={"unit": unit}, ge=low, le=high, gt=above, strict=True)
 
 
 class FieldCard(NamedTuple):

@@ -53,9 +53,7 @@ def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
     bench = not {"plant", "controller", "excitation"} & set(data)
     if "published" in data:
         check_published(source, list(label))
-    for key in ("damper", "actuator", "temperature") + (
-        () if bench else ("plant", "controller", "excitation")
-    ):
+    for key in ("damper", "actuator", "temperature") + (() if bench else ("plant", "controller", "excitation")):
         if key not in data:
             raise source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator, temperature,"
                                    " controller and excitation")  # fmt: skip
@@ -126,9 +124,7 @@ def _inverse(values: Any, source: Source) -> Inverse:
     if temperature == "measured":
         return Inverse(damper, None)
     if isinstance(temperature, bool) or not isinstance(temperature, int | float):
-        raise source.error(
-            (*keys, "temperature"), f"{temperature!r} is not permitted; a number in degC or 'measured'"
-        )
+        raise source.error((*keys, "temperature"), f"{temperature!r} is not permitted; a number in degC or 'measured'")
     return Inverse(damper, float(temperature))
 
 

@@ -33,9 +33,7 @@ def write_result(result: Result, folder: Path) -> list[Path]:
 
 
 def _summary(run: Run) -> dict[str, Any]:
-    metrics = {
-        name: {"value": m.value, "unit": m.unit, "meaning": m.meaning} for name, m in run.metrics.items()
-    }
+    metrics = {name: {"value": m.value, "unit": m.unit, "meaning": m.meaning} for name, m in run.metrics.items()}
     return {
         "scenario": run.scenario.name,
         "label": dict(run.scenario.label),

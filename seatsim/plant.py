@@ -22,9 +22,7 @@ class Plant(NamedTuple):
     Upward positive about static equilibrium; the damper force Fd is positive when it opposes extension.
     """
 
-    frame_mass: Annotated[
-        float, param("kg", "mass ms of seat frame and moving suspension", above=0, high=1e4)
-    ]
+    frame_mass: Annotated[float, param("kg", "mass ms of seat frame and moving suspension", above=0, high=1e4)]
     driver_mass: Annotated[float, param("kg", "mass m of the driver on the cushion", above=0, high=1e4)]
     suspension_stiffness: Annotated[float, param("N/m", "spring and gas stiffness kf", low=0, high=1e8)]
     suspension_damping: Annotated[float, param("N s/m", "uncontrolled damping cf", low=0, high=1e7)]
@@ -37,9 +35,7 @@ class Plant(NamedTuple):
         ],
         param("m", "travel between the end stops; excursions beyond it are counted"),
     ] = (-10.0, 10.0)
-    damper_ratio: Annotated[
-        float, param("-", "damper stroke per suspension displacement", above=0, high=10)
-    ] = 1.0
+    damper_ratio: Annotated[float, param("-", "damper stroke per suspension displacement", above=0, high=10)] = 1.0
 
 
 class StateSpace(NamedTuple):

@@ -40,14 +40,8 @@ def check_published(source: Source, labels: Sequence[str]) -> None:
 def published_tables(runs: Sequence[Run]) -> list[Table]:
     """Return one table for each file with published figures: ours, published, and the difference, metric by metric."""
     sources = {id(run.scenario.source): run.scenario.source for run in runs if run.scenario.source}
-    files = {
-        str(source.path): source.data["published"]
-        for source in sources.values()
-        if "published" in source.data
-    }
-    return [
-        _table(published, [run for run in runs if _path(run) == path]) for path, published in files.items()
-    ]
+    files = {str(source.path): source.data["published"] for source in sources.values() if "published" in source.data}
+    return [_table(published, [run for run in runs if _path(run) == path]) for path, published in files.items()]
 
 
 def _path(run: Run) -> str:
@@ -61,9 +55,7 @@ def _table(published: Mapping[str, Any], runs: Sequence[Run]) -> Table:
         box=box.SIMPLE_HEAD,
     )
     for heading in ("run", "metric", "ours", "published", "difference"):
-        table.add_column(
-            heading, justify="left" if heading in ("run", "metric") else "right", no_wrap=heading != "run"
-        )
+        table.add_column(heading, justify="left" if heading in ("run", "metric") else "right", no_wrap=heading != "run")
     for row in published["rows"]:
         for run in runs:
             label = run.scenario.label

@@ -46,9 +46,7 @@ class Header(NamedTuple):
     rig: Literal["seat", "damper_bench"]
     sample_rate: Annotated[float, param("Hz", "rows per second", above=0, high=1e6)]
     nominal: str
-    parameter_tolerance: Annotated[
-        float, param("-", "fraction to which parameters are known", low=0, high=1)
-    ] = 0.02
+    parameter_tolerance: Annotated[float, param("-", "fraction to which parameters are known", low=0, high=1)] = 0.02
 
 
 class RunEntry(NamedTuple):
@@ -120,9 +118,7 @@ def load_recording(folder: str | Path) -> Recording:
 def _runs(data: dict[str, Any], source: Source) -> dict[str, RunEntry]:
     entries = data.get("runs")
     if not isinstance(entries, list) or not entries:
-        raise source.error(
-            ("runs",), "a recording has at least one run; write '- {name: run-a, file: run-a.csv.gz}'"
-        )
+        raise source.error(("runs",), "a recording has at least one run; write '- {name: run-a, file: run-a.csv.gz}'")
     runs = [build(RunEntry, entry, source, ("runs", index)) for index, entry in enumerate(entries)]
     return {run.name: run for run in runs}
 
@@ -139,9 +135,7 @@ def _channels(data: dict[str, Any], source: Source, rig: str) -> dict[str, Chann
             raise source.error(("channels", name, "unit"), problem)
     needed = "floor_acceleration" if rig == "seat" else "displacement"
     if needed not in channels:
-        raise source.error(
-            ("channels",), f"channel '{needed}' is missing; it drives the simulation of this rig"
-        )
+        raise source.error(("channels",), f"channel '{needed}' is missing; it drives the simulation of this rig")
     return channels
 
 
@@ -162,8 +156,6 @@ def _read_table(path: Path, channels: list[str]) -> dict[str, Array]:
         values = pd.to_numeric(frame[name], errors="coerce").to_numpy(dtype=np.float64)
         bad = np.flatnonzero(~np.isfinite(values))
         if bad.size:
-            raise InputError(
-                f"{path}, line {bad[0] + 2}, {name}: not a finite number; {bad.size} rows are not"
-            )
+            raise InputError(f"{path}, line {bad[0] + 2}, {name}: not a finite number; {bad.size} rows are not")
         table[name] = values
     return table

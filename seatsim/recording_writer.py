@@ -16,9 +16,7 @@ from seatsim.recording import SEAT_CHANNELS
 from seatsim.result import Result
 
 
-def save_recording(
-    result: Result, folder: str | Path, channels: Sequence[str], tolerance: float = 0.02
-) -> Path:
+def save_recording(result: Result, folder: str | Path, channels: Sequence[str], tolerance: float = 0.02) -> Path:
     """Write the runs of one simulated seat as a recording without noise, one row a step, and return its folder.
 
     The nominal scenario is the first run's, driven by `law: replay` and `kind: recording`.

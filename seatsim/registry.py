@@ -75,9 +75,7 @@ def _import_class(kind: str, target: str) -> type:
         raise InputError(f"cannot import '{module_name}' for {kind} '{target}': {error}") from error
     cls = getattr(module, class_name, None)
     if cls is None:
-        raise InputError(
-            f"module '{module_name}' has no class '{class_name}'{nearest(class_name, vars(module))}"
-        )
+        raise InputError(f"module '{module_name}' has no class '{class_name}'{nearest(class_name, vars(module))}")
     if cls not in _classes.get(kind, {}).values():
         raise InputError(f"'{target}' is not a {kind}: decorate the class with the {kind} decorator")
     found: type = cls

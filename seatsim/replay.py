@@ -64,9 +64,7 @@ def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs
         scenario = single(scenario)
     names = list(runs) or list(recording.runs)
     measured, simulated = pooled(scenario, recording, names)
-    channels = {
-        name: _rms(measured[name] - simulated[name]) / float(np.std(measured[name])) for name in measured
-    }
+    channels = {name: _rms(measured[name] - simulated[name]) / float(np.std(measured[name])) for name in measured}
     floors = {name: recording.channels[name].noise_rms / float(np.std(measured[name])) for name in measured}
     return Gap(_overall(channels), channels, {"overall": _overall(floors), "channels": floors})
 
@@ -75,15 +73,11 @@ def single(path: str | Path, settings: Mapping[str, Any] | None = None) -> Scena
     """Load a file that holds one run."""
     scenarios = load(path, settings)
     if len(scenarios) != 1:
-        raise InputError(
-            f"{path}: holds {len(scenarios)} runs; a replay needs a file without sweep or variants"
-        )
+        raise InputError(f"{path}: holds {len(scenarios)} runs; a replay needs a file without sweep or variants")
     return scenarios[0]
 
 
-def pooled(
-    scenario: Scenario, recording: Recording, runs: Sequence[str]
-) -> tuple[dict[str, Array], dict[str, Array]]:
+def pooled(scenario: Scenario, recording: Recording, runs: Sequence[str]) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return measured and simulated channels that are compared, over all samples of the runs, shape (N,) each."""
     pairs = [replay(scenario, recording, run) for run in runs]
     names = [name for name in COMPARED[recording.header.rig] if name in recording.channels]
@@ -91,9 +85,7 @@ def pooled(
     simulated = {name: np.concatenate([s[name] for _, s in pairs]) for name in names}
     loud = [n for n in names if _is_loud(measured[n], recording.channels[n].noise_rms)]
     if not loud:
-        raise InputError(
-            f"{recording.folder}: no recorded output stands above its noise; there is nothing to compare"
-        )
+        raise InputError(f"{recording.folder}: no recorded output stands above its noise; there is nothing to compare")
     return {n: measured[n] for n in loud}, {n: simulated[n] for n in loud}
 
 
@@ -105,15 +97,11 @@ def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str
     names = [name for name in COMPARED[recording.header.rig] if name in measured]
     rows = len(next(iter(measured.values())))
     if rows < skip + 2:
-        raise InputError(
-            f"{recording.folder}, run {run}: {rows} rows are too short; its first second is left out"
-        )
+        raise InputError(f"{recording.folder}, run {run}: {rows} rows are too short; its first second is left out")
     return {name: measured[name][skip:] for name in names}, {name: simulated[name][skip:] for name in names}
 
 
-def _replay_seat(
-    scenario: Scenario, recording: Recording, run: str
-) -> tuple[dict[str, Array], dict[str, Array]]:
+def _replay_seat(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str, Array], dict[str, Array]]:
     history = simulate(dataclasses.replace(scenario, excitation=RecordedRun(str(recording.folder), run)))
     every = round(1.0 / (recording.header.sample_rate * history.step))
     return recording.table(run), {name: history[name][::every] for name in COMPARED["seat"]}

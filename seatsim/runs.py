@@ -45,9 +45,7 @@ def run_one(scenario: Scenario) -> Run:
     return Run(scenario, history, metrics, warnings_of(scenario, history))
 
 
-def run_many(
-    scenarios: list[Scenario], done: Callable[[Scenario], None]
-) -> Iterator[tuple[Scenario, Run | RunError]]:
+def run_many(scenarios: list[Scenario], done: Callable[[Scenario], None]) -> Iterator[tuple[Scenario, Run | RunError]]:
     """Run scenarios on all processors and yield each with its run or its failure, in order; `done` is told of each.
 
     Raises:

@@ -19,9 +19,7 @@ class Solver(NamedTuple):
     """Settings of the time integration; the defaults meet the accuracy stated in the documentation."""
 
     step: Annotated[float, param("s", "step of loop and history", above=0, high=0.01)] = 0.001
-    tolerance: Annotated[float, param("-", "relative error of a sub-step's velocities", above=0, high=1)] = (
-        1e-4
-    )
+    tolerance: Annotated[float, param("-", "relative error of a sub-step's velocities", above=0, high=1)] = 1e-4
 
 
 class Start(NamedTuple):

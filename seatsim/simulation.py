@@ -46,9 +46,7 @@ def simulate(scenario: Scenario) -> History:
         RunError: the solution grew beyond all bounds.
     """
     if scenario.plant is None or scenario.control is None:
-        raise InputError(
-            f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'"
-        )
+        raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")
     step = scenario.solver.step
     with scenario.placed("excitation"):
         floor: Floor = scenario.excitation.floor(step, scenario.seed)
@@ -80,9 +78,7 @@ def _setup(scenario: Scenario, plant: Plant, control: Control) -> Setup:
     heated = isinstance(scenario.temperature, Thermal)
     thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal()
     timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
-    return Setup(
-        rig, scenario.coil, scenario.damper.factors, thermal, law, _belief(scenario, control), timing
-    )
+    return Setup(rig, scenario.coil, scenario.damper.factors, thermal, law, _belief(scenario, control), timing)
 
 
 def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
@@ -91,9 +87,7 @@ def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
         return Truth(record, card_of(type(record)).current_order)
     record, factors = control.inverse.damper.record, control.inverse.damper.factors
     temperature = control.inverse.temperature
-    return Belief(
-        record, card_of(type(record)).current_order, factors, np.nan if temperature is None else temperature
-    )
+    return Belief(record, card_of(type(record)).current_order, factors, np.nan if temperature is None else temperature)
 
 
 def _believed(scenario: Scenario) -> tuple[float, ...]:
@@ -125,9 +119,7 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor) -> Inputs:
     flowing = NONE if floor.coil_current is None else floor.coil_current
     start = float(flowing[0]) if flowing.size else 0.0
     prescribed = flowing if replays and floor.command is None else NONE
-    return Inputs(
-        floor.acceleration, floor.velocity, temperature, command, prescribed, start, *scenario.start
-    )
+    return Inputs(floor.acceleration, floor.velocity, temperature, command, prescribed, start, *scenario.start)
 
 
 def _history(plant: Plant, step: float, out: Array) -> History:

@@ -34,9 +34,7 @@ def build(
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = (*keys, *(part for part in first["loc"] if not str(part).startswith("function-")))
-        raise source.error(
-            where, _problem(record, first) + (hint if first["type"] == "missing" else "")
-        ) from None
+        raise source.error(where, _problem(record, first) + (hint if first["type"] == "missing" else "")) from None
 
 
 def mapping(values: Any, source: Source, keys: KeyPath) -> Mapping[str, Any]:
@@ -51,9 +49,7 @@ def check_keys(values: Mapping[str, Any], known: Iterable[str], source: Source, 
     permitted = list(known)
     for key in values:
         if key not in permitted:
-            raise source.error(
-                (*keys, key), f"unknown key{nearest(key, permitted)}; permitted: {', '.join(permitted)}"
-            )
+            raise source.error((*keys, key), f"unknown key{nearest(key, permitted)}; permitted: {', '.join(permitted)}")
 
 
 def choose(values: Mapping[str, Any], key: str, source: Source, keys: KeyPath) -> str:

@@ -36,7 +36,5 @@ def warnings_of(scenario: Scenario, history: History) -> tuple[str, ...]:
         for outside, what, consequence in checks
         if np.mean(outside) > SHARE
     ]
-    drift = (
-        centring(history["suspension_displacement"], history["suspension_velocity"]) if card.centred else ""
-    )
+    drift = centring(history["suspension_displacement"], history["suspension_velocity"]) if card.centred else ""
     return (*found, f"{model}: {drift}") if drift else tuple(found)

@@ -38,9 +38,7 @@ class Source:
         except YAMLError as error:
             raise InputError(f"{path}: not YAML: {error}") from error
         if not isinstance(tree, CommentedMap):
-            raise InputError(
-                f"{path}: holds no mapping; a file has keys such as 'plant:' and 'damper:' at its top"
-            )
+            raise InputError(f"{path}: holds no mapping; a file has keys such as 'plant:' and 'damper:' at its top")
         self.lines: dict[KeyPath, int] = {(): 1}
         self.data: dict[str, Any] = self._plain(tree, ())
 

@@ -93,8 +93,7 @@ class SimpleBoucWen(NamedTuple):
 
 @damper(
     "modified_bouc_wen",
-    source="Spencer et al. 1997, J. Eng. Mech. 123:230; RD-1005-3 set of Braz-Cesar and Barros 2012,"
-    " eqs 4.5-4.7",
+    source="Spencer et al. 1997, J. Eng. Mech. 123:230; RD-1005-3 set of Braz-Cesar and Barros 2012, eqs 4.5-4.7",
     initial=(0.0, 0.0),
     state="y, displacement behind the series dashpot; z, hysteretic displacement",
     max_speed=0.13,

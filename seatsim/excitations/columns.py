@@ -47,9 +47,7 @@ def read_record(path: str, axis: str, column: str, start: float) -> Record:
     whole = Record(_interval(path, axis, position), _numbers(path, table[column]))
     record = whole.after(start)
     if len(record.values) < LEAST_ROWS:
-        raise InputError(
-            f"{path}: start {start:g} leaves fewer than {LEAST_ROWS} rows of {whole.length:g} (s or m)"
-        )
+        raise InputError(f"{path}: start {start:g} leaves fewer than {LEAST_ROWS} rows of {whole.length:g} (s or m)")
     return record
 
 
@@ -91,9 +89,7 @@ def _numbers(path: str, column: pd.Series) -> Array:
 def _interval(path: str, axis: str, position: Array) -> float:
     back = np.flatnonzero(np.diff(position) <= 0)
     if len(back):
-        raise InputError(
-            f"{path}, line {back[0] + 3}: column '{axis}' does not grow; sort the rows, drop repeats"
-        )
+        raise InputError(f"{path}, line {back[0] + 3}: column '{axis}' does not grow; sort the rows, drop repeats")
     interval = float(position[-1] - position[0]) / (len(position) - 1)
     jitter = np.abs(position - position[0] - interval * np.arange(len(position)))
     worst = int(np.argmax(jitter))

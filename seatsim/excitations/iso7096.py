@@ -52,9 +52,7 @@ CLASSES: dict[SpectralClass, EarthMover] = {
 }
 
 
-@excitation(
-    "iso7096", source="ISO 7096:2000, spectral classes EM1 to EM9 (constants as in the HVLab HRV toolbox)"
-)
+@excitation("iso7096", source="ISO 7096:2000, spectral classes EM1 to EM9 (constants as in the HVLab HRV toolbox)")
 class Iso7096(NamedTuple):
     """Random floor acceleration of one spectral class of earth-moving machinery.
 

@@ -20,9 +20,7 @@ SPEED = param("m/s", "constant vehicle speed", low=1, high=60)
 Speed = Annotated[float, SPEED]
 Through = Annotated[
     Literal["vehicle", "direct"],
-    choice(
-        "path from road to floor: 'vehicle' (tyre, body and cab mounts) or 'direct' (the floor is the road)"
-    ),
+    choice("path from road to floor: 'vehicle' (tyre, body and cab mounts) or 'direct' (the floor is the road)"),
 ]
 Quantity = Annotated[
     Literal["displacement", "acceleration"],

@@ -24,9 +24,7 @@ from seatsim.excitations.motion import (
 from seatsim.fields import param
 
 Frequency = Annotated[float, param("Hz", "frequency of the tone", above=0)]
-Amplitude = Annotated[
-    float, param("m or m/s^2", "amplitude of displacement or acceleration, see quantity", above=0)
-]
+Amplitude = Annotated[float, param("m or m/s^2", "amplitude of displacement or acceleration, see quantity", above=0)]
 
 TONES: Any = Field(description="the tones in order", json_schema_extra={"unit": "Hz"}, min_length=1)
 
@@ -105,9 +103,7 @@ class Chirp(NamedTuple):
     amplitude: Amplitude
     duration: Duration
     quantity: Quantity = "displacement"
-    sweep: Annotated[Literal["linear", "logarithmic"], choice("course of the frequency in time")] = (
-        "logarithmic"
-    )
+    sweep: Annotated[Literal["linear", "logarithmic"], choice("course of the frequency in time")] = "logarithmic"
 
     def floor(self, step: float, seed: int) -> Floor:
         """Return the motion of the floor; `seed` plays no part.

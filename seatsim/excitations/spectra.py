@@ -23,9 +23,7 @@ def lines(spectrum: Spectrum, period: float) -> Array:
     return np.arange(len(spectrum)) / period
 
 
-def random_phase(
-    density: Callable[[Array], Array], low: float, high: float, period: float, seed: int
-) -> Spectrum:
+def random_phase(density: Callable[[Array], Array], low: float, high: float, period: float, seed: int) -> Spectrum:
     """Draw coefficients of a random signal whose one-sided spectral density is `density` in `low..high`.
 
     `c_k = sqrt(G(k/P) / (2P)) exp(i phi_k)`, with `phi_k` uniform and independent: the variance of every line

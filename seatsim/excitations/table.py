@@ -67,9 +67,7 @@ class Table(NamedTuple):
 
     def _measured(self, record: Record, step: float) -> Floor:
         if self.speed is not None:
-            raise InputError(
-                f"table {self.path}: speed belongs to distance_column; drop it beside time_column"
-            )
+            raise InputError(f"table {self.path}: speed belongs to distance_column; drop it beside time_column")
         highest = min(self.low_pass, USABLE * 0.5 / record.interval)
         if highest <= 2 * self.high_pass:
             raise InputError(

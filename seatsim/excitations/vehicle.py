@@ -31,9 +31,7 @@ class Vehicle(NamedTuple):
     """
 
     axle_mass: Annotated[float, param("kg", "unsprung mass at one wheel", above=0)] = 350.0
-    body_mass: Annotated[
-        float, param("kg", "frame and load carried by one wheel, without the cab", above=0)
-    ] = 2600.0
+    body_mass: Annotated[float, param("kg", "frame and load carried by one wheel, without the cab", above=0)] = 2600.0
     cab_mass: Annotated[float, param("kg", "share of the cab above one wheel", above=0)] = 450.0
     tyre_stiffness: Annotated[float, param("N/m", "vertical stiffness of the tyre", above=0)] = 1.0e6
     suspension_stiffness: Annotated[float, param("N/m", "stiffness of the axle suspension", above=0)] = 2.0e5

@@ -89,9 +89,7 @@ def _closed_form(damper: Any, target: float, x: float, v: float, heat: Heat, z: 
 
 
 @jit
-def _search(
-    damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float, grid: Array
-) -> float:
+def _search(damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float, grid: Array) -> float:
     # The whole grid first: without an early exit the compiler evaluates several currents at once.
     for j in range(CELLS + 1):
         grid[j] = total(damper, x, v, top * j / CELLS, heat, z) - target
@@ -112,8 +110,16 @@ def _search(
 
 @jit
 def _bracket(
-    damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple,
-    left: float, f_left: float, right: float, f_right: float,
+    damper: Any,
+    target: float,
+    x: float,
+    v: float,
+    heat: Heat,
+    z: Tuple,
+    left: float,
+    f_left: float,
+    right: float,
+    f_right: float,
 ) -> float:
     """Return the root in `[left, right]` by the Illinois method, to 1e-6 N."""
     side = 0

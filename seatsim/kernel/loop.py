@@ -106,9 +106,15 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
             if wants_force(law):
                 wanted = ask(law, y, law_state)
                 answer = invert(
-                    belief.damper, belief.order, wanted, rig.plant.damper_ratio * now.state[0],
-                    rig.plant.damper_ratio * now.state[1], heat(belief, factors, temperature),
-                    state(belief, now.state[8:], believed), coil.max_current, grid,
+                    belief.damper,
+                    belief.order,
+                    wanted,
+                    rig.plant.damper_ratio * now.state[0],
+                    rig.plant.damper_ratio * now.state[1],
+                    heat(belief, factors, temperature),
+                    state(belief, now.state[8:], believed),
+                    coil.max_current,
+                    grid,
                 )
                 command, served = answer.current, answer.served
             else:
@@ -130,8 +136,15 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
             return k
         ratio = rig.plant.damper_ratio
         believed = follow(
-            belief.damper, believed, ratio * x, ratio * v, ratio * now.state[0], ratio * now.state[1],
-            0.5 * (current + next_current), heat(belief, factors, temperature), step,
+            belief.damper,
+            believed,
+            ratio * x,
+            ratio * v,
+            ratio * now.state[0],
+            ratio * now.state[1],
+            0.5 * (current + next_current),
+            heat(belief, factors, temperature),
+            step,
         )
         if timing.self_heating:
             temperature += _warming(setup.thermal, coil, temperature, now.state[5] - work, current, next_current, step)
@@ -153,14 +166,31 @@ def _measure(
     velocity = now.state[1] + inputs.floor_velocity[k]
     replayed = inputs.replayed[k] if len(inputs.replayed) > 0 else math.nan
     return Measurement(
-        k * step, now.state[0], now.state[1], velocity, velocity + now.state[3], floor, frame,
-        frame + now.rates[3], now.flow.damper_force, current, temperature, replayed,
+        k * step,
+        now.state[0],
+        now.state[1],
+        velocity,
+        velocity + now.state[3],
+        floor,
+        frame,
+        frame + now.rates[3],
+        now.flow.damper_force,
+        current,
+        temperature,
+        replayed,
     )
 
 
 @jit
 def _record(
-    out: Array, k: int, now: Progress, floor: float, wanted: float, served: float, current: float, command: float,
+    out: Array,
+    k: int,
+    now: Progress,
+    floor: float,
+    wanted: float,
+    served: float,
+    current: float,
+    command: float,
     temperature: float,
 ) -> None:
     """Write sample `k` in the order of `CHANNELS`."""
@@ -173,9 +203,7 @@ def _record(
 
 
 @jit
-def _warming(
-    thermal: Thermal, coil: Coil, temperature: float, work: float, i0: float, i1: float, step: float
-) -> float:
+def _warming(thermal: Thermal, coil: Coil, temperature: float, work: float, i0: float, i1: float, step: float) -> float:
     """Return the rise of temperature in K over a step: work of the damper and heat of the coil less what is lost."""
     ohmic = coil.resistance * (i0 * i0 + i0 * i1 + i1 * i1) / 3.0 * step
     loss = thermal.conductance * (temperature - thermal.ambient) * step

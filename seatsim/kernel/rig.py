@@ -36,9 +36,7 @@ class Flow(NamedTuple):
 
 
 @jit
-def derivative(
-    rig: Rig, s: Tuple, floor: float, current: float, heat: Heat, slip: float
-) -> tuple[Tuple, Flow]:
+def derivative(rig: Rig, s: Tuple, floor: float, current: float, heat: Heat, slip: float) -> tuple[Tuple, Flow]:
     """Return the rates of the state `(x, v, xc, vc, works..., *z)` and the flow.
 
     x = zs - z0, xc = zc - zs; `floor` is z0'' in m/s^2. `slip` is the direction of sliding of the set-valued friction,

@@ -19,10 +19,12 @@ from seatsim.temperature import Heat
 relaxed = jit(relax)
 FLOOR_OF_ERROR_SCALE = 0.01
 """m/s added to the speed that the tolerance is relative to."""
-SMALLEST = 2.0**-26
+SMALLEST = 2.0**-18
 """Shortest sub-step as a fraction of the step."""
 SHARP = 1e-10
 """Speed in m/s, and excess of the friction in N, to which the ends of sliding and of rest are resolved."""
+MOST = 100_000
+"""Most sub-steps of a step: a run that needs more has failed."""
 TRIES = 60
 """Most sub-steps on the way to such an end."""
 
@@ -147,7 +149,7 @@ def _divided(
     """Advance by one step in as many sub-steps as it needs, with the set-valued friction."""
     time, current, h = 0.0, drive.current, now.substep
     remaining = drive.length
-    while remaining > 0.0:
+    for _ in range(MOST):
         last = h >= remaining * (1.0 - 1e-12)
         if last:
             h = remaining
@@ -173,7 +175,9 @@ def _divided(
         current = i_end
         remaining = 0.0 if last else drive.length - time
         h = _longer(tried, error, drive.length)
-    return Progress(now.state, now.rates, now.flow, now.slip, h), current, True
+        if remaining <= 0.0:
+            return Progress(now.state, now.rates, now.flow, now.slip, h), current, True
+    return now, current, False
 
 
 @jit
@@ -208,4 +212,4 @@ def _longer(h: float, error: float, length: float) -> float:
     if h >= length:
         return length
     factor = 4.0 if error < 1e-3 else min(4.0, max(0.2, 0.9 / error**0.25))
-    return min(h * factor, length)
+    return min(max(h * factor, SMALLEST * length), length)

@@ -66,6 +66,4 @@ class Record:
         samples = min(lengths.values(), default=math.inf)
         if not 0 <= settle * self.sample_rate < samples - 0.5:
             lasts = samples / self.sample_rate
-            raise InputError(
-                f"settle: is {settle} s; must be 0 or more and less than the record's {lasts:g} s"
-            )
+            raise InputError(f"settle: is {settle} s; must be 0 or more and less than the record's {lasts:g} s")

@@ -168,9 +168,7 @@ METRICS: Mapping[str, Card] = {
     "suspension_displacement_peak": Card("m", "largest suspension travel", _peak("suspension_displacement")),
     "end_stop_hits": Card("-", "separate excursions beyond the travel", _end_stop_hits),
     "force_tracking_error": Card("N", "RMS of wanted less delivered force", _tracking_error),
-    "force_tracking_error_relative": Card(
-        "-", "the same over the RMS of the wanted force", _tracking_relative
-    ),
+    "force_tracking_error_relative": Card("-", "the same over the RMS of the wanted force", _tracking_relative),
     "force_served_share": Card("-", "share of time the wanted force could be delivered", _served_share),
     "current_rms": Card("A", "RMS coil current", _rms("coil_current")),
     "electrical_energy": Card("J", "heat of the coil", _electrical_energy),

@@ -73,9 +73,7 @@ def _segment(samples: int, sample_rate: float) -> int:
     longest = 2 * (samples // (AVERAGES + 1))
     if longest < SHORTEST * sample_rate:
         needed = SHORTEST * (AVERAGES + 1) / 2
-        raise InputError(
-            f"the record lasts {samples / sample_rate:g} s; a transmissibility needs {needed:g} s or more"
-        )
+        raise InputError(f"the record lasts {samples / sample_rate:g} s; a transmissibility needs {needed:g} s or more")
     return min(longest, 2 * round(LONGEST * sample_rate / 2))
 
 

@@ -64,8 +64,7 @@ class Grid(NamedTuple):
 def entries(labels: Sequence[str]) -> list[Entry]:
     """Return one distinct look for each of up to eight runs; further ones begin anew."""
     return [
-        Entry(label, COLOURS[index % len(COLOURS)], DASHES[index % len(DASHES)])
-        for index, label in enumerate(labels)
+        Entry(label, COLOURS[index % len(COLOURS)], DASHES[index % len(DASHES)]) for index, label in enumerate(labels)
     ]
 
 

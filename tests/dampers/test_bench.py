@@ -89,9 +89,7 @@ def test_a_run_that_runs_away_is_an_error():
         bench_force(damper, *motion(50, 5.0)[:2], 0.5, 20.0, 0.1)
 
 
-@pytest.mark.parametrize(
-    ("x", "v"), [(np.zeros(4), np.zeros(4)), (np.zeros((3, 3)), 0.0), (np.zeros(5), np.zeros(3))]
-)
+@pytest.mark.parametrize(("x", "v"), [(np.zeros(4), np.zeros(4)), (np.zeros((3, 3)), 0.0), (np.zeros(5), np.zeros(3))])
 def test_samples_that_do_not_fit_are_refused(x, v):
     with pytest.raises(InputError):
         bench_force(KwokTanh(), x, v, 0.0, 20.0, 0.01)

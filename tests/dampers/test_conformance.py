@@ -113,9 +113,7 @@ def test_the_compiled_model_is_the_python_model(model, card):
         assert compiled_force(model, s.x, s.v, s.i, heat, s.z) == pytest.approx(expected, rel=1e-10, abs=1e-9)
         if hasattr(model, "rates"):
             rates = model.rates(s.x, s.v, s.i, heat, s.z)
-            assert compiled_rates(model, s.x, s.v, s.i, heat, s.z) == pytest.approx(
-                rates, rel=1e-10, abs=1e-12
-            )
+            assert compiled_rates(model, s.x, s.v, s.i, heat, s.z) == pytest.approx(rates, rel=1e-10, abs=1e-12)
         if hasattr(model, "coulomb"):
             assert compiled_coulomb(model, s.i, heat) == pytest.approx(model.coulomb(s.i, heat), rel=1e-12)
 
@@ -135,9 +133,7 @@ def test_the_force_is_the_polynomial_in_the_current_that_the_card_says(model, ca
 def test_the_force_scales_with_all_temperature_factors_together(model, card):
     for s in states(model, card):
         whole = whole_force(model, s, s.i)
-        assert whole_force(model, s, s.i, Heat(0.6, 0.6, 0.6)) == pytest.approx(
-            0.6 * whole, rel=1e-10, abs=1e-9
-        )
+        assert whole_force(model, s, s.i, Heat(0.6, 0.6, 0.6)) == pytest.approx(0.6 * whole, rel=1e-10, abs=1e-9)
 
 
 def test_temperature_lowers_force_and_energy_as_the_factors_say(model):

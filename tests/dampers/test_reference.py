@@ -137,22 +137,15 @@ class TestYu2019:
         assert 1.0 - hot.dissipated_energy / cold.dissipated_energy == pytest.approx(0.33, abs=0.005)
 
     def test_the_difference_from_the_symmetric_loop_grows_with_current(self):
-        found = [
-            np.max(np.abs(paper_test(Yu2019(), current=i).asymmetric_part)) for i in (0.0, 0.4, 0.8, 1.2)
-        ]
+        found = [np.max(np.abs(paper_test(Yu2019(), current=i).asymmetric_part)) for i in (0.0, 0.4, 0.8, 1.2)]
         assert np.all(np.diff(found) > 0.0)
 
     def test_the_difference_from_the_symmetric_loop_falls_with_temperature(self):
-        found = [
-            np.max(np.abs(paper_test(Yu2019(), temperature=t).asymmetric_part))
-            for t in (20.0, 40.0, 60.0, 80.0)
-        ]
+        found = [np.max(np.abs(paper_test(Yu2019(), temperature=t).asymmetric_part)) for t in (20.0, 40.0, 60.0, 80.0)]
         assert np.all(np.diff(found) < 0.0)
 
     def test_normalised_loops_are_almost_identical(self):
-        tests = [
-            paper_test(Yu2019(), current=i, temperature=t) for i in (0.0, 0.4, 0.8, 1.2) for t in (20.0, 80.0)
-        ]
+        tests = [paper_test(Yu2019(), current=i, temperature=t) for i in (0.0, 0.4, 0.8, 1.2) for t in (20.0, 80.0)]
         loops = np.array([test.force / test.peak_force for test in tests])
         assert np.max(np.sqrt(np.mean((loops - loops.mean(axis=0)) ** 2, axis=1))) < 0.02
 

@@ -91,9 +91,7 @@ def test_another_seed_draws_another_motion(cls, mapping):
 
 
 def test_too_coarse_a_step_is_refused_with_the_permitted_one(made):
-    with pytest.raises(
-        InputError, match=r"too coarse for its .* Hz; permitted: at most .* s; lower solver.step"
-    ):
+    with pytest.raises(InputError, match=r"too coarse for its .* Hz; permitted: at most .* s; lower solver.step"):
         made.floor(0.5, 3)
 
 

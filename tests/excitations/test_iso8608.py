@@ -73,11 +73,7 @@ def test_profile_carries_the_same_spectrum():
         _, elevation = profile("C", 4000.0, spacing, seed)
         n, density = welch(elevation, 1 / spacing, nperseg=2048)
         band = (n > 0.05) & (n < 1.5)
-        mean += (
-            np.sum(density[band] * n[band] ** 2)
-            / np.sum(displacement_density(n[band], "C") * n[band] ** 2)
-            / 8
-        )
+        mean += np.sum(density[band] * n[band] ** 2) / np.sum(displacement_density(n[band], "C") * n[band] ** 2) / 8
     assert mean == pytest.approx(1.0, abs=0.03)
 
 

@@ -15,9 +15,7 @@ from seatsim.fields import adapter, describe
 ROOT = Path(__file__).parents[2]
 MEASURED = ROOT.parent / "shared" / "data"
 SHIPPED = ROOT / "scenarios" / "data" / "road-profile.csv"
-needs_data = pytest.mark.skipif(
-    not MEASURED.is_dir(), reason="measured data beside the repository are absent"
-)
+needs_data = pytest.mark.skipif(not MEASURED.is_dir(), reason="measured data beside the repository are absent")
 
 
 def tones(t):
@@ -44,9 +42,7 @@ def test_measured_acceleration_is_resampled_and_integrated(write):
     floor = Table(path, "az", time_column="time_s").floor(0.001, 0)
     assert len(floor.time) == 60001
     inner = slice(20000, 40000)
-    for got, expected in zip(
-        (floor.acceleration, floor.velocity, floor.displacement), tones(floor.time), strict=True
-    ):
+    for got, expected in zip((floor.acceleration, floor.velocity, floor.displacement), tones(floor.time), strict=True):
         error = np.abs(got - expected)[inner].max()
         assert error < 0.005 * np.abs(expected).max()
 
@@ -85,9 +81,7 @@ def test_road_over_distance_agrees_with_the_random_road_it_came_from(write):
 def test_coarse_profile_gives_no_content_that_it_cannot_hold(write):
     distance, elevation = profile("C", 400.0, 0.25, 4)
     path = write(distance_m=distance, elevation_m=elevation)
-    floor = Table(path, "elevation_m", distance_column="distance_m", speed=10.0, through="direct").floor(
-        0.001, 0
-    )
+    floor = Table(path, "elevation_m", distance_column="distance_m", speed=10.0, through="direct").floor(0.001, 0)
     f, density = welch(floor.acceleration[1000:], 1000, nperseg=8192, window="blackmanharris")
     assert density[f > 1.05 * 1.6 * 10].max() < 1e-6 * density.max()
 
@@ -95,9 +89,7 @@ def test_coarse_profile_gives_no_content_that_it_cannot_hold(write):
 def test_mirror_plays_the_record_backwards(write):
     distance, elevation = profile("C", 100.0, 0.1, 4)
     path = write(distance_m=distance, elevation_m=elevation)
-    made = Table(
-        path, "elevation_m", distance_column="distance_m", speed=10.0, through="direct", duration=18.0
-    )
+    made = Table(path, "elevation_m", distance_column="distance_m", speed=10.0, through="direct", duration=18.0)
     with pytest.raises(InputError, match="exceeds the record's 10 s; shorten it, or set repeat: mirror"):
         made.floor(0.001, 0)
     floor = made._replace(repeat="mirror").floor(0.001, 0)
@@ -112,9 +104,7 @@ def test_start_leaves_out_the_beginning(write):
     path = write(time_s=t, az=a)
     floor = Table(path, "az", time_column="time_s", start=2.0, duration=20.0).floor(0.001, 0)
     assert np.abs(floor.acceleration).max() < 2.5
-    np.testing.assert_allclose(
-        floor.acceleration[8000:9000], tones(2.0 + floor.time)[0][8000:9000], atol=0.05
-    )
+    np.testing.assert_allclose(floor.acceleration[8000:9000], tones(2.0 + floor.time)[0][8000:9000], atol=0.05)
 
 
 def test_shipped_profile_is_generated_by_seed_8608():
@@ -142,9 +132,7 @@ def bad_tables(write, tmp_path):
     gap = np.delete(t, 50)
     (tmp_path / "empty.csv").write_text("")
     (tmp_path / "binary.csv.gz").write_bytes(b"not gzip at all")
-    (tmp_path / "words.csv").write_text(
-        "t,a\n" + "".join(f"{k},{'much' if k == 3 else 1}\n" for k in range(20))
-    )
+    (tmp_path / "words.csv").write_text("t,a\n" + "".join(f"{k},{'much' if k == 3 else 1}\n" for k in range(20)))
     nan = np.where(t == t[7], np.nan, 1.0)
     return {
         r"no such file.*did you mean 'empty.csv'": str(tmp_path / "emty.csv"),

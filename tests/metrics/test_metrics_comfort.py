@@ -32,9 +32,7 @@ def sine(amplitude, frequency, seconds, sample_rate=RATE):
 
 def test_weighted_rms_of_a_sine_is_the_weighted_amplitude():
     # The start-up of the high-pass is 2 of 300 s.
-    assert weighted_rms(sine(2.0, 5.0, 300), RATE) == pytest.approx(
-        2 * abs(response(5.0)) / math.sqrt(2), rel=1e-3
-    )
+    assert weighted_rms(sine(2.0, 5.0, 300), RATE) == pytest.approx(2 * abs(response(5.0)) / math.sqrt(2), rel=1e-3)
 
 
 def test_weighted_rms_of_noise_agrees_with_the_integrated_spectrum():
@@ -50,9 +48,7 @@ def test_vdv_of_a_sine():
 
 
 def test_vdv_does_not_depend_on_the_sample_rate():
-    assert vdv(sine(1.0, 4.0, 10, 250.0), 250.0) == pytest.approx(
-        vdv(sine(1.0, 4.0, 10, 4000.0), 4000.0), rel=1e-12
-    )
+    assert vdv(sine(1.0, 4.0, 10, 250.0), 250.0) == pytest.approx(vdv(sine(1.0, 4.0, 10, 4000.0), 4000.0), rel=1e-12)
 
 
 def test_vdv_of_a_day():
@@ -158,9 +154,7 @@ def test_scaling_and_bounds(factor, seed):
     x = np.random.default_rng(seed).standard_t(3, size=1500)
     small, large = dose(x, RATE), dose(-factor * x, RATE)
     amplitudes = ("rms", "vdv", "estimated_vdv", "mtvv")
-    assert [getattr(large, a) for a in amplitudes] == pytest.approx(
-        [factor * getattr(small, a) for a in amplitudes]
-    )
+    assert [getattr(large, a) for a in amplitudes] == pytest.approx([factor * getattr(small, a) for a in amplitudes])
     ratios = ("crest_factor", "mtvv_ratio", "vdv_ratio")
     assert [getattr(large, r) for r in ratios] == pytest.approx([getattr(small, r) for r in ratios])
     assert small.vdv_ratio >= 1 <= small.crest_factor

@@ -108,9 +108,7 @@ def test_scaling(factor, seed):
     assert end_stop_hits(-x, (-1, 2)) == end_stop_hits(x, (-2, 1))
     plain, scaled = force_tracking_error(x, y), force_tracking_error(factor * x, factor * y)
     assert scaled == pytest.approx((factor * plain.rms, plain.relative))
-    assert electrical_energy(factor * x, 2.0, 100.0) == pytest.approx(
-        factor**2 * electrical_energy(x, 2.0, 100.0)
-    )
+    assert electrical_energy(factor * x, 2.0, 100.0) == pytest.approx(factor**2 * electrical_energy(x, 2.0, 100.0))
     assert energy_residual(factor * x, [factor * y]) == pytest.approx(energy_residual(x, [y]))
 
 

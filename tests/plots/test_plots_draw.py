@@ -19,9 +19,7 @@ CASES = {
     "short": lambda make: [make(seconds=0.5)],
     "variants": lambda make: [make({"variant": v}, warming=5.0) for v in ("skyhook", "_passive $a$ b$")],
     "files": lambda make: [make(name="a road"), make(name="b road", seconds=7.0)],
-    "sweep": lambda make: [
-        make({"variant": v, "temperature": t}) for v in ("skyhook", LONG) for t in (20, 50, 80)
-    ],
+    "sweep": lambda make: [make({"variant": v, "temperature": t}) for v in ("skyhook", LONG) for t in (20, 50, 80)],
     "many": lambda make: [make({"variant": f"controller number {n}"}) for n in range(12)],
 }
 

@@ -116,12 +116,8 @@ def test_a_bench_recording_is_replayed_from_displacement_and_command(tmp_path):
     rows = np.arange(0.0, 6.0, 0.002)
     fine = np.arange(2 * len(rows) - 1) * 0.001
     omega = 2 * np.pi * 1.5
-    force = bench_force(
-        BoucWen(), 0.01 * np.sin(omega * fine), 0.01 * omega * np.cos(omega * fine), 0.6, 20.0, 0.002
-    )
-    frame = pd.DataFrame(
-        {"displacement": 0.01 * np.sin(omega * rows), "coil_current": 0.6, "damper_force": force}
-    )
+    force = bench_force(BoucWen(), 0.01 * np.sin(omega * fine), 0.01 * omega * np.cos(omega * fine), 0.6, 20.0, 0.002)
+    frame = pd.DataFrame({"displacement": 0.01 * np.sin(omega * rows), "coil_current": 0.6, "damper_force": force})
     frame.to_csv(tmp_path / "a.csv", index=False)
     (tmp_path / "nominal.yaml").write_text(
         "damper: {model: bouc_wen}\nactuator: {rate: 130.0, max_current: 1.0}\ntemperature: 20.0\n"

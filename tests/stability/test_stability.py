@@ -34,9 +34,7 @@ def test_the_sampled_loop_is_stable_with_a_sample_of_delay(mass, sample_time):
 def test_margins(mass, capsys):
     found = margins(seat(mass), GAIN, COIL)
     with capsys.disabled():
-        print(
-            f"\n{mass:.0f} kg: gain {found.gain:.3g}, phase {found.phase:.1f} deg, delay {1e3 * found.delay:.1f} ms"
-        )
+        print(f"\n{mass:.0f} kg: gain {found.gain:.3g}, phase {found.phase:.1f} deg, delay {1e3 * found.delay:.1f} ms")
     assert found.gain > 2
     assert found.phase > 45
     assert found.delay > 0.02
@@ -56,9 +54,7 @@ def test_the_literal_sign_of_the_paper_is_unstable():
 
 def test_in_the_printed_state_matrix_the_driver_does_not_feel_the_controller():
     s = state_space(seat(), "yu2019")
-    driver = [
-        np.linalg.solve(8j * np.eye(4) - s.A - s.B2 @ (scale * GAIN) @ s.C2, s.B1) for scale in (0, 1, 5)
-    ]
+    driver = [np.linalg.solve(8j * np.eye(4) - s.A - s.B2 @ (scale * GAIN) @ s.C2, s.B1) for scale in (0, 1, 5)]
     answers = [s.C1[1] @ one for one in driver]
     np.testing.assert_allclose(answers[1], answers[0], rtol=1e-9)
     np.testing.assert_allclose(answers[2], answers[0], rtol=1e-9)
