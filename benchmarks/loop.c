@@ -182,7 +182,13 @@ static double search(const Damper *d, double wanted, double x, double v, const S
     int best = 0;
     for (int j = 1; j <= CELLS; j++)
         if (fabs(grid[j]) < fabs(grid[best])) best = j;
-    return top * best / CELLS;
+    if (best == 0 || best == CELLS) return top * best / CELLS;
+    double a = grid[best - 1] - grid[best], b = grid[best + 1] - grid[best];
+    double turn = a + b != 0.0 ? top * (best + 0.5 * (a - b) / (a + b)) / CELLS : top * best / CELLS;
+    double f_turn = force_at(d, x, v, turn, q) - wanted;
+    if (grid[best] * f_turn <= 0.0)
+        return bracket(d, wanted, x, v, q, top * (best - 1) / CELLS, grid[best - 1], turn, f_turn);
+    return fabs(f_turn) < fabs(grid[best]) ? turn : top * best / CELLS;
 }
 
 static inline void record(

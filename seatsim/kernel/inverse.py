@@ -37,7 +37,8 @@ def invert(
     Outside the dissipative quadrant (`wanted v <= 0`) the current is zero; inside, the wanted force is clipped to the
     range of forces over the permitted currents at this motion, temperature and state. Where the force is a polynomial in the current of
     `order` 1 or 2 it is recovered exactly from three values and solved in closed form; any other map, which need not be
-    monotone, is searched from zero current upward for the first cell that holds the force, then bracketed there.
+    monotone, is searched from zero current upward for the first cell that holds the force, then bracketed there; where
+    no cell does, the grid's closest point is refined by a parabola.
     """
     if wanted * v <= 0.0:
         current = 0.0
@@ -105,7 +106,25 @@ def _search(damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple
     best = 0
     while best < CELLS and abs(grid[best]) > closest:
         best += 1
+    if 0 < best < CELLS:
+        return _turn(damper, target, x, v, heat, z, top, grid, best)
     return top * best / CELLS
+
+
+@jit
+def _turn(
+    damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float, grid: Array, best: int
+) -> float:
+    """Return the current near the grid's `best`, where the force turns, that comes closest to the target.
+
+    The turn of the parabola through three points may lie beyond the target, which is then met before it.
+    """
+    a, b = grid[best - 1] - grid[best], grid[best + 1] - grid[best]
+    turn = top * (best + 0.5 * (a - b) / (a + b)) / CELLS if a + b != 0.0 else top * best / CELLS
+    f_turn = total(damper, x, v, turn, heat, z) - target
+    if grid[best] * f_turn <= 0.0:
+        return _bracket(damper, target, x, v, heat, z, top * (best - 1) / CELLS, grid[best - 1], turn, f_turn)
+    return turn if abs(f_turn) < abs(grid[best]) else top * best / CELLS
 
 
 @jit

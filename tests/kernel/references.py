@@ -13,7 +13,6 @@ from scipy.integrate import solve_ivp
 from .rigs import METRICS, SEAT, STEP
 
 MS, M, KF, CF, KC, CC = SEAT[:6]
-PLAIN = dict(zip(METRICS, range(len(METRICS)), strict=True))
 
 
 class Yielding(NamedTuple):
@@ -31,8 +30,8 @@ class Yielding(NamedTuple):
 
 
 @numba.njit
-def _smooth(p, s, force, floor):
-    """Rates of the state without set-valued friction, under the damper's smooth force."""
+def seat(s, force, floor):
+    """Rates of the state (x, v, xc, vc) under a damper force."""
     cushion = KC * s[2] + CC * s[3]
     frame = (cushion - KF * s[0] - CF * s[1] - force) / MS
     return s[1], frame - floor, s[3], -cushion / M - frame
@@ -60,7 +59,7 @@ def skyhook(p, rows, every, parts, rate, on, start):
             command = on if (s[1] + floor_velocity) * s[1] > 0.0 else 0.0
         limit = p.friction + (max(0.0, p.fc_a + p.fc_b * i) if p.v_ref == 0.0 else 0.0)
         force = _damper(p, s[1], i)
-        a = _smooth(p, s, force, rows[k])
+        a = seat(s, force, rows[k])
         held = MS * a[1] if s[1] == 0.0 else math.copysign(limit, s[1])
         held = min(max(held, -limit), limit)
         share = held / limit if limit > 0.0 else 0.0
@@ -72,7 +71,7 @@ def skyhook(p, rows, every, parts, rate, on, start):
         slope = (rows[k + 1] - rows[k]) / parts
         for j in range(parts):
             middle = command + (i - command) * math.sqrt(keep)
-            a = _smooth(p, s, _damper(p, s[1], middle), rows[k] + slope * (j + 0.5))
+            a = seat(s, _damper(p, s[1], middle), rows[k] + slope * (j + 0.5))
             limit = p.friction + (max(0.0, p.fc_a + p.fc_b * middle) if p.v_ref == 0.0 else 0.0)
             free = s[1] + h * a[1]
             v = math.copysign(max(0.0, abs(free) - h * limit / MS), free)
@@ -94,7 +93,7 @@ def bouc_wen_feedback(d, rows, every, gain, rate=130.0, top=1.0):
     def rates(t, s, k, command):
         x, v, xc, vc, z, i = s.tolist()
         force = (d.c_a + d.c_b * i) * v + (d.alpha_a + d.alpha_b * i) * z
-        a = _smooth.py_func(None, (x, v, xc, vc), force, rows[k] + (rows[k + 1] - rows[k]) * (t / STEP - k))
+        a = seat.py_func((x, v, xc, vc), force, rows[k] + (rows[k + 1] - rows[k]) * (t / STEP - k))
         return *a, d.A * v - d.beta * v * z * z - d.gamma * abs(v) * z * abs(z), rate * (command - i)
 
     s, command, out = np.zeros(6), 0.0, []

@@ -120,7 +120,8 @@ def test_a_bench_recording_is_replayed_from_displacement_and_command(tmp_path):
     frame = pd.DataFrame({"displacement": 0.01 * np.sin(omega * rows), "coil_current": 0.6, "damper_force": force})
     frame.to_csv(tmp_path / "a.csv", index=False)
     (tmp_path / "nominal.yaml").write_text(
-        "damper: {model: bouc_wen}\nactuator: {rate: 130.0, max_current: 1.0}\ntemperature: 20.0\n"
+        f"damper: {{model: bouc_wen, parameters: {BoucWen()._asdict()}}}\n"
+        "actuator: {rate: 130.0, max_current: 1.0}\ntemperature: 20.0\n"
     )
     (tmp_path / "recording.yaml").write_text(
         "rig: damper_bench\nsample_rate: 500.0\nnominal: nominal.yaml\nruns: [{name: a, file: a.csv}]\n"

@@ -1,0 +1,98 @@
+"""The current that flows, the instants at which the law is asked, and the heat of the coil."""
+
+import numpy as np
+import pytest
+
+from seatsim.coil import Coil
+from seatsim.dampers.bingham import Bingham
+from seatsim.temperature import TemperatureFactors, Thermal
+
+from .rigs import STEP, driven, rough
+
+STILL = np.zeros(201)
+DAMPER = Bingham(v_ref=0.1)
+
+
+def exact(coil, commands, start=0.0):
+    """Current at every row: exponentials from one change of the delayed command to the next."""
+    time = STEP * np.arange(len(commands))
+    changes = np.concatenate([[0.0], time + coil.delay])
+    values = np.concatenate([[start], np.clip(commands, 0.0, coil.max_current)])
+    current, now, out = start, 0.0, []
+    stops = sorted([(t, 1, u) for t, u in zip(changes, values, strict=True)] + [(t, 0, None) for t in time])
+    command = start
+    for stop, _, new in stops:
+        rate = coil.rate if command > current else (coil.rate_fall or coil.rate)
+        current = command + (current - command) * np.exp(-rate * (stop - now))
+        now = stop
+        if new is None:
+            out.append(current)
+        else:
+            command = new
+    return np.array(out)
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.003, 0.0034, 0.0009])
+@pytest.mark.parametrize("rate_fall", [0.0, 70.0])
+@pytest.mark.parametrize("start", [0.0, 0.6])
+def test_the_current_is_exact(delay, rate_fall, start):
+    coil = Coil(rate=176.0, rate_fall=rate_fall, delay=delay)
+    commands = np.repeat(np.random.default_rng(5).uniform(-0.5, 1.5, 21), 10)[:201]
+    h = driven(DAMPER, STILL, commands, coil=coil, start_current=start)
+    assert h["current_command"] == pytest.approx(np.clip(commands, 0.0, 1.0), abs=0)
+    assert h["coil_current"] == pytest.approx(exact(coil, commands, start), abs=1e-12)
+
+
+def test_switching_times_of_the_rd_1005_3():
+    coil = Coil(rate=176.0, rate_fall=70.0)
+    commands = np.where(np.arange(201) < 100, 1.0, 0.0)
+    current = driven(DAMPER, STILL, commands, coil=coil)["coil_current"]
+    assert np.argmax(current > 0.95) == pytest.approx(17, abs=1)
+    assert np.argmax(current[100:] < 0.05 * current[100]) == pytest.approx(43, abs=1)
+
+
+@pytest.mark.parametrize("every", [1, 7])
+def test_a_command_stands_until_the_next_sample(every):
+    commands = np.random.default_rng(6).uniform(0.0, 1.0, 201)
+    h = driven(DAMPER, STILL, commands, every=every, coil=Coil(max_current=0.8, delay=0.0025))
+    held = np.minimum(commands[(np.arange(201) // every) * every], 0.8)
+    assert h["current_command"] == pytest.approx(held, abs=0)
+    assert h["coil_current"] == pytest.approx(exact(Coil(max_current=0.8, delay=0.0025), held), abs=1e-12)
+
+
+def test_a_prescribed_current_bypasses_the_coil():
+    current = 0.5 + 0.4 * np.sin(40.0 * STEP * np.arange(2001))
+    floor = rough(2.0, rms=3.0)
+    h = driven(DAMPER, floor, 0.0, prescribed=current, start_current=current[0])
+    v = h["suspension_velocity"]
+    assert h["coil_current"] == pytest.approx(current, abs=1e-12)
+    expected = (250.0 + 350.0 * current) * v + (45.0 + 620.0 * current) * np.tanh(v / 0.1)
+    assert h["damper_force"] == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_still_damper_warms_up_by_its_coil():
+    thermal = Thermal(start=20.0, ambient=25.0, heat_capacity=2.0, conductance=4.0)
+    h = driven(DAMPER, np.zeros(2001), 0.8, start_current=0.8, thermal=thermal, temperature=20.0)
+    end = 25.0 + 0.8**2 * 5.0 / 4.0
+    expected = end + (20.0 - end) * np.exp(-4.0 / 2.0 * STEP * np.arange(2001))
+    assert h["damper_temperature"] == pytest.approx(expected, abs=6.0 * 1.1e-3)
+
+
+def test_an_insulated_damper_keeps_its_work_and_the_heat_of_its_coil():
+    thermal = Thermal(start=20.0, ambient=20.0, heat_capacity=3.0, conductance=0.0)
+    commands = np.repeat([0.0, 1.0, 0.2], 667)
+    h = driven(DAMPER, rough(2.0, rms=3.0), commands, thermal=thermal)
+    ohmic = 5.0 * np.trapezoid(h["coil_current"] ** 2, dx=STEP)
+    expected = 20.0 + (h["energy_damper"][-1] + ohmic) / 3.0
+    assert h["damper_temperature"][-1] == pytest.approx(expected, rel=1e-5)
+
+
+def test_temperature_scales_viscous_and_yield_force():
+    factors = TemperatureFactors(viscous=-0.005, yield_force=-0.008)
+    viscous, yielding = np.exp(-0.005 * 60.0), np.exp(-0.008 * 60.0)
+    floor = rough(1.0, rms=3.0)
+    hot = driven(DAMPER, floor, 0.5, factors=factors, temperature=80.0)
+    weak = Bingham(250.0 * viscous, 350.0 * viscous, 45.0 * yielding, 620.0 * yielding, v_ref=0.1)
+    cold = driven(weak, floor, 0.5)
+    for name in ("damper_force", "driver_acceleration"):
+        assert hot[name] == pytest.approx(cold[name], abs=1e-9)

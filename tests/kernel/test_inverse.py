@@ -1,0 +1,112 @@
+"""The inverse damper against a dense search, and what it says where no current serves."""
+
+import numpy as np
+import pytest
+
+from controllers.static_output_feedback import OutputFeedback
+from seatsim.dampers.bingham import Bingham
+from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
+from seatsim.kernel.belief import Belief
+from seatsim.kernel.inverse import CELLS, invert, total
+from seatsim.registry import card_of
+from seatsim.temperature import Heat, TemperatureFactors
+
+from .dampers import Parabola, Wavy
+from .rigs import rms, rough, run
+
+HEAT = Heat(0.9, 1.0, 0.8)
+TOP = 1.2
+GRID = np.linspace(0.0, TOP, 20_001)
+CASES = {
+    "bouc_wen": (BoucWen(), ((-1.0, 1.0),)),
+    "bingham": (Bingham(), ()),
+    "sharp_bingham": (Bingham(v_ref=0.0), ()),
+    "modified_bouc_wen": (ModifiedBoucWen(), ((-0.01, 0.01), (-0.002, 0.002))),
+    "parabola": (Parabola(), ()),
+    "falling_parabola": (Parabola(200.0, -600.0, 900.0), ()),
+    "wavy": (Wavy(), ()),
+}
+
+
+def draw(bounds, count):
+    """Wanted force, displacement, velocity and state at random."""
+    rng = np.random.default_rng(11)
+    for _ in range(count):
+        v = rng.uniform(-0.3, 0.3)
+        yield rng.uniform(-1.0, 3.0) * 800.0 * v, rng.uniform(-0.02, 0.02), v, tuple(rng.uniform(*b) for b in bounds)
+
+
+def ask(damper, wanted, x, v, z):
+    order = card_of(type(damper)).current_order
+    return invert(damper, order, wanted, x, v, HEAT, z, TOP, np.empty(CELLS + 1))
+
+
+def on_grid(damper, x, v, z):
+    """Force over the dense grid of currents, by the damper's own method in Python."""
+    friction = damper.coulomb(0.0, HEAT) if hasattr(damper, "coulomb") else 0.0
+    if friction:
+        return np.array([damper.force(x, v, i, HEAT, z) + np.sign(v) * damper.coulomb(i, HEAT) for i in GRID])
+    if isinstance(damper, Bingham | BoucWen | Parabola):
+        return damper.force(x, v, GRID, HEAT, z)
+    return np.array([damper.force(x, v, i, HEAT, z) for i in GRID])
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_least_current_that_serves(name):
+    damper, bounds = CASES[name]
+    served, count = 0, 60
+    for wanted, x, v, z in draw(bounds, count):
+        answer = ask(damper, wanted, x, v, z)
+        assert 0.0 <= answer.current <= TOP
+        assert answer.force == pytest.approx(total(damper, x, v, answer.current, HEAT, z), rel=1e-12, abs=1e-9)
+        if wanted * v <= 0.0:
+            assert answer.current == 0.0
+            continue
+        forces = on_grid(damper, x, v, z)
+        crossings = np.flatnonzero((forces[1:] - wanted) * (forces[:-1] - wanted) <= 0.0)
+        if len(crossings):
+            served += 1
+            assert answer.served == 1.0
+            assert GRID[crossings[0]] - 1e-6 <= answer.current <= GRID[crossings[0] + 1] + 1e-6
+        else:
+            closest = np.min(np.abs(forces - wanted))
+            slack = 1e-9 if card_of(type(damper)).current_order else 0.002 * np.ptp(forces)
+            assert answer.served == 0.0
+            assert abs(answer.force - wanted) <= closest + 1e-6 + slack
+    assert 5 < served < count - 5
+
+
+def test_a_force_within_reach_twice_takes_the_lesser_current():
+    answer = ask(Wavy(), 0.1 * 700.0, 0.0, 0.1, ())
+    assert answer.served == 1.0
+    assert answer.current == pytest.approx(1.0 / 18.0, abs=1e-8)
+    answer = ask(Parabola(), 0.1 * 400.0, 0.0, 0.1, ())
+    assert answer.current == pytest.approx(0.2, abs=1e-9)
+
+
+@pytest.mark.parametrize(("wanted", "force"), [(0.1 * 950.0, 90.0), (0.1 * 50.0, 10.0)])
+def test_a_force_out_of_reach_is_flagged_and_approached(wanted, force):
+    answer = ask(Wavy(), wanted, 0.0, 0.1, ())
+    assert answer.served == 0.0
+    assert answer.force == pytest.approx(force, rel=0.02)
+
+
+@pytest.mark.parametrize(("wanted", "v"), [(-50.0, 0.1), (50.0, -0.1), (50.0, 0.0), (0.0, 0.1), (-0.0, 0.0)])
+def test_no_current_outside_the_dissipative_quadrant(wanted, v):
+    for damper, bounds in CASES.values():
+        assert ask(damper, wanted, 0.0, v, (0.0,) * len(bounds)).current == 0.0
+
+
+def test_a_belief_that_is_true_asks_for_the_same_current():
+    floor, law = rough(2.0, rms=1.5), OutputFeedback(2.0, 2147.6)
+    knows = run(BoucWen(), law, floor, every=5)
+    believes = run(BoucWen(), law, floor, every=5, belief=Belief(BoucWen(), 1, TemperatureFactors(), np.nan))
+    assert rms(believes["coil_current"] - knows["coil_current"]) < 0.01 * rms(knows["coil_current"])
+    assert rms(believes["damper_force"] - knows["damper_force"]) < 1e-3 * rms(knows["damper_force"])
+
+
+def test_the_flag_says_whether_the_damper_gave_the_wanted_force():
+    h = run(ModifiedBoucWen(), OutputFeedback(2.0, 2147.6), rough(2.0, rms=3.0))
+    inside = h["wanted_force"] * h["suspension_velocity"] > 0.0
+    assert np.all(h["current_command"][~inside] == 0.0)
+    assert 0.1 < np.mean(h["force_served"][inside]) < 0.99
