@@ -48,28 +48,38 @@ def rates(damper, t, x, v, xc, vc, y, z, i, command, floor):
     return v, frame - excitation, vc, -cushion / M - frame, flow, hysteresis, RATE * (command - i)
 
 
-def inverse(damper, x, v, y, z):
+def between(damper, wanted, x, v, y, z, left, f_left, right):
+    """Return the current between `left` and `right` that gives the wanted force, to 1e-9 A."""
+    while right - left > 1e-9:
+        middle = 0.5 * (left + right)
+        if (damper(x, v, middle, y, z)[0] - wanted) * f_left > 0.0:
+            left = middle
+        else:
+            right = middle
+    return 0.5 * (left + right)
+
+
+def inverse(damper, between, x, v, y, z):
     """Return the least current that gives the wanted force, or the one that comes closest."""
     wanted = KX * x + KV * v
     if wanted * v <= 0.0:
         return 0.0
-    left, f_left = 0.0, damper(x, v, 0.0, y, z)[0] - wanted
-    best, f_best = left, abs(f_left)
-    for cell in range(CELLS):
-        right = TOP * (cell + 1) / CELLS
-        f_right = damper(x, v, right, y, z)[0] - wanted
-        if f_left * f_right <= 0.0:
-            while right - left > 1e-9:
-                middle = 0.5 * (left + right)
-                if (damper(x, v, middle, y, z)[0] - wanted) * f_left > 0.0:
-                    left = middle
-                else:
-                    right = middle
-            return 0.5 * (left + right)
-        if abs(f_right) < f_best:
-            best, f_best = right, abs(f_right)
-        left, f_left = right, f_right
-    return best
+    f = [damper(x, v, TOP * j / CELLS, y, z)[0] - wanted for j in range(CELLS + 1)]
+    for j in range(CELLS):
+        if f[j] * f[j + 1] <= 0.0:
+            return between(damper, wanted, x, v, y, z, TOP * j / CELLS, f[j], TOP * (j + 1) / CELLS)
+    best = 0
+    for j in range(1, CELLS + 1):
+        if abs(f[j]) < abs(f[best]):
+            best = j
+    if best in (0, CELLS):
+        return TOP * best / CELLS
+    a, b = f[best - 1] - f[best], f[best + 1] - f[best]
+    turn = TOP * (best + 0.5 * (a - b) / (a + b)) / CELLS
+    f_turn = damper(x, v, turn, y, z)[0] - wanted
+    if f[best] * f_turn <= 0.0:
+        return between(damper, wanted, x, v, y, z, TOP * (best - 1) / CELLS, f[best - 1], turn)
+    return turn if abs(f_turn) < abs(f[best]) else TOP * best / CELLS
 
 
 class Model(NamedTuple):
@@ -84,17 +94,17 @@ def plain() -> Model:
     """Return the model in plain Python."""
     return Model(
         lambda t, s, command, floor: rates(damper, t, *s.tolist(), command, floor),
-        lambda *motion: inverse(damper, *motion),
+        lambda *motion: inverse(damper, between, *motion),
         np.ndarray.tolist,
     )
 
 
 def jitted() -> Model:
     """Return the model compiled with numba."""
-    force, slope, solve = numba.njit(damper), numba.njit(rates), numba.njit(inverse)
+    force, slope, root, solve = (numba.njit(part) for part in (damper, rates, between, inverse))
     return Model(
         numba.njit(lambda t, s, u, floor: slope(force, t, s[0], s[1], s[2], s[3], s[4], s[5], s[6], u, floor)),
-        numba.njit(lambda x, v, y, z: solve(force, x, v, y, z)),
+        numba.njit(lambda x, v, y, z: solve(force, root, x, v, y, z)),
         np.asarray,
     )
 

@@ -47,37 +47,43 @@ static inline State moved(State s, double h, State k) {
     };
 }
 
-static double inverse(const Setup *p, double wanted, State s) {
-    double rate;
-    if (wanted * s.v <= 0.0) return 0.0;
-    double left = 0.0, f_left = damper_force(p, s.x, s.v, 0.0, s.y, s.z, &rate) - wanted;
-    double best = 0.0, f_best = fabs(f_left);
-    for (int cell = 0; cell < CELLS; cell++) {
-        double right = p->max_current * (cell + 1) / CELLS;
-        double f_right = damper_force(p, s.x, s.v, right, s.y, s.z, &rate) - wanted;
-        if (f_left * f_right <= 0.0) {
-            int side = 0;
-            double middle = right;
-            for (int n = 0; n < 60; n++) {
-                middle = (left * f_right - right * f_left) / (f_right - f_left);
-                double f = damper_force(p, s.x, s.v, middle, s.y, s.z, &rate) - wanted;
-                if (fabs(f) <= 1e-6) break;
-                if (f * f_left > 0.0) {
-                    left = middle, f_left = f;
-                    if (side == -1) f_right *= 0.5;
-                    side = -1;
-                } else {
-                    right = middle, f_right = f;
-                    if (side == 1) f_left *= 0.5;
-                    side = 1;
-                }
-            }
-            return middle;
+static double between(
+    const Setup *p, double wanted, State s, double left, double f_left, double right, double f_right
+) {
+    double rate, middle = right;
+    int side = 0;
+    for (int n = 0; n < 60; n++) {
+        middle = (left * f_right - right * f_left) / (f_right - f_left);
+        double f = damper_force(p, s.x, s.v, middle, s.y, s.z, &rate) - wanted;
+        if (fabs(f) <= 1e-6) break;
+        if (f * f_left > 0.0) {
+            left = middle, f_left = f;
+            if (side == -1) f_right *= 0.5;
+            side = -1;
+        } else {
+            right = middle, f_right = f;
+            if (side == 1) f_left *= 0.5;
+            side = 1;
         }
-        if (fabs(f_right) < f_best) best = right, f_best = fabs(f_right);
-        left = right, f_left = f_right;
     }
-    return best;
+    return middle;
+}
+
+static double inverse(const Setup *p, double wanted, State s) {
+    double rate, f[CELLS + 1], cell = p->max_current / CELLS;
+    if (wanted * s.v <= 0.0) return 0.0;
+    for (int j = 0; j <= CELLS; j++) {
+        f[j] = damper_force(p, s.x, s.v, cell * j, s.y, s.z, &rate) - wanted;
+        if (j > 0 && f[j - 1] * f[j] <= 0.0) return between(p, wanted, s, cell * (j - 1), f[j - 1], cell * j, f[j]);
+    }
+    int best = 0;
+    for (int j = 1; j <= CELLS; j++)
+        if (fabs(f[j]) < fabs(f[best])) best = j;
+    if (best == 0 || best == CELLS) return cell * best;
+    double a = f[best - 1] - f[best], b = f[best + 1] - f[best], turn = cell * (best + 0.5 * (a - b) / (a + b));
+    double f_turn = damper_force(p, s.x, s.v, turn, s.y, s.z, &rate) - wanted;
+    if (f[best] * f_turn <= 0.0) return between(p, wanted, s, cell * (best - 1), f[best - 1], turn, f_turn);
+    return fabs(f_turn) < fabs(f[best]) ? turn : cell * best;
 }
 
 /* Simulate from rest; return the number of samples. */

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from seatsim.errors import InputError, nearest
@@ -140,6 +139,8 @@ def _channels(data: dict[str, Any], source: Source, rig: str) -> dict[str, Chann
 
 
 def _read_table(path: Path, channels: list[str]) -> dict[str, Array]:
+    import pandas as pd
+
     try:
         frame = pd.read_csv(path)
     except (OSError, ValueError, EOFError) as error:

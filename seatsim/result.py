@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from seatsim.metrics import Metric
 from seatsim.scenario import Scenario
 from seatsim.simulation import History
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 UNITS = {
     "time": "s",
@@ -83,6 +85,8 @@ class Result:
     @property
     def table(self) -> pd.DataFrame:
         """The metrics of every run: a row a run, with the columns that set the runs apart first; SI units."""
+        import pandas as pd
+
         rows = []
         for run in self.runs:
             row: dict[str, Any] = {"scenario": run.scenario.name, **run.scenario.label}

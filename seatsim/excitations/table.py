@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 from scipy.constants import g
 
 from seatsim.errors import InputError
 from seatsim.excitations.base import Floor, excitation
-from seatsim.excitations.columns import Record, read_record
 from seatsim.excitations.keys import DURATION, SPEED, Through, choice
 from seatsim.excitations.motion import check_step, samples, soft_start
 from seatsim.excitations.road import LONGEST, SHORTEST
 from seatsim.excitations.spectra import Spectrum, band, integrated_twice, limited, lines, mirrored, motion_of
 from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response
 from seatsim.fields import param
+
+if TYPE_CHECKING:
+    from seatsim.excitations.columns import Record
 
 # Part of a table's Nyquist frequency up to which its content is trusted.
 USABLE = 0.8
@@ -59,6 +61,8 @@ class Table(NamedTuple):
                 is over time or distance, the run is longer than the record, or `step` is too coarse for its
                 band.
         """
+        from seatsim.excitations.columns import read_record
+
         if (self.time_column is None) == (self.distance_column is None):
             raise InputError(f"table {self.path}: give either time_column or distance_column (with speed)")
         if self.time_column is not None:

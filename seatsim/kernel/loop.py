@@ -16,7 +16,7 @@ from seatsim.kernel.inverse import CELLS, invert
 from seatsim.kernel.options import jit
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.step import Drive, Progress, advance, relaxed, start
-from seatsim.temperature import Heat, TemperatureFactors, Thermal
+from seatsim.temperature import TemperatureFactors, Thermal
 
 Array = NDArray[np.float64]
 

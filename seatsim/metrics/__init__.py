@@ -22,6 +22,7 @@ from seatsim.metrics.motion import (
     peak,
     rms,
 )
+from seatsim.metrics.spectra import cross_density, density
 from seatsim.metrics.table import METRICS, Card, Metric, summarise
 from seatsim.metrics.transmissibility import Transmissibility, transmissibility
 from seatsim.metrics.weighting import WEIGHTINGS, Weighting, response, weight
@@ -36,8 +37,10 @@ __all__ = [
     "Transmissibility",
     "Weighting",
     "crest_factor",
+    "cross_density",
     "daily_exposure",
     "daily_vdv",
+    "density",
     "dose",
     "electrical_energy",
     "end_stop_hits",

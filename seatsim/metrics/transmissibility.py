@@ -6,10 +6,10 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import signal
 
 from seatsim.errors import InputError
 from seatsim.metrics.arrays import Array, as_pair, positive
+from seatsim.metrics.spectra import cross_density, density
 from seatsim.metrics.weighting import ComplexArray
 
 AVERAGES = 8
@@ -59,10 +59,10 @@ def transmissibility(floor: ArrayLike, driver: ArrayLike, sample_rate: float) ->
     """
     x, y = as_pair(floor, driver, ("floor", "driver"))
     length = _segment(x.size, positive(sample_rate, "sample_rate"))
-    frequency, floor_psd = signal.welch(x, sample_rate, nperseg=length)
-    _, driver_psd = signal.welch(y, sample_rate, nperseg=length)
-    _, cross = signal.csd(x, y, sample_rate, nperseg=length)
-    response = _quotient(np.asarray(cross, dtype=np.complex128), floor_psd)
+    frequency, floor_psd = density(x, sample_rate, length)
+    _, driver_psd = density(y, sample_rate, length)
+    _, cross = cross_density(x, y, sample_rate, length)
+    response = _quotient(cross, floor_psd)
     coherence = _quotient(np.abs(cross) ** 2, floor_psd * driver_psd)
     segments = 2 * x.size // length - 1
     return Transmissibility(frequency, response, coherence, segments)

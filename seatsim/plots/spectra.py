@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
-from scipy import signal
 
 from seatsim import metrics
 from seatsim.errors import InputError
@@ -96,7 +95,7 @@ def _floors(runs: Sequence[Run]) -> list[Run]:
 def _density(run: Run, channel: str) -> Density:
     values, rate = run.history[channel], 1 / run.history.step
     length = max(1, min(round(LONGEST * rate), 2 * len(values) // (AVERAGES + 1)))
-    frequency, power = signal.welch(values, rate, nperseg=length)
+    frequency, power = metrics.density(values, rate, length)
     return _averaged(frequency, power)
 
 

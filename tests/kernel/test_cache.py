@@ -1,0 +1,128 @@
+"""The cache of compiled code: an edited model never runs stale, an unedited one is not compiled again."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+MODEL = """
+from typing import NamedTuple
+import numba
+from slope import GAIN, slope
+import seatsim.kernel.generic
+
+@numba.njit
+def doubled(v):
+    return 2.0 * v
+
+class Model(NamedTuple):
+    c: float
+    def force(self, x, v, i, heat, z):
+        return 1.0 * doubled(self.c * slope(v)) + GAIN
+"""
+SLOPE = """
+import numba
+GAIN = 0.5
+@numba.njit
+def slope(v):
+    return 1.0 * v
+"""
+LOOP = """
+from seatsim.kernel.generic import force
+
+def evaluate(model, v):
+    return force(model, 0.0, v, 0.0, 0.0, ())
+"""
+CALL = """
+import sys
+from pathlib import Path
+from model import Model
+import loop
+from seatsim.kernel.compilation import compiled
+{before}
+function = compiled(loop.evaluate, (Model,))
+print(function(Model(3.0), 1.0), sum(function.stats.cache_hits.values()))
+"""
+HERE = 6.5
+
+
+@pytest.fixture
+def model(tmp_path, monkeypatch):
+    """A folder with a user's model, and a function that runs it in a process of its own: (value, loaded from disk)."""
+    for name, text in {"model": MODEL, "slope": SLOPE, "loop": LOOP}.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    monkeypatch.setenv("SEATSIM_CACHE_DIR", str(tmp_path / "cache"))
+
+    def call(before=""):
+        command = [sys.executable, "-B", "-c", CALL.format(before=before)]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+        value, hits = done.stdout.split()
+        return float(value), int(hits) > 0
+
+    call.folder = tmp_path
+    return call
+
+
+def edit(file, old, new):
+    """Replace text by as long a one and put the times back, so that neither size nor time tells."""
+    before = file.stat()
+    text = file.read_text()
+    assert old in text and len(old) == len(new)
+    file.write_text(text.replace(old, new))
+    os.utime(file, ns=(before.st_atime_ns, before.st_mtime_ns))
+
+
+def test_an_unedited_model_is_loaded(model):
+    assert model() == (HERE, False)
+    assert model() == (HERE, True)
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "value"),
+    [
+        ("model.py", "1.0 * d", "2.0 * d", 12.5),
+        ("model.py", "2.0 * v", "3.0 * v", 9.5),
+        ("slope.py", "1.0 *", "4.0 *", 24.5),
+        ("slope.py", "GAIN = 0.5", "GAIN = 0.7", 6.7),
+        ("loop.py", "0.0, v,", "0.0,-v,", -5.5),
+    ],
+)
+def test_an_edited_source_is_compiled_anew(model, file, old, new, value):
+    assert model()[0] == HERE
+    edit(model.folder / file, old, new)
+    assert model() == (pytest.approx(value), False)
+    edit(model.folder / file, new, old)
+    assert model() == (HERE, True)
+
+
+def test_a_source_edited_after_its_import_does_not_mislead_later_runs(model):
+    change = "p = Path('model.py'); p.write_text(p.read_text().replace('1.0 *', '2.0 *'))"
+    assert model(before=change)[0] == HERE
+    assert model() == (12.5, False)
+
+
+def test_a_reloaded_model_is_compiled_anew(model):
+    reload = (
+        "compiled(loop.evaluate, (Model,))(Model(3.0), 1.0)\n"
+        "p = Path('model.py'); p.write_text(p.read_text().replace('1.0 *', '2.0 *'))\n"
+        "import importlib; Model = importlib.reload(sys.modules['model']).Model"
+    )
+    assert model(before=reload)[0] == 12.5
+
+
+def test_without_a_folder_nothing_is_kept(model, monkeypatch):
+    (model.folder / "file").touch()
+    monkeypatch.setenv("SEATSIM_CACHE_DIR", str(model.folder / "file" / "cache"))
+    assert model() == (HERE, False)
+    assert model() == (HERE, False)
+    assert not list(model.folder.rglob("*.nb[ic]"))
+
+
+def test_a_model_without_a_source_is_not_kept(model):
+    inline = (
+        "from typing import NamedTuple\n"
+        "class Model(NamedTuple):\n    c: float\n    def force(self, x, v, i, heat, z):\n        return self.c * {}.0 * v"
+    )
+    assert model(before=inline.format(1)) == (3.0, False)
+    assert model(before=inline.format(2)) == (6.0, False)
