@@ -23,7 +23,7 @@ SMALLEST = 2.0**-18
 """Shortest sub-step as a fraction of the step."""
 SHARP = 1e-10
 """Speed in m/s, and excess of the friction in N, to which the ends of sliding and of rest are resolved."""
-MOST = 100_000
+MOST = 1_000_000
 """Most sub-steps of a step: a run that needs more has failed."""
 TRIES = 60
 """Most sub-steps on the way to such an end."""

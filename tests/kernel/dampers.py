@@ -3,12 +3,11 @@
 import math
 from typing import Any, NamedTuple
 
-from seatsim.dampers.base import damper
 
-
-@damper("test_wavy", source="made up")
 class Wavy(NamedTuple):
-    """`F = v (500 + 400 sin(3 pi i))`: rises to 900 v at 1/6 A, falls to 100 v at 1/2 A, rises again to 900 v at 5/6 A."""
+    """`F = v (500 + 400 sin(3 pi i))`: 900 v at 1/6 A, 100 v at 1/2 A, 900 v again at 5/6 A."""
+
+    order = 0
 
     mean: float = 500.0
     swing: float = 400.0
@@ -17,9 +16,10 @@ class Wavy(NamedTuple):
         return v * (self.mean + self.swing * math.sin(3.0 * math.pi * i))
 
 
-@damper("test_parabola", source="made up", current_order=2)
 class Parabola(NamedTuple):
     """`F = v (a + b i + c i^2)`."""
+
+    order = 2
 
     a: float = 200.0
     b: float = 1200.0

@@ -16,6 +16,7 @@ from seatsim.temperature import TemperatureFactors, Thermal
 STEP = 1e-3
 SEAT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
 NONE = np.zeros(0)
+COIL, LINEAR, NO_HEAT = Coil(), SuspensionExtras(), TemperatureFactors()
 METRICS = (
     "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current",
 )  # fmt: skip
@@ -41,8 +42,8 @@ def refined(rows, times):
 
 
 def run(
-    damper, law, floor, *, step=STEP, every=1, tolerance=1e-4, coil=Coil(), plant=SEAT, belief=None,
-    extras=SuspensionExtras(), thermal=None, factors=TemperatureFactors(), temperature=20.0, replayed=NONE,
+    damper, law, floor, *, step=STEP, every=1, tolerance=1e-4, coil=COIL, plant=SEAT, belief=None,
+    extras=LINEAR, thermal=None, factors=NO_HEAT, temperature=20.0, replayed=NONE,
     prescribed=NONE, **start,
 ):  # fmt: skip
     """Run and return the history by channel, with `velocity` of the floor taken by the trapezoidal rule."""
@@ -55,7 +56,8 @@ def run(
     out = np.empty((rows, len(CHANNELS)))
     loop = compiled(run_loop, (type(damper), type(law), type(belief.damper)))
     rest, believed = (card_of(type(part)).initial for part in (damper, belief.damper))
-    assert loop(setup, inputs, rest, believed, (), out) == rows
+    reached = loop(setup, inputs, rest, believed, (), out)
+    assert reached == rows, f"stopped at row {reached} of {rows}"
     return dict(zip(CHANNELS, out.T, strict=True)) | {"floor_velocity": velocity}
 
 

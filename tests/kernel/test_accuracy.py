@@ -54,7 +54,9 @@ def test_a_smooth_damper_at_constant_current(tolerance):
 )
 def test_a_switching_law_on_stiff_and_sticking_rigs(v_ref, friction, every):
     floor = rough(3.0, rms=3.0)
-    reference = channels(skyhook(Yielding(250.0, 350.0, 45.0, 620.0, v_ref, friction), floor, every, 800, 130.0, 1.0, 0.0))
+    reference = channels(
+        skyhook(Yielding(250.0, 350.0, 45.0, 620.0, v_ref, friction), floor, every, 800, 130.0, 1.0, 0.0)
+    )
     h = run(Bingham(v_ref=v_ref), OnOffSkyhook(), floor, every=every, extras=SuspensionExtras(friction=friction))
     assert worst(h, reference) < 1e-2
     assert imbalance(h) < 1e-4

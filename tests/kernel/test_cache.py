@@ -122,7 +122,8 @@ def test_without_a_folder_nothing_is_kept(model, monkeypatch):
 def test_a_model_without_a_source_is_not_kept(model):
     inline = (
         "from typing import NamedTuple\n"
-        "class Model(NamedTuple):\n    c: float\n    def force(self, x, v, i, heat, z):\n        return self.c * {}.0 * v"
+        "class Model(NamedTuple):\n    c: float\n"
+        "    def force(self, x, v, i, heat, z):\n        return self.c * {}.0 * v"
     )
     assert model(before=inline.format(1)) == (3.0, False)
     assert model(before=inline.format(2)) == (6.0, False)

@@ -51,3 +51,15 @@ def test_the_tolerance_bounds_the_error_where_the_step_is_too_long():
         state = [h["suspension_displacement"][-1], h["suspension_velocity"][-1]]
         errors.append(np.max(np.abs((state - final) / final)))
     assert errors[0] < 1e-2 and errors[1] < 1e-4 and errors[2] < 1e-6
+
+
+def test_a_run_that_grows_beyond_all_bounds_stops():
+    with pytest.raises(AssertionError, match=r"stopped at row \d+ of 5001"):
+        driven(Bingham(c_a=-5e4, v_ref=0.2), rough(5.0), CURRENT)
+
+
+def test_a_run_stops_at_a_value_that_is_no_number():
+    floor = rough(1.0)
+    floor[500] = np.nan
+    with pytest.raises(AssertionError, match="stopped at row 499 of 1001"):
+        driven(DAMPER, floor, CURRENT)
