@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
+from seatsim.jit import jit
 
 
 class SuspensionExtras(NamedTuple):
@@ -18,7 +18,7 @@ class SuspensionExtras(NamedTuple):
     stop_damping: float = 0.0
 
 
-@numba.njit(forceinline=True)
+@jit
 def extra_force(extras: SuspensionExtras, x: float, v: float) -> float:
     """Return the force in N that opposes extension, of progressive spring and end stops (friction is set-valued)."""
     total = extras.cubic * x * x * x
@@ -30,7 +30,7 @@ def extra_force(extras: SuspensionExtras, x: float, v: float) -> float:
     return total
 
 
-@numba.njit(forceinline=True)
+@jit
 def _buffer(extras: SuspensionExtras, depth: float, speed: float) -> float:
     """Return the push of a buffer compressed by `depth`, which never pulls."""
     return max(0.0, extras.stop_stiffness * depth * (1.0 + extras.stop_damping * speed))

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, QuadraticLaw, branch, branch_rate, quadratic
 from seatsim.fields import param
-from seatsim.kernel.options import jit
+from seatsim.jit import jit
 from seatsim.temperature import Heat, TemperatureFactors
 
 Coefficient = Annotated[float, param("-", "coefficient of a power of u")]

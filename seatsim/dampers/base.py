@@ -6,7 +6,7 @@
 
 with x [m], v = x' [m/s], current i [A], `heat` the temperature factors (`seatsim.temperature.Heat`) by which
 the model multiplies its viscous, elastic and yield terms. Methods are compiled by numba: plain arithmetic and
-`math` only; what they call from their module is decorated with `numba.njit`.
+`math` only; what they call from their module is decorated with `seatsim.jit.jit`.
 """
 
 from __future__ import annotations

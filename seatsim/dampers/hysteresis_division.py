@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, branch, branch_rate
 from seatsim.fields import param
-from seatsim.kernel.options import jit
+from seatsim.jit import jit
 from seatsim.temperature import Heat
 
 RISE_TIME = 0.01

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from seatsim.dampers.base import State
 from seatsim.fields import param
-from seatsim.kernel.options import jit
+from seatsim.jit import jit
 
 QuadraticLaw = tuple[
     Annotated[float, param("", "constant")],

@@ -12,7 +12,7 @@ from scipy.interpolate import PchipInterpolator
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, branch, branch_rate
 from seatsim.fields import param
-from seatsim.kernel.options import jit
+from seatsim.jit import jit
 from seatsim.temperature import Heat
 
 Row = tuple[float, float, float, float, float]

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from seatsim.jit import jit
 from seatsim.kernel.generic import Tuple, axpy, combine, heat_at, hook, rates
-from seatsim.kernel.options import jit
 from seatsim.temperature import Heat, TemperatureFactors
 
 

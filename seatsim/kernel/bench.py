@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.jit import jit
 from seatsim.kernel.generic import Tuple, axpy, combine, force, heat_at, rates
 from seatsim.kernel.inverse import total
-from seatsim.kernel.options import jit
 from seatsim.temperature import Heat, TemperatureFactors
 
 Array = NDArray[np.float64]

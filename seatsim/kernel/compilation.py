@@ -23,7 +23,7 @@ import numba
 import numpy as np
 import platformdirs
 
-from seatsim.kernel.options import ARITHMETIC
+from seatsim.jit import ARITHMETIC
 
 _OUTSIDE = ("numba", "numpy", "scipy", "llvmlite", "pydantic", "control", "cvxpy")
 _STANDARD = Path(sysconfig.get_path("stdlib"))

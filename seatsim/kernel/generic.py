@@ -12,7 +12,7 @@ from typing import Any
 from numba import types
 from numba.extending import overload
 
-from seatsim.kernel.options import INLINED, jit
+from seatsim.jit import INLINED, jit
 from seatsim.temperature import Heat, TemperatureFactors
 from seatsim.temperature import heat as _heat
 
@@ -62,7 +62,7 @@ def update(self: Any, y: Any, state: Tuple) -> Tuple:
 
 def wants_force(law: Any) -> bool:
     """Whether the law answers with a force (through the inverse) rather than with a current."""
-    return hasattr(law, "wanted_force") or hasattr(law, "force")
+    return hasattr(law, "wanted_force")
 
 
 @overload(wants_force, strict=False, jit_options=INLINED)
@@ -82,12 +82,9 @@ def _ask(law: Any, y: Any, state: Any) -> Callable[..., float]:
     return _question(law.instance_class)
 
 
-def _question(cls: type) -> Callable[..., float]:
-    for name in ("wanted_force", "wanted_current", "force", "current"):
-        if hasattr(cls, name):
-            method: Callable[..., float] = getattr(cls, name)
-            return method
-    raise TypeError(cls)
+def _question(cls: Any) -> Callable[..., float]:
+    method: Callable[..., float] = cls.wanted_force if wants_force(cls) else cls.wanted_current
+    return method
 
 
 def axpy(y: Tuple, h: float, k: Tuple) -> Tuple:

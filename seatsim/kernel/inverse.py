@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.jit import jit
 from seatsim.kernel.generic import Tuple, coulomb, force
-from seatsim.kernel.options import jit
 from seatsim.temperature import Heat
 
 Array = NDArray[np.float64]
@@ -35,10 +35,10 @@ def invert(
     `grid`, shape (CELLS + 1,), is scratch.
 
     Outside the dissipative quadrant (`wanted v <= 0`) the current is zero; inside, the wanted force is clipped to the
-    range of forces over the permitted currents at this motion, temperature and state. Where the force is a polynomial in the current of
-    `order` 1 or 2 it is recovered exactly from three values and solved in closed form; any other map, which need not be
-    monotone, is searched from zero current upward for the first cell that holds the force, then bracketed there; where
-    no cell does, the grid's closest point is refined by a parabola.
+    range of forces over the permitted currents at this motion, temperature and state. Where the force is a polynomial
+    in the current of `order` 1 or 2 it is recovered exactly from three values and solved in closed form. Any other map,
+    which need not be monotone, is searched from zero current upward for the first cell that holds the force, then
+    bracketed there; where no cell does, the grid's closest point is refined by a parabola.
     """
     if wanted * v <= 0.0:
         current = 0.0
@@ -55,7 +55,8 @@ def invert(
 def total(damper: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> float:
     """Return the damper force in N with its set-valued friction, which is zero at v = 0."""
     smooth: float = force(damper, x, v, i, heat, z)
-    return smooth + coulomb(damper, i, heat) * (0.0 if v == 0.0 else math.copysign(1.0, v))
+    friction: float = coulomb(damper, i, heat)
+    return smooth + friction * (0.0 if v == 0.0 else math.copysign(1.0, v))
 
 
 @jit

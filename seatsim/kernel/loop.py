@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from seatsim.coil import Coil
 from seatsim.control import Measurement
+from seatsim.jit import jit
 from seatsim.kernel.belief import follow, heat, state
 from seatsim.kernel.generic import Tuple, ask, heat_at, update, wants_force
 from seatsim.kernel.inverse import CELLS, invert
-from seatsim.kernel.options import jit
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.step import Drive, Progress, advance, relaxed, start
 from seatsim.temperature import TemperatureFactors, Thermal
@@ -61,7 +61,7 @@ class Inputs(NamedTuple):
 
 
 class Timing(NamedTuple):
-    """Step of the loop in s, steps per sample of the controller, error tolerance, and whether temperature is a state."""
+    """Step of the loop in s, steps per sample of the law, error tolerance, and whether temperature is a state."""
 
     step: float
     sample_every: int
@@ -84,9 +84,9 @@ class Setup(NamedTuple):
 def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple, law_state: Tuple, out: Array) -> int:
     """Simulate from rest and fill `out`, shape (N, len(CHANNELS)); return the number of samples reached (N if all)."""
     rig, coil, law, belief, timing = setup.rig, setup.coil, setup.law, setup.belief, setup.timing
-    step, samples = timing.step, out.shape[0]
+    step, samples = timing.step, len(out)
     prescribed = len(inputs.prescribed) > 0
-    delay_steps = int(math.floor(coil.delay / step + 1e-9))
+    delay_steps = math.floor(coil.delay / step + 1e-9)
     split = coil.delay - delay_steps * step
     if split < 1e-9 * step:
         split = 0.0

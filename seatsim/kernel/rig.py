@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from seatsim.jit import jit
 from seatsim.kernel.generic import Tuple, coulomb, force, rates
-from seatsim.kernel.options import jit
 from seatsim.plant import Plant
 from seatsim.suspension import SuspensionExtras, extra_force
 from seatsim.temperature import Heat

@@ -11,8 +11,8 @@ import math
 from typing import NamedTuple
 
 from seatsim.coil import Coil, relax
+from seatsim.jit import jit, jit_apart
 from seatsim.kernel.generic import Tuple, axpy, combine
-from seatsim.kernel.options import jit, jit_apart
 from seatsim.kernel.rig import HELD, Flow, Rig, derivative
 from seatsim.temperature import Heat
 

@@ -34,5 +34,6 @@ def density(x: Array, sample_rate: float, length: int) -> tuple[Array, Array]:
 
 def _segments(values: Array, length: int) -> Array:
     """Return half-overlapping segments with their means removed, shape (S, length)."""
-    parts = sliding_window_view(values, length)[:: max(1, length - length // 2)]
-    return parts - parts.mean(axis=-1, keepdims=True)
+    parts: Array = sliding_window_view(values, length)[:: max(1, length - length // 2)]
+    centred: Array = parts - parts.mean(axis=-1, keepdims=True)
+    return centred
