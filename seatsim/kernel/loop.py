@@ -16,7 +16,7 @@ from seatsim.kernel.generic import Tuple, ask, heat_at, update, wants_force
 from seatsim.kernel.inverse import CELLS, invert
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.step import Drive, Progress, advance, relaxed, start
-from seatsim.temperature import TemperatureFactors, Thermal
+from seatsim.temperature import Heat, TemperatureFactors, Thermal
 
 Array = NDArray[np.float64]
 
@@ -103,23 +103,7 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
         floor = inputs.floor_acceleration[k]
         if k % timing.sample_every == 0:
             y = _measure(rig, inputs, now, k, step, current, temperature)
-            if wants_force(law):
-                wanted = ask(law, y, law_state)
-                answer = invert(
-                    belief.damper,
-                    belief.order,
-                    wanted,
-                    rig.plant.damper_ratio * now.state[0],
-                    rig.plant.damper_ratio * now.state[1],
-                    heat(belief, factors, temperature),
-                    state(belief, now.state[8:], believed),
-                    coil.max_current,
-                    grid,
-                )
-                command, served = answer.current, answer.served
-            else:
-                command = ask(law, y, law_state)
-            command = min(max(command, 0.0), coil.max_current)
+            command, wanted, served = _decide(setup, y, now, factors, believed, law_state, grid)
             law_state = update(law, y, law_state)
         _record(out, k, now, floor, wanted, served, current, command, temperature)
         if k == samples - 1:
@@ -154,6 +138,30 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
             factors = heat_at(setup.factors, temperature)
         current = next_current
     return samples
+
+
+@jit
+def _decide(
+    setup: Setup, y: Measurement, now: Progress, factors: Heat, believed: Tuple, law_state: Tuple, grid: Array
+) -> tuple[float, float, float]:
+    """Return the command in A, the force in N that the law wants (NaN: it wants a current) and whether it is served."""
+    law, belief, top = setup.law, setup.belief, setup.coil.max_current
+    answer = ask(law, y, law_state)
+    if not wants_force(law):
+        return min(max(answer, 0.0), top), math.nan, math.nan
+    ratio = setup.rig.plant.damper_ratio
+    found = invert(
+        belief.damper,
+        belief.order,
+        answer,
+        ratio * y.displacement,
+        ratio * y.velocity,
+        heat(belief, factors, y.temperature),
+        state(belief, now.state[8:], believed),
+        top,
+        grid,
+    )
+    return found.current, answer, found.served
 
 
 @jit
