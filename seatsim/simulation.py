@@ -62,8 +62,8 @@ def simulate(scenario: Scenario) -> History:
     reached = compiled(run_loop, plugged)(setup, inputs, *states, out)
     if reached < len(out):
         raise RunError(
-            f"{scenario.title}: no solution beyond {reached * step:.3f} s, where it leaves all bounds; check the signs of"
-            " gains and stiffnesses, and the damper's parameters"
+            f"{scenario.title}: no solution beyond {reached * step:.3f} s, where it leaves all bounds; check the signs"
+            " of gains and stiffnesses, and the damper's parameters"
         )
     return _history(scenario.plant, step, out)
 
