@@ -20,6 +20,9 @@ State = tuple[float, ...]
 SOURCE = "Yu et al. 2019, eqs 15-19, on the exact plant and with u = +K y for the damper force"
 
 
+Gain = Annotated[float, param("N/m or N s/m", "one entry of the gain", low=-1e9, high=1e9)]
+
+
 class Weights(NamedTuple):
     """Weights of the performance output `z = (travel x, acceleration zc'')` (Yu et al. 2019, eq 17)."""
 
@@ -45,7 +48,7 @@ class StaticOutputFeedback(NamedTuple):
     Exactly one of `gain` ([N/m, N s/m]), `design` (a file that `seatsim synthesise` wrote) and `weights` is given.
     """
 
-    gain: Annotated[tuple[float, float] | None, Field(description="gain on (x, v) in N/m and N s/m")] = None
+    gain: Annotated[tuple[Gain, Gain] | None, Field(description="gain on (x, v) in N/m and N s/m")] = None
     design: Annotated[str | None, Field(description="path of a saved design")] = None
     weights: Annotated[Weights | None, Field(description="weights of a synthesis at the start of the run")] = None
 

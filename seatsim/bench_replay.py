@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline, UnivariateSpline
 
 from seatsim.coil import Coil, relax
 from seatsim.dampers.bench import bench_force
+from seatsim.errors import InputError
 from seatsim.recording import Recording
 from seatsim.scenario import Scenario
 from seatsim.temperature import Thermal
@@ -18,43 +19,45 @@ from seatsim.temperature import Thermal
 Array = NDArray[Any]
 
 
-def replay_bench(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Return the recorded channels of a bench run, and the simulated `damper_force` and `coil_current` at its rows.
+def replay_bench(scenario: Scenario, recording: Recording, run: str) -> dict[str, Array]:
+    """Return the simulated `damper_force` and `coil_current` of a bench run at its rows.
 
     Displacement follows a quintic spline smoothed to within its stated noise, velocity its derivative or, where it is
     recorded, its own spline. The command (or `command_voltage` times the recording's gain) is held from its row until
     the next and drives the coil; where only `coil_current` is recorded it drives the damper; where nothing is, the
     current is zero.
     """
+    if scenario.effects:
+        raise InputError(f"{scenario.name}: a damper bench has none of the blocks of these effects; remove them")
     table = recording.table(run)
     interval = 1.0 / recording.header.sample_rate
     rows = np.arange(len(table["displacement"])) * interval
     fine = np.arange(2 * len(rows) - 1) * 0.5 * interval
     position = _smooth(rows, table["displacement"], recording.channels["displacement"].noise_rms)
     velocity = CubicSpline(rows, table["velocity"])(fine) if "velocity" in table else position.derivative()(fine)
-    current = _current(scenario.coil, table, recording.voltage_gain or 1.0, rows, fine)
+    current = _current(scenario.coil, table, recording.voltage_gain, rows, fine)
     force = bench_force(
         scenario.damper.record, position(fine), velocity, current, _temperature(scenario, table, rows, fine), interval,
         scenario.damper.factors,
     )  # fmt: skip
-    return table, {"damper_force": force, "coil_current": current[::2]}
+    return {"damper_force": force, "coil_current": current[::2]}
 
 
 def _smooth(time: Array, values: Array, noise: float) -> UnivariateSpline:
     return UnivariateSpline(time, values, k=5, s=len(values) * noise**2)
 
 
-def _current(coil: Coil, table: Mapping[str, Array], gain: float, rows: Array, fine: Array) -> Array:
+def _current(coil: Coil, table: Mapping[str, Array], gain: float | None, rows: Array, fine: Array) -> Array:
     """Return the coil current on the half-row grid."""
     command = table.get("current_command")
-    if command is None and "command_voltage" in table:
+    if command is None and gain is not None and "command_voltage" in table:
         command = gain * table["command_voltage"]
     if command is None:
         return np.interp(fine, rows, table["coil_current"]) if "coil_current" in table else np.zeros(len(fine))
     held = np.searchsorted(rows, fine - coil.delay + 1e-9 * rows[1], side="right") - 1
-    wanted = np.where(held < 0, 0.0, np.clip(command, 0.0, coil.max_current)[np.maximum(held, 0)])
     current = np.empty(len(fine))
     current[0] = table["coil_current"][0] if "coil_current" in table else 0.0
+    wanted = np.where(held < 0, current[0], np.clip(command, 0.0, coil.max_current)[np.maximum(held, 0)])
     for k in range(len(fine) - 1):
         current[k + 1] = relax(coil, current[k], wanted[k], fine[1])
     return current

@@ -18,6 +18,7 @@ from seatsim.errors import InputError, SeatsimError
 
 if TYPE_CHECKING:
     from seatsim.result import Run
+    from seatsim.scenario import Scenario
 
 app = typer.Typer(
     help="Simulate semi-active MR-damper seats and compare what is done to them.",
@@ -72,7 +73,7 @@ def synthesise(scenario: OneScenario, out_folder: Out = None, settings: Settings
     out.print(report(design))
     folder = out_folder or Path("out") / chosen.name
     design.save(folder / "design.yaml")
-    out.print(f"written: {folder / 'design.yaml'}")
+    out.print(f"written: {folder / 'design.yaml'}", markup=False, highlight=False)
 
 
 @app.command()
@@ -85,7 +86,7 @@ def gap(scenario: OneScenario, recording: Path, out_folder: Out = None) -> None:
     found = find_gap(scenario, recording)
     out.print(report(found))
     path = write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", found.as_dict())
-    out.print(f"written: {path}")
+    out.print(f"written: {path}", markup=False, highlight=False)
 
 
 @app.command()
@@ -96,13 +97,17 @@ def describe(name: Annotated[str, typer.Argument(help="A name, such as bouc_wen 
     out.print(tell(name), markup=False, highlight=False, soft_wrap=True)
 
 
-def _execute(groups: list[list[str]], folders: list[Path | None], values: dict[str, Any]) -> None:
+def _execute(groups: list[list[str]], chosen: list[Path | None], values: dict[str, Any]) -> None:
     """Run every group of files as one result, then print its table and write its files; exit 1 where a run failed."""
     from seatsim.loading import load
     from seatsim.runs import run_many
 
     loaded = [[scenario for path in group for scenario in load(path, values)] for group in groups]
     scenarios = [scenario for group in loaded for scenario in group]
+    folders = [folder or Path("out") / _title(group) for group, folder in zip(loaded, chosen, strict=True)]
+    for folder in folders:
+        if folders.count(folder) > 1:
+            raise InputError(f"two of the files would write to {folder}; give them other names, or run them one by one")
     done: dict[int, Run] = {}
     interrupted = False
     with _progress(len(scenarios)) as advance:
@@ -122,7 +127,12 @@ def _execute(groups: list[list[str]], folders: list[Path | None], values: dict[s
         raise typer.Exit(1)
 
 
-def _present(runs: list[Run], folder: Path | None) -> None:
+def _title(scenarios: list[Scenario]) -> str:
+    names = list(dict.fromkeys(scenario.name for scenario in scenarios))
+    return names[0] if len(names) == 1 else "comparison"
+
+
+def _present(runs: list[Run], folder: Path) -> None:
     """Print the table of some runs, what their user is warned of, and the paths of the files written."""
     from seatsim.output import write_result
     from seatsim.published import published_tables
@@ -131,15 +141,12 @@ def _present(runs: list[Run], folder: Path | None) -> None:
 
     if not runs:
         return
-    names = list(dict.fromkeys(run.scenario.name for run in runs))
-    title = names[0] if len(names) == 1 else "comparison"
-    for table in [comparison(runs, title), *published_tables(runs)]:
+    for table in [comparison(runs, _title([run.scenario for run in runs])), *published_tables(runs)]:
         out.print(table)
     for sentence in dict.fromkeys(sentence for run in runs for sentence in run.warnings):
         err.print(f"warning: {sentence}", style="yellow", markup=False, highlight=False, soft_wrap=True)
-    target = folder or Path("out") / title
-    paths = write_result(Result(runs), target)
-    out.print(f"written to {target}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
+    paths = write_result(Result(runs), folder)
+    out.print(f"written to {folder}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -39,10 +40,12 @@ def load(path: str | Path, settings: Mapping[str, Any] | None = None) -> list[Sc
 def _located(path: Path) -> Path:
     if path.exists():
         return path
-    for folder in EXAMPLES:
-        for name in (path.name, f"{path.name}.yaml", Path(*path.parts[1:]), path):
-            if (folder / name).is_file():
-                return folder / name
+    if not path.is_absolute():
+        inside = Path(*path.parts[1:]) if path.parts[:1] == ("scenarios",) else path
+        for folder in EXAMPLES:
+            for name in (inside, inside.with_name(f"{inside.name}.yaml")):
+                if (folder / name).is_file():
+                    return folder / name
     known = sorted({str(p.relative_to(f)) for f in EXAMPLES if f.is_dir() for p in f.rglob("*.yaml")})
     raise InputError(f"{path}: no such file; give the path of a scenario, or an example: {', '.join(known)}")
 
@@ -112,7 +115,7 @@ def _control(values: Any, source: Source) -> Control:
         own["design"] = str(source.path.parent / own["design"])
     inverse = _inverse(values["inverse"], source) if "inverse" in values else None
     sample_time = values.get("sample_time")
-    if sample_time is not None and not (isinstance(sample_time, int | float) and 0 < sample_time <= 1):
+    if sample_time is not None and not (_is_number(sample_time) and 0 < sample_time <= 1):
         raise source.error((*keys, "sample_time"), f"{sample_time!r} is not permitted; it must be 0 to 1 s")
     return Control(build(cls, own, source, keys), sample_time, inverse)
 
@@ -123,9 +126,13 @@ def _inverse(values: Any, source: Source) -> Inverse:
     temperature = values.get("temperature", "measured")
     if temperature == "measured":
         return Inverse(damper, None)
-    if isinstance(temperature, bool) or not isinstance(temperature, int | float):
+    if not _is_number(temperature):
         raise source.error((*keys, "temperature"), f"{temperature!r} is not permitted; a number in degC or 'measured'")
     return Inverse(damper, float(temperature))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _excitation(values: Any, source: Source) -> Any:

@@ -10,10 +10,12 @@ A row names a run by what sets it apart, and gives metrics of it in SI units.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 
 from seatsim.metrics import METRICS
@@ -35,6 +37,10 @@ def check_published(source: Source, labels: Sequence[str]) -> None:
         keys = ("published", "rows", index)
         naming = [key for key in mapping(row, source, keys) if key in labels or "." in key]
         check_keys(row, [*naming, "variant", "temperature", *METRICS], source, keys)
+        for name in [name for name in row if name in METRICS]:
+            value = row[name]
+            if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+                raise source.error((*keys, name), f"{value!r} is not permitted; it must be a finite number")
 
 
 def published_tables(runs: Sequence[Run]) -> list[Table]:
@@ -50,7 +56,7 @@ def _path(run: Run) -> str:
 
 def _table(published: Mapping[str, Any], runs: Sequence[Run]) -> Table:
     table = Table(
-        title=f"beside {published.get('source', 'published figures')}",
+        title=escape(f"beside {published.get('source', 'published figures')}"),
         title_justify="left",
         box=box.SIMPLE_HEAD,
     )
@@ -64,7 +70,7 @@ def _table(published: Mapping[str, Any], runs: Sequence[Run]) -> Table:
             for name in [key for key in row if key in run.metrics]:
                 ours, theirs = run.metrics[name].value, float(row[name])
                 shown = f"{name} \\[{run.metrics[name].unit}]"
-                difference = f"{100 * (ours / theirs - 1):+.1f} %"
+                difference = f"{100 * (ours / theirs - 1):+.1f} %" if theirs else "-"
                 title = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in label.values())
-                table.add_row(title, shown, f"{ours:.4g}", f"{theirs:.4g}", difference)
+                table.add_row(escape(title), shown, f"{ours:.4g}", f"{theirs:.4g}", difference)
     return table

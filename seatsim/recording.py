@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import lzma
+import zipfile
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
@@ -111,15 +114,27 @@ def load_recording(folder: str | Path) -> Recording:
     check_keys(data, KEYS, source, ())
     header = build(Header, {k: data[k] for k in Header._fields if k in data}, source, ())
     gain = build(VoltageGain, data["actuator"], source, ("actuator",)).gain if "actuator" in data else None
-    return Recording(folder, header, _runs(data, source), _channels(data, source, header.rig), gain)
+    channels = _channels(data, source, header.rig)
+    if "command_voltage" in channels and gain is None:
+        raise source.error((), "key 'actuator' is missing; a command_voltage needs 'actuator: {gain: A/V}'")
+    return Recording(folder, header, _runs(data, source), channels, gain)
 
 
 def _runs(data: dict[str, Any], source: Source) -> dict[str, RunEntry]:
     entries = data.get("runs")
     if not isinstance(entries, list) or not entries:
         raise source.error(("runs",), "a recording has at least one run; write '- {name: run-a, file: run-a.csv.gz}'")
-    runs = [build(RunEntry, entry, source, ("runs", index)) for index, entry in enumerate(entries)]
-    return {run.name: run for run in runs}
+    runs: dict[str, RunEntry] = {}
+    for index, entry in enumerate(entries):
+        run: RunEntry = build(RunEntry, entry, source, ("runs", index))
+        if run.name in runs:
+            raise source.error(("runs", index, "name"), f"'{run.name}' is the name of two runs; name each once")
+        runs[run.name] = run
+    for index, run in enumerate(runs.values()):
+        if run.repeat_of is not None and run.repeat_of not in runs:
+            permitted = f"{nearest(run.repeat_of, runs)}; permitted: {', '.join(runs)}"
+            raise source.error(("runs", index, "repeat_of"), f"no run is called '{run.repeat_of}'{permitted}")
+    return runs
 
 
 def _channels(data: dict[str, Any], source: Source, rig: str) -> dict[str, ChannelEntry]:
@@ -143,7 +158,7 @@ def _read_table(path: Path, channels: list[str]) -> dict[str, Array]:
 
     try:
         frame = pd.read_csv(path)
-    except (OSError, ValueError, EOFError) as error:
+    except (OSError, ValueError, EOFError, zlib.error, zipfile.BadZipFile, lzma.LZMAError) as error:
         raise InputError(f"{path}: cannot be read as a table: {error}") from error
     if len(frame) < 2:
         raise InputError(f"{path}: holds {len(frame)} rows; a run has at least two")

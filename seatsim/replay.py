@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +18,7 @@ from seatsim.errors import InputError
 from seatsim.excitations.recording import RecordedRun
 from seatsim.loading import load
 from seatsim.recording import Recording, load_recording
-from seatsim.scenario import Scenario
+from seatsim.scenario import Scenario, Start
 from seatsim.simulation import simulate
 
 Array = NDArray[np.float64]
@@ -30,6 +31,8 @@ COMPARED = {
     "damper_bench": ("damper_force", "coil_current"),
 }  # fmt: skip
 """Recorded outputs that are compared, by rig."""
+LEAST_ROWS = 6
+"""Rows that must remain after it."""
 NOISE_FACTOR = 3.0
 """A channel is compared where its standard deviation is at least this many times its noise."""
 
@@ -73,7 +76,7 @@ def single(path: str | Path, settings: Mapping[str, Any] | None = None) -> Scena
     """Load a file that holds one run."""
     scenarios = load(path, settings)
     if len(scenarios) != 1:
-        raise InputError(f"{path}: holds {len(scenarios)} runs; a replay needs a file without sweep or variants")
+        raise InputError(f"{path}: holds {len(scenarios)} runs; this command takes one, without sweep or variants")
     return scenarios[0]
 
 
@@ -92,19 +95,28 @@ def pooled(scenario: Scenario, recording: Recording, runs: Sequence[str]) -> tup
 def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return the measured and the simulated channels of a run at the rows compared, without its first second."""
     bench = recording.header.rig == "damper_bench"
-    measured, simulated = (replay_bench if bench else _replay_seat)(scenario, recording, run)
+    table = recording.table(run)
     skip = round(LEFT_OUT * recording.header.sample_rate)
-    names = [name for name in COMPARED[recording.header.rig] if name in measured]
-    rows = len(next(iter(measured.values())))
-    if rows < skip + 2:
+    rows = len(next(iter(table.values())))
+    if rows < skip + LEAST_ROWS:
         raise InputError(f"{recording.folder}, run {run}: {rows} rows are too short; its first second is left out")
-    return {name: measured[name][skip:] for name in names}, {name: simulated[name][skip:] for name in names}
+    simulated = (replay_bench if bench else _replay_seat)(scenario, recording, run)
+    names = [name for name in COMPARED[recording.header.rig] if name in table]
+    return {name: table[name][skip:] for name in names}, {name: simulated[name][skip:] for name in names}
 
 
-def _replay_seat(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str, Array], dict[str, Array]]:
-    history = simulate(dataclasses.replace(scenario, excitation=RecordedRun(str(recording.folder), run)))
-    every = round(1.0 / (recording.header.sample_rate * history.step))
-    return recording.table(run), {name: history[name][::every] for name in COMPARED["seat"]}
+def _replay_seat(scenario: Scenario, recording: Recording, run: str) -> dict[str, Array]:
+    """Return the simulated channels at the recorded rows: from rest, at the largest step that divides the rows."""
+    interval = 1.0 / recording.header.sample_rate
+    parts = math.ceil(interval / scenario.solver.step - 1e-9)
+    at_rows = dataclasses.replace(
+        scenario,
+        excitation=RecordedRun(str(recording.folder), run),
+        solver=scenario.solver._replace(step=interval / parts),
+        start=Start(),
+    )
+    history = simulate(at_rows)
+    return {name: history[name][::parts] for name in COMPARED["seat"]}
 
 
 def _is_loud(values: Array, noise: float) -> bool:

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from seatsim.errors import RunError
+from seatsim.errors import RunError, SynthesisError
 from seatsim.loading import load
 from seatsim.metrics import summarise
 from seatsim.result import Result, Run
@@ -45,17 +45,19 @@ def run_one(scenario: Scenario) -> Run:
     return Run(scenario, history, metrics, warnings_of(scenario, history))
 
 
-def run_many(scenarios: list[Scenario], done: Callable[[Scenario], None]) -> Iterator[tuple[Scenario, Run | RunError]]:
+def run_many(
+    scenarios: list[Scenario], done: Callable[[Scenario], None]
+) -> Iterator[tuple[Scenario, Run | RunError | SynthesisError]]:
     """Run scenarios on all processors and yield each with its run or its failure, in order; `done` is told of each.
 
     Raises:
         InputError: a scenario turned out to be wrong.
     """
 
-    def attempt(scenario: Scenario) -> Run | RunError:
+    def attempt(scenario: Scenario) -> Run | RunError | SynthesisError:
         try:
             return run_one(scenario)
-        except RunError as error:
+        except (RunError, SynthesisError) as error:
             return error
         finally:
             done(scenario)

@@ -50,7 +50,7 @@ def simulate(scenario: Scenario) -> History:
     step = scenario.solver.step
     with scenario.placed("excitation"):
         floor: Floor = scenario.excitation.floor(step, scenario.seed)
-    setup = _setup(scenario, scenario.plant, scenario.control)
+    setup = _setup(scenario, scenario.plant, scenario.control, recorded=floor.temperature is not None)
     inputs = _inputs(scenario, scenario.control, floor)
     states = (
         card_of(type(scenario.damper.record)).initial,
@@ -68,14 +68,15 @@ def simulate(scenario: Scenario) -> History:
     return _history(scenario.plant, step, out)
 
 
-def _setup(scenario: Scenario, plant: Plant, control: Control) -> Setup:
+def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -> Setup:
+    """Return the constant parts; a `recorded` temperature is an input, so that none is simulated."""
     rig = Rig(plant, scenario.damper.record, SuspensionExtras())
     for effect in scenario.effects:
         rig = effect.change(rig)
     with scenario.placed("controller"):
         law = control.law.prepared(plant) if hasattr(control.law, "prepared") else control.law
         sample_every = _sample_every(scenario.solver.step, control)
-    heated = isinstance(scenario.temperature, Thermal)
+    heated = isinstance(scenario.temperature, Thermal) and not recorded
     thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal()
     timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
     return Setup(rig, scenario.coil, scenario.damper.factors, thermal, law, _belief(scenario, control), timing)
@@ -112,7 +113,7 @@ def _sample_every(step: float, control: Control) -> int:
 def _inputs(scenario: Scenario, control: Control, floor: Floor) -> Inputs:
     fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
     temperature = np.full(len(floor.acceleration), fixed)
-    if floor.temperature is not None and not isinstance(scenario.temperature, Thermal):
+    if floor.temperature is not None:
         temperature = floor.temperature
     command = NONE if floor.command is None else floor.command
     replays = card_of(type(control.law)).replays

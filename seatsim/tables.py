@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 
 from seatsim.result import Run
@@ -36,7 +37,7 @@ COMPARED = COLUMNS[:-1]
 
 def comparison(runs: Sequence[Run], title: str) -> Table:
     """Return the table of runs: what sets them apart, then comfort, travel and effort; best comfort and travel bold."""
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     labels = _label_keys(runs)
     for key in labels:
         heading = "damper\n\\[°C]" if key == "temperature" else key.split(".")[-1].replace("_", "\n")
@@ -45,7 +46,7 @@ def comparison(runs: Sequence[Run], title: str) -> Table:
         table.add_column(column.heading, justify="right", vertical="bottom", no_wrap=True)
     best = {column.metric: _best(runs, column.metric) for column in COMPARED}
     for run in runs:
-        cells = [_label(run, key) for key in labels]
+        cells = [escape(_label(run, key)) for key in labels]
         cells += [_cell(run, column, best.get(column.metric)) for column in COLUMNS]
         table.add_row(*cells)
     return table

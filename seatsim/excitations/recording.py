@@ -42,10 +42,10 @@ class RecordedRun(NamedTuple):
         table = recording.table(self.run)
         interval = 1.0 / recording.header.sample_rate
         parts = round(interval / step)
-        if parts < 1 or abs(parts * step - interval) > 1e-9 * interval:
+        if parts < 1 or abs(parts * step - interval) > 1e-6 * interval:
             best = interval / max(1, math.ceil(interval / step - 1e-9))
             raise InputError(
-                f"{self.path}: rows every {interval:g} s are no multiple of solver.step {step:g} s; set it to {best:g}"
+                f"{self.path}: rows every {interval:g} s are no multiple of solver.step {step:g}; set it to {best:.9g}"
             )
         finer = {name: _linear(values, parts) for name, values in table.items()}
         acceleration = finer["floor_acceleration"]

@@ -78,6 +78,8 @@ def break_header(folder, old, new):
         ("unit: N", "unit: kN", "convert the channel to N"),
         ("file: run-1.csv.gz", "file: run-9.csv.gz", "cannot be read as a table"),
         ("nominal: nominal.yaml", "nominal: 3", "nominal"),
+        ("name: run-2", "name: run-1", "name of two runs"),
+        ("name: run-2", "name: run-2, repeat_of: run-7", "no run is called 'run-7'"),
     ],
 )
 def test_a_wrong_header_is_one_clear_error(recorded, old, new, expected):
@@ -105,11 +107,35 @@ def test_a_damaged_table_is_one_clear_error(recorded, damage, expected):
         seatsim.gap(recorded / "nominal.yaml", recorded)
 
 
-def test_a_step_that_does_not_divide_the_rows_is_refused(recorded):
+@pytest.mark.parametrize("step", [0.0007, 0.0005])
+def test_a_replay_takes_the_largest_step_that_divides_the_rows(recorded, step):
     nominal = recorded / "nominal.yaml"
-    nominal.write_text(nominal.read_text() + "solver: {step: 0.0007}\n")
-    with pytest.raises(seatsim.InputError, match=r"set it to 0\.0005"):
-        seatsim.gap(nominal, recorded)
+    nominal.write_text(nominal.read_text() + f"solver: {{step: {step}}}\n")
+    assert seatsim.gap(nominal, recorded).overall < 1e-3
+
+
+def test_a_recorded_temperature_is_an_input_of_a_self_heating_damper_too(recorded):
+    nominal = recorded / "nominal.yaml"
+    text = nominal.read_text().replace("temperature: 20.0", "temperature: {start: 80.0}")
+    text = text.replace(
+        "  model: bouc_wen", "  model: bouc_wen\n  temperature_factors: {viscous: -0.01, yield_force: -0.01}"
+    )
+    nominal.write_text(text)
+    assert seatsim.gap(nominal, recorded).overall < 1e-3
+
+
+def test_a_release_test_is_no_part_of_a_replay(recorded):
+    nominal = recorded / "nominal.yaml"
+    nominal.write_text(nominal.read_text() + "start: {displacement: 0.05}\n")
+    assert seatsim.gap(nominal, recorded).overall < 1e-3
+
+
+def test_a_constant_current_that_is_not_recorded_stands_in_the_nominal(seat_file):
+    result = seatsim.run(seat_file, {"controller": {"law": "constant", "current": 0.6}})
+    folder = save_recording(result, seat_file.parent / "constant", ["floor_acceleration", "driver_acceleration"])
+    assert "current: 0.6" in (folder / "nominal.yaml").read_text()
+    with pytest.raises(seatsim.InputError, match="must be recorded"):
+        save_recording(seatsim.run(seat_file), seat_file.parent / "b", ["floor_acceleration", "driver_acceleration"])
 
 
 def test_a_bench_recording_is_replayed_from_displacement_and_command(tmp_path):

@@ -114,3 +114,22 @@ def test_published_figures_stay_permitted_where_a_sweep_is_overridden(seat_file)
     assert len(load(seat_file, {"temperature": 80.0})) == 1
     with pytest.raises(seatsim.InputError, match="did you mean 'seat_factor'"):
         load(seat_file, {"published": {"source": "a paper", "rows": [{"seat_facto": 0.5}]}})
+
+
+def test_a_path_that_is_wrong_is_not_taken_for_an_example(tmp_path):
+    with pytest.raises(seatsim.InputError, match="no such file"):
+        load(tmp_path / "quickstart.yaml")
+    with pytest.raises(seatsim.InputError, match="no such file"):
+        load("elsewhere/quickstart.yaml")
+
+
+@pytest.mark.parametrize("value", ["abc", None, True])
+def test_a_published_figure_is_a_number(seat_file, value):
+    with pytest.raises(seatsim.InputError, match="finite number"):
+        load(seat_file, {"published": {"source": "a paper", "rows": [{"seat_factor": value}]}})
+
+
+@pytest.mark.parametrize("changes", [{"controller.gain": ["2.0", 1.0]}, {"controller.sample_time": True}])
+def test_numbers_are_numbers(seat_file, changes):
+    with pytest.raises(seatsim.InputError, match="not permitted"):
+        load(seat_file, changes)

@@ -66,3 +66,20 @@ def test_describe_names_every_key_with_its_unit(monkeypatch, capsys):
     assert "bouc_wen" in capsys.readouterr().out
     assert seatsim_command(monkeypatch, "describe", "plant") == 0
     assert "frame_mass [kg]" in capsys.readouterr().out
+
+
+def test_two_files_never_write_to_one_folder(seat_file, monkeypatch, capsys):
+    other = seat_file.parent / "other" / seat_file.name
+    other.parent.mkdir()
+    other.write_text(seat_file.read_text())
+    out = seat_file.parent / "results"
+    assert seatsim_command(monkeypatch, "run", seat_file, other, "--out", out) == 2
+    assert "would write to" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_names_are_shown_as_they_are_written(seat_file, monkeypatch, capsys):
+    out = seat_file.parent / "results"
+    name = 'name="a[/b] [x]"'
+    assert seatsim_command(monkeypatch, "run", seat_file, "--out", out, "--set", name) == 0
+    assert "a[/b] [x]" in capsys.readouterr().out
