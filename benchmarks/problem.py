@@ -15,7 +15,6 @@ from seatsim.kernel.compilation import compiled
 from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
 from seatsim.kernel.rig import Rig
 from seatsim.plant import Plant
-from seatsim.suspension import SuspensionExtras
 from seatsim.temperature import TemperatureFactors, Thermal
 
 STEP = 1e-3
@@ -32,7 +31,7 @@ def floor(duration: float) -> np.ndarray:
 
 def setup(sample_every: int, tolerance: float = 1e-4) -> Setup:
     """Return the run's constant parts; the law is sampled every `sample_every` steps."""
-    rig = Rig(PLANT, DAMPER, SuspensionExtras())
+    rig = Rig(PLANT, DAMPER)
     timing = Timing(STEP, sample_every, tolerance, self_heating=False)
     return Setup(rig, Coil(), TemperatureFactors(), Thermal(), GAIN, Truth(DAMPER, 0), timing)
 
@@ -40,7 +39,7 @@ def setup(sample_every: int, tolerance: float = 1e-4) -> Setup:
 def seatsim_run(acceleration: np.ndarray, parts: Setup) -> tuple[Callable[[], None], np.ndarray]:
     """Return a function that runs seatsim's compiled loop, and the history that it fills."""
     none, samples = np.zeros(0), len(acceleration)
-    inputs = Inputs(acceleration, np.zeros(samples), np.full(samples, 20.0), none, none)
+    inputs = Inputs(acceleration, np.zeros(samples), np.full(samples, 20.0), none, none, none)
     history = np.empty((samples, len(CHANNELS)))
     loop = compiled(run_loop, (ModifiedBoucWen, OutputFeedback))
 

@@ -9,10 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, UnivariateSpline
 
+from seatsim.augmentation import changed, damper_with, in_loop, readings
 from seatsim.coil import Coil, relax
 from seatsim.dampers.bench import bench_force
+from seatsim.effects.base import ON_SEAT, acts_on
 from seatsim.errors import InputError
 from seatsim.recording import Recording
+from seatsim.registry import name_of
 from seatsim.scenario import Scenario
 from seatsim.temperature import Thermal
 
@@ -27,20 +30,23 @@ def replay_bench(scenario: Scenario, recording: Recording, run: str) -> dict[str
     the next and drives the coil; where only `coil_current` is recorded it drives the damper; where nothing is, the
     current is zero.
     """
-    if scenario.effects:
-        raise InputError(f"{scenario.name}: a damper bench has none of the blocks of these effects; remove them")
-    table = recording.table(run)
+    effects = scenario.effects
+    for effect in effects:
+        if acts_on(type(effect), (*ON_SEAT, "plant", "push")):
+            name = name_of("effect", type(effect))
+            raise InputError(f"{scenario.name}: a damper bench has no part on which {name} acts; remove it")
     interval = 1.0 / recording.header.sample_rate
+    table = {name: changed(effects, "truth", values, name, interval) for name, values in recording.table(run).items()}
     rows = np.arange(len(table["displacement"])) * interval
     fine = np.arange(2 * len(rows) - 1) * 0.5 * interval
     position = _smooth(rows, table["displacement"], recording.channels["displacement"].noise_rms)
     velocity = CubicSpline(rows, table["velocity"])(fine) if "velocity" in table else position.derivative()(fine)
-    current = _current(scenario.coil, table, recording.voltage_gain, rows, fine)
-    force = bench_force(
-        scenario.damper.record, position(fine), velocity, current, _temperature(scenario, table, rows, fine), interval,
-        scenario.damper.factors,
-    )  # fmt: skip
-    return {"damper_force": force, "coil_current": current[::2]}
+    current = _current(changed(effects, "coil", scenario.coil), table, recording.voltage_gain, rows, fine)
+    damper, state = damper_with(scenario.damper.record, in_loop(effects)[0])
+    temperature = changed(effects, "temperature", _temperature(scenario, table, rows, fine), 0.5 * interval)
+    factors = changed(effects, "factors", scenario.damper.factors)
+    force = bench_force(damper, position(fine), velocity, current, temperature, interval, factors, state)
+    return readings(effects, interval, {"damper_force": force, "coil_current": current[::2]})
 
 
 def _smooth(time: Array, values: Array, noise: float) -> UnivariateSpline:
@@ -63,8 +69,8 @@ def _current(coil: Coil, table: Mapping[str, Array], gain: float | None, rows: A
     return current
 
 
-def _temperature(scenario: Scenario, table: Mapping[str, Array], rows: Array, fine: Array) -> Array | float:
+def _temperature(scenario: Scenario, table: Mapping[str, Array], rows: Array, fine: Array) -> Array:
     if "damper_temperature" in table:
         return np.interp(fine, rows, table["damper_temperature"])
     fixed = scenario.temperature
-    return fixed.start if isinstance(fixed, Thermal) else fixed
+    return np.full(len(fine), fixed.start if isinstance(fixed, Thermal) else fixed)

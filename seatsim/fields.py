@@ -10,11 +10,17 @@ Pydantic validates it from a mapping, numba compiles it as a typed record.
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
 
+from annotated_types import Ge, Gt, Le
 from pydantic import Field, TypeAdapter
 from pydantic.fields import FieldInfo
+
+
+SLIGHTLY = 1e-9
+"""How far above an open bound a value may come."""
 
 
 def param(
@@ -55,6 +61,25 @@ def describe(record: type) -> list[FieldCard]:
         meaning = (info.description or "") if info else ""
         cards.append(FieldCard(name, unit, meaning, defaults.get(name), name not in defaults))
     return cards
+
+
+def bounds(record: type, name: str) -> tuple[float, float]:
+    """Return the least and the greatest value of a field; infinite where it has no such bound."""
+    limits = {"low": -math.inf, "high": math.inf}
+    info = _field_info(get_type_hints(record, include_extras=True)[name])
+    for mark in info.metadata if info else ():
+        if isinstance(mark, Ge):
+            limits["low"] = float(mark.ge)  # type: ignore[arg-type]
+        elif isinstance(mark, Gt):
+            limits["low"] = float(mark.gt) + SLIGHTLY  # type: ignore[arg-type]
+        elif isinstance(mark, Le):
+            limits["high"] = float(mark.le)  # type: ignore[arg-type]
+    return limits["low"], limits["high"]
+
+
+def choices(record: type, name: str) -> tuple[str, ...]:
+    """Return the permitted values of a field that is one of several words."""
+    return get_args(get_args(get_type_hints(record, include_extras=True)[name])[0])
 
 
 def _field_info(hint: Any) -> FieldInfo | None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
+from seatsim.augmentation import readings
 from seatsim.bench_replay import replay_bench
 from seatsim.errors import InputError
 from seatsim.excitations.recording import RecordedRun
@@ -86,7 +87,7 @@ def pooled(scenario: Scenario, recording: Recording, runs: Sequence[str]) -> tup
     names = [name for name in COMPARED[recording.header.rig] if name in recording.channels]
     measured = {name: np.concatenate([m[name] for m, _ in pairs]) for name in names}
     simulated = {name: np.concatenate([s[name] for _, s in pairs]) for name in names}
-    loud = [n for n in names if _is_loud(measured[n], recording.channels[n].noise_rms)]
+    loud = [n for n in names if stands_out(measured[n], recording.channels[n].noise_rms)]
     if not loud:
         raise InputError(f"{recording.folder}: no recorded output stands above its noise; there is nothing to compare")
     return {n: measured[n] for n in loud}, {n: simulated[n] for n in loud}
@@ -116,10 +117,11 @@ def _replay_seat(scenario: Scenario, recording: Recording, run: str) -> dict[str
         start=Start(),
     )
     history = simulate(at_rows)
-    return {name: history[name][::parts] for name in COMPARED["seat"]}
+    return readings(scenario.effects, interval, {name: history[name][::parts] for name in COMPARED["seat"]})
 
 
-def _is_loud(values: Array, noise: float) -> bool:
+def stands_out(values: Array, noise: float) -> bool:
+    """Whether a channel is compared: its standard deviation is at least three times its noise."""
     spread = float(np.std(values)) if values.size else 0.0
     return spread > 0.0 and spread >= NOISE_FACTOR * noise
 

@@ -9,16 +9,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.augmentation import changed, damper_with, in_loop, pushes
 from seatsim.errors import InputError, RunError
 from seatsim.excitations.base import Floor
+from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.belief import Belief, Truth
+from seatsim.kernel.chain import state_of
 from seatsim.kernel.compilation import compiled
 from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
 from seatsim.kernel.rig import Rig
 from seatsim.plant import Plant
 from seatsim.registry import card_of
 from seatsim.scenario import Control, Scenario
-from seatsim.suspension import SuspensionExtras
 from seatsim.temperature import Thermal
 
 Array = NDArray[np.float64]
@@ -38,8 +40,8 @@ class History:
         return self.channels[name]
 
 
-def simulate(scenario: Scenario) -> History:
-    """Simulate one run from rest.
+def simulate(scenario: Scenario, floor: Floor | None = None) -> History:
+    """Simulate one run from rest, shaken as the scenario's excitation says, or by a `floor` that is at hand.
 
     Raises:
         InputError: the scenario has no plant, or its times do not fit each other.
@@ -48,53 +50,55 @@ def simulate(scenario: Scenario) -> History:
     if scenario.plant is None or scenario.control is None:
         raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")
     step = scenario.solver.step
-    with scenario.placed("excitation"):
-        floor: Floor = scenario.excitation.floor(step, scenario.seed)
-    setup = _setup(scenario, scenario.plant, scenario.control, recorded=floor.temperature is not None)
+    if floor is None:
+        with scenario.placed("excitation"):
+            floor = scenario.excitation.floor(step, scenario.seed)
+    setup, initial = _setup(scenario, scenario.plant, scenario.control, floor.temperature is not None)
     inputs = _inputs(scenario, scenario.control, floor)
-    states = (
-        card_of(type(scenario.damper.record)).initial,
-        _believed(scenario),
-        card_of(type(scenario.control.law)).initial,
-    )
     out = np.empty((len(floor.acceleration), len(CHANNELS)))
-    plugged = (type(scenario.damper.record), type(setup.law), type(setup.belief.damper))
-    reached = compiled(run_loop, plugged)(setup, inputs, *states, out)
+    parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), type(setup.law), type(setup.belief.damper))
+    states = (initial, _believed(setup.belief), card_of(type(scenario.control.law)).initial)
+    reached = compiled(run_loop, parts)(setup, inputs, *states, out)
     if reached < len(out):
         raise RunError(
             f"{scenario.title}: no solution beyond {reached * step:.3f} s, where it leaves all bounds; check the signs"
             " of gains and stiffnesses, and the damper's parameters"
         )
-    return _history(scenario.plant, step, out)
+    return _history(setup.rig.plant, step, out)
 
 
-def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -> Setup:
-    """Return the constant parts; a `recorded` temperature is an input, so that none is simulated."""
-    rig = Rig(plant, scenario.damper.record, SuspensionExtras())
-    for effect in scenario.effects:
-        rig = effect.change(rig)
+def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -> tuple[Setup, tuple[float, ...]]:
+    """Return the constant parts and the rig's state at rest; with a `recorded` temperature none is simulated."""
+    on_damper, on_seat = in_loop(scenario.effects)
+    damper, initial = damper_with(scenario.damper.record, on_damper)
+    rig = Rig(changed(scenario.effects, "plant", plant), damper, on_seat)
     with scenario.placed("controller"):
         law = control.law.prepared(plant) if hasattr(control.law, "prepared") else control.law
         sample_every = _sample_every(scenario.solver.step, control)
     heated = isinstance(scenario.temperature, Thermal) and not recorded
     thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal()
     timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
-    return Setup(rig, scenario.coil, scenario.damper.factors, thermal, law, _belief(scenario, control), timing)
+    coil = changed(scenario.effects, "coil", scenario.coil)
+    factors = changed(scenario.effects, "factors", scenario.damper.factors)
+    setup = Setup(rig, coil, factors, thermal, law, _belief(scenario, control, bool(on_damper)), timing)
+    return setup, initial + state_of([type(effect) for effect in on_seat])
 
 
-def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
+def _belief(scenario: Scenario, control: Control, augmented: bool) -> Truth | Belief:
+    """Return what the inverse believes: the plant's damper, whose effects it does not know, unless stated otherwise."""
     if control.inverse is None:
         record = scenario.damper.record
-        return Truth(record, card_of(type(record)).current_order)
+        order = card_of(type(record)).current_order
+        if augmented:
+            return Belief(record, order, scenario.damper.factors, np.nan)
+        return Truth(record, order)
     record, factors = control.inverse.damper.record, control.inverse.damper.factors
     temperature = control.inverse.temperature
     return Belief(record, card_of(type(record)).current_order, factors, np.nan if temperature is None else temperature)
 
 
-def _believed(scenario: Scenario) -> tuple[float, ...]:
-    inverse = scenario.control.inverse if scenario.control else None
-    record = inverse.damper.record if inverse else scenario.damper.record
-    initial: tuple[float, ...] = card_of(type(record)).initial
+def _believed(belief: Truth | Belief) -> tuple[float, ...]:
+    initial: tuple[float, ...] = card_of(type(belief.damper)).initial
     return initial
 
 
@@ -111,16 +115,20 @@ def _sample_every(step: float, control: Control) -> int:
 
 
 def _inputs(scenario: Scenario, control: Control, floor: Floor) -> Inputs:
+    step, effects, samples = scenario.solver.step, scenario.effects, len(floor.acceleration)
+    acceleration = changed(effects, "truth", floor.acceleration, "floor_acceleration", step)
     fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
-    temperature = np.full(len(floor.acceleration), fixed)
-    if floor.temperature is not None:
-        temperature = floor.temperature
-    command = NONE if floor.command is None else floor.command
+    temperature = np.full(samples, fixed) if floor.temperature is None else floor.temperature
+    temperature = changed(effects, "temperature", temperature, step)
+    command = NONE if floor.command is None else changed(effects, "truth", floor.command, "current_command", step)
     replays = card_of(type(control.law)).replays
-    flowing = NONE if floor.coil_current is None else floor.coil_current
+    flowing = NONE
+    if floor.coil_current is not None:
+        flowing = changed(effects, "truth", floor.coil_current, "coil_current", step)
     start = float(flowing[0]) if flowing.size else 0.0
     prescribed = flowing if replays and floor.command is None else NONE
-    return Inputs(floor.acceleration, floor.velocity, temperature, command, prescribed, start, *scenario.start)
+    push = pushes(effects, np.arange(samples) * step, scenario.seed)
+    return Inputs(acceleration, floor.velocity, temperature, command, prescribed, push, start, *scenario.start)
 
 
 def _history(plant: Plant, step: float, out: Array) -> History:

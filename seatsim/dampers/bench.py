@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from seatsim.dampers.base import DamperCard, State
 from seatsim.errors import InputError, RunError
 from seatsim.kernel.bench import run_bench
+from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.compilation import compiled
 from seatsim.registry import card_of
 from seatsim.temperature import TemperatureFactors
@@ -116,7 +117,6 @@ def bench_force(
         RunError: the damper's state ran away.
 
     """
-    card: DamperCard = card_of(type(damper))
     x = np.array(displacement, dtype=float)
     if x.ndim != 1 or len(x) % 2 == 0:
         raise InputError(f"a bench needs two samples a step and one more, in one dimension, not {x.shape}")
@@ -125,9 +125,11 @@ def bench_force(
     except ValueError as error:
         raise InputError(f"the samples of a bench differ in number: {error}") from error
     out = np.full((len(x) + 1) // 2, math.nan)
-    run = compiled(run_bench, (type(damper),))
-    initial = card.initial if state is None else state
-    reached = run(damper, factors or card.factors, x, v, i, heat, initial, float(step), out)
+    if state is None or factors is None:
+        card: DamperCard = card_of(type(damper))
+        state, factors = card.initial if state is None else state, factors or card.factors
+    run = compiled(run_bench, classes_of(damper))
+    reached = run(damper, factors, x, v, i, heat, state, float(step), out)
     if reached < len(out) or not np.all(np.isfinite(out)):
         raise RunError(f"the force of {type(damper).__name__} is not finite after {reached * step:.3g} s")
     return out

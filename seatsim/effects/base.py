@@ -1,25 +1,80 @@
 """What an effect is: a small physical change of the simulated rig, switched on in a scenario.
 
-An effect is a record of parameters with `def change(self, rig)`, which returns the rig with the effect added; at its
-parameters' zero it returns the rig unchanged. Its name is `block.effect`.
+An effect is a record of parameters, named `block.effect`. It acts through whichever of these methods it has; each
+returns its argument unchanged where the parameters are off.
+
+Before a run, in Python:
+
+    plant(self, plant)                  parameters of the seat
+    coil(self, coil)                    parameters of the coil
+    factors(self, factors)              temperature factors of the damper
+    temperature(self, step, values)     temperature of the fluid out of that of the thermocouple
+    push(self, time, seed)              force on the frame in N, added to what other effects push
+    reading(self, channel, step, values)    what a sensor says out of what is true
+    truth(self, channel, step, values)      what is true out of what a sensor says
+
+In the time loop, compiled by numba, with `z` the effect's own state:
+
+    on the damper       conditioned(self, heat, v, z)   engaged(self, h, v, z)   yield_current(self, i, z)
+                        yield_speed(self, v, z)   yield_shape(self, shape, z)   added_force(self, x, v, z)
+                        stiction(self, z)   rates(self, x, v, i, z)
+    on the seat         suspension_force(self, plant, x, v, z)   linkage_friction(self, z)
+                        cushion_force(self, force, plant, xc, vc, z)
+                        inner_mass(self, plant, z)   inner_force(self, plant, z)   rates(self, plant, motion, z)
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple, TypeVar
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple, TypeVar
 
-from seatsim.registry import register
+from seatsim.registry import card_of, register
 
 T = TypeVar("T", bound=type)
+Values = Mapping[str, float]
+
+ON_DAMPER = (
+    "conditioned", "engaged", "yield_current", "yield_speed", "yield_shape", "added_force", "stiction",
+)  # fmt: skip
+ON_SEAT = ("suspension_force", "linkage_friction", "cushion_force", "inner_mass", "inner_force")
 
 
 class EffectCard(NamedTuple):
-    """What is stated of an effect: its source."""
+    """What is stated of an effect.
+
+    source: of the law. initial: its state at rest. off: parameters at which the rig is unchanged, where that is not
+    zero. starts: where a fit to a recording starts; each names the parameters that it frees, the others stay off, and
+    several starts are several functional forms. suits: whether it can be missing in a model whose damper is `record`.
+    by_channel: it acts on one recorded channel, which its parameter `channel` names.
+    """
 
     source: str
+    initial: tuple[float, ...]
+    off: Values
+    starts: tuple[Values, ...]
+    suits: Callable[[Any], bool]
+    by_channel: bool
 
 
-def effect(name: str, source: str = "") -> Callable[[T], T]:
+def effect(
+    name: str,
+    source: str = "",
+    initial: tuple[float, ...] = (),
+    off: Values | None = None,
+    starts: tuple[Values, ...] = (),
+    suits: Callable[[Any], bool] = lambda damper: True,
+    by_channel: bool = False,
+) -> Callable[[T], T]:
     """Register a record class as `effect: name`, where the part before the dot is the block it lives in."""
-    return register("effect", name, EffectCard(source))
+    return register("effect", name, EffectCard(source, initial, off or {}, starts, suits, by_channel))
+
+
+def off(cls: Any) -> Any:
+    """Return the record of an effect at the parameters that leave the rig unchanged."""
+    values = {name: 0.0 for name in cls._fields} | dict(card_of(cls).off)
+    return cls(**values)
+
+
+def acts_on(cls: type, hooks: tuple[str, ...]) -> bool:
+    """Whether an effect has one of these hooks of the time loop."""
+    return any(hasattr(cls, hook) for hook in hooks)

@@ -5,51 +5,86 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.effects.base import effect
+from seatsim.effects.laws import State, buffer, dahl_rate
 from seatsim.fields import param
-from seatsim.kernel.rig import Rig
+from seatsim.kernel.rig import Motion
+from seatsim.plant import Plant
 
 
-@effect("suspension.friction", source="Coulomb's law, set-valued at rest")
+@effect(
+    "suspension.friction",
+    source="Coulomb's law; with presliding Dahl 1968",
+    initial=(0.0,),
+    starts=({"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0}),
+)
 class Friction(NamedTuple):
     """Rate-independent friction in the linkage, not seen by the damper's load cell.
 
-    `f = force sgn(v)`; at v = 0 whatever holds the suspension, up to `force`.
+    `f = force z / (1 + lubrication |v|)` with `z' = v (1 - z sgn v) / presliding`. Without presliding f is set-valued:
+    `force sgn(v)`, and at v = 0 whatever holds the suspension, up to `force`.
     """
 
     force: Annotated[float, param("N", "friction of the linkage", low=0, high=1e4)]
+    presliding: Annotated[float, param("m", "travel over which friction builds up; 0: none", low=0, high=0.02)] = 0.0
+    lubrication: Annotated[float, param("s/m", "fall of friction with speed (Stribeck)", low=0, high=200)] = 0.0
 
-    def change(self, rig: Rig) -> Rig:
-        """Add the friction to what the linkage has."""
-        s = rig.suspension
-        return rig._replace(suspension=s._replace(friction=s.friction + self.force))
+    def linkage_friction(self, z: State) -> float:
+        """Return the set-valued friction in N."""
+        return self.force if self.presliding <= 0.0 else 0.0
+
+    def suspension_force(self, plant: Plant, x: float, v: float, z: State) -> float:
+        """Return the friction in N that builds up over a travel."""
+        return self.force * z[0] / (1.0 + self.lubrication * abs(v)) if self.presliding > 0.0 else 0.0
+
+    def rates(self, plant: Plant, motion: Motion, z: State) -> State:
+        """Return z'."""
+        return (dahl_rate(self.presliding, motion.v, z[0]),)
 
 
-@effect("suspension.progressive_spring", source="first odd term of a hardening spring's series")
+@effect(
+    "suspension.progressive_spring",
+    source="odd terms of a hardening spring's series",
+    starts=({"rise": 300.0}, {"rise": 300.0, "skew": 1.0}),
+)
 class ProgressiveSpring(NamedTuple):
-    """Stiffness that grows with travel: `f = kf x (1 + rise x^2)`."""
+    """Stiffness that grows with travel: `f = kf x (1 + skew x + rise x^2)`."""
 
     rise: Annotated[float, param("1/m^2", "relative rise of the spring force per squared travel", low=0, high=1e6)]
+    skew: Annotated[float, param("1/m", "relative rise per travel, in extension only", low=-200, high=200)] = 0.0
 
-    def change(self, rig: Rig) -> Rig:
-        """Add the cubic term of the spring force."""
-        s = rig.suspension
-        return rig._replace(suspension=s._replace(cubic=s.cubic + self.rise * rig.plant.suspension_stiffness))
+    def suspension_force(self, plant: Plant, x: float, v: float, z: State) -> float:
+        """Return what the spring force has beyond `kf x`, in N."""
+        return plant.suspension_stiffness * x * x * (self.skew + self.rise * x)
 
 
-@effect("suspension.end_stop", source="unilateral spring with Hunt-Crossley damping, k d (1 + c d')")
+@effect(
+    "suspension.end_stop",
+    source="unilateral spring with Hunt-Crossley damping, k d (1 + c d')",
+    off={"low": -1.0, "high": 1.0, "power": 1.0},
+    starts=(
+        {"low": -0.02, "high": 0.02, "stiffness": 20000.0, "damping": 0.5},
+        {"low": -0.012, "high": 0.012, "stiffness": 10000.0, "damping": 0.5},
+    ),
+)
 class EndStop(NamedTuple):
     """Buffers at the ends of the travel.
 
-    `f = stiffness d (1 + damping d')`, never pulling, where d is the depth beyond `low` or `high`.
+    `f = stiffness d (d / 10 mm)^(power - 1) (1 + damping d')`, never pulling, where d is the depth beyond `low` or
+    `high`; power 1 is a linear buffer.
     """
 
     low: Annotated[float, param("m", "travel at which the lower buffer is touched", low=-1, high=0)]
     high: Annotated[float, param("m", "travel at which the upper buffer is touched", low=0, high=1)]
     stiffness: Annotated[float, param("N/m", "stiffness of a buffer", low=0, high=1e7)] = 60000.0
     damping: Annotated[float, param("s/m", "Hunt-Crossley damping", low=0, high=100)] = 0.5
+    power: Annotated[float, param("-", "exponent of the buffer's law", low=1, high=3)] = 1.0
 
-    def change(self, rig: Rig) -> Rig:
-        """Put buffers at both ends."""
-        stops = {"stop_low": self.low, "stop_high": self.high}
-        stops |= {"stop_stiffness": self.stiffness, "stop_damping": self.damping}
-        return rig._replace(suspension=rig.suspension._replace(**stops))
+    def suspension_force(self, plant: Plant, x: float, v: float, z: State) -> float:
+        """Return the push of the buffers in N, positive against extension."""
+        if self.stiffness <= 0.0:
+            return 0.0
+        if x > self.high:
+            return buffer(self.stiffness, self.damping, self.power, x - self.high, v)
+        if x < self.low:
+            return -buffer(self.stiffness, self.damping, self.power, self.low - x, -v)
+        return 0.0

@@ -55,6 +55,12 @@ def coulomb(self: Any, i: float, heat: Heat) -> float:
 
 
 @hook
+def friction_limit(self: Any, v: float, i: float, heat: Heat, z: Tuple) -> float:
+    """Largest set-valued friction in N at this speed and state."""
+    return coulomb(self, i, heat)
+
+
+@hook
 def update(self: Any, y: Any, state: Tuple) -> Tuple:
     """Next state of a control law."""
     return state

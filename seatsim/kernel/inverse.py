@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.jit import jit
-from seatsim.kernel.generic import Tuple, coulomb, force
+from seatsim.kernel.generic import Tuple, force, friction_limit
 from seatsim.temperature import Heat
 
 Array = NDArray[np.float64]
@@ -55,7 +55,7 @@ def invert(
 def total(damper: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> float:
     """Return the damper force in N with its set-valued friction, which is zero at v = 0."""
     smooth: float = force(damper, x, v, i, heat, z)
-    friction: float = coulomb(damper, i, heat)
+    friction: float = friction_limit(damper, v, i, heat, z)
     return smooth + friction * (0.0 if v == 0.0 else math.copysign(1.0, v))
 
 

@@ -12,9 +12,10 @@ from seatsim.coil import Coil
 from seatsim.control import Measurement
 from seatsim.jit import jit
 from seatsim.kernel.belief import follow, heat, state
+from seatsim.kernel.chain import before
 from seatsim.kernel.generic import Tuple, ask, heat_at, update, wants_force
 from seatsim.kernel.inverse import CELLS, invert
-from seatsim.kernel.rig import Rig
+from seatsim.kernel.rig import Rig, Shake
 from seatsim.kernel.step import Drive, Progress, advance, relaxed, start
 from seatsim.temperature import Heat, TemperatureFactors, Thermal
 
@@ -46,7 +47,7 @@ class Inputs(NamedTuple):
     """What drives a run, sampled every `step`, shape (N,) each; an array of length 0 is an input that is absent.
 
     `replayed` is a recorded command for laws that replay it, `prescribed` a coil current that bypasses the coil,
-    `temperature` the damper's temperature in degC; the coil starts at `start_current`, the
+    `temperature` the damper's temperature in degC, `push` a force on the frame in N; the coil starts at `start_current`, the
     suspension at `start_displacement` and `start_velocity`, the cushion at rest.
     """
 
@@ -55,6 +56,7 @@ class Inputs(NamedTuple):
     temperature: Array
     replayed: Array
     prescribed: Array
+    push: Array
     start_current: float = 0.0
     start_displacement: float = 0.0
     start_velocity: float = 0.0
@@ -81,7 +83,7 @@ class Setup(NamedTuple):
     timing: Timing
 
 
-def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple, law_state: Tuple, out: Array) -> int:
+def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, law_state: Tuple, out: Array) -> int:
     """Simulate from rest and fill `out`, shape (N, len(CHANNELS)); return the number of samples reached (N if all)."""
     rig, coil, law, belief, timing = setup.rig, setup.coil, setup.law, setup.belief, setup.timing
     step, samples = timing.step, len(out)
@@ -95,7 +97,9 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
     temperature = inputs.temperature[0]
     factors = heat_at(setup.factors, temperature)
     mechanical = (inputs.start_displacement, inputs.start_velocity, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    now = start(rig, mechanical + damper_state, inputs.floor_acceleration[0], current, factors, step)
+    pushed = len(inputs.push) > 0
+    push = inputs.push[0] if pushed else 0.0
+    now = start(rig, mechanical + rig_state, Shake(inputs.floor_acceleration[0], push), current, factors, step)
     command, wanted, served = 0.0, math.nan, math.nan
     grid = np.empty(CELLS + 1)
 
@@ -113,7 +117,9 @@ def run_loop(setup: Setup, inputs: Inputs, damper_state: Tuple, believed: Tuple,
         if prescribed:
             after = inputs.prescribed[k + 1]
         rise = inputs.floor_acceleration[k + 1] - floor
-        drive = Drive(step, floor, rise, current, before, after, split, prescribed, kept)
+        push = inputs.push[k] if pushed else 0.0
+        push_rise = inputs.push[k + 1] - push if pushed else 0.0
+        drive = Drive(step, floor, rise, current, before, after, split, prescribed, kept, push, push_rise)
         x, v, work = now.state[0], now.state[1], now.state[5]
         now, next_current, good = advance(rig, coil, drive, factors, now, timing.tolerance)
         if not good:
@@ -157,7 +163,7 @@ def _decide(
         ratio * y.displacement,
         ratio * y.velocity,
         heat(belief, factors, y.temperature),
-        state(belief, now.state[8:], believed),
+        state(belief, before(setup.rig.effects, now.state[8:]), believed),
         top,
         grid,
     )

@@ -6,9 +6,9 @@ import math
 from typing import Any, NamedTuple
 
 from seatsim.jit import jit
-from seatsim.kernel.generic import Tuple, coulomb, force, rates
+from seatsim.kernel.chain import Effects, before, folded, joined, own, summed
+from seatsim.kernel.generic import Tuple, force, friction_limit, rates
 from seatsim.plant import Plant
-from seatsim.suspension import SuspensionExtras, extra_force
 from seatsim.temperature import Heat
 
 MECHANICAL = 8
@@ -19,12 +19,43 @@ HELD = 2.0
 """Value of `slip` for a suspension that the set-valued friction holds at rest; -1 and 1 are directions of sliding."""
 
 
+class Motion(NamedTuple):
+    """Motion of the seat: suspension x, v in m and m/s; cushion xc, vc; accelerations of frame and driver in m/s^2."""
+
+    x: float
+    v: float
+    xc: float
+    vc: float
+    frame: float
+    driver: float
+
+
+class Shake(NamedTuple):
+    """What shakes the seat: floor acceleration in m/s^2, and a force on the frame in N, upward positive."""
+
+    floor: float
+    push: float
+
+
 class Rig(NamedTuple):
-    """Everything that moves: plant, damper, and what the suspension has beyond the plant's linear law."""
+    """Everything that moves: plant, damper, and effects on suspension, cushion and driver.
+
+    An effect may have `suspension_force(plant, x, v, z)`, added to the spring; `linkage_friction(z)`, set-valued;
+    `cushion_force(force, plant, xc, vc, z)`, which changes the cushion's; `inner_mass(plant, z)`, carried by the
+    driver's body through `inner_force(plant, z)`; and `rates(plant, motion, z)` of its own state.
+    """
 
     plant: Plant
     damper: Any
-    suspension: SuspensionExtras
+    effects: Effects = ()
+
+
+suspension_force = summed("suspension_force")
+linkage_friction = summed("linkage_friction")
+cushion_force = folded("cushion_force")
+inner_mass = summed("inner_mass")
+inner_force = summed("inner_force")
+effect_rates = joined("rates")
 
 
 class Flow(NamedTuple):
@@ -36,39 +67,43 @@ class Flow(NamedTuple):
 
 
 @jit
-def derivative(rig: Rig, s: Tuple, floor: float, current: float, heat: Heat, slip: float) -> tuple[Tuple, Flow]:
-    """Return the rates of the state `(x, v, xc, vc, works..., *z)` and the flow.
+def derivative(rig: Rig, s: Tuple, shake: Shake, current: float, heat: Heat, slip: float) -> tuple[Tuple, Flow]:
+    """Return the rates of the state `(x, v, xc, vc, works..., *z, *effects)` and the flow.
 
-    x = zs - z0, xc = zc - zs; `floor` is z0'' in m/s^2. `slip` is the direction of sliding of the set-valued friction,
-    -1 or 1, or HELD, where the friction is the reaction that holds the suspension, whatever its limit. At 0 the sign of
-    v decides, and at v = 0 whether the reaction is within the limit.
+    x = zs - z0, xc = zc - zs. `slip` is the direction of sliding of the set-valued friction, -1 or 1, or HELD, where
+    the friction is the reaction that holds the suspension, whatever its limit. At 0 the sign of v decides, and at v = 0
+    whether the reaction is within the limit.
     """
-    plant = rig.plant
+    plant, effects = rig.plant, rig.effects
     x, v, xc, vc = s[0], s[1], s[2], s[3]
-    z = s[8:]
+    z, ze = before(effects, s[8:]), own(effects, s[8:])
     ratio = plant.damper_ratio
     smooth = force(rig.damper, ratio * x, ratio * v, current, heat, z)
     spring = plant.suspension_stiffness * x
-    resistance = plant.suspension_damping * v + extra_force(rig.suspension, x, v)
-    cushion = plant.cushion_stiffness * xc + plant.cushion_damping * vc
-    free = (cushion - spring - resistance - ratio * smooth) / plant.frame_mass - floor
+    resistance = plant.suspension_damping * v + suspension_force(effects, ze, plant, x, v)
+    linear = plant.cushion_stiffness * xc + plant.cushion_damping * vc
+    cushion = cushion_force(effects, ze, linear, plant, xc, vc)
+    free = (cushion - spring - resistance - ratio * smooth + shake.push) / plant.frame_mass - shake.floor
 
-    damper_limit = ratio * coulomb(rig.damper, current, heat)
-    limit = damper_limit + rig.suspension.friction
+    damper_limit = ratio * friction_limit(rig.damper, ratio * v, current, heat, z)
+    linkage = linkage_friction(effects, ze)
+    limit = damper_limit + linkage
     friction, acceleration = _friction(free, v, slip, limit, plant.frame_mass)
     share = friction / limit if limit > 0.0 else 0.0
     damper_force = smooth + share * damper_limit / ratio
-    frame = acceleration + floor
-    cushion_rate = -cushion / plant.driver_mass - frame
+    frame = acceleration + shake.floor
+    body = plant.driver_mass - inner_mass(effects, ze, plant)
+    driver = (inner_force(effects, ze, plant) - cushion) / body
 
     works = (
-        -(plant.frame_mass * v + plant.driver_mass * (v + vc)) * floor,
+        -(plant.frame_mass * v + plant.driver_mass * (v + vc)) * shake.floor,
         ratio * damper_force * v,
-        (resistance + share * rig.suspension.friction) * v,
-        plant.cushion_damping * vc * vc,
+        (resistance + share * linkage) * v,
+        (cushion - plant.cushion_stiffness * xc) * vc,
     )
     dz = rates(rig.damper, ratio * x, ratio * v, current, heat, z)
-    return (v, acceleration, vc, cushion_rate) + works + dz, Flow(damper_force, friction, limit)
+    de = effect_rates(effects, ze, plant, Motion(x, v, xc, vc, frame, driver))
+    return (v, acceleration, vc, driver - frame) + works + dz + de, Flow(damper_force, friction, limit)
 
 
 @jit

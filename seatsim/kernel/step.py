@@ -13,7 +13,7 @@ from typing import NamedTuple
 from seatsim.coil import Coil, relax
 from seatsim.jit import jit, jit_apart
 from seatsim.kernel.generic import Tuple, axpy, combine
-from seatsim.kernel.rig import HELD, Flow, Rig, derivative
+from seatsim.kernel.rig import HELD, Flow, Rig, Shake, derivative
 from seatsim.temperature import Heat
 
 relaxed = jit(relax)
@@ -32,7 +32,7 @@ TRIES = 60
 class Drive(NamedTuple):
     """What acts on the rig during one step of `length` seconds.
 
-    Floor acceleration runs linearly from `floor` by `floor_rise`. The coil relaxes from `current` towards `before` for
+    Floor acceleration runs linearly from `floor` by `floor_rise`, a push on the frame from `push` by `push_rise`. The coil relaxes from `current` towards `before` for
     the first `split` seconds and towards `after` from then on; with a `prescribed` current it runs linearly to `after`.
     `kept` is what half a step leaves of the distance to the command, of a rising and of a falling current.
     """
@@ -46,6 +46,8 @@ class Drive(NamedTuple):
     split: float
     prescribed: bool
     kept: tuple[float, float]
+    push: float = 0.0
+    push_rise: float = 0.0
 
 
 class Progress(NamedTuple):
@@ -81,9 +83,16 @@ def _currents(coil: Coil, drive: Drive, time: float, h: float) -> tuple[float, f
 
 
 @jit
-def start(rig: Rig, state: Tuple, floor: float, current: float, heat: Heat, substep: float) -> Progress:
+def shake_at(drive: Drive, time: float) -> Shake:
+    """Return what shakes the seat `time` seconds into the step."""
+    part = time / drive.length
+    return Shake(drive.floor + drive.floor_rise * part, drive.push + drive.push_rise * part)
+
+
+@jit
+def start(rig: Rig, state: Tuple, shake: Shake, current: float, heat: Heat, substep: float) -> Progress:
     """Return the progress of a rig in `state`, sliding or at rest."""
-    rates, flow = derivative(rig, state, floor, current, heat, 0.0)
+    rates, flow = derivative(rig, state, shake, current, heat, 0.0)
     return Progress(state, rates, flow, _phase(state, rates, flow), substep)
 
 
@@ -110,8 +119,7 @@ def _try(
     rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, time: float, h: float
 ) -> tuple[Tuple, Tuple, Flow, Tuple, float]:
     """Return state, rates, flow after a sub-step of `h` from `time`, the fourth stage, and the current at the end."""
-    middle = drive.floor + drive.floor_rise * (time + 0.5 * h) / drive.length
-    end = drive.floor + drive.floor_rise * (time + h) / drive.length
+    middle, end = shake_at(drive, time + 0.5 * h), shake_at(drive, time + h)
     i_middle, i_end = _currents(coil, drive, time, h)
     k1, slip = now.rates, now.slip
     k2, _ = derivative(rig, axpy(now.state, 0.5 * h, k1), middle, i_middle, heat, slip)
@@ -166,8 +174,7 @@ def _divided(
             last = last and h == tried
             state = state[:1] + (0.0,) + state[2:]
             slip = math.copysign(1.0, flow.friction) if slip == HELD else 0.0
-            end = drive.floor + drive.floor_rise * (time + h) / drive.length
-            rates, flow = derivative(rig, state, end, i_end, heat, slip)
+            rates, flow = derivative(rig, state, shake_at(drive, time + h), i_end, heat, slip)
         if slip == 0.0 or flow.friction_limit <= 0.0:
             slip = _phase(state, rates, flow)
         now = Progress(state, rates, flow, slip, h)

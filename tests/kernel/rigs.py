@@ -5,18 +5,18 @@ import numpy as np
 from controllers.constant import Replay
 from seatsim.coil import Coil
 from seatsim.kernel.belief import Truth
+from seatsim.kernel.chain import state_of
 from seatsim.kernel.compilation import compiled
 from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
 from seatsim.kernel.rig import Rig
 from seatsim.plant import Plant
 from seatsim.registry import card_of
-from seatsim.suspension import SuspensionExtras
 from seatsim.temperature import TemperatureFactors, Thermal
 
 STEP = 1e-3
 SEAT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
 NONE = np.zeros(0)
-COIL, LINEAR, NO_HEAT = Coil(), SuspensionExtras(), TemperatureFactors()
+COIL, NO_HEAT = Coil(), TemperatureFactors()
 METRICS = (
     "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current",
 )  # fmt: skip
@@ -43,20 +43,20 @@ def refined(rows, times):
 
 def run(
     damper, law, floor, *, step=STEP, every=1, tolerance=1e-4, coil=COIL, plant=SEAT, belief=None,
-    extras=LINEAR, thermal=None, factors=NO_HEAT, temperature=20.0, replayed=NONE,
+    effects=(), thermal=None, factors=NO_HEAT, temperature=20.0, replayed=NONE,
     prescribed=NONE, **start,
 ):  # fmt: skip
     """Run and return the history by channel, with `velocity` of the floor taken by the trapezoidal rule."""
     rows = len(floor)
     velocity = np.concatenate([[0.0], np.cumsum(0.5 * (floor[1:] + floor[:-1])) * step])
-    inputs = Inputs(floor, velocity, np.full(rows, temperature), replayed, prescribed, **start)
+    inputs = Inputs(floor, velocity, np.full(rows, temperature), replayed, prescribed, NONE, **start)
     timing = Timing(step, every, tolerance, thermal is not None)
     belief = truth(damper) if belief is None else belief
-    setup = Setup(Rig(plant, damper, extras), coil, factors, thermal or Thermal(), law, belief, timing)
+    setup = Setup(Rig(plant, damper, effects), coil, factors, thermal or Thermal(), law, belief, timing)
     out = np.empty((rows, len(CHANNELS)))
-    loop = compiled(run_loop, (type(damper), type(law), type(belief.damper)))
+    loop = compiled(run_loop, (type(damper), type(law), type(belief.damper), *map(type, effects)))
     rest, believed = (card_of(type(part)).initial for part in (damper, belief.damper))
-    reached = loop(setup, inputs, rest, believed, (), out)
+    reached = loop(setup, inputs, rest + state_of([type(effect) for effect in effects]), believed, (), out)
     assert reached == rows, f"stopped at row {reached} of {rows}"
     return dict(zip(CHANNELS, out.T, strict=True)) | {"floor_velocity": velocity}
 

@@ -7,7 +7,7 @@ from controllers.skyhook import OnOffSkyhook
 from controllers.static_output_feedback import OutputFeedback
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
-from seatsim.suspension import SuspensionExtras
+from seatsim.effects.suspension import Friction
 
 from .references import Yielding, bouc_wen_feedback, channels, skyhook
 from .rigs import deviations, driven, imbalance, refined, rough, run
@@ -57,7 +57,7 @@ def test_a_switching_law_on_stiff_and_sticking_rigs(v_ref, friction, every):
     reference = channels(
         skyhook(Yielding(250.0, 350.0, 45.0, 620.0, v_ref, friction), floor, every, 800, 130.0, 1.0, 0.0)
     )
-    h = run(Bingham(v_ref=v_ref), OnOffSkyhook(), floor, every=every, extras=SuspensionExtras(friction=friction))
+    h = run(Bingham(v_ref=v_ref), OnOffSkyhook(), floor, every=every, effects=(Friction(friction),))
     assert worst(h, reference) < 1e-2
     assert imbalance(h) < 1e-4
     assert 0.05 < np.mean(h["current_command"]) < 0.95
@@ -70,7 +70,7 @@ def test_stick_and_slip_at_constant_current(v_ref, friction, rms):
     p = Yielding(250.0, 350.0, 20.0, 300.0, v_ref, friction)
     reference = channels(skyhook(p, floor, 1, 800, 130.0, -1.0, CURRENT))
     damper = Bingham(fc_a=20.0, fc_b=300.0, v_ref=v_ref)
-    h = driven(damper, floor, CURRENT, start_current=CURRENT, extras=SuspensionExtras(friction=friction))
+    h = driven(damper, floor, CURRENT, start_current=CURRENT, effects=(Friction(friction),))
     assert worst(h, reference) < 1e-2
     assert imbalance(h) < 1e-4
     if v_ref == 0.0:

@@ -5,8 +5,8 @@ import pytest
 from scipy.signal import StateSpace, lsim
 
 from seatsim.dampers.bingham import Bingham
+from seatsim.effects.suspension import Friction
 from seatsim.plant import Plant, state_space
-from seatsim.suspension import SuspensionExtras
 
 from .rigs import SEAT, STEP, driven, imbalance, rough
 
@@ -40,8 +40,8 @@ def test_the_linear_seat(damping, ratio):
 def block(floor, limit):
     """A block of 20 kg under friction, of which the damper contributes 100 N."""
     damper = Bingham(c_a=0.0, c_b=0.0, fc_a=DAMPER_SHARE, fc_b=0.0, v_ref=0.0)
-    extras = SuspensionExtras(friction=limit - DAMPER_SHARE)
-    return driven(damper, floor, 0.0, plant=BLOCK, extras=extras)
+    effects = (Friction(limit - DAMPER_SHARE),)
+    return driven(damper, floor, 0.0, plant=BLOCK, effects=effects)
 
 
 def test_a_block_is_held_below_the_limit():

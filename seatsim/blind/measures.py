@@ -1,0 +1,79 @@
+"""Figures of merit of stated probabilities and of rates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+BINS = 10
+
+
+@dataclass(frozen=True)
+class Rate:
+    """How many of how many, with a 95 % Wilson interval."""
+
+    right: int
+    total: int
+
+    @property
+    def value(self) -> float:
+        """Share that is right; NaN of none."""
+        return self.right / self.total if self.total else math.nan
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Wilson (1927): `(p + z^2/2n -+ z sqrt(p(1-p)/n + z^2/4n^2)) / (1 + z^2/n)`."""
+        if not self.total:
+            return (math.nan, math.nan)
+        z, n, p = 1.96, self.total, self.right / self.total
+        centre = p + z * z / (2 * n)
+        half = z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+        return (max((centre - half) / (1 + z * z / n), 0.0), min((centre + half) / (1 + z * z / n), 1.0))
+
+    def as_dict(self) -> dict[str, object]:
+        """Return count, share and interval."""
+        return {"right": self.right, "total": self.total, "share": self.value, "interval": list(self.interval)}
+
+
+def rate(flags: Sequence[bool]) -> Rate:
+    """Return how many flags are set."""
+    return Rate(sum(bool(flag) for flag in flags), len(flags))
+
+
+@dataclass(frozen=True)
+class Bin:
+    """A bin of the reliability table: stated mean, share that came true, how many, from and to."""
+
+    stated: float
+    true: float
+    count: int
+    low: float
+    high: float
+
+
+def reliability(stated: NDArray[np.float64], true: NDArray[np.bool_], bins: int = BINS) -> list[Bin]:
+    """Return bins of equal mass (sorted by what was stated; ties stay in their order)."""
+    order = np.argsort(stated, kind="stable")
+    parts = [part for part in np.array_split(order, bins) if part.size]
+    return [
+        Bin(
+            float(np.mean(stated[part])), float(np.mean(true[part])), int(part.size), float(np.min(stated[part])),
+            float(np.max(stated[part])),
+        )
+        for part in parts
+    ]  # fmt: skip
+
+
+def calibration_error(table: Sequence[Bin]) -> float:
+    """Return the expected calibration error: mean over all of |stated - true| by bin."""
+    total = sum(b.count for b in table)
+    return sum(b.count * abs(b.stated - b.true) for b in table) / total if total else math.nan
+
+
+def brier(stated: NDArray[np.float64], true: NDArray[np.bool_]) -> float:
+    """Return the mean squared difference of probability and truth (Brier 1950)."""
+    return float(np.mean((stated - true) ** 2)) if stated.size else math.nan

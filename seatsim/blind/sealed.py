@@ -1,0 +1,96 @@
+"""The sealed file: labels and unseen runs, encrypted (Fernet: AES-128-CBC with HMAC-SHA256), opened by a key alone."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cryptography.fernet import Fernet, InvalidToken
+
+from seatsim.errors import InputError
+from seatsim.files import write_text, write_whole
+
+LABELS = "labels.json"
+SEAL = "seal.txt"
+
+
+@dataclass(frozen=True)
+class Sealed:
+    """What a sealed file holds: labels by case, unseen recordings by case (files by name), and what made them."""
+
+    labels: dict[str, dict[str, Any]]
+    unseen: dict[str, dict[str, bytes]]
+    made: dict[str, Any]
+
+    def extract(self, case: str, folder: Path) -> Path:
+        """Write the unseen recording of a case into `folder`/`case` and return that."""
+        out = folder / case
+        out.mkdir(parents=True, exist_ok=True)
+        for name, content in self.unseen[case].items():
+            (out / name).write_bytes(content)
+        return out
+
+
+def new_key() -> str:
+    """Return a fresh key."""
+    return Fernet.generate_key().decode()
+
+
+def seal(path: Path, folder: Path, key: str, content: Sealed) -> str:
+    """Write the sealed file and its SHA-256 into `folder`/seal.txt; return the hash."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
+        archive.writestr(LABELS, json.dumps({"made": content.made, "cases": content.labels}))
+        for case, files in content.unseen.items():
+            for name, data in files.items():
+                archive.writestr(f"unseen/{case}/{name}", data)
+    token = Fernet(key.encode()).encrypt(packed.getvalue())
+    write_whole(path, lambda part: part.write_bytes(token))
+    digest = hashlib.sha256(token).hexdigest()
+    write_text(folder / SEAL, f"sha256 {digest}  {path.name}\n")
+    return digest
+
+
+def unseal(path: Path, key: str, folder: Path | None = None) -> Sealed:
+    """Open a sealed file; where `folder` is given, only if it is the one whose hash lies there.
+
+    Raises:
+        InputError: the file cannot be read, is not the one sealed for the folder, or the key does not open it.
+    """
+    try:
+        token = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    if folder is not None:
+        _check_hash(path, token, folder)
+    try:
+        packed = Fernet(key.strip().encode()).decrypt(token)
+    except (InvalidToken, ValueError, UnicodeError) as error:
+        raise InputError(f"{path}: the key does not open it; give the key that `blind make` printed") from error
+    with zipfile.ZipFile(io.BytesIO(packed)) as archive:
+        head = json.loads(archive.read(LABELS))
+        unseen: dict[str, dict[str, bytes]] = {}
+        for entry in archive.namelist():
+            if entry.startswith("unseen/"):
+                _, case, name = entry.split("/")
+                unseen.setdefault(case, {})[name] = archive.read(entry)
+    return Sealed(_labels(head["cases"]), unseen, head["made"])
+
+
+def _labels(cases: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    return {name: dict(label) for name, label in cases.items()}
+
+
+def _check_hash(path: Path, token: bytes, folder: Path) -> None:
+    note = folder / SEAL
+    if not note.is_file():
+        raise InputError(f"{note}: not there; {folder} is not a folder that `blind make` finished")
+    words = note.read_text(encoding="utf-8").split()
+    if len(words) < 2 or words[1] != hashlib.sha256(token).hexdigest():
+        raise InputError(f"{path}: is not the file sealed for {folder} (its SHA-256 differs from {SEAL})")

@@ -1,0 +1,92 @@
+"""Candidate explanations: every effect in every functional form, on every channel it may act on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.diagnosis.problem import Problem
+from seatsim.effects.base import ON_SEAT, acts_on
+from seatsim.fields import bounds, choices
+from seatsim.registry import card_of, find, names
+
+Array = NDArray[np.float64]
+
+
+REACH = 8.0
+"""Factor by which a parameter of shape may leave its start."""
+
+
+class Candidate(NamedTuple):
+    """An effect with some of its parameters free: where a fit starts, and between which bounds."""
+
+    effect: str
+    cls: Any
+    fixed: dict[str, Any]
+    free: tuple[str, ...]
+    start: tuple[float, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+
+    @property
+    def scale(self) -> Array:
+        """Natural size of each free parameter, shape (len(free),)."""
+        return np.abs(self.start)
+
+    def record(self, values: Sequence[float]) -> Any:
+        """Return the effect at these values of the free parameters."""
+        return self.cls(**self.fixed, **dict(zip(self.free, map(float, values), strict=True)))
+
+    @property
+    def block(self) -> str:
+        """Block of the rig that the effect lives in."""
+        return self.effect.partition(".")[0]
+
+
+def candidates(problem: Problem, without: Sequence[str] = ()) -> list[Candidate]:
+    """List what could be missing in the nominal scenario of a recording, but for the effects named in `without`."""
+    present = {type(effect) for effect in problem.scenario.effects}
+    found = []
+    for name in names("effect"):
+        cls: Any = find("effect", name)
+        if name in without or cls in present or not _fits(cls, problem):
+            continue
+        for start in card_of(cls).starts:
+            places = [{"channel": channel} for channel in _channels(cls, problem)] if card_of(cls).by_channel else [{}]
+            found += [_candidate(name, cls, start, place) for place in places]
+    return found
+
+
+def _fits(cls: Any, problem: Problem) -> bool:
+    """Whether the effect has something to act on in this recording."""
+    if problem.bench and acts_on(cls, (*ON_SEAT, "plant", "push")):
+        return False
+    recorded = problem.recording.channels
+    commanded = "current_command" in recorded or "command_voltage" in recorded
+    if hasattr(cls, "coil") and not commanded:
+        return False
+    return bool(card_of(cls).suits(problem.scenario.damper.record))
+
+
+def _channels(cls: Any, problem: Problem) -> list[str]:
+    known = choices(cls, "channel")
+    named = [*problem.channels, "floor_acceleration"]
+    return [name for name in named if name in problem.recording.channels and name in known]
+
+
+def _candidate(name: str, cls: Any, start: Any, place: dict[str, Any]) -> Candidate:
+    off = {field: 0.0 for field in cls._fields if field not in place} | dict(card_of(cls).off)
+    fixed = {field: value for field, value in off.items() if field not in start} | place
+    low, high = zip(*(_range(cls, field, value, k > 0) for k, (field, value) in enumerate(start.items())), strict=True)
+    return Candidate(name, cls, fixed, tuple(start), tuple(start.values()), low, high)
+
+
+def _range(cls: Any, field: str, value: float, shape: bool) -> tuple[float, float]:
+    """Return the bounds of a free parameter; one of shape that has a sign stays within REACH of its start."""
+    low, high = bounds(cls, field)
+    if shape and low >= 0.0:
+        return max(low, value / REACH), min(high, value * REACH)
+    return low, high

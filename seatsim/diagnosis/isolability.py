@@ -1,0 +1,191 @@
+"""Structural isolability: which blocks of a rig a set of recorded channels can tell apart at all.
+
+The rig is written as equations, each a set of unknowns, with the block whose fault enters it. An equation can be tested
+where it lies in the structurally overdetermined part M+ of the Dulmage-Mendelsohn decomposition: the part that is
+reached by alternating paths from the equations that a maximum matching leaves over. A fault in block i can be told from
+one in block j where the equation of i stays in M+ once that of j is taken away; as each fault enters one equation, not
+being told apart is an equivalence, and its classes are the groups. Derivatives may be used in both directions, and
+initial states are known (a replay starts at rest).
+
+Sources: Dulmage and Mendelsohn 1958 (decomposition); Krysander and Frisk 2008, "Sensor placement for fault diagnosis"
+(isolability from M+); equations of the seat as in section 1 of the recording's contract. Structural means in principle,
+for faults of any form: what is in one group here may still be told apart by the form of the effects (a friction is no
+viscous damper), and what is in two may be too small to be told apart on a given recording.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Collection, Iterable
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import maximum_bipartite_matching
+
+
+class Equation(NamedTuple):
+    """An equation of a rig: the unknowns in it, and whose fault enters it (None: it cannot be wrong)."""
+
+    unknowns: frozenset[str]
+    fault: str | None
+
+
+def _equation(unknowns: str, fault: str | None = None) -> Equation:
+    return Equation(frozenset(unknowns.split()), fault)
+
+
+SEAT = (
+    _equation("as Fs Fc Fd", "floor"),  # ms as = Fc - Fs - Fd + what else shakes the frame
+    _equation("Fs x v", "suspension"),  # Fs = kf x + cf v
+    _equation("ac Fc", "driver"),  # m ac = -Fc
+    _equation("Fc xc vc", "cushion"),  # Fc = kc xc + cc vc
+    _equation("Fd x v i", "damper"),  # Fd = F(x, v, i, T), T recorded or stated
+    _equation("x v"),  # x' = v
+    _equation("v as a0"),  # v' = as - a0
+    _equation("xc vc"),  # xc' = vc
+    _equation("vc ac as"),  # vc' = ac - as
+)
+BENCH = (_equation("Fd x v i", "damper"), _equation("x v"))
+"""Equations of the two rigs, without coil and sensors."""
+SENSED = {
+    "floor_acceleration": "a0",
+    "frame_acceleration": "as",
+    "driver_acceleration": "ac",
+    "suspension_displacement": "x",
+    "displacement": "x",
+    "velocity": "v",
+    "damper_force": "Fd",
+    "coil_current": "i",
+}
+"""The unknown that each sensor measures; the command is an input that is known, and so is the temperature."""
+COMMANDS = ("current_command", "command_voltage")
+BLOCKS = {
+    "seat": ("damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"),
+    "damper_bench": ("damper", "coil", "sensor"),
+}
+REMEDIES = {
+    "damper_force": "add a load cell at the damper",
+    "coil_current": "log the current of the coil",
+    "current_command": "log the commanded current",
+    "driver_acceleration": "add an accelerometer at the driver",
+    "frame_acceleration": "add an accelerometer on the seat frame",
+    "suspension_displacement": "add a displacement sensor across the suspension",
+    "velocity": "add a velocity sensor across the damper",
+}
+"""What to do about a channel that is absent."""
+FOR_RIG = {
+    "seat": tuple(name for name in REMEDIES if name != "velocity"),
+    "damper_bench": ("damper_force", "coil_current", "current_command", "velocity"),
+}
+
+
+def isolable(rig: str, channels: Collection[str]) -> list[list[str]]:
+    """Return the groups of blocks that these channels can tell apart, in the order of `BLOCKS`.
+
+    Blocks of one group cannot be told from each other by structure. A block in no group is in no test at all: its
+    faults leave no trace in these channels. `sensor` joins the first group that holds a block that one of the sensors
+    could be taken for.
+    """
+    equations = _equations(rig, channels)
+    tested = [k for k in sorted(overdetermined(equations)) if equations[k].fault is not None]
+    classes: list[set[int]] = []
+    for k in tested:
+        home = next((c for c in classes if not _is_isolable(equations, min(c), k)), None)
+        if home is None:
+            classes.append({k})
+        else:
+            home.add(k)
+    return _ordered(rig, [{_block(equations[k].fault) for k in c} for c in classes])
+
+
+def overdetermined(equations: Collection[Equation]) -> set[int]:
+    """Return the indices of the equations in M+, which hold more equations than unknowns."""
+    rows = list(equations)
+    if not rows:
+        return set()
+    matched = _matching(rows)
+    owner = {unknown: k for k, unknown in matched.items()}
+    reached = set(range(len(rows))) - set(matched)
+    queue = list(reached)
+    while queue:
+        found = {owner[unknown] for unknown in rows[queue.pop()].unknowns if unknown in owner} - reached
+        reached |= found
+        queue += found
+    return reached
+
+
+def losses(rig: str, channels: Collection[str]) -> list[str]:
+    """Return a sentence for each thing that these channels cannot tell, with the channel that would tell it."""
+    groups = isolable(rig, channels)
+    sentences = [_loss(rig, channels, groups, name) for name in FOR_RIG[rig] if not _is_recorded(name, channels)]
+    everything = {*channels, *(name for name in FOR_RIG[rig] if not _is_recorded(name, channels))}
+    sentences += [
+        f"{_listed(group)} cannot be told apart by any channel: only the form of an effect, or a repeat of a run, can"
+        for group in isolable(rig, everything)
+        if len(group) > 1
+    ]
+    return [sentence for sentence in sentences if sentence]
+
+
+def _equations(rig: str, channels: Collection[str]) -> list[Equation]:
+    """Return the equations of a rig with these channels; a coil without any record carries a stated current."""
+    equations = list(SEAT if rig == "seat" else BENCH)
+    if _is_recorded("current_command", channels) or "coil_current" not in channels:
+        equations.append(_equation("i", "coil"))  # i' = rate (command - i), the command known
+    return equations + [_equation(SENSED[name], f"sensor {name}") for name in sorted(channels) if name in SENSED]
+
+
+def _is_recorded(name: str, channels: Collection[str]) -> bool:
+    return name in channels or (name == "current_command" and any(command in channels for command in COMMANDS))
+
+
+def _is_isolable(equations: list[Equation], first: int, second: int) -> bool:
+    """Say whether the fault in equation `first` stays in a test once equation `second` is taken away."""
+    others = equations[:second] + equations[second + 1 :]
+    return first - (first > second) in overdetermined(others)
+
+
+def _matching(rows: list[Equation]) -> dict[int, str]:
+    """Return the unknown that a maximum matching gives to each equation that gets one."""
+    unknowns = sorted({unknown for row in rows for unknown in row.unknowns})
+    if not unknowns:
+        return {}
+    incidence = np.array([[unknown in row.unknowns for unknown in unknowns] for row in rows], dtype=np.int8)
+    columns = maximum_bipartite_matching(csr_array(incidence), perm_type="column")
+    return {k: unknowns[column] for k, column in enumerate(columns) if column >= 0}
+
+
+def _block(fault: str | None) -> str:
+    return str(fault).split()[0]
+
+
+def _ordered(rig: str, classes: Iterable[set[str]]) -> list[list[str]]:
+    """Return the groups in the order of BLOCKS; `sensor` stands once, in the first group that holds another block."""
+    order = BLOCKS[rig]
+    groups = sorted((sorted(found, key=order.index) for found in classes), key=lambda group: order.index(group[0]))
+    homes = [group for group in groups if "sensor" in group]
+    for group in homes[1:]:
+        group.remove("sensor")
+    return [group for group in groups if group]
+
+
+def _loss(rig: str, channels: Collection[str], groups: list[list[str]], absent: str) -> str:
+    """Return what the absence of one channel costs, or nothing where it alone changes nothing."""
+    better = isolable(rig, {*channels, absent})
+    unseen = [block for block in itertools.chain(*better) if not any(block in group for group in groups)]
+    parts = [[[b for b in group if b in new] for new in better] for group in groups]
+    split = [[part for part in found if part] for found in parts]
+    costs = [f"{_listed([_named(part) for part in found])} cannot be told apart" for found in split if len(found) > 1]
+    costs += [f"{_listed(unseen)} cannot be judged"] if unseen else []
+    return f"without {absent}, {_listed(costs)}: {REMEDIES[absent]}" if costs else ""
+
+
+def _named(part: list[str]) -> str:
+    """Return the blocks of a part; `floor` goes without saying beside the suspension."""
+    return " or ".join(block for block in part if block != "floor" or "suspension" not in part)
+
+
+def _listed(names: Collection[str]) -> str:
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last

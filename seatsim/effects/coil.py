@@ -1,0 +1,58 @@
+"""Effects of the coil and its supply: lag, asymmetric lag, delay, current limit."""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+from seatsim.coil import Coil
+from seatsim.effects.base import effect
+from seatsim.fields import param
+
+
+@effect("coil.lag", source="first-order lag", starts=({"time": 0.003},))
+class Lag(NamedTuple):
+    """A coil slower than nominal: its time constant grows, `1 / rate + time`, rising and falling alike."""
+
+    time: Annotated[float, param("s", "added time constant", low=-0.05, high=1)]
+
+    def coil(self, coil: Coil) -> Coil:
+        """Return the slower coil."""
+        fall = _slower(coil.rate_fall, self.time) if coil.rate_fall > 0.0 else 0.0
+        return coil._replace(rate=_slower(coil.rate, self.time), rate_fall=fall)
+
+
+@effect("coil.asymmetric_lag", source="freewheeling diode of the current driver", starts=({"time": 0.004},))
+class AsymmetricLag(NamedTuple):
+    """A coil whose current falls more slowly than it rises: time constant `1 / rate + time` when falling."""
+
+    time: Annotated[float, param("s", "added time constant of a falling current", low=0, high=1)]
+
+    def coil(self, coil: Coil) -> Coil:
+        """Return the coil with the slower fall."""
+        return coil._replace(rate_fall=_slower(coil.rate_fall if coil.rate_fall > 0.0 else coil.rate, self.time))
+
+
+@effect("coil.delay", source="sampling and bus latency", starts=({"time": 0.004},))
+class Delay(NamedTuple):
+    """Pure transport delay from command to coil."""
+
+    time: Annotated[float, param("s", "delay", low=0, high=0.5)]
+
+    def coil(self, coil: Coil) -> Coil:
+        """Return the coil with the delay added."""
+        return coil._replace(delay=coil.delay + self.time)
+
+
+@effect("coil.current_limit", source="supply in saturation", off={"limit": 1e3}, starts=({"limit": 0.8}, {"limit": 0.5}))
+class CurrentLimit(NamedTuple):
+    """A supply that cannot reach the commanded current."""
+
+    limit: Annotated[float, param("A", "largest current of the supply", above=0, high=1e3)]
+
+    def coil(self, coil: Coil) -> Coil:
+        """Return the coil with the lower limit."""
+        return coil._replace(max_current=min(coil.max_current, self.limit))
+
+
+def _slower(rate: float, time: float) -> float:
+    return 1.0 / max(1e-5, 1.0 / rate + time)

@@ -1,0 +1,45 @@
+"""Effects of the cushion: foam that hardens, a driver who lifts off."""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+from seatsim.effects.base import effect
+from seatsim.effects.laws import State
+from seatsim.fields import param
+from seatsim.plant import Plant
+
+
+@effect(
+    "cushion.hardening",
+    source="series of a foam's compression curve about the seated position",
+    starts=({"rise": 40.0}, {"rise": 40.0, "bend": 2e3}),
+)
+class Hardening(NamedTuple):
+    """Foam that stiffens under compression: with d = -xc > 0 the force grows by `kc d (rise d + bend d^2)`."""
+
+    rise: Annotated[float, param("1/m", "relative rise of stiffness with compression", low=0, high=1e4)]
+    bend: Annotated[float, param("1/m^2", "relative rise with its square", low=0, high=1e7)] = 0.0
+
+    def cushion_force(self, force: float, plant: Plant, xc: float, vc: float, z: State) -> float:
+        """Return the cushion's force in N, positive in tension."""
+        if xc >= 0.0:
+            return force
+        return force - plant.cushion_stiffness * xc * xc * (self.rise - self.bend * xc)
+
+
+@effect(
+    "cushion.separation",
+    source="unilateral contact",
+    off={"limit": 1e9},
+    starts=({"limit": 250.0}, {"limit": 100.0, "held": 0.5}),
+)
+class Separation(NamedTuple):
+    """A driver who partly lifts off: tension beyond `limit` is handed on only by the share `held`."""
+
+    limit: Annotated[float, param("N", "largest tension about the seated position", low=0, high=1e9)]
+    held: Annotated[float, param("-", "share of tension beyond the limit", low=0, high=1)] = 0.0
+
+    def cushion_force(self, force: float, plant: Plant, xc: float, vc: float, z: State) -> float:
+        """Return the cushion's force in N, positive in tension."""
+        return force if force <= self.limit else self.limit + self.held * (force - self.limit)

@@ -1,0 +1,57 @@
+"""Effects of the driver: another mass, a body with a resonance of its own."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+from seatsim.effects.base import effect
+from seatsim.effects.laws import State
+from seatsim.fields import param
+from seatsim.kernel.rig import Motion
+from seatsim.plant import Plant
+
+
+@effect("driver.mass", source="weighing", starts=({"change": 4.0}, {"change": -4.0}))
+class Mass(NamedTuple):
+    """An occupant heavier or lighter than believed."""
+
+    change: Annotated[float, param("kg", "added mass", low=-1e3, high=1e3)]
+
+    def plant(self, plant: Plant) -> Plant:
+        """Return the plant with the other driver."""
+        return plant._replace(driver_mass=max(1.0, plant.driver_mass + self.change))
+
+
+@effect(
+    "driver.biodynamics",
+    source="one sprung mass within the body; resonance of 4-6 Hz as in ISO 5982",
+    initial=(0.0, 0.0),
+    off={"frequency": 5.0, "damping": 0.3},
+    starts=({"share": 0.2, "frequency": 5.0, "damping": 0.3},),
+)
+class Biodynamics(NamedTuple):
+    """A body with an inner resonance: the `share` of the driver's mass hangs on a spring and dashpot within it.
+
+    `xi'' = -(2 pi frequency)^2 xi - 2 damping (2 pi frequency) xi' - zc''`, xi relative to the pelvis; the pelvis
+    carries the force of the inner mass and is lighter by it.
+    """
+
+    share: Annotated[float, param("-", "share of the mass that is sprung", low=0, high=0.95)]
+    frequency: Annotated[float, param("Hz", "natural frequency of the inner mass", above=0, high=30)] = 5.0
+    damping: Annotated[float, param("-", "damping ratio of the inner mass", low=0, high=3)] = 0.3
+
+    def inner_mass(self, plant: Plant, z: State) -> float:
+        """Return the sprung mass in kg."""
+        return self.share * plant.driver_mass
+
+    def inner_force(self, plant: Plant, z: State) -> float:
+        """Return what the inner mass pushes the pelvis upward with, in N."""
+        omega = 2.0 * math.pi * self.frequency
+        return self.share * plant.driver_mass * omega * (omega * z[0] + 2.0 * self.damping * z[1])
+
+    def rates(self, plant: Plant, motion: Motion, z: State) -> State:
+        """Return the rates of inner displacement and velocity."""
+        omega = 2.0 * math.pi * self.frequency
+        pull = omega * (omega * z[0] + 2.0 * self.damping * z[1])
+        return (z[1], -pull - motion.driver) if self.share > 0.0 else (0.0, 0.0)

@@ -1,0 +1,28 @@
+"""Laws that effects of several blocks share."""
+
+from __future__ import annotations
+
+import math
+
+from seatsim.jit import jit
+
+State = tuple[float, ...]
+REFERENCE_DEPTH = 0.01
+"""m; depth at which buffers of every exponent are equally strong."""
+
+
+@jit
+def dahl_rate(presliding: float, v: float, z: float) -> float:
+    """Return z' of Dahl's friction, `v (1 - z sgn v) / presliding`; 0 without presliding."""
+    if presliding <= 0.0:
+        return 0.0
+    return v * (1.0 - z * math.copysign(1.0, v)) / presliding
+
+
+@jit
+def buffer(stiffness: float, damping: float, power: float, depth: float, speed: float) -> float:
+    """Return the push in N of a buffer compressed by `depth`, which never pulls."""
+    push = stiffness * depth * (1.0 + damping * speed)
+    if power > 1.0:
+        push *= (depth / REFERENCE_DEPTH) ** (power - 1.0)
+    return max(0.0, push)

@@ -1,0 +1,108 @@
+"""Effects of the damper on what its fluid feels of current and heat: saturation, remanence, thermal fade."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, NamedTuple
+
+from seatsim.effects.base import effect
+from seatsim.effects.laws import State
+from seatsim.fields import param
+from seatsim.jit import jit
+from seatsim.temperature import TemperatureFactors
+
+FOLLOWING = 500.0
+"""1/s; rate at which magnetisation follows the current beyond the width of its hysteresis."""
+SMOOTHING = 2.0
+"""s; time over which a thermocouple's reading is averaged before its slope is taken."""
+
+
+@effect(
+    "damper.magnetic_saturation",
+    source="Froehlich's law, generalised by an exponent",
+    off={"sharpness": 2.0},
+    starts=({"bend": 0.5}, {"bend": 0.8, "sharpness": 3.0}),
+)
+class MagneticSaturation(NamedTuple):
+    """Yield force that grows ever less with current: it feels `i / (1 + (bend i)^sharpness)^(1 / sharpness)`."""
+
+    bend: Annotated[float, param("1/A", "one over the current at which the force saturates", low=0, high=20)]
+    sharpness: Annotated[float, param("-", "exponent; 1 is Froehlich's law", low=0.5, high=12)] = 2.0
+
+    def yield_current(self, i: float, z: State) -> float:
+        """Return the current that the yield force feels, in A."""
+        if self.bend <= 0.0 or i <= 0.0:
+            return i
+        return i / (1.0 + (self.bend * i) ** self.sharpness) ** (1.0 / self.sharpness)
+
+
+@effect(
+    "damper.remanence",
+    source="play operator (Krasnosel'skii and Pokrovskii 1989), two of them",
+    initial=(0.0, 0.0),
+    starts=({"width": 0.05}, {"width": 0.05, "spread": 0.7}, {"width": 0.08, "lift": 0.5}),
+)
+class Remanence(NamedTuple):
+    """Yield force that remembers past current: it feels the mean of two plays of the current.
+
+    Their half-widths are `width (1 +- spread)`; the current has to go further than that back before the magnetisation
+    follows, at 500 1/s. Of the play's two sides, `lift` is how far it is raised: 0 lags a rising and a falling current
+    alike, 1 leaves the rising one as it is, so that only current that fell is remembered.
+    """
+
+    width: Annotated[float, param("A", "current that stays remembered", low=0, high=2)]
+    spread: Annotated[float, param("-", "difference between the two plays", low=0, high=1)] = 0.0
+    lift: Annotated[float, param("-", "share of the width added to a current that flows", low=0, high=1)] = 0.0
+
+    def yield_current(self, i: float, z: State) -> float:
+        """Return the current that the yield force feels, in A."""
+        if self.width <= 0.0:
+            return i
+        felt = 0.5 * (z[0] + z[1])
+        return felt + self.lift * min(self.width, max(felt, 0.0))
+
+    def rates(self, x: float, v: float, i: float, z: State) -> State:
+        """Return the rates of the two plays."""
+        if self.width <= 0.0:
+            return (0.0, 0.0)
+        wide, narrow = self.width * (1.0 + self.spread), self.width * (1.0 - self.spread)
+        return (FOLLOWING * _beyond(i - z[0], wide), FOLLOWING * _beyond(i - z[1], narrow))
+
+
+@jit
+def _beyond(distance: float, width: float) -> float:
+    """Return how far a distance lies outside the width."""
+    return distance - min(width, max(-width, distance))
+
+
+@effect(
+    "damper.thermal_fade",
+    source="exponential factors of Yu et al. 2019 eqs 9-11; thermocouple as a first-order lag",
+    starts=({"viscous": 0.004, "yielding": 0.004}, {"viscous": 0.004, "yielding": 0.004, "lag": 5.0}),
+)
+class ThermalFade(NamedTuple):
+    """Viscous and yield force that fall as the fluid warms: factors `exp(-viscous (T - T0))`, `exp(-yielding (T - T0))`.
+
+    T0 is the reference of the damper's temperature factors. The thermocouple follows the fluid with a lag, so that the
+    fluid is at `T = T_c + lag dT_c/dt + rise`.
+    """
+
+    viscous: Annotated[float, param("1/K", "fade of the viscous force", low=-0.02, high=0.1)]
+    yielding: Annotated[float, param("1/K", "fade of the yield force", low=-0.02, high=0.1)] = 0.0
+    lag: Annotated[float, param("s", "lag of the thermocouple behind the fluid", low=0, high=600)] = 0.0
+    rise: Annotated[float, param("K", "what the fluid is warmer than its thermocouple", low=-50, high=150)] = 0.0
+
+    def factors(self, factors: TemperatureFactors) -> TemperatureFactors:
+        """Return the damper's temperature factors with the fade."""
+        return factors._replace(
+            viscous=factors.viscous - self.viscous, yield_force=factors.yield_force - self.yielding
+        )
+
+    def temperature(self, step: float, values: Any) -> Any:
+        """Return the temperature of the fluid in degC out of that of the thermocouple, shape (N,)."""
+        if self.lag <= 0.0:
+            return values + self.rise
+        import numpy as np
+        from scipy.ndimage import uniform_filter1d
+
+        smooth = uniform_filter1d(uniform_filter1d(values, round(SMOOTHING / step)), round(SMOOTHING / step))
+        return smooth + self.lag * np.gradient(smooth, step) + self.rise

@@ -1,0 +1,106 @@
+"""Effects of the sensors: wrong scale, offset, lag, and a controller's log that is shifted in time."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+from pydantic import Field
+from scipy.signal import lfilter, lfilter_zi
+
+from seatsim.effects.base import effect
+from seatsim.fields import param
+
+Channel = Literal[
+    "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "displacement",
+    "damper_force", "coil_current",
+]  # fmt: skip
+Named = Annotated[Channel, Field(description="the recorded channel that is wrong")]
+LOGGED = ("current_command", "coil_current", "replayed")
+"""Channels of the controller's log."""
+
+
+@effect("sensor.gain", source="calibration", by_channel=True, off={"error": 0.0}, starts=({"error": 0.05},))
+class Gain(NamedTuple):
+    """One channel reads with a wrong scale: `(1 + error)` times the truth."""
+
+    channel: Named
+    error: Annotated[float, param("-", "relative error of the scale", above=-1, high=10)]
+
+    def reading(self, channel: str, step: float, values: Any) -> Any:
+        """Return what the sensor says, shape (N,)."""
+        return values * (1.0 + self.error) if channel == self.channel else values
+
+    def truth(self, channel: str, step: float, values: Any) -> Any:
+        """Return what is true, shape (N,)."""
+        return values / (1.0 + self.error) if channel == self.channel else values
+
+
+@effect("sensor.bias", source="zero error and drift", by_channel=True, starts=({"share": 0.1}, {"share": 0.1, "drift": 0.01}))
+class Bias(NamedTuple):
+    """One channel reads with an offset that may drift: `truth + scale (share + drift t)`.
+
+    The scale is 1 m/s^2, 10 mm, 100 N or 0.1 A, by channel.
+    """
+
+    channel: Named
+    share: Annotated[float, param("-", "offset over the channel's scale", low=-1e3, high=1e3)]
+    drift: Annotated[float, param("1/s", "drift over the channel's scale", low=-1e3, high=1e3)] = 0.0
+
+    def reading(self, channel: str, step: float, values: Any) -> Any:
+        """Return what the sensor says, shape (N,)."""
+        return values + self._offset(step, values) if channel == self.channel else values
+
+    def truth(self, channel: str, step: float, values: Any) -> Any:
+        """Return what is true, shape (N,)."""
+        return values - self._offset(step, values) if channel == self.channel else values
+
+    def _offset(self, step: float, values: Any) -> Any:
+        scales = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement": 0.01, "displacement": 0.01}
+        return scales.get(self.channel, 1.0) * (self.share + self.drift * step * np.arange(len(values)))
+
+
+@effect("sensor.lag", source="first-order low-pass", by_channel=True, starts=({"time": 0.004},))
+class Lag(NamedTuple):
+    """One channel reads through a low-pass of first order: `time r' = truth - r`."""
+
+    channel: Named
+    time: Annotated[float, param("s", "time constant", low=0, high=1)]
+
+    def reading(self, channel: str, step: float, values: Any) -> Any:
+        """Return what the sensor says, shape (N,): the truth taken as linear between samples."""
+        if channel != self.channel or self.time <= 1e-6:
+            return values
+        ratio = step / self.time
+        kept = np.exp(-ratio)
+        mean = (1.0 - kept) / ratio
+        numerator, denominator = [1.0 - mean, mean - kept], [1.0, -kept]
+        return lfilter(numerator, denominator, values, zi=lfilter_zi(numerator, denominator) * values[0])[0]
+
+    def truth(self, channel: str, step: float, values: Any) -> Any:
+        """Return what is true, shape (N,): the reading and its slope over two rows."""
+        if channel != self.channel or self.time <= 1e-6:
+            return values
+        return values + self.time * np.gradient(values, step)
+
+
+@effect("sensor.clock_skew", source="two clocks", starts=({"shift": 0.004}, {"shift": -0.004}))
+class ClockSkew(NamedTuple):
+    """The controller's log is late by `shift + drift t` against the other channels: it says at t what was at t - shift."""
+
+    shift: Annotated[float, param("s", "delay of the log; negative: it runs ahead", low=-1, high=1)]
+    drift: Annotated[float, param("-", "growth of the delay per second", low=-0.01, high=0.01)] = 0.0
+
+    def reading(self, channel: str, step: float, values: Any) -> Any:
+        """Return what the log says, shape (N,)."""
+        return self._moved(values, step, -1.0) if channel in LOGGED else values
+
+    def truth(self, channel: str, step: float, values: Any) -> Any:
+        """Return what was commanded or flowed, shape (N,)."""
+        return self._moved(values, step, 1.0) if channel in LOGGED else values
+
+    def _moved(self, values: Any, step: float, sign: float) -> Any:
+        if self.shift == 0.0 and self.drift == 0.0:
+            return values
+        rows = np.arange(len(values)) * step
+        return np.interp(rows + sign * (self.shift + self.drift * rows), rows, values)

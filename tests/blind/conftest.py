@@ -1,0 +1,12 @@
+from __future__ import annotations
+
+import pytest
+
+from seatsim.blind import case
+
+
+@pytest.fixture
+def short(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of a few seconds."""
+    monkeypatch.setattr(case, "SECONDS", 5.0)
+    monkeypatch.setattr(case, "UNSEEN_SECONDS", 4.0)

@@ -1,0 +1,96 @@
+"""Sets: repeatable, resumable, sealed, and silent about their labels."""
+
+from __future__ import annotations
+
+import gzip
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from seatsim import load_recording
+from seatsim.blind.compose import compose, null_subsets
+from seatsim.blind.make import make
+from seatsim.blind.sealed import unseal
+from seatsim.blind.truth import EFFECTS
+from seatsim.errors import InputError
+
+pytestmark = pytest.mark.usefixtures("short")
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*.*")) if path.is_file()}
+
+
+def made(base: Path, name: str, seed: int | None, kinds: object = ("none", "one")) -> tuple[Path, Path, str]:
+    key = make(2, seed, base / name, base / f"{name}.sealed", kinds=kinds, processes=1)  # type: ignore[arg-type]
+    return base / name, base / f"{name}.sealed", key
+
+
+def test_a_seed_fixes_the_set_and_nothing_in_it_tells_the_label(tmp_path: Path) -> None:
+    first, sealed, key = made(tmp_path, "first", 3)
+    second, again, other = made(tmp_path, "second", 3)
+    cases = {name: data for name, data in contents(first).items() if "seal" not in name}
+    assert cases == {name: data for name, data in contents(second).items() if "seal" not in name}
+    opened = unseal(sealed, key, first)
+    assert opened.labels == unseal(again, other, second).labels
+    assert {label["kind"] for label in opened.labels.values()} == {"none", "one"}
+    words = {*EFFECTS, "effect:", "seed", "severity", "outside", "none", *opened.labels["case-0001"]["forms"]}
+    for name, data in cases.items():
+        text = (gzip.decompress(data) if name.endswith(".gz") else data).decode()
+        assert not [word for word in words if word in text.splitlines()[0] or (name.endswith("yaml") and word in text)]
+    assert sorted(p.name for p in (first / "case-0001").iterdir()) == [
+        "nominal.yaml", "recording.yaml", "run-a.csv.gz", "run-b.csv.gz", "run-c.csv.gz",
+    ]  # fmt: skip
+    assert len({p.stat().st_mtime for p in first.glob("case-*/*")}) == 1
+    assert list(load_recording(first / "case-0002").runs) == ["run-a", "run-b", "run-c"]
+    assert list(load_recording(opened.extract("case-0002", tmp_path)).runs) == ["run-u"]
+    assert not list(tmp_path.glob("*.partial"))
+
+
+def test_a_broken_off_set_goes_on_where_it_stopped(tmp_path: Path) -> None:
+    def stop(done: int, _: int) -> None:
+        if done == 1:
+            raise KeyboardInterrupt
+
+    _, sealed, key = made(tmp_path, "whole", 4, "null")
+    with pytest.raises(KeyboardInterrupt):
+        make(2, 4, tmp_path / "part", tmp_path / "part.sealed", stop, "null", 1)
+    before = (tmp_path / "part" / "case-0001").stat().st_ino
+    with pytest.raises(InputError, match="unfinished set"):
+        make(3, 4, tmp_path / "part", tmp_path / "part.sealed", None, "null", 1)
+    part, resealed, rekey = made(tmp_path, "part", None, "null")
+    assert (part / "case-0001").stat().st_ino == before
+    assert unseal(sealed, key).labels == unseal(resealed, rekey, part).labels
+    with pytest.raises(InputError, match="already"):
+        made(tmp_path, "part", 4, "null")
+
+
+def test_wrong_keys_and_changed_files_are_refused(tmp_path: Path) -> None:
+    folder, sealed, key = made(tmp_path, "set", None, "background")
+    assert "repeat_of: run-a" in (folder / "case-0001" / "recording.yaml").read_text()
+    _, _, wrong = made(tmp_path, "other", 1, "null")
+    for bad in (wrong, "no key", ""):
+        with pytest.raises(InputError, match="key"):
+            unseal(sealed, bad, folder)
+    with pytest.raises(InputError, match="not the file sealed"):
+        unseal(tmp_path / "other.sealed", wrong, folder)
+    token = sealed.read_bytes()
+    sealed.write_bytes(token[:-6] + b"AAAA==")
+    with pytest.raises(InputError, match="not the file sealed"):
+        unseal(sealed, key, folder)
+    with pytest.raises(InputError, match="lies inside"):
+        make(1, 1, folder, folder / "sealed", processes=1)
+
+
+def test_the_composition() -> None:
+    orders = compose(400, None, np.random.default_rng(0))
+    counts = {kind: sum(order.kind == kind for order in orders) for kind in ("none", "one", "two", "outside")}
+    assert counts == {"none": 80, "one": 160, "two": 80, "outside": 80}
+    singles = [order.names[0] for order in orders if order.kind == "one"]
+    assert {singles.count(effect) for effect in EFFECTS} <= {6, 7}
+    assert all(len(set(order.names)) == 2 for order in orders if order.kind == "two")
+    assert [order.kind for order in orders[:20]].count("none") < 15
+    assert len(null_subsets()) > 60
+    with pytest.raises(InputError, match="did you mean 'outside'"):
+        compose(3, "outsid", np.random.default_rng(0))

@@ -1,0 +1,182 @@
+"""A small healthy recording, and the ways in which a recording is damaged.
+
+A damage takes the table of a run, as a pandas frame, and returns it damaged; it is done to every run.
+"""
+
+import numpy as np
+import pandas as pd
+from ruamel.yaml import YAML
+
+import seatsim
+from seatsim.recording_writer import save_recording
+
+RATE = 250.0
+NOISE = {
+    "floor_acceleration": 0.01,
+    "frame_acceleration": 0.03,
+    "driver_acceleration": 0.015,
+    "suspension_displacement": 5e-5,
+    "damper_force": 2.5,
+    "current_command": 0.0,
+    "coil_current": 0.003,
+    "damper_temperature": 0.1,
+}
+DECIMALS = {"suspension_displacement": 6, "damper_force": 2, "damper_temperature": 2}
+G = 9.81
+
+
+def healthy(scenario, folder, settings=None):
+    """Simulate two runs of a seat scenario, 8 s at 250 Hz each, and save them as a recording with noise."""
+    runs = {
+        "feedback": {"excitation.duration": 8.0},
+        "switched": {"excitation.duration": 8.0, "controller": {"law": "on_off_skyhook", "on": 0.6}},
+    }
+    result = seatsim.run(scenario, {"variants": runs, "solver": {"step": 1.0 / RATE}, **(settings or {})})
+    save_recording(result, folder, list(NOISE))
+    generator = np.random.default_rng(5)
+    rewrite(folder, lambda frame: noisy(frame, generator))
+    edit(folder, lambda header: [header["channels"][c].update(noise_rms=n) for c, n in NOISE.items()])
+    return folder
+
+
+def noisy(frame, generator):
+    columns = {c: frame[c] + n * generator.standard_normal(len(frame)) for c, n in NOISE.items()}
+    return frame.assign(**{c: values.round(DECIMALS.get(c, 4)) for c, values in columns.items()})
+
+
+def rewrite(folder, damage, files=None):
+    """Hand the tables of a recording through a damage."""
+    for path in files or sorted(folder.glob("*.csv.gz")):
+        damage(pd.read_csv(path)).to_csv(path, index=False, float_format="%.7g")
+
+
+def edit(folder, change):
+    """Change what `recording.yaml` says."""
+    path, yaml = folder / "recording.yaml", YAML(typ="safe")
+    header = yaml.load(path)
+    change(header)
+    yaml.dump(header, path)
+
+
+def scaled(channel, factor):
+    return lambda frame: frame.assign(**{channel: factor * frame[channel]})
+
+
+def shifted(channel, offset):
+    return lambda frame: frame.assign(**{channel: frame[channel] + offset})
+
+
+def exchanged(first, second):
+    return lambda frame: frame.assign(**{first: frame[second], second: frame[first]})
+
+
+def late(seconds, *channels):
+    """Delay channels, held before their first row."""
+    rows = round(seconds * RATE)
+    return lambda f: f.assign(**{c: f[c].shift(rows).bfill().ffill() for c in channels})
+
+
+def lagging(channel, time):
+    """Read a channel through a low-pass of first order."""
+    return lambda f: f.assign(**{c: f[c].ewm(alpha=1.0 / (1.0 + time * RATE)).mean() for c in (channel,)})
+
+
+def clipped(channel, share):
+    """Cut a channel at a share of its largest value."""
+    return lambda f: f.assign(
+        **{channel: f[channel].clip(-share * f[channel].abs().max(), share * f[channel].abs().max())}
+    )
+
+
+def constant(channel, value=0.0):
+    return lambda frame: frame.assign(**{channel: value})
+
+
+def stuck(channel, start, end):
+    """Hold a channel between two instants."""
+    return lambda f: f.assign(**{channel: f[channel].mask((f.time > start) & (f.time <= end)).ffill()})
+
+
+def held(channel, rows):
+    """Hold each value for some rows."""
+    return lambda f: f.assign(**{channel: f[channel].to_numpy()[np.arange(len(f)) // rows * rows]})
+
+
+def without(start, end):
+    """Leave out the rows between two instants."""
+    return lambda frame: frame[(frame.time <= start) | (frame.time > end)]
+
+
+def holed(channel):
+    return lambda frame: frame.assign(**{channel: frame[channel].mask(frame.time.between(3.0, 3.1))})
+
+
+def louder(channel, rms):
+    """Add noise to a channel."""
+    return lambda f: f.assign(**{channel: f[channel] + rms * np.random.default_rng(1).standard_normal(len(f))})
+
+
+def at_rest(frame):
+    """Leave nothing but noise in all channels that move."""
+    moving = [c for c in NOISE if c.endswith(("acceleration", "displacement", "force"))]
+    generator = np.random.default_rng(2)
+    return frame.assign(**{c: (NOISE[c] * generator.standard_normal(len(frame))).round(7) for c in moving})
+
+
+SIGNS = [
+    "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
+    "current_command", "coil_current",
+]  # fmt: skip
+DAMAGES = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS} | {
+    "no rows": (lambda frame: frame.iloc[:0], None, "holds 0 rows"),
+    "holes": (holed("frame_acceleration"), "frame_acceleration", "not a finite number"),
+    "no column": (lambda frame: frame.drop(columns="coil_current"), "coil_current", "is missing"),
+    "missing rows": (without(3.0, 3.4), "time", "rows are missing"),
+    "another rate": (lambda frame: frame.iloc[::2], "time", "rows are 0.008 s apart"),
+    "half a second": (lambda frame: frame.iloc[:125], None, "its first second is left out"),
+    "two seconds": (lambda frame: frame.iloc[:500], None, "2 s remain to compare"),
+    "clipped": (clipped("frame_acceleration", 0.5), "frame_acceleration", "is clipped"),
+    "clipped force": (clipped("damper_force", 0.7), "damper_force", "is clipped"),
+    "dead": (constant("driver_acceleration"), "driver_acceleration", "throughout"),
+    "dead floor": (constant("floor_acceleration"), "floor_acceleration", "does not move while"),
+    "stuck": (stuck("suspension_displacement", 4.0, 5.0), "suspension_displacement", "is stuck from 4 to 5"),
+    "at rest": (at_rest, None, "nothing moves"),
+    "floor in g": (scaled("floor_acceleration", 1 / G), "floor_acceleration", "in g"),
+    "frame in g": (scaled("frame_acceleration", 1 / G), "frame_acceleration", "in g"),
+    "driver in mm/s^2": (scaled("driver_acceleration", 1000.0), "driver_acceleration", "in mm/s^2"),
+    "travel in mm": (scaled("suspension_displacement", 1000.0), "suspension_displacement", "in mm"),
+    "travel in cm": (scaled("suspension_displacement", 100.0), "suspension_displacement", "in cm"),
+    "force in kN": (scaled("damper_force", 0.001), "damper_force", "in kN"),
+    "current in mA": (scaled("coil_current", 1000.0), "coil_current", "in mA"),
+    "command in mA": (scaled("current_command", 1000.0), "current_command", "in mA"),
+    "kelvin": (shifted("damper_temperature", 273.15), "damper_temperature", "in kelvin"),
+    "frame for driver": (exchanged("frame_acceleration", "driver_acceleration"), "frame_acceleration", "exchanged"),
+    "floor for frame": (exchanged("floor_acceleration", "frame_acceleration"), "floor_acceleration", "exchanged"),
+    "command for current": (exchanged("current_command", "coil_current"), "current_command", "exchanged"),
+    "late displacement": (late(0.1, "suspension_displacement"), "suspension_displacement", "s late"),
+    "late driver": (late(0.1, "driver_acceleration"), "driver_acceleration", "s late"),
+}
+"""Damages for which a diagnosis must refuse: what is done, the channel named, and words of the sentence."""
+DOUBTS = {
+    "fahrenheit": (
+        lambda f: f.assign(damper_temperature=32 + 1.8 * f.damper_temperature),
+        "damper_temperature",
+        "degF",
+    ),
+    "noisier than stated": (louder("driver_acceleration", 0.1), "driver_acceleration", "noise_rms is stated as 0.015"),
+    "held": (held("driver_acceleration", 5), "driver_acceleration", "holds each value for 5 rows"),
+    "one row missing": (without(3.0, 3.004), "time", "rows are missing"),
+    "too large a current": (shifted("coil_current", 0.8), "coil_current", "outside 0 to 1 A"),
+    "late current": (late(0.15, "coil_current"), "coil_current", "s late"),
+}
+"""Damages that are said while the diagnosis goes on."""
+GAPS = {
+    "a gain of 20 %": scaled("frame_acceleration", 1.2),
+    "a bias": shifted("suspension_displacement", 0.02),
+    "a slow sensor": lagging("damper_force", 0.02),
+    "a skewed clock": late(0.02, "current_command", "coil_current"),
+    "a weak supply": lambda f: f.assign(
+        coil_current=f.coil_current.where(f.coil_current < 0.3, 0.3 + 0.01 * f.coil_current)
+    ),
+}
+"""What sensors and supplies of a healthy recording may do."""

@@ -1,0 +1,99 @@
+"""The card of structural isolability against a published analysis, and its sentences.
+
+The table is that of section 3.1 of the reference on diagnosis (faultdiagnosistoolbox 0.12.5); its `plant` is our
+suspension, and the floor's unmeasured input enters the same force balance.
+"""
+
+import pytest
+
+from seatsim.diagnosis.isolability import Equation, isolable, losses, overdetermined
+
+ALL = {
+    "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
+    "coil_current", "current_command",
+}  # fmt: skip
+TABLE = [
+    ((), []),
+    (("damper_force",), [{"damper", "suspension"}]),
+    (("coil_current",), [{"damper", "coil"}]),
+    (("driver_acceleration",), [{"suspension", "cushion", "driver"}]),
+    (("suspension_displacement",), []),
+    (("floor_acceleration",), []),
+    (("frame_acceleration",), []),
+    (("damper_force", "coil_current"), [{"damper", "coil", "suspension"}]),
+    (("damper_force", "driver_acceleration"), [{"damper", "suspension", "cushion", "driver"}]),
+    (("damper_force", "suspension_displacement"), [{"damper", "suspension", "sensor"}]),
+    (("damper_force", "coil_current", "driver_acceleration"),
+     [{"damper", "coil", "suspension", "cushion", "driver"}]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("absent", "merged"), TABLE)
+def test_the_groups_are_those_of_the_published_table(absent, merged):
+    groups = [set(group) - {"floor"} for group in isolable("seat", ALL - set(absent))]
+    assert [group for group in groups if len(group) > 1] == merged
+    assert set().union(*groups) == {"damper", "coil", "suspension", "cushion", "driver", "sensor"}
+    assert sum(map(len, groups)) == 6
+
+
+def test_the_floor_stands_with_the_suspension():
+    assert ["suspension", "floor"] in isolable("seat", ALL)
+
+
+def test_the_redundancy_of_the_full_seat_is_five():
+    from seatsim.diagnosis.isolability import _equations, _matching
+
+    equations = _equations("seat", ALL)
+    assert len(equations) - len(_matching(equations)) == 5
+
+
+def test_what_leaves_no_trace_stands_in_no_group():
+    groups = isolable("seat", ALL - {"current_command"})
+    assert not any("coil" in group for group in groups)
+    assert isolable("seat", {"floor_acceleration"}) == []
+
+
+def test_without_any_record_of_the_current_coil_and_damper_are_one():
+    assert ["damper", "coil"] in isolable("seat", ALL - {"current_command", "coil_current"})
+
+
+@pytest.mark.parametrize(
+    ("channels", "groups"),
+    [
+        ({"displacement", "damper_force", "command_voltage"}, [["damper", "coil", "sensor"]]),
+        ({"displacement", "damper_force", "coil_current"}, [["damper", "sensor"]]),
+        ({"displacement", "damper_force", "coil_current", "current_command"}, [["damper", "sensor"], ["coil"]]),
+        ({"displacement", "current_command"}, []),
+    ],
+)
+def test_a_bench_has_damper_coil_and_sensors(channels, groups):
+    assert isolable("damper_bench", channels) == groups
+
+
+def test_the_temperature_changes_no_group():
+    assert isolable("seat", ALL | {"damper_temperature"}) == isolable("seat", ALL)
+
+
+@pytest.mark.parametrize(
+    ("absent", "sentence"),
+    [
+        ("damper_force", "without damper_force, damper and suspension cannot be told apart: add a load cell"),
+        ("coil_current", "without coil_current, damper and coil cannot be told apart: log the current"),
+        ("current_command", "coil cannot be judged: log the commanded current"),
+        ("driver_acceleration", "suspension, cushion and driver cannot be told apart: add an accelerometer"),
+    ],
+)
+def test_a_missing_channel_and_its_remedy_are_one_sentence(absent, sentence):
+    assert any(sentence in said for said in losses("seat", ALL - {absent}))
+
+
+def test_a_full_seat_lacks_nothing_but_the_floor_against_the_suspension():
+    (sentence,) = losses("seat", ALL)
+    assert sentence.startswith("suspension and floor cannot be told apart by any channel")
+
+
+def test_overdetermined_is_what_a_leftover_equation_reaches():
+    square = [Equation(frozenset("a"), None), Equation(frozenset("ab"), None)]
+    assert overdetermined(square) == set()
+    assert overdetermined([*square, Equation(frozenset("a"), None)]) == {0, 2}
+    assert overdetermined([]) == set()
