@@ -39,7 +39,7 @@ def setup(sample_every: int, tolerance: float = 1e-4) -> Setup:
 def seatsim_run(acceleration: np.ndarray, parts: Setup) -> tuple[Callable[[], None], np.ndarray]:
     """Return a function that runs seatsim's compiled loop, and the history that it fills."""
     none, samples = np.zeros(0), len(acceleration)
-    inputs = Inputs(acceleration, np.zeros(samples), np.full(samples, 20.0), none, none, none)
+    inputs = Inputs(acceleration, np.zeros(samples), np.full(samples, 20.0), none, none, none, none)
     history = np.empty((samples, len(CHANNELS)))
     loop = compiled(run_loop, (ModifiedBoucWen, OutputFeedback))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,8 +40,17 @@ class History:
         return self.channels[name]
 
 
-def simulate(scenario: Scenario, floor: Floor | None = None) -> History:
+class Forces(NamedTuple):
+    """Forces on frame and driver in N, sampled every step, shape (N,) each; of length 0 where there is none."""
+
+    push: Array = NONE
+    lift: Array = NONE
+
+
+def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | None = None) -> History:
     """Simulate one run from rest, shaken as the scenario's excitation says, or by a `floor` that is at hand.
+
+    `forces` are added to what the effects push.
 
     Raises:
         InputError: the scenario has no plant, or its times do not fit each other.
@@ -54,7 +63,7 @@ def simulate(scenario: Scenario, floor: Floor | None = None) -> History:
         with scenario.placed("excitation"):
             floor = scenario.excitation.floor(step, scenario.seed)
     setup, initial = _setup(scenario, scenario.plant, scenario.control, floor.temperature is not None)
-    inputs = _inputs(scenario, scenario.control, floor)
+    inputs = _inputs(scenario, scenario.control, floor, forces or Forces())
     out = np.empty((len(floor.acceleration), len(CHANNELS)))
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), type(setup.law), type(setup.belief.damper))
     states = (initial, _believed(setup.belief), card_of(type(scenario.control.law)).initial)
@@ -114,7 +123,7 @@ def _sample_every(step: float, control: Control) -> int:
     return every
 
 
-def _inputs(scenario: Scenario, control: Control, floor: Floor) -> Inputs:
+def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> Inputs:
     step, effects, samples = scenario.solver.step, scenario.effects, len(floor.acceleration)
     acceleration = changed(effects, "truth", floor.acceleration, "floor_acceleration", step)
     fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
@@ -128,7 +137,11 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor) -> Inputs:
     start = float(flowing[0]) if flowing.size else 0.0
     prescribed = flowing if replays and floor.command is None else NONE
     push = pushes(effects, np.arange(samples) * step, scenario.seed)
-    return Inputs(acceleration, floor.velocity, temperature, command, prescribed, push, start, *scenario.start)
+    if len(forces.push):
+        push = push + forces.push if len(push) else forces.push
+    return Inputs(
+        acceleration, floor.velocity, temperature, command, prescribed, push, forces.lift, start, *scenario.start
+    )
 
 
 def _history(plant: Plant, step: float, out: Array) -> History:

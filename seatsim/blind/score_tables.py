@@ -66,7 +66,8 @@ def _rates(title: str, rates: Mapping[str, Rate]) -> Table:
 
 
 def _confusion(score: Score) -> Table:
-    table = _table("what was named", "truth", "named (times)")
+    table = _table("what was named", "truth")
+    table.add_column("named (times)")
     for truth, named in score.confusion.items():
         table.add_row(truth, ", ".join(f"{name} {count}" for name, count in named.items()))
     return table

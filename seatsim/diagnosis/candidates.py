@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import Problem
-from seatsim.effects.base import ON_SEAT, acts_on
+from seatsim.effects.base import ON_SEAT, Form, acts_on
 from seatsim.fields import bounds, choices
 from seatsim.registry import card_of, find, names
 
@@ -54,9 +54,9 @@ def candidates(problem: Problem, without: Sequence[str] = ()) -> list[Candidate]
         cls: Any = find("effect", name)
         if name in without or cls in present or not _fits(cls, problem):
             continue
-        for start in card_of(cls).starts:
+        for form in card_of(cls).forms:
             places = [{"channel": channel} for channel in _channels(cls, problem)] if card_of(cls).by_channel else [{}]
-            found += [_candidate(name, cls, start, place) for place in places]
+            found += [_candidate(name, cls, form, place) for place in places]
     return found
 
 
@@ -77,11 +77,12 @@ def _channels(cls: Any, problem: Problem) -> list[str]:
     return [name for name in named if name in problem.recording.channels and name in known]
 
 
-def _candidate(name: str, cls: Any, start: Any, place: dict[str, Any]) -> Candidate:
+def _candidate(name: str, cls: Any, form: Form, place: dict[str, Any]) -> Candidate:
     off = {field: 0.0 for field in cls._fields if field not in place} | dict(card_of(cls).off)
-    fixed = {field: value for field, value in off.items() if field not in start} | place
-    low, high = zip(*(_range(cls, field, value, k > 0) for k, (field, value) in enumerate(start.items())), strict=True)
-    return Candidate(name, cls, fixed, tuple(start), tuple(start.values()), low, high)
+    fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.held) | place
+    ranges = [_range(cls, field, value, k > 0) for k, (field, value) in enumerate(form.free.items())]
+    low, high = zip(*ranges, strict=True)
+    return Candidate(name, cls, fixed, tuple(form.free), tuple(form.free.values()), low, high)
 
 
 def _range(cls: Any, field: str, value: float, shape: bool) -> tuple[float, float]:

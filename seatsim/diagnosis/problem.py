@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,12 +25,19 @@ from seatsim.excitations.recording import RecordedRun
 from seatsim.recording import Recording
 from seatsim.replay import COMPARED, LEFT_OUT, single, stands_out
 from seatsim.scenario import Scenario, Start
-from seatsim.simulation import simulate
+from seatsim.simulation import Forces, simulate
 
 Array = NDArray[np.float64]
 CARRIER: Any = SealFriction
 """An effect that every simulation carries, off, so that all candidates share one compiled loop."""
 POOL = ThreadPoolExecutor()
+
+
+class Drive(NamedTuple):
+    """What drives a simulation instead of the recorded floor alone."""
+
+    floor: Floor | None = None
+    forces: Forces | None = None
 
 
 @dataclass(frozen=True)
@@ -73,7 +80,7 @@ class Problem:
         """Nuisance parameters at their nominal values."""
         return np.zeros(len(self.parameters))
 
-    def simulated(self, run: str, u: Array, effects: Sequence[Any], floor: Floor | None = None) -> Array:
+    def simulated(self, run: str, u: Array, effects: Sequence[Any], drive: Drive | None = None) -> Array:
         """Return the compared channels of a run, shape (channels, samples), as `measured` has them."""
         chosen = [*self.scenario.effects, *effects]
         carrier = [] if any(isinstance(effect, CARRIER) for effect in chosen) else [off(CARRIER)]
@@ -83,7 +90,8 @@ class Problem:
         else:
             step = 1.0 / self.recording.header.sample_rate
             parts = round(step / self.scenario.solver.step)
-            history = simulate(scenario, floor or self.floors[run])
+            drive = drive or Drive()
+            history = simulate(scenario, drive.floor or self.floors[run], drive.forces)
             answer = readings(scenario.effects, step, {name: history[name][::parts] for name in self.channels})
         return np.array([answer[name][self.skip : self.skip + self.measured[run].shape[1]] for name in self.channels])
 

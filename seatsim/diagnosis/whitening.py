@@ -9,12 +9,14 @@ fitted to the residual under test, which would hide narrow gaps.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.problem import POOL, Problem
+from seatsim.diagnosis.problem import POOL, Drive, Problem
+from seatsim.simulation import Forces
 
 Array = NDArray[np.float64]
 
@@ -41,16 +43,22 @@ class Whitening:
         return np.concatenate([spectrum.real, spectrum.imag], axis=1)
 
 
-def whitening(problem: Problem) -> Whitening:
-    """Return the weights for a recording."""
+def whitening(problem: Problem, pushes: Mapping[str, Array] | None = None) -> Whitening:
+    """Return the weights for a recording.
+
+    `pushes` are courses of a random force on the frame in N by run, shape (samples,), whose power counts as noise.
+    """
     rate = problem.recording.header.sample_rate
+    repeated = _unrepeatable(problem)
     weights, bins = {}, {}
     for run in problem.runs:
         measured = problem.measured[run]
         samples = measured.shape[1]
         frequency = np.fft.rfftfreq(samples, 1.0 / rate)
         bins[run] = int(np.searchsorted(frequency, min(HIGHEST, 0.5 * rate)))
-        power = problem.noise[:, None] ** 2 * samples + _carried(problem, run)
+        power = problem.noise[:, None] ** 2 * samples + _carried(problem, run, (pushes or {}).get(run))
+        if repeated is not None:
+            power = np.maximum(power, np.array([np.interp(frequency, repeated[0], row) for row in repeated[1]]) * samples)
         signal = np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True), axis=1)) ** 2
         total = power + TRUST**2 * _smoothed(signal)
         total = np.maximum(total, 1e-6 * problem.spread[:, None] ** 2 * samples)
@@ -58,26 +66,36 @@ def whitening(problem: Problem) -> Whitening:
     return Whitening(weights, bins)
 
 
-def _carried(problem: Problem, run: str) -> Array:
-    """Return the power spectrum that the noise of the recorded floor leaves in the outputs."""
+def _carried(problem: Problem, run: str, push: Array | None) -> Array:
+    """Return the power spectrum that the noise of the recorded floor, and a random push, leave in the outputs."""
     floor = problem.floors[run]
     if floor is None:
         return np.zeros((len(problem.channels), 1))
     rng = np.random.default_rng(0)
-    rate, step = problem.recording.header.sample_rate, floor.step
+    rate = problem.recording.header.sample_rate
     noise = problem.recording.channels["floor_acceleration"].noise_rms
-    rows = np.arange(0, len(floor.acceleration), round(1.0 / rate / step))
+    rows = np.arange(0, len(floor.acceleration), round(1.0 / rate / floor.step))
+    every = np.arange(len(floor.acceleration))
+    draws = noise * rng.standard_normal((TWINS, len(rows)))
+    forces = [None if push is None else _shuffled(push, rng) for _ in range(TWINS)]
 
     def shaken(index: int) -> Array:
-        drawn = np.interp(np.arange(len(floor.acceleration)), rows, draws[index])
-        noisy = floor._replace(acceleration=floor.acceleration + drawn)
-        return problem.simulated(run, problem.rest, (), noisy)
+        noisy = floor._replace(acceleration=floor.acceleration + np.interp(every, rows, draws[index]))
+        force = forces[index]
+        if force is None:
+            return problem.simulated(run, problem.rest, (), Drive(noisy))
+        held = np.interp(every, rows[: len(force)], force, right=0.0)
+        return problem.simulated(run, problem.rest, (), Drive(noisy, Forces(held)))
 
-    draws = noise * rng.standard_normal((TWINS, len(rows)))
     clean = problem.simulated(run, problem.rest, ())
     twins = list(POOL.map(shaken, range(TWINS)))
-    power = np.mean([np.abs(np.fft.rfft(twin - clean, axis=1)) ** 2 for twin in twins], axis=0)
-    return _smoothed(power)
+    return _smoothed(np.mean([np.abs(np.fft.rfft(twin - clean, axis=1)) ** 2 for twin in twins], axis=0))
+
+
+def _shuffled(course: Array, rng: np.random.Generator) -> Array:
+    """Return a course with the same spectrum and random phases."""
+    spectrum = np.fft.rfft(course)
+    return np.fft.irfft(np.abs(spectrum) * np.exp(2j * np.pi * rng.random(len(spectrum))), len(course))
 
 
 def _smoothed(power: Array) -> Array:
@@ -88,3 +106,23 @@ def _smoothed(power: Array) -> Array:
     half = np.maximum(4, (SMOOTH * index).astype(int))
     low, high = np.maximum(0, index - half), np.minimum(count, index + half + 1)
     return np.asarray((cumulated[:, high] - cumulated[:, low]) / (high - low))
+
+
+def _unrepeatable(problem: Problem) -> tuple[Array, Array] | None:
+    """Return frequencies and the power per sample by which runs differ from those that they repeat, None without any.
+
+    The difference of two repeats holds twice the power that does not repeat.
+    """
+    found = []
+    for run, entry in problem.recording.runs.items():
+        if entry.repeat_of is None or run not in problem.runs or entry.repeat_of not in problem.runs:
+            continue
+        first, second = problem.measured[entry.repeat_of], problem.measured[run]
+        samples = min(first.shape[1], second.shape[1])
+        spectrum = np.fft.rfft(first[:, :samples] - second[:, :samples], axis=1)
+        frequency = np.fft.rfftfreq(samples, 1.0 / problem.recording.header.sample_rate)
+        found.append((frequency, 0.5 * _smoothed(np.abs(spectrum) ** 2) / samples))
+    if not found:
+        return None
+    frequency = found[0][0]
+    return frequency, np.mean([[np.interp(frequency, f, row) for row in power] for f, power in found], axis=0)

@@ -15,9 +15,9 @@ Before a run, in Python:
 
 In the time loop, compiled by numba, with `z` the effect's own state:
 
-    on the damper       conditioned(self, heat, v, z)   engaged(self, h, v, z)   yield_current(self, i, z)
-                        yield_speed(self, v, z)   yield_shape(self, shape, z)   added_force(self, x, v, z)
-                        stiction(self, z)   rates(self, x, v, i, z)
+    on the damper       conditioned(self, heat, v, z)   engaged(self, h, pull, z)   yield_current(self, i, z)
+                        yield_shape(self, shape, target, z)   added_force(self, x, v, z)
+                        stiction(self, z)   rates(self, x, v, i, pull, target, z)
     on the seat         suspension_force(self, plant, x, v, z)   linkage_friction(self, z)
                         cushion_force(self, force, plant, xc, vc, z)
                         inner_mass(self, plant, z)   inner_force(self, plant, z)   rates(self, plant, motion, z)
@@ -34,24 +34,30 @@ T = TypeVar("T", bound=type)
 Values = Mapping[str, float]
 
 ON_DAMPER = (
-    "conditioned", "engaged", "yield_current", "yield_speed", "yield_shape", "added_force", "stiction",
+    "conditioned", "engaged", "yield_current", "yield_shape", "added_force", "stiction",
 )  # fmt: skip
 ON_SEAT = ("suspension_force", "linkage_friction", "cushion_force", "inner_mass", "inner_force")
+
+
+class Form(NamedTuple):
+    """Where a fit to a recording starts: the values of the parameters it frees, and of others that it holds."""
+
+    free: Values
+    held: Values = {}
 
 
 class EffectCard(NamedTuple):
     """What is stated of an effect.
 
     source: of the law. initial: its state at rest. off: parameters at which the rig is unchanged, where that is not
-    zero. starts: where a fit to a recording starts; each names the parameters that it frees, the others stay off, and
-    several starts are several functional forms. suits: whether it can be missing in a model whose damper is `record`.
+    zero. forms: functional forms in which a recording may show it; what a form does not name stays off. suits: whether it can be missing in a model whose damper is `record`.
     by_channel: it acts on one recorded channel, which its parameter `channel` names.
     """
 
     source: str
     initial: tuple[float, ...]
     off: Values
-    starts: tuple[Values, ...]
+    forms: tuple[Form, ...]
     suits: Callable[[Any], bool]
     by_channel: bool
 
@@ -61,12 +67,13 @@ def effect(
     source: str = "",
     initial: tuple[float, ...] = (),
     off: Values | None = None,
-    starts: tuple[Values, ...] = (),
+    forms: tuple[Form | Values, ...] = (),
     suits: Callable[[Any], bool] = lambda damper: True,
     by_channel: bool = False,
 ) -> Callable[[T], T]:
     """Register a record class as `effect: name`, where the part before the dot is the block it lives in."""
-    return register("effect", name, EffectCard(source, initial, off or {}, starts, suits, by_channel))
+    stated = tuple(form if isinstance(form, Form) else Form(form) for form in forms)
+    return register("effect", name, EffectCard(source, initial, off or {}, stated, suits, by_channel))
 
 
 def off(cls: Any) -> Any:

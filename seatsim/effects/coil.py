@@ -9,7 +9,7 @@ from seatsim.effects.base import effect
 from seatsim.fields import param
 
 
-@effect("coil.lag", source="first-order lag", starts=({"time": 0.003},))
+@effect("coil.lag", source="first-order lag", forms=({"time": 0.003},))
 class Lag(NamedTuple):
     """A coil slower than nominal: its time constant grows, `1 / rate + time`, rising and falling alike."""
 
@@ -21,7 +21,7 @@ class Lag(NamedTuple):
         return coil._replace(rate=_slower(coil.rate, self.time), rate_fall=fall)
 
 
-@effect("coil.asymmetric_lag", source="freewheeling diode of the current driver", starts=({"time": 0.004},))
+@effect("coil.asymmetric_lag", source="freewheeling diode of the current driver", forms=({"time": 0.004},))
 class AsymmetricLag(NamedTuple):
     """A coil whose current falls more slowly than it rises: time constant `1 / rate + time` when falling."""
 
@@ -32,7 +32,7 @@ class AsymmetricLag(NamedTuple):
         return coil._replace(rate_fall=_slower(coil.rate_fall if coil.rate_fall > 0.0 else coil.rate, self.time))
 
 
-@effect("coil.delay", source="sampling and bus latency", starts=({"time": 0.004},))
+@effect("coil.delay", source="sampling and bus latency", forms=({"time": 0.004},))
 class Delay(NamedTuple):
     """Pure transport delay from command to coil."""
 
@@ -43,7 +43,7 @@ class Delay(NamedTuple):
         return coil._replace(delay=coil.delay + self.time)
 
 
-@effect("coil.current_limit", source="supply in saturation", off={"limit": 1e3}, starts=({"limit": 0.8}, {"limit": 0.5}))
+@effect("coil.current_limit", source="supply in saturation", off={"limit": 1e3}, forms=({"limit": 0.8}, {"limit": 0.5}))
 class CurrentLimit(NamedTuple):
     """A supply that cannot reach the commanded current."""
 

@@ -13,7 +13,7 @@ from seatsim.plant import Plant
 @effect(
     "cushion.hardening",
     source="series of a foam's compression curve about the seated position",
-    starts=({"rise": 40.0}, {"rise": 40.0, "bend": 2e3}),
+    forms=({"rise": 40.0}, {"rise": 40.0, "bend": 2e3}),
 )
 class Hardening(NamedTuple):
     """Foam that stiffens under compression: with d = -xc > 0 the force grows by `kc d (rise d + bend d^2)`."""
@@ -32,7 +32,7 @@ class Hardening(NamedTuple):
     "cushion.separation",
     source="unilateral contact",
     off={"limit": 1e9},
-    starts=({"limit": 250.0}, {"limit": 100.0, "held": 0.5}),
+    forms=({"limit": 250.0}, {"limit": 100.0, "held": 0.5}),
 )
 class Separation(NamedTuple):
     """A driver who partly lifts off: tension beyond `limit` is handed on only by the share `held`."""

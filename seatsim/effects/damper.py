@@ -19,7 +19,7 @@ SWITCH = 0.01
 @effect(
     "damper.gas_spring",
     source="accumulator of a monotube damper, linearised",
-    starts=({"preload": 20.0, "stiffness": 500.0},),
+    forms=({"preload": 20.0, "stiffness": 500.0},),
 )
 class GasSpring(NamedTuple):
     """Preload and stiffness of the accumulator: `F + preload + stiffness x`."""
@@ -35,7 +35,7 @@ class GasSpring(NamedTuple):
 @effect(
     "damper.asymmetry",
     source="Yu et al. 2019 (Front. Mater. 6:227): rebound and compression differ",
-    starts=({"viscous": 0.1, "yielding": 0.1},),
+    forms=({"viscous": 0.1, "yielding": 0.1},),
 )
 class Asymmetry(NamedTuple):
     """Rebound stronger and compression weaker: both parts of the force times `1 + a tanh(v / 1 cm/s)`."""
@@ -56,7 +56,7 @@ class Asymmetry(NamedTuple):
     "damper.seal_friction",
     source="Coulomb's law; with presliding Dahl 1968",
     initial=(0.0,),
-    starts=({"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3}),
+    forms=({"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3}),
 )
 class SealFriction(NamedTuple):
     """Rate-independent friction inside the damper, at every current, seen by the load cell.
@@ -75,7 +75,7 @@ class SealFriction(NamedTuple):
         """Return the friction in N that builds up over a travel."""
         return self.force * z[0] if self.presliding > 0.0 else 0.0
 
-    def rates(self, x: float, v: float, i: float, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, pull: float, target: float, z: State) -> State:
         """Return z'."""
         return (dahl_rate(self.presliding, v, z[0]),)
 
@@ -85,31 +85,31 @@ class SealFriction(NamedTuple):
     source="backlash: the damper's end stays while the gap is crossed",
     initial=(0.0,),
     off={"softness": 0.3},
-    starts=({"gap": 1e-3}, {"gap": 2e-3, "softness": 0.8}),
+    forms=({"gap": 1e-4}, {"gap": 1e-3}, {"gap": 3e-4, "softness": 0.9}),
 )
 class FreePlay(NamedTuple):
-    """Backlash at the mount or trapped air: after each reversal a travel `gap` without force.
+    """Backlash at the mount or trapped air: after each reversal of the force a travel `gap` without force.
 
-    With u = 2 g tanh(v / 1 cm/s) / gap the damper gets the share h(u) of the speed and hands on the share h of its
-    force, h rising smoothly from 0 at `u = 1 - 2 softness` to 1 at u = 1; `g' = v (1 - h)`.
+    The damper gets the share h of the speed and hands on the share h of its force. With g the place in the gap,
+    `g' = v (1 - h)`, and u = 2 g sgn(F) / gap, h rises smoothly from 0 at `u = 1 - 2 softness` to 1 at u = 1.
     """
 
     gap: Annotated[float, param("m", "travel without force after a reversal", low=0, high=0.05)]
     softness: Annotated[float, param("-", "share of the gap over which the force returns", above=0, high=1)] = 0.3
 
-    def engaged(self, h: float, v: float, z: State) -> float:
-        """Return the share of the speed, and of the force, that gets through."""
-        return h * _passed(self.gap, self.softness, v, z[0]) if self.gap > 0.0 else h
+    def engaged(self, h: float, pull: float, z: State) -> float:
+        """Return the share of speed and force that gets through, of a damper that pulls with `pull` newton."""
+        return h * _passed(self.gap, self.softness, pull, z[0]) if self.gap > 0.0 else h
 
-    def rates(self, x: float, v: float, i: float, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, pull: float, target: float, z: State) -> State:
         """Return g'."""
-        return (v * (1.0 - _passed(self.gap, self.softness, v, z[0])) if self.gap > 0.0 else 0.0,)
+        return (v * (1.0 - _passed(self.gap, self.softness, pull, z[0])) if self.gap > 0.0 else 0.0,)
 
 
 @jit
-def _passed(gap: float, softness: float, v: float, g: float) -> float:
-    """Return h, the share of a speed that gets through the gap."""
-    u = 2.0 * g * math.tanh(v / SWITCH) / gap
+def _passed(gap: float, softness: float, pull: float, g: float) -> float:
+    """Return h, the share of speed and force that gets through the gap."""
+    u = 2.0 * g * math.copysign(1.0, pull) / gap
     s = min(1.0, max(0.0, 1.0 - 0.5 * (1.0 - u) / softness))
     return s * s * (3.0 - 2.0 * s)
 
@@ -121,35 +121,32 @@ def _without_state(damper: Any) -> bool:
 
 @effect(
     "damper.preyield_hysteresis",
-    source="Bouc-Wen form of the yield force (Wen 1976); lag after Kwok et al. 2006",
-    initial=(0.0, 0.0),
-    off={"sharpness": 1.0},
-    starts=({"travel": 5e-4}, {"travel": 5e-4, "sharpness": 2.0}, {"lag": 3e-3}),
+    source="yield force that relaxes over a travel (Dahl 1968) or a time (Maxwell)",
+    initial=(0.0,),
+    off={"share": 1.0},
+    forms=({"travel": 3e-4}, {"travel": 3e-4, "share": 0.3}, {"lag": 1e-3}, {"lag": 3e-3, "share": 0.3}),
     suits=_without_state,
 )
 class PreyieldHysteresis(NamedTuple):
-    """Yield force that builds up over a travel, or follows the speed with a lag: a loop at low speed.
+    """Yield force that builds up over a travel, or with a lag: a loop at low speed.
 
-    The yield force is its full size times z, `z' = v / travel (1 - |z|^sharpness (1 + sgn(v z)) / 2)`; without travel it
-    is taken at the speed u, `u' = (v - u) / lag`.
+    Of the yield force with its nominal shape s(v), -1 to 1, the `share` is replaced by z, which follows it:
+    `z' = (|v| / travel + 1 / lag) (s(v) - z)`, where a travel or lag of zero is left out.
     """
 
-    travel: Annotated[float, param("m", "travel before the fluid yields", low=0, high=0.02)]
-    sharpness: Annotated[float, param("-", "exponent of yielding", low=1, high=10)] = 1.0
-    lag: Annotated[float, param("s", "lag of the yield force behind the speed", low=0, high=0.1)] = 0.0
+    travel: Annotated[float, param("m", "travel over which the yield force builds up", low=0, high=0.02)]
+    lag: Annotated[float, param("s", "time over which it builds up", low=0, high=0.2)] = 0.0
+    share: Annotated[float, param("-", "share of the yield force that builds up", low=0, high=2)] = 1.0
 
-    def yield_shape(self, shape: float, z: State) -> float:
+    def yield_shape(self, shape: float, target: float, z: State) -> float:
         """Return the share of the yield force, NaN where the damper's own law holds."""
-        return z[0] if self.travel > 0.0 else shape
+        if self.travel <= 0.0 and self.lag <= 0.0:
+            return shape
+        return self.share * z[0] + (1.0 - self.share) * target
 
-    def yield_speed(self, v: float, z: State) -> float:
-        """Return the speed that the yield force follows, in m/s."""
-        return z[1] if self.lag > 0.0 else v
-
-    def rates(self, x: float, v: float, i: float, z: State) -> State:
-        """Return (z', u')."""
-        lagging = (v - z[1]) / self.lag if self.lag > 0.0 else 0.0
-        if self.travel <= 0.0:
-            return (0.0, lagging)
-        resistance = abs(z[0]) ** self.sharpness if v * z[0] > 0.0 else 0.0
-        return (v / self.travel * (1.0 - resistance), lagging)
+    def rates(self, x: float, v: float, i: float, pull: float, target: float, z: State) -> State:
+        """Return z'."""
+        rate = abs(v) / self.travel if self.travel > 0.0 else 0.0
+        if self.lag > 0.0:
+            rate += 1.0 / self.lag
+        return (rate * (target - z[0]),)

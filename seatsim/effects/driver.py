@@ -12,7 +12,7 @@ from seatsim.kernel.rig import Motion
 from seatsim.plant import Plant
 
 
-@effect("driver.mass", source="weighing", starts=({"change": 4.0}, {"change": -4.0}))
+@effect("driver.mass", source="weighing", forms=({"change": 4.0}, {"change": -4.0}))
 class Mass(NamedTuple):
     """An occupant heavier or lighter than believed."""
 
@@ -28,7 +28,7 @@ class Mass(NamedTuple):
     source="one sprung mass within the body; resonance of 4-6 Hz as in ISO 5982",
     initial=(0.0, 0.0),
     off={"frequency": 5.0, "damping": 0.3},
-    starts=({"share": 0.2, "frequency": 5.0, "damping": 0.3},),
+    forms=({"share": 0.2, "frequency": 5.0, "damping": 0.3},),
 )
 class Biodynamics(NamedTuple):
     """A body with an inner resonance: the `share` of the driver's mass hangs on a spring and dashpot within it.

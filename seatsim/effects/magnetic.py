@@ -11,7 +11,7 @@ from seatsim.jit import jit
 from seatsim.temperature import TemperatureFactors
 
 FOLLOWING = 500.0
-"""1/s; rate at which magnetisation follows the current beyond the width of its hysteresis."""
+"""1/s; rate at which a play's memory is renewed where the current drags it along."""
 SMOOTHING = 2.0
 """s; time over which a thermocouple's reading is averaged before its slope is taken."""
 
@@ -20,7 +20,7 @@ SMOOTHING = 2.0
     "damper.magnetic_saturation",
     source="Froehlich's law, generalised by an exponent",
     off={"sharpness": 2.0},
-    starts=({"bend": 0.5}, {"bend": 0.8, "sharpness": 3.0}),
+    forms=({"bend": 0.5}, {"bend": 0.8, "sharpness": 3.0}),
 )
 class MagneticSaturation(NamedTuple):
     """Yield force that grows ever less with current: it feels `i / (1 + (bend i)^sharpness)^(1 / sharpness)`."""
@@ -39,45 +39,53 @@ class MagneticSaturation(NamedTuple):
     "damper.remanence",
     source="play operator (Krasnosel'skii and Pokrovskii 1989), two of them",
     initial=(0.0, 0.0),
-    starts=({"width": 0.05}, {"width": 0.05, "spread": 0.7}, {"width": 0.08, "lift": 0.5}),
+    forms=(
+        {"width": 0.01}, {"width": 0.01, "spread": 0.7}, {"width": 0.01, "lift": 0.5}, {"width": 0.02, "decay": 1.0},
+        {"width": 0.1, "decay": 20.0},
+    ),  # fmt: skip
 )
 class Remanence(NamedTuple):
     """Yield force that remembers past current: it feels the mean of two plays of the current.
 
     Their half-widths are `width (1 +- spread)`; the current has to go further than that back before the magnetisation
-    follows, at 500 1/s. Of the play's two sides, `lift` is how far it is raised: 0 lags a rising and a falling current
+    follows; held back, it creeps towards the current at the rate `decay`. Of the play's two sides, `lift` is how far it is raised: 0 lags a rising and a falling current
     alike, 1 leaves the rising one as it is, so that only current that fell is remembered.
     """
 
     width: Annotated[float, param("A", "current that stays remembered", low=0, high=2)]
     spread: Annotated[float, param("-", "difference between the two plays", low=0, high=1)] = 0.0
     lift: Annotated[float, param("-", "share of the width added to a current that flows", low=0, high=1)] = 0.0
+    decay: Annotated[float, param("1/s", "rate at which the memory fades", low=0, high=200)] = 0.0
 
     def yield_current(self, i: float, z: State) -> float:
         """Return the current that the yield force feels, in A."""
         if self.width <= 0.0:
             return i
-        felt = 0.5 * (z[0] + z[1])
+        wide, narrow = self.width * (1.0 + self.spread), self.width * (1.0 - self.spread)
+        felt = 0.5 * (_play(z[0], i, wide) + _play(z[1], i, narrow))
         return felt + self.lift * min(self.width, max(felt, 0.0))
 
-    def rates(self, x: float, v: float, i: float, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, pull: float, target: float, z: State) -> State:
         """Return the rates of the two plays."""
         if self.width <= 0.0:
             return (0.0, 0.0)
         wide, narrow = self.width * (1.0 + self.spread), self.width * (1.0 - self.spread)
-        return (FOLLOWING * _beyond(i - z[0], wide), FOLLOWING * _beyond(i - z[1], narrow))
+        return (
+            FOLLOWING * (_play(z[0], i, wide) - z[0]) + self.decay * (i - z[0]),
+            FOLLOWING * (_play(z[1], i, narrow) - z[1]) + self.decay * (i - z[1]),
+        )
 
 
 @jit
-def _beyond(distance: float, width: float) -> float:
-    """Return how far a distance lies outside the width."""
-    return distance - min(width, max(-width, distance))
+def _play(z: float, i: float, width: float) -> float:
+    """Return the play's output: what it was, unless the current is further off than the width."""
+    return min(i + width, max(i - width, z))
 
 
 @effect(
     "damper.thermal_fade",
     source="exponential factors of Yu et al. 2019 eqs 9-11; thermocouple as a first-order lag",
-    starts=({"viscous": 0.004, "yielding": 0.004}, {"viscous": 0.004, "yielding": 0.004, "lag": 5.0}),
+    forms=({"viscous": 0.004, "yielding": 0.004}, {"viscous": 0.004, "yielding": 0.004, "lag": 5.0}),
 )
 class ThermalFade(NamedTuple):
     """Viscous and yield force that fall as the fluid warms: factors `exp(-viscous (T - T0))`, `exp(-yielding (T - T0))`.

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 from scipy.signal import lfilter, lfilter_zi
 
-from seatsim.effects.base import effect
+from seatsim.effects.base import Form, effect
 from seatsim.fields import param
 
 Channel = Literal[
@@ -16,11 +16,11 @@ Channel = Literal[
     "damper_force", "coil_current",
 ]  # fmt: skip
 Named = Annotated[Channel, Field(description="the recorded channel that is wrong")]
-LOGGED = ("current_command", "coil_current", "replayed")
+LOGGED = ("current_command", "coil_current")
 """Channels of the controller's log."""
 
 
-@effect("sensor.gain", source="calibration", by_channel=True, off={"error": 0.0}, starts=({"error": 0.05},))
+@effect("sensor.gain", source="calibration", by_channel=True, off={"error": 0.0}, forms=({"error": 0.05},))
 class Gain(NamedTuple):
     """One channel reads with a wrong scale: `(1 + error)` times the truth."""
 
@@ -36,7 +36,7 @@ class Gain(NamedTuple):
         return values / (1.0 + self.error) if channel == self.channel else values
 
 
-@effect("sensor.bias", source="zero error and drift", by_channel=True, starts=({"share": 0.1}, {"share": 0.1, "drift": 0.01}))
+@effect("sensor.bias", source="zero error and drift", by_channel=True, forms=({"share": 0.1}, {"share": 0.1, "drift": 0.01}))
 class Bias(NamedTuple):
     """One channel reads with an offset that may drift: `truth + scale (share + drift t)`.
 
@@ -60,7 +60,7 @@ class Bias(NamedTuple):
         return scales.get(self.channel, 1.0) * (self.share + self.drift * step * np.arange(len(values)))
 
 
-@effect("sensor.lag", source="first-order low-pass", by_channel=True, starts=({"time": 0.004},))
+@effect("sensor.lag", source="first-order low-pass", by_channel=True, forms=({"time": 0.004},))
 class Lag(NamedTuple):
     """One channel reads through a low-pass of first order: `time r' = truth - r`."""
 
@@ -84,23 +84,40 @@ class Lag(NamedTuple):
         return values + self.time * np.gradient(values, step)
 
 
-@effect("sensor.clock_skew", source="two clocks", starts=({"shift": 0.004}, {"shift": -0.004}))
+@effect(
+    "sensor.clock_skew",
+    source="two clocks",
+    forms=(
+        {"shift": 0.004}, {"shift": -0.004},
+        Form({"shift": 0.003}, {"hold": 1.0}), Form({"shift": -0.003}, {"hold": 1.0}),
+        Form({"shift": 0.003, "drift": 1e-5}, {"hold": 1.0}), Form({"shift": -0.003, "drift": 1e-5}, {"hold": 1.0}),
+    ),
+)  # fmt: skip
 class ClockSkew(NamedTuple):
-    """The controller's log is late by `shift + drift t` against the other channels: it says at t what was at t - shift."""
+    """The controller's log is late by `shift + drift t` against the other channels: it says at t what was at t - shift.
+
+    The coil current, a continuous course, moves by as much. So does the command where `hold` is 0. A command that the
+    controller changes at the log's own rate, `hold` 1, moves in the log by whole rows only.
+    """
 
     shift: Annotated[float, param("s", "delay of the log; negative: it runs ahead", low=-1, high=1)]
     drift: Annotated[float, param("-", "growth of the delay per second", low=-0.01, high=0.01)] = 0.0
+    hold: Annotated[float, param("-", "1: commands change at the log's rows, 0: at any time", low=0, high=1)] = 0.0
 
     def reading(self, channel: str, step: float, values: Any) -> Any:
         """Return what the log says, shape (N,)."""
-        return self._moved(values, step, -1.0) if channel in LOGGED else values
+        if channel not in LOGGED:
+            return values
+        rows = np.arange(len(values)) * step
+        return np.interp(rows - self.shift - self.drift * rows, rows, values)
 
     def truth(self, channel: str, step: float, values: Any) -> Any:
         """Return what was commanded or flowed, shape (N,)."""
-        return self._moved(values, step, 1.0) if channel in LOGGED else values
-
-    def _moved(self, values: Any, step: float, sign: float) -> Any:
-        if self.shift == 0.0 and self.drift == 0.0:
+        if channel not in LOGGED:
             return values
         rows = np.arange(len(values)) * step
-        return np.interp(rows + sign * (self.shift + self.drift * rows), rows, values)
+        late = self.shift + self.drift * rows
+        if channel == "current_command" and self.hold > 0.0:
+            index = np.arange(len(values)) + np.ceil(late / step - 1e-6).astype(int)
+            return values[np.clip(index, 0, len(values) - 1)]
+        return np.interp(rows + late, rows, values)

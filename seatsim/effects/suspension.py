@@ -15,7 +15,7 @@ from seatsim.plant import Plant
     "suspension.friction",
     source="Coulomb's law; with presliding Dahl 1968",
     initial=(0.0,),
-    starts=({"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0}),
+    forms=({"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0}),
 )
 class Friction(NamedTuple):
     """Rate-independent friction in the linkage, not seen by the damper's load cell.
@@ -44,7 +44,7 @@ class Friction(NamedTuple):
 @effect(
     "suspension.progressive_spring",
     source="odd terms of a hardening spring's series",
-    starts=({"rise": 300.0}, {"rise": 300.0, "skew": 1.0}),
+    forms=({"rise": 300.0}, {"rise": 300.0, "skew": 1.0}),
 )
 class ProgressiveSpring(NamedTuple):
     """Stiffness that grows with travel: `f = kf x (1 + skew x + rise x^2)`."""
@@ -61,7 +61,7 @@ class ProgressiveSpring(NamedTuple):
     "suspension.end_stop",
     source="unilateral spring with Hunt-Crossley damping, k d (1 + c d')",
     off={"low": -1.0, "high": 1.0, "power": 1.0},
-    starts=(
+    forms=(
         {"low": -0.02, "high": 0.02, "stiffness": 20000.0, "damping": 0.5},
         {"low": -0.012, "high": 0.012, "stiffness": 10000.0, "damping": 0.5},
     ),

@@ -1,7 +1,7 @@
 """A damper with effects: a damper record that the kernel treats like any other.
 
     h   = share of the stroke that reaches the damper (free play), i_y = current that its yield force feels
-    F   = h (F_damper(x, v, i) with the yield part at i_y, v_y or of a shape of its own) + added forces
+    F   = h (F_damper(x, v, i) with the yield part at i_y, or of a shape of its own) + added forces
 
 The yield part is what a damper loses when its temperature factor `yielding` is zero.
 """
@@ -22,7 +22,6 @@ FAST = 10.0
 conditioned = folded("conditioned")
 engaged = folded("engaged")
 yield_current = folded("yield_current")
-yield_speed = folded("yield_speed")
 yield_shape = folded("yield_shape")
 added_force = summed("added_force")
 stiction = summed("stiction")
@@ -38,45 +37,74 @@ class AugmentedDamper(NamedTuple):
     def force(self, x: float, v: float, i: float, heat: Heat, z: Tuple) -> float:
         """Return the smooth force in N."""
         effects, inner, outer = self.effects, before(self.effects, z), own(self.effects, z)
-        felt = conditioned(effects, outer, heat, v)
-        h = engaged(effects, outer, 1.0, v)
-        i_y = yield_current(effects, outer, i)
-        v_y = yield_speed(effects, outer, v)
-        shape = yield_shape(effects, outer, math.nan)
-        total: float = h * _force(self.damper, x, v, i, v_y, i_y, shape, felt, inner)
-        return total + added_force(effects, outer, x, v)
+        pull = _pull(self.damper, effects, x, v, i, heat, inner, outer)
+        answer: float = engaged(effects, outer, 1.0, pull) * pull + added_force(effects, outer, x, v)
+        return answer
 
     def rates(self, x: float, v: float, i: float, heat: Heat, z: Tuple) -> Tuple:
         """Return the rates of the damper's state, then of the effects'."""
         effects, inner, outer = self.effects, before(self.effects, z), own(self.effects, z)
-        h = engaged(effects, outer, 1.0, v)
-        answer: Tuple = rates(self.damper, x, h * v, i, heat, inner) + effect_rates(effects, outer, x, v, i)
+        pull = _pull(self.damper, effects, x, v, i, heat, inner, outer)
+        h = engaged(effects, outer, 1.0, pull)
+        target = 0.0
+        if not math.isnan(yield_shape(effects, outer, math.nan, 0.0)):
+            felt = conditioned(effects, outer, heat, v)
+            target = _split(self.damper, x, v, yield_current(effects, outer, i), felt, inner).shape
+        theirs = effect_rates(effects, outer, x, v, i, pull, target)
+        answer: Tuple = rates(self.damper, x, h * v, i, heat, inner) + theirs
         return answer
 
     def friction_limit(self, v: float, i: float, heat: Heat, z: Tuple) -> float:
         """Return the limit of the set-valued friction in N: the yield force's, and what the effects add."""
         effects, outer = self.effects, own(self.effects, z)
         limit: float = stiction(effects, outer)
-        if math.isnan(yield_shape(effects, outer, math.nan)):
+        if math.isnan(yield_shape(effects, outer, math.nan, 0.0)):
             h = engaged(effects, outer, 1.0, v)
             limit += h * coulomb(self.damper, yield_current(effects, outer, i), conditioned(effects, outer, heat, v))
         return limit
 
 
 @jit
-def _force(
-    damper: Any, x: float, v: float, i: float, v_y: float, i_y: float, shape: float, heat: Heat, z: Tuple
+def _pull(
+    damper: Any, effects: Effects, x: float, v: float, i: float, heat: Heat, inner: Tuple, outer: Tuple
 ) -> float:
-    """Return the damper's force with the yield part at `v_y` and `i_y`, or of `shape` (NaN: as the damper has it)."""
-    if i_y == i and v_y == v and math.isnan(shape):
+    """Return the damper's force in N before what is lost in a gap and added beside it."""
+    felt = conditioned(effects, outer, heat, v)
+    i_y = yield_current(effects, outer, i)
+    if math.isnan(yield_shape(effects, outer, math.nan, 0.0)):
+        return _with_current(damper, x, v, i, i_y, felt, inner)
+    parts = _split(damper, x, v, i_y, felt, inner)
+    rest = Heat(felt.viscous, felt.stiffness, 0.0)
+    shape = yield_shape(effects, outer, math.nan, parts.shape)
+    return force(damper, x, v, i, rest, inner) + parts.middle + parts.size * shape
+
+
+class YieldPart(NamedTuple):
+    """The yield part of a force: mean of both directions and full size in N, and its share of that, -1 to 1."""
+
+    middle: float
+    size: float
+    shape: float
+
+
+@jit
+def _with_current(damper: Any, x: float, v: float, i: float, i_y: float, heat: Heat, z: Tuple) -> float:
+    """Return the damper's force in N at current i, its yield part at `i_y`."""
+    if i_y == i:
         return force(damper, x, v, i, heat, z)
     rest = Heat(heat.viscous, heat.stiffness, 0.0)
-    remainder = force(damper, x, v, i, rest, z)
-    if math.isnan(shape):
-        return remainder + _yield(damper, x, v_y, i_y, heat, rest, z)
-    rebound, compression = _yield(damper, x, FAST, i_y, heat, rest, z), _yield(damper, x, -FAST, i_y, heat, rest, z)
-    size = 0.5 * (rebound - compression) + coulomb(damper, i_y, heat)
-    return remainder + 0.5 * (rebound + compression) + size * shape
+    return force(damper, x, v, i, rest, z) + _yield(damper, x, v, i_y, heat, rest, z)
+
+
+@jit
+def _split(damper: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> YieldPart:
+    """Return the yield part of a damper's force, with its set-valued friction."""
+    rest = Heat(heat.viscous, heat.stiffness, 0.0)
+    rebound, compression = _yield(damper, x, FAST, i, heat, rest, z), _yield(damper, x, -FAST, i, heat, rest, z)
+    friction = coulomb(damper, i, heat)
+    middle, size = 0.5 * (rebound + compression), 0.5 * (rebound - compression) + friction
+    now = _yield(damper, x, v, i, heat, rest, z) - middle + (0.0 if v == 0.0 else math.copysign(friction, v))
+    return YieldPart(middle, size, now / size if size > 0.0 else 0.0)
 
 
 @jit

@@ -47,7 +47,8 @@ class Inputs(NamedTuple):
     """What drives a run, sampled every `step`, shape (N,) each; an array of length 0 is an input that is absent.
 
     `replayed` is a recorded command for laws that replay it, `prescribed` a coil current that bypasses the coil,
-    `temperature` the damper's temperature in degC, `push` a force on the frame in N; the coil starts at `start_current`, the
+    `temperature` the damper's temperature in degC, `push` and `lift` forces on frame and driver in N; the
+    coil starts at `start_current`, the
     suspension at `start_displacement` and `start_velocity`, the cushion at rest.
     """
 
@@ -57,6 +58,7 @@ class Inputs(NamedTuple):
     replayed: Array
     prescribed: Array
     push: Array
+    lift: Array
     start_current: float = 0.0
     start_displacement: float = 0.0
     start_velocity: float = 0.0
@@ -97,9 +99,8 @@ def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, la
     temperature = inputs.temperature[0]
     factors = heat_at(setup.factors, temperature)
     mechanical = (inputs.start_displacement, inputs.start_velocity, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    pushed = len(inputs.push) > 0
-    push = inputs.push[0] if pushed else 0.0
-    now = start(rig, mechanical + rig_state, Shake(inputs.floor_acceleration[0], push), current, factors, step)
+    shake = Shake(inputs.floor_acceleration[0], _at(inputs.push, 0), _at(inputs.lift, 0))
+    now = start(rig, mechanical + rig_state, shake, current, factors, step)
     command, wanted, served = 0.0, math.nan, math.nan
     grid = np.empty(CELLS + 1)
 
@@ -117,9 +118,11 @@ def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, la
         if prescribed:
             after = inputs.prescribed[k + 1]
         rise = inputs.floor_acceleration[k + 1] - floor
-        push = inputs.push[k] if pushed else 0.0
-        push_rise = inputs.push[k + 1] - push if pushed else 0.0
-        drive = Drive(step, floor, rise, current, before, after, split, prescribed, kept, push, push_rise)
+        push, lift = _at(inputs.push, k), _at(inputs.lift, k)
+        rises = _at(inputs.push, k + 1) - push, _at(inputs.lift, k + 1) - lift
+        drive = Drive(
+            step, floor, rise, current, before, after, split, prescribed, kept, push, rises[0], lift, rises[1]
+        )
         x, v, work = now.state[0], now.state[1], now.state[5]
         now, next_current, good = advance(rig, coil, drive, factors, now, timing.tolerance)
         if not good:
@@ -144,6 +147,12 @@ def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, la
             factors = heat_at(setup.factors, temperature)
         current = next_current
     return samples
+
+
+@jit
+def _at(values: Array, k: int) -> float:
+    """Return sample `k` of an input, 0 where it is absent."""
+    return values[k] if len(values) > 0 else 0.0
 
 
 @jit

@@ -31,10 +31,11 @@ class Motion(NamedTuple):
 
 
 class Shake(NamedTuple):
-    """What shakes the seat: floor acceleration in m/s^2, and a force on the frame in N, upward positive."""
+    """What shakes the seat: floor acceleration in m/s^2, forces on frame and driver in N, upward positive."""
 
     floor: float
     push: float
+    lift: float
 
 
 class Rig(NamedTuple):
@@ -93,7 +94,7 @@ def derivative(rig: Rig, s: Tuple, shake: Shake, current: float, heat: Heat, sli
     damper_force = smooth + share * damper_limit / ratio
     frame = acceleration + shake.floor
     body = plant.driver_mass - inner_mass(effects, ze, plant)
-    driver = (inner_force(effects, ze, plant) - cushion) / body
+    driver = (inner_force(effects, ze, plant) - cushion + shake.lift) / body
 
     works = (
         -(plant.frame_mass * v + plant.driver_mass * (v + vc)) * shake.floor,

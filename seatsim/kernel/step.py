@@ -32,7 +32,8 @@ TRIES = 60
 class Drive(NamedTuple):
     """What acts on the rig during one step of `length` seconds.
 
-    Floor acceleration runs linearly from `floor` by `floor_rise`, a push on the frame from `push` by `push_rise`. The coil relaxes from `current` towards `before` for
+    Floor acceleration runs linearly from `floor` by `floor_rise`, forces on
+    frame and driver from `push` and `lift` by their rises. The coil relaxes from `current` towards `before` for
     the first `split` seconds and towards `after` from then on; with a `prescribed` current it runs linearly to `after`.
     `kept` is what half a step leaves of the distance to the command, of a rising and of a falling current.
     """
@@ -48,6 +49,8 @@ class Drive(NamedTuple):
     kept: tuple[float, float]
     push: float = 0.0
     push_rise: float = 0.0
+    lift: float = 0.0
+    lift_rise: float = 0.0
 
 
 class Progress(NamedTuple):
@@ -86,7 +89,9 @@ def _currents(coil: Coil, drive: Drive, time: float, h: float) -> tuple[float, f
 def shake_at(drive: Drive, time: float) -> Shake:
     """Return what shakes the seat `time` seconds into the step."""
     part = time / drive.length
-    return Shake(drive.floor + drive.floor_rise * part, drive.push + drive.push_rise * part)
+    return Shake(
+        drive.floor + drive.floor_rise * part, drive.push + drive.push_rise * part, drive.lift + drive.lift_rise * part
+    )
 
 
 @jit

@@ -8,5 +8,5 @@ from seatsim.blind import case
 @pytest.fixture
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs of a few seconds."""
-    monkeypatch.setattr(case, "SECONDS", 5.0)
-    monkeypatch.setattr(case, "UNSEEN_SECONDS", 4.0)
+    monkeypatch.setattr(case, "SECONDS", 2.6)
+    monkeypatch.setattr(case, "UNSEEN_SECONDS", 2.6)

@@ -49,7 +49,7 @@ def run(
     """Run and return the history by channel, with `velocity` of the floor taken by the trapezoidal rule."""
     rows = len(floor)
     velocity = np.concatenate([[0.0], np.cumsum(0.5 * (floor[1:] + floor[:-1])) * step])
-    inputs = Inputs(floor, velocity, np.full(rows, temperature), replayed, prescribed, NONE, **start)
+    inputs = Inputs(floor, velocity, np.full(rows, temperature), replayed, prescribed, NONE, NONE, **start)
     timing = Timing(step, every, tolerance, thermal is not None)
     belief = truth(damper) if belief is None else belief
     setup = Setup(Rig(plant, damper, effects), coil, factors, thermal or Thermal(), law, belief, timing)

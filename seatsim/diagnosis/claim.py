@@ -1,0 +1,102 @@
+"""How far the gap shrinks, on a run that took no part in the fit."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.diagnosis.findings import Gaps
+from seatsim.diagnosis.fit import Engine, Point, State
+from seatsim.diagnosis.nuisance import varied
+from seatsim.diagnosis.problem import Problem
+from seatsim.diagnosis.verdict import movements
+from seatsim.replay import gap, pooled
+from seatsim.scenario import Scenario
+
+Array = NDArray[np.float64]
+
+BLOCK = 1.0
+"""s; length of the blocks that are drawn again and again."""
+DRAWS = 400
+"""Bootstrap samples."""
+LEVEL = (5.0, 95.0)
+"""Percentiles of the interval."""
+ELSEWHERE = 0.05
+"""Standard deviation by which the shrink differs from one kind of excitation to another."""
+
+
+def held_out(engine: Engine, chosen: State) -> str:
+    """Return the run to hold out: the last one whose absence leaves the effects well excited in the others."""
+    runs = engine.problem.runs
+    if not chosen.point.terms or len(runs) < 2:
+        return runs[-1]
+    shares = []
+    for run in runs:
+        part = dataclasses.replace(engine.problem, runs=(run,))
+        moves = movements(Engine(part, engine.white), chosen)
+        shares.append([float(np.mean(move**2)) for move in moves])
+    share = np.array(shares) / np.maximum(np.sum(shares, axis=0), 1e-12)
+    worst = share.max(axis=1)
+    good = [k for k in range(len(runs)) if worst[k] < 0.6 and share[k].min() > 0.05]
+    return runs[good[-1]] if good else runs[int(np.argmin(worst))]
+
+
+def trained(engine: Engine, state: State, run: str) -> tuple[State, State]:
+    """Return the calibrated and the augmented rig, both fitted without a run."""
+    problem = engine.problem
+    rest = tuple(name for name in problem.runs if name != run) or problem.runs
+    part = Engine(dataclasses.replace(problem, runs=rest), engine.white)
+    base = part.states([Point(problem.rest)])[0]
+    part.refresh(base)
+    calibrated = part.fitted(base)
+    start = part.states([state.point])[0]
+    part.refresh(start)
+    return calibrated, part.fitted(start) if state.point.terms else calibrated
+
+
+def scenario_at(problem: Problem, nominal: Scenario, point: Point) -> Scenario:
+    """Return the nominal scenario with the parameters and effects of a point."""
+    return dataclasses.replace(
+        varied(nominal, problem.parameters, point.u), effects=(*nominal.effects, *point.effects)
+    )
+
+
+def gaps(problem: Problem, scenarios: Sequence[Scenario], runs: Sequence[str]) -> Gaps:
+    """Return the gaps of the nominal, the calibrated and the augmented scenario on some runs."""
+    before, calibrated, after = (gap(scenario, problem.recording, runs) for scenario in scenarios)
+    shrink = 1.0 - after.overall / before.overall
+    return Gaps(
+        _stated(before), _stated(calibrated), _stated(after), before.floor, shrink,
+        _interval(problem, scenarios[0], scenarios[2], runs, shrink),
+    )  # fmt: skip
+
+
+def _stated(found: Any) -> dict[str, Any]:
+    return {"overall": found.overall, "channels": found.channels}
+
+
+def _interval(
+    problem: Problem, nominal: Scenario, augmented: Scenario, runs: Sequence[str], shrink: float
+) -> tuple[float, float]:
+    """Return the block bootstrap of the shrink, widened by what other excitations make of it."""
+    measured, first = pooled(nominal, problem.recording, runs)
+    second = pooled(augmented, problem.recording, runs)[1]
+    length = max(1, round(BLOCK * problem.recording.header.sample_rate))
+    count = max(1, len(next(iter(measured.values()))) // length)
+    powers = np.array([
+        [_blocks((measured[name] - course[name]) / np.std(measured[name]), count, length) for name in measured]
+        for course in (first, second)
+    ])  # fmt: skip
+    rng = np.random.default_rng(0)
+    drawn = powers[:, :, rng.integers(0, count, (DRAWS, count))].mean(axis=(1, 3))
+    samples = 1.0 - np.sqrt(drawn[1] / drawn[0]) + ELSEWHERE * rng.standard_normal(DRAWS)
+    low, high = np.percentile(samples, LEVEL)
+    return float(min(low, shrink)), float(min(1.0, max(high, shrink)))
+
+
+def _blocks(values: Array, count: int, length: int) -> Array:
+    return np.asarray(np.mean(values[: count * length].reshape(count, -1) ** 2, axis=1))

@@ -1,0 +1,146 @@
+"""From a recording to its diagnosis."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from threadpoolctl import threadpool_limits
+
+from seatsim.diagnosis.alikeness import alikeness
+from seatsim.diagnosis.augmented import content
+from seatsim.diagnosis.blocks import missing
+from seatsim.diagnosis.candidates import Candidate, candidates
+from seatsim.diagnosis.claim import gaps, held_out, scenario_at, trained
+from seatsim.diagnosis.coverage import coverage
+from seatsim.diagnosis.evidence import causes, collected
+from seatsim.diagnosis.examination import examine, refuse
+from seatsim.diagnosis.experiment import experiment
+from seatsim.diagnosis.findings import Diagnosis, Share
+from seatsim.diagnosis.fit import Engine, Point
+from seatsim.diagnosis.isolability import isolable, losses
+from seatsim.diagnosis.latent import FORETOLD, Latent, latent
+from seatsim.diagnosis.place import places
+from seatsim.diagnosis.problem import Problem, problem
+from seatsim.diagnosis.search import Search, search
+from seatsim.diagnosis.sentences import answer
+from seatsim.diagnosis.verdict import Judgement, judged
+from seatsim.diagnosis.whitening import whitening
+from seatsim.recording import Recording, load_recording
+from seatsim.registry import names
+from seatsim.replay import single
+
+OUTSIDE = "floor.unmeasured_input"
+"""The effect that no fit can foretell, found by what is left."""
+
+
+class Solution(NamedTuple):
+    """A search with its judgement; `unmeasured` is the course of a force from outside, where one is at work."""
+
+    engine: Engine
+    found: Search
+    judgement: Judgement
+    where: list[Share]
+    rest: Latent | None
+    unmeasured: bool
+
+
+def diagnose(
+    recording: str | Path | Recording, without: Sequence[str] = (), told: Callable[[str], None] = lambda _: None
+) -> Diagnosis:
+    """Say where the gap between a recording and its nominal scenario lies, what causes it, and how far it shrinks.
+
+    `without` names effects that are withheld from the library; `told` is called with what is being done.
+
+    Raises:
+        InputError: the recording is damaged in a way that would lead to a wrong verdict.
+        RunError: a simulation could not be carried to its end.
+    """
+    if not isinstance(recording, Recording):
+        recording = load_recording(recording)
+    told("looking at the data")
+    examination = examine(recording)
+    refuse(examination)
+    with threadpool_limits(1):
+        solution = solved(problem(recording), without, told)
+        return _stated(recording, solution, [finding.sentence for finding in examination.findings], told)
+
+
+def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) -> Solution:
+    """Search for the causes; where what is left comes from outside, count it as noise and search again."""
+    offered = candidates(posed, without)
+    effects = [name for name in names("effect") if name not in without]
+    told("weighing the channels")
+    first = _searched(Engine(posed, whitening(posed)), offered, effects, told)
+    if first.judgement.verdict != "unknown" or posed.bench or OUTSIDE in without or first.rest is None:
+        return first
+    if first.where[0].block not in ("suspension", "floor") or first.rest.shares["everything"] > FORETOLD:
+        return first
+    told("counting an unmeasured force as noise")
+    second = _searched(Engine(posed, whitening(posed, first.rest.course)), offered, effects, told)
+    if second.judgement.verdict == "unknown":
+        return first
+    return second._replace(rest=first.rest, unmeasured=True)
+
+
+def _searched(engine: Engine, offered: Sequence[Candidate], effects: list[str], told: Callable[[str], None]) -> Solution:
+    found = search(engine, offered, told)
+    judgement = judged(engine, found, effects)
+    if judgement.verdict == "none":
+        return Solution(engine, found, judgement, [], None, False)
+    explained = judgement.verdict != "unknown"
+    where = places(engine, found, judgement.chosen, explained)
+    rest = None
+    if not explained and not engine.problem.bench:
+        point = judgement.chosen.point
+        rest = latent(engine.problem, point, where[0].block, missing(engine.problem, point))
+    return Solution(engine, found, judgement, where, rest, False)
+
+
+def _stated(recording: Recording, solution: Solution, notes: list[str], told: Callable[[str], None]) -> Diagnosis:
+    """Put a solution to the proof on a held-out run and say what it amounts to."""
+    engine, judgement, posed = solution.engine, solution.judgement, solution.engine.problem
+    chosen = judgement.chosen
+    told("holding out a run")
+    run = held_out(engine, chosen)
+    calibrated, augmented = trained(engine, chosen, run)
+    nominal = single(recording.nominal)
+    points = (Point(posed.rest), calibrated.point, augmented.point)
+    found = gaps(posed, [scenario_at(posed, nominal, point) for point in points], [run])
+    judgement, where = _with_outside(solution)
+    listed = causes(engine, solution.found, judgement, calibrated, augmented, nominal, run)
+    group = judgement.groups[0] if judgement.groups else []
+    asked = experiment(engine, chosen, group) if group and not posed.bench else None
+    scenario = asked.pop("scenario", None) if asked else None
+    relevant = [cause.effect for cause in listed[:10] if cause.probability > 0.003]
+    selected = [name for name, p in judgement.probabilities.items() if p > 0.0 and name in _selected(solution)]
+    diagnosis = Diagnosis(
+        name=recording.folder.name, verdict=judgement.verdict, sentence="", where=where, causes=listed,
+        probability_none=judgement.none, probability_unknown=judgement.unknown, selected=selected,
+        indistinguishable=judgement.groups, experiment=asked, held_out=[run],
+        isolable=isolable(recording.header.rig, recording.channels), gap=found,
+        notes=[*notes, *losses(recording.header.rig, recording.channels), *coverage(recording).missing],
+        augmented=content(posed, augmented.point), experiment_scenario=scenario,
+        evidence=collected(posed, points, run, solution.rest, alikeness(engine, chosen, relevant)),
+    )  # fmt: skip
+    return dataclasses.replace(diagnosis, sentence=answer(diagnosis))
+
+
+def _selected(solution: Solution) -> list[str]:
+    chosen = [term.effect for term in solution.judgement.chosen.point.terms]
+    return [OUTSIDE, *chosen] if solution.unmeasured else chosen
+
+
+def _with_outside(solution: Solution) -> tuple[Judgement, list[Share]]:
+    """Return judgement and places with the force from outside among the causes, where there is one."""
+    judgement, where = solution.judgement, solution.where
+    if not solution.unmeasured:
+        return judgement, where
+    probabilities = judgement.probabilities | {OUTSIDE: 0.9}
+    verdict = "ambiguous" if judgement.groups else "known"
+    judgement = dataclasses.replace(judgement, verdict=verdict, probabilities=probabilities, none=0.01, unknown=0.1)
+    floor = 1.0 if not where else 0.6
+    return judgement, [Share("floor", floor), *(Share(s.block, s.share * (1.0 - floor)) for s in where if floor < 1.0)]
+

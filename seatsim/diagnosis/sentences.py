@@ -1,0 +1,51 @@
+"""The answer in one sentence."""
+
+from __future__ import annotations
+
+from seatsim.diagnosis.findings import Cause, Diagnosis, Estimate
+from seatsim.registry import find
+
+
+def answer(diagnosis: Diagnosis) -> str:
+    """Return what a diagnosis comes to, in one sentence."""
+    gap = diagnosis.gap
+    size = f"{gap.before['overall']:.3f}"
+    if diagnosis.verdict == "none":
+        return (
+            f"There is no gap beyond noise and the stated tolerance of the parameters: {size} nominal,"
+            f" {gap.calibrated['overall']:.3f} refitted, noise {gap.floor['overall']:.3f} (in standard deviations)."
+        )
+    if diagnosis.verdict == "unknown":
+        beside = f" beside {_listed(diagnosis.selected)}" if diagnosis.selected else ""
+        return (
+            f"Something in the {diagnosis.where[0].block} that no effect of the library explains makes the gap{beside}:"
+            f" {gap.after['overall']:.3f} of {size} remain."
+        )
+    named = "; ".join(_cause(diagnosis, name) for name in diagnosis.selected)
+    credit = 1.0 - gap.after["overall"] / gap.calibrated["overall"]
+    sentence = f"{named}: it takes {credit:.0%} off the gap that refitted parameters leave ({size} to"
+    sentence += f" {gap.after['overall']:.3f}, noise {gap.floor['overall']:.3f})"
+    for group in diagnosis.indistinguishable:
+        sentence += f"; these data cannot tell it from {_listed(group[1:])}"
+    return sentence + "."
+
+
+def _cause(diagnosis: Diagnosis, name: str) -> str:
+    cause = next(cause for cause in diagnosis.causes if cause.effect == name)
+    meaning = (find("effect", name).__doc__ or name).split("\n")[0].split(":")[0].rstrip(".")
+    values = _values(cause)
+    return f"{name} ({meaning[0].lower()}{meaning[1:]}{'; ' + values if values else ''})"
+
+
+def _values(cause: Cause) -> str:
+    parts = []
+    for name, found in cause.parameters.items():
+        if isinstance(found, Estimate):
+            parts.append(f"{name} {found.value:.3g} {found.unit}".rstrip(" -"))
+        else:
+            parts.append(str(found))
+    return ", ".join(parts)
+
+
+def _listed(names: list[str]) -> str:
+    return " and ".join(names)

@@ -1,0 +1,133 @@
+"""From fitted sets of effects to a verdict: none, known, ambiguous or unknown, with probabilities.
+
+The thresholds were chosen on simulated rigs whose effects have other functional forms than the candidates, and hold for
+whitened excess, which is 0 where only noise is left, and for material sizes in standard deviations of a channel.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.diagnosis.fit import Engine, Point, State
+from seatsim.diagnosis.search import Search
+
+Array = NDArray[np.float64]
+
+NOTHING = 0.15
+"""Whitened excess below which nothing is left to explain."""
+MATERIAL = 0.04
+"""Movement of a channel, in its standard deviations, from which an effect is material; the contract's 5 % with a margin
+for the fit's error."""
+ENLARGE = 0.45
+"""Share of the excess that a further effect must leave at most."""
+EXPLAINED = 0.2
+"""Share of the calibrated excess that a known set leaves at most."""
+ALIKE = 1.2
+"""Factor on the excess within which two sets explain a recording equally well."""
+ALIKE_FLOOR = 0.02
+"""Excess added to it."""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """The verdict with the chosen set, sets that explain as well, and probabilities by effect, of none and unknown."""
+
+    verdict: str
+    chosen: State
+    groups: list[list[str]]
+    probabilities: dict[str, float]
+    none: float
+    unknown: float
+
+
+def judged(engine: Engine, found: Search, effects: list[str]) -> Judgement:
+    """Return the verdict on a search."""
+    before = found.excess(found.calibrated)
+    if before < NOTHING or _rest(engine, found.calibrated) < MATERIAL and not _material(engine, found.sets[1][0]):
+        sure = 1.0 / (1.0 + math.exp((before - NOTHING) / 0.05 - 2.0))
+        return Judgement("none", found.calibrated, [], dict.fromkeys(effects, 0.004), max(sure, 0.6), 0.02)
+    chosen = _chosen(engine, found)
+    share = found.excess(chosen) / before
+    explained = bool(chosen.point.terms) and (share < EXPLAINED or _rest(engine, chosen) < MATERIAL)
+    unknown = 1.0 / (1.0 + math.exp(-(math.log(max(share, 1e-4)) - math.log(EXPLAINED)) / 0.4))
+    unknown = min(max(unknown, 0.02), 0.45) if explained else max(unknown, 0.55)
+    groups = _groups(found, chosen) if explained else []
+    verdict = ("ambiguous" if groups else "known") if explained else "unknown"
+    return Judgement(verdict, chosen, groups, _probabilities(chosen, groups, effects, unknown), 0.01, unknown)
+
+
+def _chosen(engine: Engine, found: Search) -> State:
+    """Return the smallest set that no enlargement beats by enough, with every effect of it material."""
+    chosen = found.calibrated
+    for sets in found.sets[1:]:
+        better = next((state for state in sets[:3] if _material(engine, state)), None)
+        if better is None or found.excess(better) > ENLARGE * found.excess(chosen):
+            if chosen.point.terms or better is None:
+                break
+            if found.excess(better) > 0.9 * found.excess(chosen):
+                continue
+        chosen = better
+        if found.excess(chosen) < NOTHING:
+            break
+    return chosen
+
+
+def movements(engine: Engine, state: State) -> list[Array]:
+    """Return by how much each effect of a set moves each channel, in the channel's standard deviations."""
+    point, problem = state.point, engine.problem
+    without = [_without(point, index) for index in range(len(point.terms))]
+    others = problem.residuals([(other.u, other.effects) for other in without])
+    moves = []
+    for other in others:
+        change = np.concatenate([other[run] - state.residual[run] for run in problem.runs], axis=1)
+        moves.append(np.sqrt(np.mean(change**2, axis=1)) / problem.spread)
+    return moves
+
+
+def _without(point: Point, index: int) -> Point:
+    kept = [k for k in range(len(point.terms)) if k != index]
+    return Point(point.u, tuple(point.terms[k] for k in kept), tuple(point.values[k] for k in kept))
+
+
+def _material(engine: Engine, state: State) -> bool:
+    """Whether every effect of a set moves some channel by a material size and by more than its noise."""
+    noise = engine.problem.noise / engine.problem.spread
+    return all(bool(np.any((move > MATERIAL) & (move > 0.9 * noise))) for move in movements(engine, state))
+
+
+def _rest(engine: Engine, state: State) -> float:
+    """Return the largest gap of a channel beyond its noise, in the channel's standard deviations."""
+    problem = engine.problem
+    residual = np.concatenate([state.residual[run] for run in problem.runs], axis=1)
+    power = np.mean(residual**2, axis=1) - problem.noise**2
+    return float(np.max(np.sqrt(np.maximum(power, 0.0)) / problem.spread))
+
+
+def _groups(found: Search, chosen: State) -> list[list[str]]:
+    """Return groups of effects that could stand for each other: sets that differ in one effect and fit as well."""
+    names = {term.effect for term in chosen.point.terms}
+    limit = ALIKE * found.excess(chosen) + ALIKE_FLOOR
+    groups: dict[str, list[str]] = {}
+    for state in found.sets[len(names)]:
+        other = {term.effect for term in state.point.terms}
+        if state is chosen or found.excess(state) > limit or len(names - other) != 1:
+            continue
+        (replaced,), (stand_in,) = names - other, other - names
+        groups.setdefault(replaced, [replaced]).append(stand_in)
+    return list(groups.values())
+
+
+def _probabilities(chosen: State, groups: list[list[str]], effects: list[str], unknown: float) -> dict[str, float]:
+    """Return the probability of every effect of being at work."""
+    found = dict.fromkeys(effects, 0.006)
+    for term in chosen.point.terms:
+        found[term.effect] = 1.0 - unknown
+    for group in groups:
+        weights = [2.0] + [1.0] * (len(group) - 1)
+        for name, weight in zip(group, weights, strict=True):
+            found[name] = (1.0 - unknown) * weight / sum(weights)
+    return found

@@ -1,0 +1,22 @@
+"""The report of a diagnosis: one HTML file that needs no network, the answer first, then what it rests on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from seatsim.diagnosis.findings import Diagnosis
+from seatsim.files import write_text
+from seatsim.report.page import page
+
+__all__ = ["write_report"]
+
+
+def write_report(diagnosis: Diagnosis, path: Path) -> Path:
+    """Write the report of a diagnosis as one self-contained HTML file, whole or not at all; return its path.
+
+    The same diagnosis gives the same bytes. Sections without content are left out.
+
+    Raises:
+        InputError: the folder or the file cannot be written.
+    """
+    return write_text(path, page(diagnosis))

@@ -1,0 +1,93 @@
+"""A seat and a bench in a few words, with and without effects."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from seatsim.augmentation import changed, damper_with, in_loop, readings
+from seatsim.dampers.bench import bench_force
+from seatsim.dampers.bingham import Bingham
+from seatsim.effects.base import off
+from seatsim.loading import load
+from seatsim.registry import card_of, find, names
+from seatsim.simulation import simulate
+from seatsim.temperature import TemperatureFactors
+
+NAMES = names("effect")
+STEP = 1e-3
+BINGHAM = Bingham()
+INERT = Bingham(0.0, 0.0, 0.0, 0.0)
+"""A damper without any force."""
+SEAT = """\
+plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
+        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
+damper: {model: bingham, parameters: {c_a: 250.0, c_b: 350.0, fc_a: 45.0, fc_b: 620.0, f0: 0.0, v_ref: 0.004},
+         temperature_factors: {viscous: -0.004, yield_force: -0.004}}
+actuator: {rate: 130.0, max_current: 1.0}
+temperature: 40.0
+controller: {law: on_off_skyhook, sample_time: 0.005}
+excitation: {kind: chirp, amplitude: 0.04, start_frequency: 0.7, stop_frequency: 6.0, duration: 3.0}
+seed: 3
+"""
+
+
+def seat(folder, settings=None):
+    """The scenario of a seat with a Bingham damper, shaken hard for three seconds."""
+    path = folder / "seat.yaml"
+    path.write_text(SEAT)
+    return load(path, settings)[0]
+
+
+def record(name, **values):
+    """An effect by name, off but for these values."""
+    return off(find("effect", name))._replace(**values)
+
+
+def starts(name):
+    """The effect at the start values of each of its forms."""
+    cls = find("effect", name)
+    return [off(cls)._replace(**form.held, **form.free) for form in card_of(cls).forms]
+
+
+def shaken(scenario, *effects):
+    """The history of a scenario with effects, as its sensors tell it."""
+    history = simulate(replace(scenario, effects=effects))
+    return readings(effects, scenario.solver.step, history.channels)
+
+
+def carried(scenario):
+    """The history without effects, of the compiled rig that carries all of them."""
+    return shaken(scenario, record("damper.gas_spring"))
+
+
+def distance(history, reference):
+    """Greatest difference of a channel, over that channel's greatest value."""
+    sizes = {name: np.max(np.abs(np.nan_to_num(values))) for name, values in reference.items()}
+    gaps = {name: np.max(np.abs(np.nan_to_num(history[name] - reference[name]))) for name in reference}
+    return max(gap / (sizes[name] or 1.0) for name, gap in gaps.items())
+
+
+def bench(effects, x, v, current=0.5, temperature=20.0, damper=BINGHAM, step=STEP, factors=TemperatureFactors()):  # noqa: B008
+    """The force in N of a damper with effects on it, every step; motion and current every half step."""
+    augmented, rest = damper_with(damper, in_loop((*effects, record("damper.gas_spring")))[0])
+    return bench_force(augmented, x, v, current, temperature, step, changed(effects, "factors", factors), rest)
+
+
+def strokes(speed=0.1, length=0.01, count=3, step=STEP):
+    """Displacement and velocity of strokes there and back at one speed, every half step."""
+    rows = round(length / speed / step)
+    v = np.repeat(speed * (-1.0) ** np.arange(count), 2 * rows)
+    x = np.concatenate([[0.0], np.cumsum(v) * 0.5 * step])
+    return x, np.append(v, v[-1])
+
+
+def cycles(amplitude=0.005, frequency=1.0, count=3, step=STEP):
+    """Displacement and velocity of a sine, every half step."""
+    phase = 2 * np.pi * frequency * 0.5 * step * np.arange(round(2 * count / frequency / step) + 1)
+    return amplitude * np.sin(phase), amplitude * 2 * np.pi * frequency * np.cos(phase)
+
+
+def work(force, v):
+    """Work in J done on a damper until each row, by the trapezoidal rule."""
+    power = force * v[::2]
+    return np.concatenate([[0.0], np.cumsum(0.5 * STEP * (power[1:] + power[:-1]))])

@@ -1,0 +1,98 @@
+"""What every registered effect fulfils; a new effect is tested by being registered."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from seatsim.effects.base import ON_DAMPER, acts_on, off
+from seatsim.fields import adapter, bounds, choices, describe
+from seatsim.registry import card_of, find
+from seatsim.simulation import simulate
+
+from .rigs import NAMES, distance, shaken, starts
+
+BLOCKS = {
+    "damper": "thermal_fade gas_spring asymmetry preyield_hysteresis magnetic_saturation remanence free_play"
+    " seal_friction",
+    "coil": "lag asymmetric_lag delay current_limit",
+    "suspension": "friction end_stop progressive_spring",
+    "cushion": "hardening separation",
+    "driver": "mass biodynamics",
+    "floor": "unmeasured_input",
+    "sensor": "gain bias lag clock_skew",
+}
+CONTRACT = {f"{block}.{name}" for block, listed in BLOCKS.items() for name in listed.split()}
+ON_BENCH = [name for name in NAMES if acts_on(find("effect", name), ON_DAMPER)]
+WITH_FORMS = [name for name in NAMES if starts(name)]
+
+
+def at_rest(name):
+    """The effect with all its parameters off, on each channel where it acts on one."""
+    cls = find("effect", name)
+    if card_of(cls).by_channel:
+        return [off(cls)._replace(channel=channel) for channel in choices(cls, "channel")]
+    return [off(cls)]
+
+
+def test_every_effect_of_the_contract_exists_and_lives_in_its_block():
+    assert len(CONTRACT) == 24
+    assert set(NAMES) >= CONTRACT
+    assert {name.partition(".")[0] for name in NAMES} <= set(BLOCKS)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_field_has_unit_meaning_and_bounds(name):
+    cls = find("effect", name)
+    assert card_of(cls).source or name.startswith("sensor.")
+    for field in describe(cls):
+        assert field.meaning and (field.unit or field.name == "channel"), field.name
+        assert field.name == "channel" or all(map(math.isfinite, bounds(cls, field.name))), field.name
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_off_and_every_start_can_be_written_in_a_scenario(name):
+    for effect in (*at_rest(name), *starts(name)):
+        values = effect._asdict() | ({"channel": "damper_force"} if "channel" in effect._fields else {})
+        written = adapter(type(effect)).validate_python(values)
+        assert written == type(effect)(**values)
+
+
+def test_only_what_is_never_sought_has_no_form():
+    assert set(NAMES) - set(WITH_FORMS) == {"floor.unmeasured_input"}
+
+
+@pytest.fixture(scope="module", params=["bingham", "bouc_wen"])
+def scenario(request):
+    return request.getfixturevalue(request.param)
+
+
+@pytest.fixture(scope="module")
+def nominal(scenario):
+    """The history of the rig that is compiled without any effect."""
+    return simulate(replace(scenario, effects=())).channels
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_effect_that_is_off_changes_nothing(scenario, nominal, name):
+    for effect in at_rest(name):
+        assert distance(shaken(scenario, effect), nominal) < 1e-9
+
+
+def test_all_effects_off_together_change_nothing(scenario, nominal):
+    effects = [effect for name in NAMES for effect in at_rest(name)]
+    assert distance(shaken(scenario, *effects), nominal) < 1e-9
+
+
+@pytest.mark.parametrize("name", WITH_FORMS)
+def test_each_form_moves_a_channel_at_its_start(scenario, nominal, name):
+    if not card_of(find("effect", name)).suits(scenario.damper.record):
+        pytest.skip("the damper has this of its own")
+    for effect in starts(name):
+        placed = effect._replace(channel="damper_force") if "channel" in effect._fields else effect
+        assert distance(shaken(scenario, placed), nominal) > 1e-3, effect
+
+
+def test_the_order_of_effects_does_not_matter(bingham):
+    effects = [starts(name)[0] for name in WITH_FORMS if not name.startswith("sensor.")]
+    assert distance(shaken(bingham, *effects), shaken(bingham, *effects[::-1])) < 1e-12
