@@ -6,6 +6,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from seatsim.diagnosis.diagnose import diagnose
+    from seatsim.diagnosis.findings import Diagnosis
     from seatsim.errors import InputError, RunError, SeatsimError, SynthesisError
     from seatsim.loading import load
     from seatsim.recording import Recording, load_recording
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
 _HOME = {
     "Channel": "result",
     "Gap": "replay",
+    "Diagnosis": "diagnosis.findings",
     "InputError": "errors",
     "Recording": "recording",
     "Result": "result",
@@ -26,6 +29,7 @@ _HOME = {
     "SeatsimError": "errors",
     "SynthesisError": "errors",
     "compare": "runs",
+    "diagnose": "diagnosis.diagnose",
     "gap": "replay",
     "load": "loading",
     "load_recording": "recording",
@@ -33,6 +37,7 @@ _HOME = {
 }
 __all__ = [
     "Channel",
+    "Diagnosis",
     "Gap",
     "InputError",
     "Recording",
@@ -43,6 +48,7 @@ __all__ = [
     "SeatsimError",
     "SynthesisError",
     "compare",
+    "diagnose",
     "gap",
     "load",
     "load_recording",

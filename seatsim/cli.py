@@ -90,11 +90,87 @@ def gap(scenario: OneScenario, recording: Path, out_folder: Out = None) -> None:
 
 
 @app.command()
+def diagnose(
+    recording: Path,
+    out_folder: Out = None,
+    without: Annotated[
+        list[str] | None, typer.Option("--without", metavar="EFFECT", help="Withhold an effect from the library.")
+    ] = None,
+) -> None:
+    """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
+    from seatsim.diagnosis.diagnose import diagnose as find_cause
+    from seatsim.diagnosis_output import tables, write_diagnosis
+    from seatsim.registry import find
+
+    withheld = without or []
+    for name in withheld:
+        find("effect", name)
+    with _told() as tell:
+        diagnosis = find_cause(recording, withheld, tell)
+    for table in tables(diagnosis):
+        out.print(table)
+    for note in diagnosis.notes:
+        err.print(f"note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+    out.print(diagnosis.sentence, markup=False, highlight=False, soft_wrap=True)
+    folder = out_folder or Path("out") / f"diagnosis-{Path(recording).resolve().name}"
+    paths = write_diagnosis(diagnosis, folder)
+    out.print(f"written to {folder}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
+
+
+@app.command()
 def describe(name: Annotated[str, typer.Argument(help="A name, such as bouc_wen or road.")] = "") -> None:
     """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds."""
     from seatsim.describe import describe as tell
 
     out.print(tell(name), markup=False, highlight=False, soft_wrap=True)
+
+
+blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed.", no_args_is_help=True)
+app.add_typer(blind, name="blind")
+
+
+@blind.command("make")
+def blind_make(
+    cases: Annotated[int, typer.Option("--cases", min=1, help="How many recordings.")],
+    out_folder: Annotated[Path, typer.Option("--out", help="Folder for the recordings.")],
+    sealed: Annotated[Path, typer.Option("--sealed", help="File for the encrypted labels.")],
+    seed: Annotated[int | None, typer.Option("--seed", help="Seed of the draw; drawn and sealed where absent.")] = None,
+    kinds: Annotated[
+        str, typer.Option("--kinds", help="mixed, none, one, two, outside, null or background.")
+    ] = "mixed",
+) -> None:
+    """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""
+    from seatsim.blind.make import make
+
+    with _counted("making recordings") as count:
+        key = make(cases, seed, out_folder, sealed, count, kinds)
+    out.print(f"written: {cases} recordings in {out_folder}, labels sealed in {sealed}", markup=False, highlight=False)
+    out.print(f"key (shown once): {key}", markup=False, highlight=False, soft_wrap=True)
+
+
+@blind.command("score")
+def blind_score(
+    folder: Annotated[Path, typer.Argument(help="Folder of `blind make`; undiagnosed cases are diagnosed first.")],
+    sealed: Annotated[Path, typer.Option("--sealed", help="File of the encrypted labels.")],
+    key: Annotated[str, typer.Option("--key", help="The key that `blind make` printed.")],
+    out_folder: Out = None,
+) -> None:
+    """Diagnose every recording of a sealed set and score the verdicts against the labels."""
+    from seatsim.blind.score import score
+    from seatsim.blind.score_tables import tables
+    from seatsim.blind.sealed import unseal
+    from seatsim.diagnosis_output import diagnose_all
+    from seatsim.files import write_json
+
+    unseal(sealed, key, folder)
+    with _counted("diagnosing") as count:
+        diagnose_all(folder, count)
+    with _counted("scoring") as count:
+        found = score(folder, sealed, key, progress=count)
+    for table in tables(found):
+        out.print(table)
+    path = write_json((out_folder or folder) / "score.json", found.as_dict())
+    out.print(f"written: {path}", markup=False, highlight=False)
 
 
 def _execute(groups: list[list[str]], chosen: list[Path | None], values: dict[str, Any]) -> None:
@@ -155,6 +231,21 @@ def _progress(total: int) -> Iterator[Any]:
     with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
         task = progress.add_task("simulating", total=total)
         yield lambda _: progress.advance(task)
+
+
+@contextmanager
+def _counted(title: str) -> Iterator[Any]:
+    """Show a bar that is told `(done, total)`."""
+    with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
+        task = progress.add_task(title, total=None)
+        yield lambda done, total: progress.update(task, completed=done, total=total)
+
+
+@contextmanager
+def _told() -> Iterator[Any]:
+    """Show on the terminal what is being done."""
+    with err.status("reading") as status:
+        yield status.update
 
 
 def _settings(pairs: list[str] | None) -> dict[str, Any]:

@@ -18,7 +18,6 @@ from annotated_types import Ge, Gt, Le
 from pydantic import Field, TypeAdapter
 from pydantic.fields import FieldInfo
 
-
 SLIGHTLY = 1e-9
 """How far above an open bound a value may come."""
 

@@ -136,7 +136,7 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) 
         flowing = changed(effects, "truth", floor.coil_current, "coil_current", step)
     start = float(flowing[0]) if flowing.size else 0.0
     prescribed = flowing if replays and floor.command is None else NONE
-    push = pushes(effects, np.arange(samples) * step, scenario.seed)
+    push = pushes(effects, floor.time, scenario.seed)
     if len(forces.push):
         push = push + forces.push if len(push) else forces.push
     return Inputs(

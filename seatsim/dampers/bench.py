@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from seatsim.dampers.base import DamperCard, State
 from seatsim.errors import InputError, RunError
-from seatsim.kernel.bench import run_bench
 from seatsim.kernel.augmented import classes_of
+from seatsim.kernel.bench import run_bench
 from seatsim.kernel.compilation import compiled
 from seatsim.registry import card_of
 from seatsim.temperature import TemperatureFactors

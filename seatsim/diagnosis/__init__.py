@@ -1,1 +1,1 @@
-"""Diagnosis of the gap between a simulation and a recording: where it lies, which effect causes it, how far it shrinks."""
+"""The gap between a simulation and a recording: where it lies, which effect causes it, how far it shrinks."""

@@ -90,14 +90,16 @@ def _matched(problem: Problem, point: Point, run: str) -> tuple[Array, ...]:
     return force, push + force, lift, left.get("coil_current", none), _kinematic(problem, run, s, band), simulated
 
 
-def _kinematic(problem: Problem, run: str, s: Array, band: Array) -> Array:
+def _kinematic(problem: Problem, run: str, s: NDArray[np.complex128], band: NDArray[np.bool_]) -> Array:
     """Return what displacement, frame and floor accelerations contradict each other by, in m/s^2."""
     if not {"suspension_displacement", "frame_acceleration"} <= set(problem.channels):
         return np.zeros(problem.measured[run].shape[1])
     measured = dict(zip(problem.channels, problem.measured[run], strict=True))
     samples = problem.measured[run].shape[1]
     table = problem.recording.table(run)["floor_acceleration"][problem.skip : problem.skip + samples]
-    error = s**2 * np.fft.rfft(measured["suspension_displacement"]) - np.fft.rfft(measured["frame_acceleration"] - table)
+    error = s**2 * np.fft.rfft(measured["suspension_displacement"]) - np.fft.rfft(
+        measured["frame_acceleration"] - table
+    )
     window = band & (np.abs(s) > 2.0 * np.pi * 0.8) & (np.abs(s) < 2.0 * np.pi * 12.0)
     return np.fft.irfft(error * window, samples)
 
@@ -123,7 +125,9 @@ def _padded(problem: Problem, run: str, force: Array) -> Array:
 def lacking(problem: Problem, point: Point, lack: Missing) -> dict[str, float]:
     """Return how much each block lacks, as a share of what acts in it, beyond what noise alone seems to lack."""
     found, noise = sizes(problem, lack), sizes(problem, missing(twin(problem, point), point))
-    return {block: float(np.sqrt(max(0.0, size**2 - MARGIN * noise.get(block, 0.0) ** 2))) for block, size in found.items()}
+    return {
+        block: float(np.sqrt(max(0.0, size**2 - MARGIN * noise.get(block, 0.0) ** 2))) for block, size in found.items()
+    }
 
 
 def twin(problem: Problem, point: Point) -> Problem:

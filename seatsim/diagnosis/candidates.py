@@ -36,7 +36,7 @@ class Candidate(NamedTuple):
         """Natural size of each free parameter, shape (len(free),)."""
         return np.abs(self.start)
 
-    def record(self, values: Sequence[float]) -> Any:
+    def record(self, values: Array | Sequence[float]) -> Any:
         """Return the effect at these values of the free parameters."""
         return self.cls(**self.fixed, **dict(zip(self.free, map(float, values), strict=True)))
 

@@ -60,9 +60,7 @@ def trained(engine: Engine, state: State, run: str) -> tuple[State, State]:
 
 def scenario_at(problem: Problem, nominal: Scenario, point: Point) -> Scenario:
     """Return the nominal scenario with the parameters and effects of a point."""
-    return dataclasses.replace(
-        varied(nominal, problem.parameters, point.u), effects=(*nominal.effects, *point.effects)
-    )
+    return dataclasses.replace(varied(nominal, problem.parameters, point.u), effects=(*nominal.effects, *point.effects))
 
 
 def gaps(problem: Problem, scenarios: Sequence[Scenario], runs: Sequence[str]) -> Gaps:

@@ -76,7 +76,8 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     first = _searched(Engine(posed, whitening(posed)), offered, effects, told)
     if first.judgement.verdict != "unknown" or posed.bench or OUTSIDE in without or first.rest is None:
         return first
-    if first.where[0].block not in ("suspension", "floor") or first.rest.shares["everything"] > FORETOLD:
+    merged = () if "damper_force" in posed.channels else ("damper",)
+    if first.where[0].block not in ("suspension", *merged) or first.rest.shares["everything"] > FORETOLD:
         return first
     told("counting an unmeasured force as noise")
     second = _searched(Engine(posed, whitening(posed, first.rest.course)), offered, effects, told)
@@ -85,7 +86,9 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     return second._replace(rest=first.rest, unmeasured=True)
 
 
-def _searched(engine: Engine, offered: Sequence[Candidate], effects: list[str], told: Callable[[str], None]) -> Solution:
+def _searched(
+    engine: Engine, offered: Sequence[Candidate], effects: list[str], told: Callable[[str], None]
+) -> Solution:
     found = search(engine, offered, told)
     judgement = judged(engine, found, effects)
     if judgement.verdict == "none":
@@ -143,4 +146,3 @@ def _with_outside(solution: Solution) -> tuple[Judgement, list[Share]]:
     judgement = dataclasses.replace(judgement, verdict=verdict, probabilities=probabilities, none=0.01, unknown=0.1)
     floor = 1.0 if not where else 0.6
     return judgement, [Share("floor", floor), *(Share(s.block, s.share * (1.0 - floor)) for s in where if floor < 1.0)]
-

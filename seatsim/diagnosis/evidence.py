@@ -23,7 +23,13 @@ Array = NDArray[np.float64]
 
 
 def causes(
-    engine: Engine, found: Search, judgement: Judgement, calibrated: State, augmented: State, nominal: Scenario, run: str
+    engine: Engine,
+    found: Search,
+    judgement: Judgement,
+    calibrated: State,
+    augmented: State,
+    nominal: Scenario,
+    run: str,
 ) -> list[Cause]:
     """Return every effect, ranked by probability, with its own shrink on a run and its parameters."""
     problem = engine.problem
@@ -64,7 +70,7 @@ def _deviations(engine: Engine, state: State) -> Array:
     index = np.arange(len(state.point.u))
     matrix[index, index] += SPREAD**-2
     rows = sum(values.size for values in state.whitened.values())
-    return np.sqrt(np.maximum(np.diag(np.linalg.pinv(matrix)), 0.0) * max(1.0, state.cost / rows))
+    return np.asarray(np.sqrt(np.maximum(np.diag(np.linalg.pinv(matrix)), 0.0) * max(1.0, state.cost / rows)))
 
 
 def collected(
@@ -87,7 +93,7 @@ def _motion(problem: Problem, run: str) -> dict[str, Array]:
     samples = problem.measured[run].shape[1]
     table = {k: v[problem.skip : problem.skip + samples] for k, v in problem.recording.table(run).items()}
     position = table.get("suspension_displacement", table.get("displacement"))
-    motion = {name: table[name] for name in ("coil_current", "damper_temperature") if name in table}
+    motion: dict[str, Array] = {name: table[name] for name in ("coil_current", "damper_temperature") if name in table}
     if position is None:
         return motion
     rate = problem.recording.header.sample_rate
@@ -98,7 +104,7 @@ def _motion(problem: Problem, run: str) -> dict[str, Array]:
 def _comfort(traces: Sequence[Trace]) -> list[tuple[str, str, float, float, float]]:
     quoted = ("driver_acceleration", "frame_acceleration", "suspension_displacement")
     return [
-        (f"RMS {trace.channel.replace('_', ' ')}", trace.unit, _rms(trace.measured), _rms(trace.nominal), _rms(trace.after))
+        ("RMS " + name.replace("_", " "), trace.unit, _rms(trace.measured), _rms(trace.nominal), _rms(trace.after))
         for name in quoted for trace in traces if trace.channel == name
     ]  # fmt: skip
 

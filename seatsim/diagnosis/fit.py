@@ -153,7 +153,8 @@ class Engine:
         grams = [self.gram(run, own, state.whitened[run]) for run, own in jacobian.items()]
         low, high = state.point.limits
         vector = state.point.vector
-        return solved(sum(g[0] for g in grams), sum(g[1] for g in grams), len(state.point.u), vector, low, high)
+        matrix, right = np.sum([g[0] for g in grams], axis=0), np.sum([g[1] for g in grams], axis=0)
+        return solved(matrix, right, len(state.point.u), vector, low, high)
 
 
 def solved(matrix: Array, right: Array, count: int, vector: Array, low: Array, high: Array) -> Array:

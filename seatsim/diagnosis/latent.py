@@ -24,7 +24,7 @@ LAGS = 10
 """Past samples of the motion that a linear filter may use."""
 RIDGE = 1e-3
 """Ridge, relative to the regressors' power."""
-FORETOLD = 0.25
+FORETOLD = 0.12
 """Share of the variance on left-out runs from which a force belongs to the rig."""
 
 
@@ -113,7 +113,9 @@ def _regressed(features: Array, target: Array) -> Array:
     scale = np.sqrt(np.mean(features**2, axis=1)) + 1e-12
     scaled = features / scale[:, None]
     gram = scaled @ scaled.T
-    return np.asarray(np.linalg.solve(gram + RIDGE * np.trace(gram) / len(gram) * np.eye(len(gram)), scaled @ target)) / scale
+    ridge = RIDGE * np.trace(gram) / len(gram) * np.eye(len(gram))
+    weights: Array = np.linalg.solve(gram + ridge, scaled @ target) / scale
+    return weights
 
 
 def described(found: Latent) -> list[str]:

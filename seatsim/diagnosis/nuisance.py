@@ -53,6 +53,6 @@ def varied(scenario: Scenario, parameters: Sequence[Nuisance], u: Array) -> Scen
     records = {"plant": scenario.plant, "damper": scenario.damper.record, "coil": scenario.coil}
     for parameter, share in zip(parameters, u, strict=True):
         value = {parameter.name: parameter.value + parameter.span * float(share)}
-        records[parameter.section] = records[parameter.section]._replace(**value)  # type: ignore[union-attr]
+        records[parameter.section] = records[parameter.section]._replace(**value)
     damper = dataclasses.replace(scenario.damper, record=records["damper"])
     return dataclasses.replace(scenario, plant=records["plant"], damper=damper, coil=records["coil"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -116,19 +116,17 @@ def _foreseen(engine: Engine, base: State, start: State, own: dict[str, Array]) 
     """Return the cost that a multiple of the start's change foresees, and that multiple."""
     vector = base.point.vector
     low, high = base.point.limits
-    matrix, right, total = 0.0, 0.0, base.cost
+    parts = []
     for run, residual in base.whitened.items():
         change = (residual - start.whitened[run]).ravel()
         if not np.all(np.isfinite(change)):
             return np.inf, 1.0
-        part = engine.gram(run, np.vstack([own[run], change]), residual)
-        matrix, right = matrix + part[0], right + part[1]
+        parts.append(engine.gram(run, np.vstack([own[run], change]), residual))
+    matrix, right = np.sum([part[0] for part in parts], axis=0), np.sum([part[1] for part in parts], axis=0)
     count = len(base.point.u)
-    step = solved(
-        np.asarray(matrix), np.asarray(right), count, np.append(vector, 0.0), np.append(low, -STRETCH),
-        np.append(high, STRETCH),
-    )  # fmt: skip
-    return total - 2.0 * float(step @ right) + float(step @ matrix @ step), float(step[-1])
+    bounds = np.append(low, -STRETCH), np.append(high, STRETCH)
+    step = solved(matrix, right, count, np.append(vector, 0.0), *bounds)
+    return base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step), float(step[-1])
 
 
 def _stretched(point: Point, candidate: Candidate, factor: float) -> Point:

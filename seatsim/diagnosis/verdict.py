@@ -47,15 +47,17 @@ class Judgement:
 def judged(engine: Engine, found: Search, effects: list[str]) -> Judgement:
     """Return the verdict on a search."""
     before = found.excess(found.calibrated)
-    if before < NOTHING or _rest(engine, found.calibrated) < MATERIAL and not _material(engine, found.sets[1][0]):
+    if before < NOTHING or (_rest(engine, found.calibrated) < MATERIAL and not _material(engine, found.sets[1][0])):
         sure = 1.0 / (1.0 + math.exp((before - NOTHING) / 0.05 - 2.0))
         return Judgement("none", found.calibrated, [], dict.fromkeys(effects, 0.004), max(sure, 0.6), 0.02)
     chosen = _chosen(engine, found)
     share = found.excess(chosen) / before
-    explained = bool(chosen.point.terms) and (share < EXPLAINED or _rest(engine, chosen) < MATERIAL)
+    rivals = _groups(found, chosen)
+    small = _rest(engine, chosen) < MATERIAL and not any(len(group) > 2 for group in rivals)
+    explained = bool(chosen.point.terms) and (share < EXPLAINED or small)
     unknown = 1.0 / (1.0 + math.exp(-(math.log(max(share, 1e-4)) - math.log(EXPLAINED)) / 0.4))
     unknown = min(max(unknown, 0.02), 0.45) if explained else max(unknown, 0.55)
-    groups = _groups(found, chosen) if explained else []
+    groups = rivals if explained else []
     verdict = ("ambiguous" if groups else "known") if explained else "unknown"
     return Judgement(verdict, chosen, groups, _probabilities(chosen, groups, effects, unknown), 0.01, unknown)
 

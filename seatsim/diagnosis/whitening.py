@@ -58,7 +58,9 @@ def whitening(problem: Problem, pushes: Mapping[str, Array] | None = None) -> Wh
         bins[run] = int(np.searchsorted(frequency, min(HIGHEST, 0.5 * rate)))
         power = problem.noise[:, None] ** 2 * samples + _carried(problem, run, (pushes or {}).get(run))
         if repeated is not None:
-            power = np.maximum(power, np.array([np.interp(frequency, repeated[0], row) for row in repeated[1]]) * samples)
+            power = np.maximum(
+                power, np.array([np.interp(frequency, repeated[0], row) for row in repeated[1]]) * samples
+            )
         signal = np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True), axis=1)) ** 2
         total = power + TRUST**2 * _smoothed(signal)
         total = np.maximum(total, 1e-6 * problem.spread[:, None] ** 2 * samples)
@@ -125,4 +127,5 @@ def _unrepeatable(problem: Problem) -> tuple[Array, Array] | None:
     if not found:
         return None
     frequency = found[0][0]
-    return frequency, np.mean([[np.interp(frequency, f, row) for row in power] for f, power in found], axis=0)
+    resampled = [[np.interp(frequency, f, row) for row in power] for f, power in found]
+    return frequency, np.asarray(np.mean(resampled, axis=0))

@@ -16,7 +16,7 @@ Before a run, in Python:
 In the time loop, compiled by numba, with `z` the effect's own state:
 
     on the damper       conditioned(self, heat, v, z)   engaged(self, h, pull, z)   yield_current(self, i, z)
-                        yield_shape(self, shape, target, z)   added_force(self, x, v, z)
+                        yield_speed(self, v, z)   yield_shape(self, shape, target, late, z)   added_force(self, x, v, z)
                         stiction(self, z)   rates(self, x, v, i, pull, target, z)
     on the seat         suspension_force(self, plant, x, v, z)   linkage_friction(self, z)
                         cushion_force(self, force, plant, xc, vc, z)
@@ -34,7 +34,7 @@ T = TypeVar("T", bound=type)
 Values = Mapping[str, float]
 
 ON_DAMPER = (
-    "conditioned", "engaged", "yield_current", "yield_shape", "added_force", "stiction",
+    "conditioned", "engaged", "yield_current", "yield_speed", "yield_shape", "added_force", "stiction",
 )  # fmt: skip
 ON_SEAT = ("suspension_force", "linkage_friction", "cushion_force", "inner_mass", "inner_force")
 
@@ -78,7 +78,7 @@ def effect(
 
 def off(cls: Any) -> Any:
     """Return the record of an effect at the parameters that leave the rig unchanged."""
-    values = {name: 0.0 for name in cls._fields} | dict(card_of(cls).off)
+    values = dict.fromkeys(cls._fields, 0.0) | dict(card_of(cls).off)
     return cls(**values)
 
 

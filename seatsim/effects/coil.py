@@ -9,16 +9,25 @@ from seatsim.effects.base import effect
 from seatsim.fields import param
 
 
-@effect("coil.lag", source="first-order lag", forms=({"time": 0.003},))
+@effect(
+    "coil.lag",
+    source="first-order lag; eddy currents as a second, faster pole",
+    forms=({"time": 0.003}, {"time": 0.003, "second": 0.5}),
+)
 class Lag(NamedTuple):
-    """A coil slower than nominal: its time constant grows, `1 / rate + time`, rising and falling alike."""
+    """A coil slower than nominal: its time constant grows, `1 / rate + time`, rising and falling alike.
+
+    A second pole, of the time constant `second time`, acts as a delay of that length.
+    """
 
     time: Annotated[float, param("s", "added time constant", low=-0.05, high=1)]
+    second: Annotated[float, param("-", "second time constant over the first one", low=0, high=1)] = 0.0
 
     def coil(self, coil: Coil) -> Coil:
         """Return the slower coil."""
         fall = _slower(coil.rate_fall, self.time) if coil.rate_fall > 0.0 else 0.0
-        return coil._replace(rate=_slower(coil.rate, self.time), rate_fall=fall)
+        delay = coil.delay + max(0.0, self.second * self.time)
+        return coil._replace(rate=_slower(coil.rate, self.time), rate_fall=fall, delay=delay)
 
 
 @effect("coil.asymmetric_lag", source="freewheeling diode of the current driver", forms=({"time": 0.004},))

@@ -12,6 +12,10 @@ from seatsim.jit import jit
 from seatsim.registry import card_of
 from seatsim.temperature import Heat
 
+SHORTEST = 2e-5
+"""m; least travel over which a force returns at the end of a gap."""
+FASTEST = 1000.0
+"""1/s; greatest rate at which a yield force builds up."""
 SWITCH = 0.01
 """m/s; scale of speed over which rebound turns into compression."""
 
@@ -109,8 +113,8 @@ class FreePlay(NamedTuple):
 @jit
 def _passed(gap: float, softness: float, pull: float, g: float) -> float:
     """Return h, the share of speed and force that gets through the gap."""
-    u = 2.0 * g * math.copysign(1.0, pull) / gap
-    s = min(1.0, max(0.0, 1.0 - 0.5 * (1.0 - u) / softness))
+    missing = 0.5 * gap - g * math.copysign(1.0, pull)
+    s = min(1.0, max(0.0, 1.0 - missing / max(softness * gap, SHORTEST)))
     return s * s * (3.0 - 2.0 * s)
 
 
@@ -121,32 +125,43 @@ def _without_state(damper: Any) -> bool:
 
 @effect(
     "damper.preyield_hysteresis",
-    source="yield force that relaxes over a travel (Dahl 1968) or a time (Maxwell)",
-    initial=(0.0,),
+    source="yield force that relaxes over a travel (Dahl 1968) or a time (Maxwell), or follows a lagging speed",
+    initial=(0.0, 0.0),
     off={"share": 1.0},
-    forms=({"travel": 3e-4}, {"travel": 3e-4, "share": 0.3}, {"lag": 1e-3}, {"lag": 3e-3, "share": 0.3}),
+    forms=(
+        {"travel": 3e-4}, {"travel": 3e-4, "share": 0.3}, {"lag": 1e-3}, {"lag": 3e-3, "share": 0.3},
+        {"behind": 1e-3}, {"behind": 3e-3, "share": 0.3},
+    ),
     suits=_without_state,
-)
+)  # fmt: skip
 class PreyieldHysteresis(NamedTuple):
     """Yield force that builds up over a travel, or with a lag: a loop at low speed.
 
     Of the yield force with its nominal shape s(v), -1 to 1, the `share` is replaced by z, which follows it:
-    `z' = (|v| / travel + 1 / lag) (s(v) - z)`, where a travel or lag of zero is left out.
+    `z' = (|v| / travel + 1 / lag) (s(v) - z)`, where a travel or lag of zero is left out, at most at 1000 1/s; or by
+    s(u), where u lags the speed, `u' = (v - u) / behind`.
     """
 
     travel: Annotated[float, param("m", "travel over which the yield force builds up", low=0, high=0.02)]
     lag: Annotated[float, param("s", "time over which it builds up", low=0, high=0.2)] = 0.0
+    behind: Annotated[float, param("s", "time by which its speed lags", low=0, high=0.2)] = 0.0
     share: Annotated[float, param("-", "share of the yield force that builds up", low=0, high=2)] = 1.0
 
-    def yield_shape(self, shape: float, target: float, z: State) -> float:
+    def yield_speed(self, v: float, z: State) -> float:
+        """Return u in m/s."""
+        return z[1] if self.behind > 0.0 else v
+
+    def yield_shape(self, shape: float, target: float, late: float, z: State) -> float:
         """Return the share of the yield force, NaN where the damper's own law holds."""
-        if self.travel <= 0.0 and self.lag <= 0.0:
+        if self.travel <= 0.0 and self.lag <= 0.0 and self.behind <= 0.0:
             return shape
-        return self.share * z[0] + (1.0 - self.share) * target
+        built = late if self.behind > 0.0 else z[0]
+        return self.share * built + (1.0 - self.share) * target
 
     def rates(self, x: float, v: float, i: float, pull: float, target: float, z: State) -> State:
-        """Return z'."""
+        """Return (z', u')."""
         rate = abs(v) / self.travel if self.travel > 0.0 else 0.0
         if self.lag > 0.0:
             rate += 1.0 / self.lag
-        return (rate * (target - z[0]),)
+        following = (v - z[1]) / max(self.behind, 1.0 / FASTEST) if self.behind > 0.0 else 0.0
+        return (rate / (1.0 + rate / FASTEST) * (target - z[0]), following)

@@ -32,7 +32,8 @@ class MagneticSaturation(NamedTuple):
         """Return the current that the yield force feels, in A."""
         if self.bend <= 0.0 or i <= 0.0:
             return i
-        return i / (1.0 + (self.bend * i) ** self.sharpness) ** (1.0 / self.sharpness)
+        felt: float = i / (1.0 + (self.bend * i) ** self.sharpness) ** (1.0 / self.sharpness)
+        return felt
 
 
 @effect(
@@ -40,7 +41,10 @@ class MagneticSaturation(NamedTuple):
     source="play operator (Krasnosel'skii and Pokrovskii 1989), two of them",
     initial=(0.0, 0.0),
     forms=(
-        {"width": 0.01}, {"width": 0.01, "spread": 0.7}, {"width": 0.01, "lift": 0.5}, {"width": 0.02, "decay": 1.0},
+        {"width": 0.01},
+        {"width": 0.01, "spread": 0.7},
+        {"width": 0.01, "lift": 0.5},
+        {"width": 0.02, "decay": 1.0},
         {"width": 0.1, "decay": 20.0},
     ),  # fmt: skip
 )
@@ -48,8 +52,9 @@ class Remanence(NamedTuple):
     """Yield force that remembers past current: it feels the mean of two plays of the current.
 
     Their half-widths are `width (1 +- spread)`; the current has to go further than that back before the magnetisation
-    follows; held back, it creeps towards the current at the rate `decay`. Of the play's two sides, `lift` is how far it is raised: 0 lags a rising and a falling current
-    alike, 1 leaves the rising one as it is, so that only current that fell is remembered.
+    follows; held back, it creeps towards the current at the rate `decay`. Of the play's two sides, `lift` is how far it
+    is raised: 0 lags a rising and a falling current alike, 1 leaves the rising one as it is, so that only a current
+    that fell is remembered.
     """
 
     width: Annotated[float, param("A", "current that stays remembered", low=0, high=2)]
@@ -88,9 +93,9 @@ def _play(z: float, i: float, width: float) -> float:
     forms=({"viscous": 0.004, "yielding": 0.004}, {"viscous": 0.004, "yielding": 0.004, "lag": 5.0}),
 )
 class ThermalFade(NamedTuple):
-    """Viscous and yield force that fall as the fluid warms: factors `exp(-viscous (T - T0))`, `exp(-yielding (T - T0))`.
+    """Viscous and yield force that fall as the fluid warms.
 
-    T0 is the reference of the damper's temperature factors. The thermocouple follows the fluid with a lag, so that the
+    Their factors are `exp(-viscous (T - T0))` and `exp(-yielding (T - T0))`; T0 is the reference of the damper's temperature factors. The thermocouple follows the fluid with a lag, so that the
     fluid is at `T = T_c + lag dT_c/dt + rise`.
     """
 
@@ -101,9 +106,7 @@ class ThermalFade(NamedTuple):
 
     def factors(self, factors: TemperatureFactors) -> TemperatureFactors:
         """Return the damper's temperature factors with the fade."""
-        return factors._replace(
-            viscous=factors.viscous - self.viscous, yield_force=factors.yield_force - self.yielding
-        )
+        return factors._replace(viscous=factors.viscous - self.viscous, yield_force=factors.yield_force - self.yielding)
 
     def temperature(self, step: float, values: Any) -> Any:
         """Return the temperature of the fluid in degC out of that of the thermocouple, shape (N,)."""

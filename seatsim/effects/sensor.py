@@ -36,7 +36,9 @@ class Gain(NamedTuple):
         return values / (1.0 + self.error) if channel == self.channel else values
 
 
-@effect("sensor.bias", source="zero error and drift", by_channel=True, forms=({"share": 0.1}, {"share": 0.1, "drift": 0.01}))
+@effect(
+    "sensor.bias", source="zero error and drift", by_channel=True, forms=({"share": 0.1}, {"share": 0.1, "drift": 0.01})
+)
 class Bias(NamedTuple):
     """One channel reads with an offset that may drift: `truth + scale (share + drift t)`.
 

@@ -22,6 +22,7 @@ FAST = 10.0
 conditioned = folded("conditioned")
 engaged = folded("engaged")
 yield_current = folded("yield_current")
+yield_speed = folded("yield_speed")
 yield_shape = folded("yield_shape")
 added_force = summed("added_force")
 stiction = summed("stiction")
@@ -47,7 +48,7 @@ class AugmentedDamper(NamedTuple):
         pull = _pull(self.damper, effects, x, v, i, heat, inner, outer)
         h = engaged(effects, outer, 1.0, pull)
         target = 0.0
-        if not math.isnan(yield_shape(effects, outer, math.nan, 0.0)):
+        if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
             felt = conditioned(effects, outer, heat, v)
             target = _split(self.damper, x, v, yield_current(effects, outer, i), felt, inner).shape
         theirs = effect_rates(effects, outer, x, v, i, pull, target)
@@ -58,25 +59,25 @@ class AugmentedDamper(NamedTuple):
         """Return the limit of the set-valued friction in N: the yield force's, and what the effects add."""
         effects, outer = self.effects, own(self.effects, z)
         limit: float = stiction(effects, outer)
-        if math.isnan(yield_shape(effects, outer, math.nan, 0.0)):
+        if math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
             h = engaged(effects, outer, 1.0, v)
             limit += h * coulomb(self.damper, yield_current(effects, outer, i), conditioned(effects, outer, heat, v))
         return limit
 
 
 @jit
-def _pull(
-    damper: Any, effects: Effects, x: float, v: float, i: float, heat: Heat, inner: Tuple, outer: Tuple
-) -> float:
+def _pull(damper: Any, effects: Effects, x: float, v: float, i: float, heat: Heat, inner: Tuple, outer: Tuple) -> float:
     """Return the damper's force in N before what is lost in a gap and added beside it."""
     felt = conditioned(effects, outer, heat, v)
     i_y = yield_current(effects, outer, i)
-    if math.isnan(yield_shape(effects, outer, math.nan, 0.0)):
+    if math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
         return _with_current(damper, x, v, i, i_y, felt, inner)
     parts = _split(damper, x, v, i_y, felt, inner)
+    late = _split(damper, x, yield_speed(effects, outer, v), i_y, felt, inner).shape
     rest = Heat(felt.viscous, felt.stiffness, 0.0)
-    shape = yield_shape(effects, outer, math.nan, parts.shape)
-    return force(damper, x, v, i, rest, inner) + parts.middle + parts.size * shape
+    shape = yield_shape(effects, outer, math.nan, parts.shape, late)
+    total: float = force(damper, x, v, i, rest, inner) + parts.middle + parts.size * shape
+    return total
 
 
 class YieldPart(NamedTuple):
@@ -91,9 +92,11 @@ class YieldPart(NamedTuple):
 def _with_current(damper: Any, x: float, v: float, i: float, i_y: float, heat: Heat, z: Tuple) -> float:
     """Return the damper's force in N at current i, its yield part at `i_y`."""
     if i_y == i:
-        return force(damper, x, v, i, heat, z)
+        whole: float = force(damper, x, v, i, heat, z)
+        return whole
     rest = Heat(heat.viscous, heat.stiffness, 0.0)
-    return force(damper, x, v, i, rest, z) + _yield(damper, x, v, i_y, heat, rest, z)
+    total: float = force(damper, x, v, i, rest, z) + _yield(damper, x, v, i_y, heat, rest, z)
+    return total
 
 
 @jit
@@ -109,7 +112,8 @@ def _split(damper: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> Y
 
 @jit
 def _yield(damper: Any, x: float, v: float, i: float, heat: Heat, rest: Heat, z: Tuple) -> float:
-    return force(damper, x, v, i, heat, z) - force(damper, x, v, i, rest, z)
+    part: float = force(damper, x, v, i, heat, z) - force(damper, x, v, i, rest, z)
+    return part
 
 
 def classes_of(damper: Any) -> list[type]:

@@ -57,7 +57,8 @@ def coulomb(self: Any, i: float, heat: Heat) -> float:
 @hook
 def friction_limit(self: Any, v: float, i: float, heat: Heat, z: Tuple) -> float:
     """Largest set-valued friction in N at this speed and state."""
-    return coulomb(self, i, heat)
+    limit: float = coulomb(self, i, heat)
+    return limit
 
 
 @hook

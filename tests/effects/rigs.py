@@ -26,7 +26,7 @@ damper: {model: bingham, parameters: {c_a: 250.0, c_b: 350.0, fc_a: 45.0, fc_b: 
 actuator: {rate: 130.0, max_current: 1.0}
 temperature: 40.0
 controller: {law: on_off_skyhook, sample_time: 0.005}
-excitation: {kind: chirp, amplitude: 0.04, start_frequency: 0.7, stop_frequency: 6.0, duration: 3.0}
+excitation: {kind: chirp, amplitude: 0.03, start_frequency: 0.7, stop_frequency: 5.0, duration: 3.0}
 seed: 3
 """
 

@@ -1,0 +1,66 @@
+"""Diagnoses of rigs that a simulator apart from the candidates' made."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+import seatsim
+from seatsim.blind.make import make
+from seatsim.blind.sealed import unseal
+from seatsim.cli import app
+from seatsim.diagnosis_output import write_diagnosis
+
+KINDS = ["none", "one", "outside"]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A faultless rig, one with a hidden effect, one with something outside the library, and their labels by kind."""
+    folder = tmp_path_factory.mktemp("blind")
+    key = make(3, 11, folder / "set", folder / "set.sealed", kinds=KINDS, processes=1)
+    labels = unseal(folder / "set.sealed", key, folder / "set").labels
+    return folder / "set", {label["kind"]: (case, label) for case, label in labels.items()}
+
+
+def test_a_faultless_rig_has_no_gap(made):
+    folder, labels = made
+    diagnosis = seatsim.diagnose(folder / labels["none"][0])
+    assert diagnosis.verdict == "none"
+    assert diagnosis.selected == [] and diagnosis.where == []
+
+
+def test_a_hidden_effect_is_named_and_written(made, tmp_path):
+    folder, labels = made
+    case, label = labels["one"]
+    diagnosis = seatsim.diagnose(folder / case)
+    (effect,) = label["effects"]
+    assert effect in diagnosis.selected or any(effect in group for group in diagnosis.indistinguishable)
+    write_diagnosis(diagnosis, tmp_path)
+    written = json.loads((tmp_path / "diagnosis.json").read_text())
+    assert {cause["effect"] for cause in written["causes"]} == set(seatsim.registry.names("effect"))
+    assert sum(place["share"] for place in written["where"]) == pytest.approx(1.0)
+    after = seatsim.gap(tmp_path / "augmented.yaml", folder / case, written["held_out"])
+    assert after.overall == pytest.approx(written["gap"]["after"]["overall"], rel=1e-3)
+    assert written["gap"]["after"]["overall"] < 0.8 * written["gap"]["calibrated"]["overall"]
+    assert diagnosis.sentence in (tmp_path / "report.html").read_text()
+
+
+def test_what_no_effect_explains_is_unknown(made):
+    folder, labels = made
+    case, label = labels["outside"]
+    diagnosis = seatsim.diagnose(folder / case)
+    assert diagnosis.verdict == "unknown"
+    assert diagnosis.where[0].block in label["blocks"]
+
+
+def test_a_withheld_effect_is_not_named(made):
+    folder, labels = made
+    case, label = labels["one"]
+    diagnosis = seatsim.diagnose(folder / case, without=label["effects"])
+    assert not set(label["effects"]) & {cause.effect for cause in diagnosis.causes}
+
+
+def test_an_unknown_effect_cannot_be_withheld(tmp_path):
+    done = CliRunner().invoke(app, ["diagnose", str(tmp_path), "--without", "suspension.frction"])
+    assert "suspension.friction" in str(done.exception)

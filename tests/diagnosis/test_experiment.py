@@ -1,0 +1,96 @@
+"""How alike effects are in a recording, and the experiment that tells apart those that are."""
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+import seatsim
+from seatsim.diagnosis.alikeness import Side, alikeness, discrimination
+from seatsim.diagnosis.candidates import candidates
+from seatsim.diagnosis.experiment import experiment
+from seatsim.diagnosis.fit import Engine, Point
+from seatsim.diagnosis.problem import problem
+from seatsim.diagnosis.whitening import whitening
+from seatsim.recording import load_recording
+
+from .damaged import edit, healthy, rewrite
+from .test_examination import ROOT_SEAT
+
+FRICTIONS = ["damper.seal_friction", "suspension.friction"]
+
+
+def recorded(folder, effect, parameters, without=()):
+    """Save a recording of a seat with an effect that its nominal scenario lacks."""
+    (folder / "seat.yaml").write_text(ROOT_SEAT)
+    rig = healthy(folder / "seat.yaml", folder / "rig", {"effects": [{"effect": effect, "parameters": parameters}]})
+    rewrite(rig, lambda frame: frame.drop(columns=list(without)))
+    edit(rig, lambda header: [header["channels"].pop(name) for name in without])
+    yaml = YAML(typ="safe")
+    nominal = yaml.load(rig / "nominal.yaml")
+    nominal.pop("effects")
+    yaml.dump(nominal, rig / "nominal.yaml")
+    return rig
+
+
+def fitted(rig, name):
+    """Fit the first form of an effect."""
+    at_hand = problem(load_recording(rig))
+    engine = Engine(at_hand, whitening(at_hand))
+    candidate = next(c for c in candidates(at_hand) if c.effect == name)
+    start = engine.states([Point(at_hand.rest, (candidate,), (np.array(candidate.start),))])[0]
+    engine.refresh(start)
+    state = engine.fitted(start)
+    engine.refresh(state)
+    return engine, state
+
+
+@pytest.fixture(scope="module")
+def rubbing(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("rubbing")
+    rig = recorded(folder, FRICTIONS[0], {"force": 35.0, "presliding": 3e-4}, ["damper_force"])
+    return fitted(rig, FRICTIONS[0])
+
+
+def test_without_a_load_cell_one_friction_is_like_the_other_and_unlike_the_rest(rubbing):
+    names, matrix = alikeness(*rubbing, [*FRICTIONS, "driver.mass", "damper.free_play", "sensor.gain", "no.such"])
+    assert names == [*FRICTIONS, "driver.mass", "damper.free_play", "sensor.gain"]
+    assert matrix.shape == (5, 5) and np.allclose(matrix, matrix.T) and np.all(np.diag(matrix) == 1.0)
+    assert matrix[0, 1] > 0.95 and matrix[0, 2:].max() < 0.8
+    assert np.all((matrix >= 0.0) & (matrix <= 1.0))
+    assert np.array_equal(alikeness(*rubbing, names)[1], matrix)
+
+
+def test_a_load_cell_tells_friction_in_the_damper_from_friction_in_the_linkage(rubbing):
+    found = experiment(*rubbing, FRICTIONS)
+    assert (found["kind"], found["name"]) == ("intervention", "load_cell") and "scenario" not in found
+    assert found["alikeness_now"] > 0.99 > found["alikeness_then"]
+    assert "load cell" in found["reason"]
+
+
+def test_what_no_experiment_can_tell_apart_is_said_to_be_so(rubbing):
+    found = experiment(*rubbing, [FRICTIONS[0], FRICTIONS[0]])
+    assert found["kind"] == "none" and found["alikeness_then"] > 0.999
+
+
+def test_a_calibration_tells_a_wrong_sensor_from_another_driver(rubbing):
+    found = experiment(*rubbing, ["sensor.gain", "driver.mass"])
+    assert (found["kind"], found["name"]) == ("intervention", "calibrate_sensor") and "calibrating" in found["reason"]
+
+
+def test_a_proposed_excitation_is_a_scenario_that_runs(tmp_path):
+    rig = recorded(tmp_path, "damper.gas_spring", {"preload": 10.0, "stiffness": 600.0}, ["damper_force"])
+    found = experiment(*fitted(rig, "damper.gas_spring"), ["damper.gas_spring", "suspension.progressive_spring"])
+    assert found["kind"] == "excitation" and found["alikeness_then"] < 0.9
+    YAML(typ="safe").dump(found["scenario"], tmp_path / "next.yaml")
+    result = seatsim.run(tmp_path / "next.yaml")
+    assert np.ptp(result["suspension_displacement"]) > 1e-3
+
+
+def test_discrimination_is_the_distance_that_no_parameter_takes_away():
+    axes = np.eye(6)
+    old = Side(np.zeros((2, 3)), 1e-9 * axes[:1, :3], [1e-9 * axes[:1, :3]] * 2)
+    outputs = np.array([[0.0, 0.0, 0.0], [30.0, 40.0, 0.0]])
+    free = Side(outputs, 1e-9 * axes[:1, :3], [1e-9 * axes[:1, :3]] * 2)
+    tied = Side(outputs, 1e-9 * axes[:1, :3], [1e4 * axes[:1, :3]] * 2)
+    assert discrimination(old, free) == pytest.approx(50.0)
+    assert discrimination(old, tied) == pytest.approx(40.0)

@@ -1,0 +1,128 @@
+"""The coil's effects by the exact course of its current; the sensors' by what they say and what is told back."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seatsim.coil import Coil, relax
+from seatsim.registry import find
+
+from .rigs import record, shaken, starts
+
+STEP = 0.001
+NOMINAL = Coil()
+TIME = STEP * np.arange(4001)
+WAVE = 3.0 * np.sin(2 * np.pi * 1.5 * TIME) + np.sin(2 * np.pi * 4.0 * TIME + 1.0) + 0.3
+BY_CHANNEL = {"sensor.gain": {"error": 0.2}, "sensor.bias": {"share": 0.3, "drift": 0.02}, "sensor.lag": {"time": 0.01}}
+
+
+def flowing(history, coil, delay=0):
+    """Current at every row by the exact solution, out of the logged command that arrives `delay` rows later."""
+    command = np.concatenate([np.zeros(delay), history["current_command"]])
+    current = [0.0]
+    for u in command[: len(history["time"]) - 1]:
+        current.append(relax(coil, current[-1], min(u, coil.max_current), STEP))
+    return np.array(current)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "coil", "delay"),
+    [
+        ("coil.lag", {"time": 0.004}, Coil(rate=1 / (1 / 130 + 0.004)), 0),
+        ("coil.asymmetric_lag", {"time": 0.006}, Coil(rate=130.0, rate_fall=1 / (1 / 130 + 0.006)), 0),
+        ("coil.delay", {"time": 0.007}, NOMINAL, 7),
+        ("coil.current_limit", {"limit": 0.6}, Coil(max_current=0.6), 0),
+    ],
+)
+def test_the_current_follows_the_changed_coil_exactly(bingham, name, values, coil, delay):
+    history = shaken(bingham, record(name, **values))
+    current = history["coil_current"]
+    assert current == pytest.approx(flowing(history, coil, delay), abs=1e-9)
+    assert np.ptp(history["current_command"]) > 0.5
+    assert np.max(np.abs(current - flowing(history, NOMINAL, 0))) > 0.01 or name == "coil.current_limit"
+
+
+def test_a_lag_slows_a_coil_that_falls_slowly_both_ways():
+    slower = record("coil.lag", time=0.002).coil(Coil(rate=176.0, rate_fall=70.0))
+    assert 1 / slower.rate == pytest.approx(1 / 176 + 0.002)
+    assert 1 / slower.rate_fall == pytest.approx(1 / 70 + 0.002)
+    fall = record("coil.asymmetric_lag", time=0.002).coil(Coil(rate=176.0, rate_fall=70.0))
+    assert (fall.rate, 1 / fall.rate_fall) == pytest.approx((176.0, 1 / 70 + 0.002))
+
+
+def test_a_step_of_the_command_rises_and_falls_with_the_time_constants_stated():
+    coil = record("coil.asymmetric_lag", time=0.01).coil(NOMINAL)
+    assert relax(coil, 0.0, 1.0, 1 / 130) == pytest.approx(1 - np.exp(-1))
+    assert relax(coil, 1.0, 0.0, 1 / 130 + 0.01) == pytest.approx(np.exp(-1))
+    limited = record("coil.current_limit", limit=0.4).coil(NOMINAL)
+    assert limited.max_current == 0.4
+    assert record("coil.current_limit", limit=5.0).coil(NOMINAL) == NOMINAL
+
+
+def test_a_limited_supply_never_exceeds_its_limit(bingham):
+    current = shaken(bingham, record("coil.current_limit", limit=0.6))["coil_current"]
+    assert 0.55 < np.max(current) <= 0.6
+    free = shaken(bingham, record("coil.current_limit", limit=2.0))["coil_current"]
+    assert np.max(free) > 0.9
+
+
+@pytest.mark.parametrize("name", BY_CHANNEL)
+def test_what_a_sensor_says_is_told_back_and_only_of_its_channel(name):
+    effect = find("effect", name)(channel="damper_force", **BY_CHANNEL[name])
+    read = effect.reading("damper_force", STEP, WAVE)
+    assert np.max(np.abs(read - WAVE)) > 0.05
+    inner = slice(100, -5)
+    assert effect.truth("damper_force", STEP, read)[inner] == pytest.approx(WAVE[inner], abs=2e-3)
+    for other in ("driver_acceleration", "current_command"):
+        assert effect.reading(other, STEP, WAVE) is WAVE and effect.truth(other, STEP, WAVE) is WAVE
+
+
+def test_gain_and_bias_say_what_they_state():
+    gain = find("effect", "sensor.gain")(channel="damper_force", error=-0.1)
+    assert gain.reading("damper_force", STEP, WAVE) == pytest.approx(0.9 * WAVE)
+    bias = find("effect", "sensor.bias")(channel="damper_force", share=0.5, drift=0.1)
+    assert bias.reading("damper_force", STEP, WAVE) - WAVE == pytest.approx(100.0 * (0.5 + 0.1 * TIME))
+
+
+@pytest.mark.parametrize("time", [0.0004, 0.004, 0.05])
+def test_a_lagging_sensor_answers_a_step_as_a_first_order_low_pass(time):
+    lag = find("effect", "sensor.lag")(channel="displacement", time=time)
+    read = lag.reading("displacement", STEP, np.where(np.arange(300) >= 100, 1.0, 0.0))
+    # The truth is taken as linear between its rows, so that the step is a ramp over one row.
+    ratio = STEP / time
+    after = np.arange(200) * STEP
+    assert read[:100] == pytest.approx(np.zeros(100), abs=1e-12)
+    assert read[100:] == pytest.approx(1.0 - (1.0 - np.exp(-ratio)) / ratio * np.exp(-after / time), abs=1e-12)
+
+
+def test_a_lagging_sensor_starts_at_rest():
+    lag = find("effect", "sensor.lag")(channel="displacement", time=0.05)
+    assert lag.reading("displacement", STEP, np.full(50, 7.0)) == pytest.approx(np.full(50, 7.0))
+
+
+@pytest.mark.parametrize("shift", [0.0063, -0.0063])
+def test_a_skewed_log_says_late_what_was(shift):
+    skew = record("sensor.clock_skew", shift=shift, drift=1e-4)
+    read = skew.reading("coil_current", STEP, WAVE)
+    inner = slice(50, -50)
+    late = TIME - shift - 1e-4 * TIME
+    assert read[inner] == pytest.approx(np.interp(late, TIME, WAVE)[inner], abs=1e-9)
+    assert skew.truth("coil_current", STEP, read)[inner] == pytest.approx(WAVE[inner], abs=1e-3)
+    assert skew.reading("damper_force", STEP, WAVE) is WAVE
+
+
+def test_a_held_command_moves_by_whole_rows():
+    command = np.repeat([0.0, 1.0, 0.3, 0.8], 50)
+    skew = record("sensor.clock_skew", shift=0.003, hold=1.0)
+    told = skew.truth("current_command", STEP, command)
+    assert told[:-3] == pytest.approx(command[3:])
+    assert set(told) <= set(command)
+
+
+def test_a_sensor_changes_no_motion(bingham):
+    scenario = replace(bingham)
+    effect = starts("sensor.gain")[0]._replace(channel="driver_acceleration")
+    with_it, without = shaken(scenario, effect), shaken(scenario)
+    assert with_it["driver_acceleration"] == pytest.approx(1.05 * without["driver_acceleration"])
+    assert np.array_equal(with_it["suspension_displacement"], without["suspension_displacement"])

@@ -1,0 +1,160 @@
+"""What each effect of suspension, cushion, driver and floor does to a seat that is shaken."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seatsim.scenario import Start
+
+from .rigs import distance, record, seat, shaken
+
+DRIVER = 80.0
+LOOSE = {
+    "damper.parameters": {"c_a": 0.0, "c_b": 0.0, "fc_a": 0.0, "fc_b": 0.0, "f0": 0.0, "v_ref": 0.004},
+    "plant.suspension_damping": 0.0,
+}
+
+
+@pytest.fixture(scope="module")
+def loose(tmp_path_factory):
+    """A seat whose suspension has a spring only, so that its work is the effect's."""
+    return seat(tmp_path_factory.mktemp("loose"), LOOSE)
+
+
+def cushion(history, mass=DRIVER):
+    """Force of the cushion on the driver in N, positive in tension, out of the driver's acceleration."""
+    return -mass * history["driver_acceleration"]
+
+
+def foam(scenario, history):
+    """The linear part of it, out of the cushion's motion."""
+    plant = scenario.plant
+    return plant.cushion_stiffness * history["cushion_displacement"] + (
+        plant.cushion_damping * history["cushion_velocity"]
+    )
+
+
+def linkage(scenario, history):
+    """Force of the effects on the suspension in N, out of the balance of forces on the frame."""
+    plant = scenario.plant
+    return (
+        cushion(history)
+        - plant.suspension_stiffness * history["suspension_displacement"]
+        - plant.suspension_damping * history["suspension_velocity"]
+        - history["damper_force"]
+        - plant.frame_mass * history["frame_acceleration"]
+    )
+
+
+@pytest.mark.parametrize("values", [{}, {"presliding": 5e-4}, {"presliding": 1e-3, "lubrication": 20.0}])
+def test_friction_of_the_linkage_is_not_in_the_damper_force(bingham, values):
+    history = shaken(bingham, record("suspension.friction", force=60.0, **values))
+    d, v, i = bingham.damper.record, history["suspension_velocity"], history["coil_current"]
+    factor = np.exp(-0.004 * 20.0)
+    expected = factor * ((d.c_a + d.c_b * i) * v + (d.fc_a + d.fc_b * i) * np.tanh(v / d.v_ref))
+    assert history["damper_force"] == pytest.approx(expected, rel=1e-9, abs=1e-6)
+    friction = linkage(bingham, history)
+    assert 20.0 < np.max(np.abs(friction)) <= 60.0 * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("values", [{}, {"presliding": 5e-4}, {"presliding": 1e-3, "lubrication": 20.0}])
+def test_friction_of_the_linkage_dissipates(loose, values):
+    energy = shaken(loose, record("suspension.friction", force=60.0, **values))["energy_suspension"]
+    assert np.min(energy) > -1e-6 and energy[-1] > 1.0
+    # Presliding gives back no more than what it can hold, force times presliding.
+    assert np.max(np.maximum.accumulate(energy) - energy) <= 60.0 * values.get("presliding", 0.0) + 1e-6
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0])
+def test_an_end_stop_pushes_back_from_the_ends_only_and_dissipates(loose, power):
+    stop = record("suspension.end_stop", low=-0.01, high=0.01, stiffness=3e4, damping=1.0, power=power)
+    history = shaken(loose, stop)
+    x, push = history["suspension_displacement"], linkage(loose, history)
+    assert np.max(np.abs(push[np.abs(x) < 0.01])) < 1e-6
+    assert np.min(push[x > 0.01]) >= -1e-6 and np.max(push[x < -0.01]) <= 1e-6
+    assert np.max(push) > 50.0 and np.min(push) < -50.0
+    energy = history["energy_suspension"]
+    assert np.min(energy) > -1e-6
+    apart = energy[np.abs(x) < 0.01]
+    assert np.all(np.diff(apart) > -1e-3) and apart[-1] > 0.1
+
+
+def test_a_progressive_spring_adds_the_terms_of_its_series(loose):
+    history = shaken(loose, record("suspension.progressive_spring", rise=500.0, skew=2.0))
+    x = history["suspension_displacement"]
+    expected = loose.plant.suspension_stiffness * x * (2.0 * x + 500.0 * x**2)
+    assert linkage(loose, history) == pytest.approx(expected, abs=1e-6)
+    assert np.max(np.abs(expected)) > 20.0
+
+
+def test_foam_hardens_in_compression_only(bingham):
+    history = shaken(bingham, record("cushion.hardening", rise=40.0, bend=2e3))
+    depth = np.maximum(-history["cushion_displacement"], 0.0)
+    extra = -bingham.plant.cushion_stiffness * depth * (40.0 * depth + 2e3 * depth**2)
+    assert cushion(history) - foam(bingham, history) == pytest.approx(extra, abs=1e-6)
+    assert np.max(depth) > 3e-3
+
+
+@pytest.mark.parametrize("held", [0.0, 0.5])
+def test_separation_limits_the_tension(bingham, held):
+    history = shaken(bingham, record("cushion.separation", limit=100.0, held=held))
+    force, linear = cushion(history), foam(bingham, history)
+    assert np.max(linear) > 150.0
+    assert force == pytest.approx(np.minimum(linear, 100.0 + held * (linear - 100.0)), abs=1e-6)
+
+
+def test_a_heavier_driver_is_a_plant_with_a_heavier_driver(bingham):
+    heavier = replace(bingham, plant=bingham.plant._replace(driver_mass=95.0))
+    assert distance(shaken(bingham, record("driver.mass", change=15.0)), shaken(heavier)) < 1e-12
+
+
+def test_the_body_resonates_near_its_frequency(tmp_path):
+    """The apparent mass, force over acceleration at the seat, against that of a mass on a spring within a mass."""
+    share, natural, damping = 0.3, 5.0, 0.2
+    effect = record("driver.biodynamics", share=share, frequency=natural, damping=damping)
+    sizes = {}
+    for frequency in (2.0, 5.0, 12.0):
+        shaking = {"kind": "sine", "amplitude": 0.02 / frequency**2, "frequency": frequency, "duration": 4.0}
+        scenario = seat(tmp_path, LOOSE | {"plant.suspension_damping": 2000.0, "excitation": shaking})
+        history = shaken(scenario, effect)
+        turn = np.exp(-2j * np.pi * frequency * history["time"][-1000:])
+        force, acceleration = (np.sum(values[-1000:] * turn) for values in
+                               (-foam(scenario, history), history["driver_acceleration"]))  # fmt: skip
+        r = frequency / natural
+        through = (1 + 2j * damping * r) / (1 - r**2 + 2j * damping * r)
+        assert force / acceleration == pytest.approx(DRIVER * (1 - share + share * through), rel=5e-3)
+        sizes[frequency] = abs(force / acceleration)
+    assert sizes[5.0] > 1.15 * sizes[2.0] > sizes[12.0]
+
+
+def test_the_unmeasured_force_has_its_size_and_band_and_follows_the_seed():
+    effect = record("floor.unmeasured_input", rms=40.0, low=2.0, high=8.0)
+    time = 1e-3 * np.arange(20001)
+    push = effect.push(time, 5)
+    assert np.std(push) == pytest.approx(40.0, rel=1e-9)
+    assert np.array_equal(push, effect.push(time, 5)) and not np.allclose(push, effect.push(time, 6))
+    spectrum, frequency = np.abs(np.fft.rfft(push)) ** 2, np.fft.rfftfreq(len(time), 1e-3)
+    inside = (frequency >= 2.0) & (frequency <= 8.0)
+    assert np.sum(spectrum[~inside]) < 1e-20 * np.sum(spectrum)
+    tone = record("floor.unmeasured_input", tone=30.0, frequency=4.0, phase=0.5)
+    assert tone.push(time, 5) == pytest.approx(30.0 * np.sin(8 * np.pi * time + 0.5))
+
+
+def test_the_unmeasured_force_pushes_the_frame_and_no_channel_of_the_floor_shows_it(loose):
+    effect = record("floor.unmeasured_input", rms=40.0)
+    history, again = shaken(loose, effect), shaken(loose, effect)
+    assert distance(history, again) == 0.0
+    assert distance(history, shaken(replace(loose, seed=loose.seed + 1), effect)) > 1e-3
+    assert np.array_equal(history["floor_acceleration"], shaken(loose)["floor_acceleration"])
+    assert -linkage(loose, history) == pytest.approx(effect.push(history["time"], loose.seed), abs=1e-6)
+
+
+def test_friction_holds_a_seat_that_is_released_within_its_limit(loose, tmp_path):
+    still = seat(tmp_path, LOOSE | {"excitation": {"kind": "rest", "duration": 1.0}})
+    released = replace(still, start=Start(0.01, 0.0))
+    # The spring pulls with 46 N.
+    history = shaken(released, record("suspension.friction", force=60.0))
+    assert np.max(np.abs(history["suspension_displacement"] - 0.01)) < 1e-12
+    slid = shaken(released, record("suspension.friction", force=20.0))
+    assert np.max(np.abs(slid["suspension_displacement"] - 0.01)) > 1e-3
