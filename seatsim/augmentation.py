@@ -29,6 +29,11 @@ def changed(effects: Sequence[Any], method: str, value: Any, *args: Any) -> Any:
     return value
 
 
+def undone(effects: Sequence[Any], value: Any, channel: str, step: float) -> Any:
+    """Return what is true out of what a sensor says: the effects' readings undone, the last one first."""
+    return changed(effects[::-1], "truth", value, channel, step)
+
+
 def in_loop(effects: Sequence[Any]) -> tuple[Effects, Effects]:
     """Return the effects on the damper and on the seat that the time loop is compiled with.
 

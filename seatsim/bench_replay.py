@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, UnivariateSpline
 
-from seatsim.augmentation import changed, damper_with, in_loop, readings
+from seatsim.augmentation import changed, damper_with, in_loop, readings, undone
 from seatsim.coil import Coil, relax
 from seatsim.dampers.bench import bench_force
 from seatsim.effects.base import ON_SEAT, acts_on
@@ -36,10 +37,10 @@ def replay_bench(scenario: Scenario, recording: Recording, run: str) -> dict[str
             name = name_of("effect", type(effect))
             raise InputError(f"{scenario.name}: a damper bench has no part on which {name} acts; remove it")
     interval = 1.0 / recording.header.sample_rate
-    table = {name: changed(effects, "truth", values, name, interval) for name, values in recording.table(run).items()}
+    table = {name: undone(effects, values, name, interval) for name, values in recording.table(run).items()}
     rows = np.arange(len(table["displacement"])) * interval
     fine = np.arange(2 * len(rows) - 1) * 0.5 * interval
-    position = _smooth(rows, table["displacement"], recording.channels["displacement"].noise_rms)
+    position = _smooth(interval, table["displacement"].tobytes(), recording.channels["displacement"].noise_rms)
     velocity = CubicSpline(rows, table["velocity"])(fine) if "velocity" in table else position.derivative()(fine)
     current = _current(changed(effects, "coil", scenario.coil), table, recording.voltage_gain, rows, fine)
     damper, state = damper_with(scenario.damper.record, in_loop(effects)[0])
@@ -49,8 +50,11 @@ def replay_bench(scenario: Scenario, recording: Recording, run: str) -> dict[str
     return readings(effects, interval, {"damper_force": force, "coil_current": current[::2]})
 
 
-def _smooth(time: Array, values: Array, noise: float) -> UnivariateSpline:
-    return UnivariateSpline(time, values, k=5, s=len(values) * noise**2)
+@lru_cache(maxsize=64)
+def _smooth(interval: float, content: bytes, noise: float) -> UnivariateSpline:
+    """Return the spline through a channel, whose `content` is kept so that no run is smoothed twice."""
+    values = np.frombuffer(content)
+    return UnivariateSpline(np.arange(len(values)) * interval, values, k=5, s=len(values) * noise**2)
 
 
 def _current(coil: Coil, table: Mapping[str, Array], gain: float | None, rows: Array, fine: Array) -> Array:

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.augmentation import changed, damper_with, in_loop, pushes
+from seatsim.augmentation import changed, damper_with, in_loop, pushes, undone
+from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.errors import InputError, RunError
 from seatsim.excitations.base import Floor
 from seatsim.kernel.augmented import classes_of
@@ -89,16 +90,16 @@ def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -
     timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
     coil = changed(scenario.effects, "coil", scenario.coil)
     factors = changed(scenario.effects, "factors", scenario.damper.factors)
-    setup = Setup(rig, coil, factors, thermal, law, _belief(scenario, control, bool(on_damper)), timing)
+    setup = Setup(rig, coil, factors, thermal, law, _belief(scenario, control), timing)
     return setup, initial + state_of([type(effect) for effect in on_seat])
 
 
-def _belief(scenario: Scenario, control: Control, augmented: bool) -> Truth | Belief:
+def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
     """Return what the inverse believes: the plant's damper, whose effects it does not know, unless stated otherwise."""
     if control.inverse is None:
         record = scenario.damper.record
         order = card_of(type(record)).current_order
-        if augmented:
+        if any(acts_on(type(effect), (*ON_DAMPER, "factors")) for effect in scenario.effects):
             return Belief(record, order, scenario.damper.factors, np.nan)
         return Truth(record, order)
     record, factors = control.inverse.damper.record, control.inverse.damper.factors
@@ -125,15 +126,15 @@ def _sample_every(step: float, control: Control) -> int:
 
 def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> Inputs:
     step, effects, samples = scenario.solver.step, scenario.effects, len(floor.acceleration)
-    acceleration = changed(effects, "truth", floor.acceleration, "floor_acceleration", step)
+    acceleration = undone(effects, floor.acceleration, "floor_acceleration", step)
     fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
     temperature = np.full(samples, fixed) if floor.temperature is None else floor.temperature
     temperature = changed(effects, "temperature", temperature, step)
-    command = NONE if floor.command is None else changed(effects, "truth", floor.command, "current_command", step)
+    command = NONE if floor.command is None else undone(effects, floor.command, "current_command", step)
     replays = card_of(type(control.law)).replays
     flowing = NONE
     if floor.coil_current is not None:
-        flowing = changed(effects, "truth", floor.coil_current, "coil_current", step)
+        flowing = undone(effects, floor.coil_current, "coil_current", step)
     start = float(flowing[0]) if flowing.size else 0.0
     prescribed = flowing if replays and floor.command is None else NONE
     push = pushes(effects, floor.time, scenario.seed)

@@ -137,7 +137,10 @@ def _sensors(members: Sequence[State], group: Sequence[str]) -> list[str]:
 def menu(problem: Problem) -> Iterator[Trial]:
     """Yield what can be done, cheapest first."""
     step, top = problem.scenario.solver.step, problem.scenario.coil.max_current
-    for name, (text, law, keys) in EXCITATIONS.items():
+    for name, (words, law, keys) in EXCITATIONS.items():
+        if problem.bench and name == "bump":
+            continue
+        text = words.replace("the floor", "the damper") if problem.bench else words
         own = {key: value for key, value in keys.items() if key != "kind"}
         floor = find("excitation", keys["kind"])(**own).floor(step, 0)
         current = {key: top * value for key, value in law.items() if key != "law"}
@@ -156,8 +159,8 @@ def _interventions(problem: Problem, floor: Floor) -> Iterator[Trial]:
     yield Trial("zero_current", "repeat a run without current", floor._replace(command=rest, coil_current=rest))
     ramp = 20.0 + 40.0 * time / time[-1]
     yield Trial("warm_up", "repeat a run while the damper warms from 20 to 60 degC", floor._replace(temperature=ramp))
-    yield Trial("locked_seat", "lock the seat and switch the current every 0.25 s", still)
     if not problem.bench:
+        yield Trial("locked_seat", "lock the seat and switch the current every 0.25 s", still)
         yield Trial("added_mass", "repeat a run with 20 kg more on the driver's place", floor, mass=20.0)
     if "coil_current" not in problem.channels:
         yield Trial("coil_current", "repeat a run and log the current of the coil", floor, ("coil_current",))

@@ -68,9 +68,9 @@ class Evidence:
 
     `traces`: held-out signals. `motion`: of the measured rig on the held-out run, `velocity` and `displacement` of the
     suspension, `coil_current` and `damper_temperature` where known, shape (N,) each. `latent`: block, what it is, unit,
-    and its course in time, where the verdict is unknown. `alikeness`: names of effects and the matrix of how alike their
-    traces in this recording are, 0 to 1, after the nuisance parameters are projected out. `comfort`: rows of (quantity,
-    unit, measured, nominal, after) on held-out runs, such as the RMS acceleration of the driver.
+    and its course in time, where the verdict is unknown. `alikeness`: names of effects and the matrix of how alike
+    their traces in this recording are, 0 to 1, after the nuisance parameters are projected out. `comfort`: rows of
+    (quantity, unit, measured, nominal, after) on held-out runs, such as the RMS acceleration of the driver.
     """
 
     traces: list[Trace]

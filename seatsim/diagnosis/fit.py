@@ -99,9 +99,12 @@ class Engine:
         return [self._state(point, residual) for point, residual in zip(points, residuals, strict=True)]
 
     def _state(self, point: Point, residual: dict[str, Array]) -> State:
-        whitened = {run: self.white(values, run) for run, values in residual.items()}
+        finite = all(np.all(np.isfinite(values)) for values in residual.values())
+        whitened = {
+            run: self.white(values if finite else np.zeros_like(values), run) for run, values in residual.items()
+        }
         cost = sum(float(np.sum(values**2)) for values in whitened.values())
-        if not np.isfinite(cost):
+        if not finite:
             cost = np.inf
         return State(point, residual, whitened, cost + float(np.sum((point.u / SPREAD) ** 2)))
 

@@ -19,7 +19,7 @@ from seatsim.bench_replay import replay_bench
 from seatsim.diagnosis.nuisance import Nuisance, nuisances, varied
 from seatsim.effects.base import off
 from seatsim.effects.damper import SealFriction
-from seatsim.errors import InputError
+from seatsim.errors import InputError, RunError
 from seatsim.excitations.base import Floor
 from seatsim.excitations.recording import RecordedRun
 from seatsim.recording import Recording
@@ -95,10 +95,17 @@ class Problem:
             answer = readings(scenario.effects, step, {name: history[name][::parts] for name in self.channels})
         return np.array([answer[name][self.skip : self.skip + self.measured[run].shape[1]] for name in self.channels])
 
+    def _attempted(self, run: str, u: Array, effects: Sequence[Any]) -> Array:
+        """Return the simulated channels of a run, infinite where the rig leaves all bounds."""
+        try:
+            return self.simulated(run, u, effects)
+        except RunError:
+            return np.full(self.measured[run].shape, np.inf)
+
     def residuals(self, points: Sequence[tuple[Array, Sequence[Any]]]) -> list[dict[str, Array]]:
         """Return `measured - simulated` of every run at each point (parameters, effects), on all cores."""
         jobs = [(index, run) for index in range(len(points)) for run in self.runs]
-        answers = POOL.map(lambda job: self.simulated(job[1], *points[job[0]]), jobs)
+        answers = POOL.map(lambda job: self._attempted(job[1], *points[job[0]]), jobs)
         found: list[dict[str, Array]] = [{} for _ in points]
         for (index, run), values in zip(jobs, answers, strict=True):
             found[index][run] = self.measured[run] - values

@@ -114,13 +114,13 @@ def _screened(engine: Engine, base: State, offered: Sequence[Candidate]) -> list
 
 def _foreseen(engine: Engine, base: State, start: State, own: dict[str, Array]) -> tuple[float, float]:
     """Return the cost that a multiple of the start's change foresees, and that multiple."""
+    if not np.isfinite(start.cost):
+        return np.inf, 1.0
     vector = base.point.vector
     low, high = base.point.limits
     parts = []
     for run, residual in base.whitened.items():
         change = (residual - start.whitened[run]).ravel()
-        if not np.all(np.isfinite(change)):
-            return np.inf, 1.0
         parts.append(engine.gram(run, np.vstack([own[run], change]), residual))
     matrix, right = np.sum([part[0] for part in parts], axis=0), np.sum([part[1] for part in parts], axis=0)
     count = len(base.point.u)

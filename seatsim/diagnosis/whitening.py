@@ -122,10 +122,11 @@ def _unrepeatable(problem: Problem) -> tuple[Array, Array] | None:
         first, second = problem.measured[entry.repeat_of], problem.measured[run]
         samples = min(first.shape[1], second.shape[1])
         spectrum = np.fft.rfft(first[:, :samples] - second[:, :samples], axis=1)
-        frequency = np.fft.rfftfreq(samples, 1.0 / problem.recording.header.sample_rate)
+        frequency = np.arange(samples // 2 + 1) * problem.recording.header.sample_rate / samples
         found.append((frequency, 0.5 * _smoothed(np.abs(spectrum) ** 2) / samples))
     if not found:
         return None
     frequency = found[0][0]
     resampled = [[np.interp(frequency, f, row) for row in power] for f, power in found]
-    return frequency, np.asarray(np.mean(resampled, axis=0))
+    mean: Array = np.mean(resampled, axis=0)
+    return frequency, mean

@@ -26,6 +26,7 @@ In the time loop, compiled by numba, with `z` the effect's own state:
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
 from seatsim.registry import card_of, register
@@ -43,15 +44,16 @@ class Form(NamedTuple):
     """Where a fit to a recording starts: the values of the parameters it frees, and of others that it holds."""
 
     free: Values
-    held: Values = {}
+    held: Values = MappingProxyType({})
 
 
 class EffectCard(NamedTuple):
     """What is stated of an effect.
 
     source: of the law. initial: its state at rest. off: parameters at which the rig is unchanged, where that is not
-    zero. forms: functional forms in which a recording may show it; what a form does not name stays off. suits: whether it can be missing in a model whose damper is `record`.
-    by_channel: it acts on one recorded channel, which its parameter `channel` names.
+    zero. forms: functional forms in which a recording may show it; what a form does not name stays off. suits: whether
+    it can be missing in a model whose damper is `record`. by_channel: it acts on one recorded channel, which its
+    parameter `channel` names.
     """
 
     source: str

@@ -94,8 +94,8 @@ class SealFriction(NamedTuple):
 class FreePlay(NamedTuple):
     """Backlash at the mount or trapped air: after each reversal of the force a travel `gap` without force.
 
-    The damper gets the share h of the speed and hands on the share h of its force. With g the place in the gap,
-    `g' = v (1 - h)`, and u = 2 g sgn(F) / gap, h rises smoothly from 0 at `u = 1 - 2 softness` to 1 at u = 1.
+    The damper hands on the share h of its force, and its own state gets the share h of the speed. With g the place in
+    the gap, `g' = v (1 - h)`, and u = 2 g sgn(F) / gap, h rises smoothly from 0 at `u = 1 - 2 softness` to 1 at u = 1.
     """
 
     gap: Annotated[float, param("m", "travel without force after a reversal", low=0, high=0.05)]

@@ -46,7 +46,7 @@ class MagneticSaturation(NamedTuple):
         {"width": 0.01, "lift": 0.5},
         {"width": 0.02, "decay": 1.0},
         {"width": 0.1, "decay": 20.0},
-    ),  # fmt: skip
+    ),
 )
 class Remanence(NamedTuple):
     """Yield force that remembers past current: it feels the mean of two plays of the current.
@@ -95,8 +95,8 @@ def _play(z: float, i: float, width: float) -> float:
 class ThermalFade(NamedTuple):
     """Viscous and yield force that fall as the fluid warms.
 
-    Their factors are `exp(-viscous (T - T0))` and `exp(-yielding (T - T0))`; T0 is the reference of the damper's temperature factors. The thermocouple follows the fluid with a lag, so that the
-    fluid is at `T = T_c + lag dT_c/dt + rise`.
+    Their factors are `exp(-viscous (T - T0))` and `exp(-yielding (T - T0))`; T0 is the reference of the damper's
+    temperature factors. The thermocouple follows the fluid with a lag: the fluid is at `T = T_c + lag dT_c/dt + rise`.
     """
 
     viscous: Annotated[float, param("1/K", "fade of the viscous force", low=-0.02, high=0.1)]

@@ -97,7 +97,7 @@ def derivative(rig: Rig, s: Tuple, shake: Shake, current: float, heat: Heat, sli
     driver = (inner_force(effects, ze, plant) - cushion + shake.lift) / body
 
     works = (
-        -(plant.frame_mass * v + plant.driver_mass * (v + vc)) * shake.floor,
+        shake.push * v + shake.lift * (v + vc) - (plant.frame_mass * v + plant.driver_mass * (v + vc)) * shake.floor,
         ratio * damper_force * v,
         (resistance + share * linkage) * v,
         (cushion - plant.cushion_stiffness * xc) * vc,

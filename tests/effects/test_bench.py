@@ -1,0 +1,68 @@
+"""Effects in the scenario of a damper bench."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import seatsim
+from seatsim.coil import Coil, relax
+from seatsim.effects.base import ON_SEAT, acts_on
+from seatsim.registry import find
+
+from .rigs import BINGHAM, NAMES, STEP, bench, cycles, record, starts
+
+RIG = f"""\
+damper: {{model: bingham, parameters: {BINGHAM._asdict()}}}
+actuator: {{rate: 130.0, max_current: 1.0}}
+temperature: 20.0
+effects: []
+"""
+EFFECTS = """\
+effects:
+  - {effect: damper.seal_friction, parameters: {force: 40.0, presliding: 5.0e-4}}
+  - {effect: coil.lag, parameters: {time: 0.02}}
+  - {effect: sensor.gain, parameters: {channel: damper_force, error: 0.1}}
+"""
+HEADER = """\
+rig: damper_bench
+sample_rate: 1000.0
+nominal: nominal.yaml
+runs: [{name: a, file: a.csv}]
+channels: {displacement: {unit: m, noise_rms: 1.0e-6}, current_command: {unit: A}, coil_current: {unit: A},
+           damper_force: {unit: N, noise_rms: 2.0}}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A recording of a damper with seal friction, a slow coil and a load cell that reads too much."""
+    x, v = cycles(amplitude=0.008, frequency=1.3, count=5)
+    rows = len(x[::2])
+    command = np.where(np.arange(rows) // 500 % 2 == 0, 0.2, 0.8)
+    coil = record("coil.lag", time=0.02).coil(Coil())
+    current = [0.2]
+    for row in range(2 * (rows - 1)):
+        current.append(relax(coil, current[-1], command[row // 2], 0.5 * STEP))
+    force = 1.1 * bench([record("damper.seal_friction", force=40.0, presliding=5e-4)], x, v, np.array(current))
+    columns = {"displacement": x[::2], "current_command": command, "coil_current": current[::2], "damper_force": force}
+    pd.DataFrame(columns).to_csv(tmp_path / "a.csv", index=False)
+    (tmp_path / "recording.yaml").write_text(HEADER)
+    (tmp_path / "nominal.yaml").write_text(RIG)
+    return tmp_path
+
+
+def test_the_effects_of_a_bench_close_its_gap(folder):
+    nominal = seatsim.gap(folder / "nominal.yaml", folder)
+    (folder / "nominal.yaml").write_text(RIG.replace("effects: []\n", EFFECTS))
+    closed = seatsim.gap(folder / "nominal.yaml", folder)
+    assert nominal.overall > 0.1
+    assert closed.overall < 0.01
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if acts_on(find("effect", name), (*ON_SEAT, "plant", "push"))])
+def test_effects_of_the_seat_are_refused_on_a_bench(folder, name):
+    values = (starts(name) or [record(name, rms=10.0)])[0]._asdict()
+    listed = ", ".join(f"{key}: {value!r}" for key, value in values.items())
+    (folder / "nominal.yaml").write_text(RIG.replace("[]", f"[{{effect: {name}, parameters: {{{listed}}}}}]"))
+    with pytest.raises(seatsim.InputError, match=f"no part on which {name} acts"):
+        seatsim.gap(folder / "nominal.yaml", folder)
