@@ -33,7 +33,7 @@ def setup(sample_every: int, tolerance: float = 1e-4) -> Setup:
     """Return the run's constant parts; the law is sampled every `sample_every` steps."""
     rig = Rig(PLANT, DAMPER)
     timing = Timing(STEP, sample_every, tolerance, self_heating=False)
-    return Setup(rig, Coil(), TemperatureFactors(), Thermal(), GAIN, Truth(DAMPER, 0), timing)
+    return Setup(rig, Coil(), TemperatureFactors(), Thermal(), GAIN, Truth(DAMPER, 0), timing, Coil().max_current)
 
 
 def seatsim_run(acceleration: np.ndarray, parts: Setup) -> tuple[Callable[[], None], np.ndarray]:

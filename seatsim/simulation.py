@@ -90,7 +90,7 @@ def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -
     timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
     coil = changed(scenario.effects, "coil", scenario.coil)
     factors = changed(scenario.effects, "factors", scenario.damper.factors)
-    setup = Setup(rig, coil, factors, thermal, law, _belief(scenario, control), timing)
+    setup = Setup(rig, coil, factors, thermal, law, _belief(scenario, control), timing, scenario.coil.max_current)
     return setup, initial + state_of([type(effect) for effect in on_seat])
 
 

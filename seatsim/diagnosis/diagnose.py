@@ -18,10 +18,10 @@ from seatsim.diagnosis.coverage import coverage
 from seatsim.diagnosis.evidence import causes, collected
 from seatsim.diagnosis.examination import examine, refuse
 from seatsim.diagnosis.experiment import experiment
-from seatsim.diagnosis.findings import Diagnosis, Share
+from seatsim.diagnosis.findings import Diagnosis, Estimate, Share
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.isolability import isolable, losses
-from seatsim.diagnosis.latent import FORETOLD, Latent, latent
+from seatsim.diagnosis.latent import FORETOLD, Latent, latent, rms
 from seatsim.diagnosis.place import places
 from seatsim.diagnosis.problem import Problem, problem
 from seatsim.diagnosis.search import Search, search
@@ -83,7 +83,7 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     second = _searched(Engine(posed, whitening(posed, first.rest.course)), offered, effects, told)
     if second.judgement.verdict == "unknown":
         return first
-    return second._replace(rest=first.rest, unmeasured=True)
+    return second._replace(rest=first.rest._replace(block="floor"), unmeasured=True)
 
 
 def _searched(
@@ -114,6 +114,9 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     found = gaps(posed, [scenario_at(posed, nominal, point) for point in points], [run])
     judgement, where = _with_outside(solution)
     listed = causes(engine, solution.found, judgement, calibrated, augmented, nominal, run)
+    if solution.unmeasured and solution.rest is not None:
+        strength = {"rms": Estimate(rms(solution.rest), 0.0, "N")}
+        listed = [c._replace(parameters=strength) if c.effect == OUTSIDE else c for c in listed]
     group = judgement.groups[0] if judgement.groups else []
     asked = experiment(engine, chosen, group) if group and not posed.bench else None
     scenario = asked.pop("scenario", None) if asked else None

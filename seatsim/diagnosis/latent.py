@@ -118,10 +118,14 @@ def _regressed(features: Array, target: Array) -> Array:
     return weights
 
 
+def rms(found: Latent) -> float:
+    """Return the RMS of an unexplained course over all runs."""
+    return float(np.sqrt(np.mean(np.concatenate(list(found.course.values())) ** 2)))
+
+
 def described(found: Latent) -> list[str]:
     """Return sentences on an unexplained course."""
-    rms = float(np.sqrt(np.mean(np.concatenate(list(found.course.values())) ** 2)))
-    sentences = [f"The missing {found.quantity} in the {found.block} has an RMS of {rms:.3g} {found.unit}."]
+    sentences = [f"The missing {found.quantity} in the {found.block} has an RMS of {rms(found):.3g} {found.unit}."]
     families = {family: share for family, share in found.shares.items() if family != "everything"}
     best = max(families, key=lambda family: families[family])
     if families[best] < 0.1:

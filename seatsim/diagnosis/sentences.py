@@ -5,6 +5,9 @@ from __future__ import annotations
 from seatsim.diagnosis.findings import Cause, Diagnosis, Estimate
 from seatsim.registry import find
 
+UNFORESEEN = "floor.unmeasured_input"
+"""The effect that is found but cannot be simulated."""
+
 
 def answer(diagnosis: Diagnosis) -> str:
     """Return what a diagnosis comes to, in one sentence."""
@@ -25,6 +28,8 @@ def answer(diagnosis: Diagnosis) -> str:
     credit = 1.0 - gap.after["overall"] / gap.calibrated["overall"]
     sentence = f"{named}: it takes {credit:.0%} off the gap that refitted parameters leave ({size} to"
     sentence += f" {gap.after['overall']:.3f}, noise {gap.floor['overall']:.3f})"
+    if UNFORESEEN in diagnosis.selected:
+        sentence += "; the force's course cannot be foretold, so that its share of the gap stays"
     for group in diagnosis.indistinguishable:
         sentence += f"; these data cannot tell it from {_listed(group[1:])}"
     return sentence + "."

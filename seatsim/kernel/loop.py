@@ -74,7 +74,7 @@ class Timing(NamedTuple):
 
 
 class Setup(NamedTuple):
-    """The constant parts of a run."""
+    """The constant parts of a run; `max_command` in A is the most that the controller asks for, whatever the coil gets."""
 
     rig: Rig
     coil: Coil
@@ -83,6 +83,7 @@ class Setup(NamedTuple):
     law: Any
     belief: Any
     timing: Timing
+    max_command: float
 
 
 def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, law_state: Tuple, out: Array) -> int:
@@ -115,6 +116,7 @@ def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, la
             break
         after = out[k - delay_steps, 11] if k >= delay_steps else inputs.start_current
         before = out[k - delay_steps - 1, 11] if k >= delay_steps + 1 else inputs.start_current
+        after, before = min(after, coil.max_current), min(before, coil.max_current)
         if prescribed:
             after = inputs.prescribed[k + 1]
         rise = inputs.floor_acceleration[k + 1] - floor
@@ -160,7 +162,7 @@ def _decide(
     setup: Setup, y: Measurement, now: Progress, factors: Heat, believed: Tuple, law_state: Tuple, grid: Array
 ) -> tuple[float, float, float]:
     """Return the command in A, the force in N that the law wants (NaN: it wants a current) and whether it is served."""
-    law, belief, top = setup.law, setup.belief, setup.coil.max_current
+    law, belief, top = setup.law, setup.belief, setup.max_command
     answer = ask(law, y, law_state)
     if not wants_force(law):
         return min(max(answer, 0.0), top), math.nan, math.nan
