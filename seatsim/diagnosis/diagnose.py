@@ -115,7 +115,7 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     judgement, where = _with_outside(solution)
     listed = causes(engine, solution.found, judgement, calibrated, augmented, nominal, run)
     if solution.unmeasured and solution.rest is not None:
-        strength = {"rms": Estimate(rms(solution.rest), 0.0, "N")}
+        strength: dict[str, Estimate | str] = {"rms": Estimate(rms(solution.rest), 0.0, "N")}
         listed = [c._replace(parameters=strength) if c.effect == OUTSIDE else c for c in listed]
     group = judgement.groups[0] if judgement.groups else []
     asked = experiment(engine, chosen, group) if group and not posed.bench else None

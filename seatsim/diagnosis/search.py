@@ -63,10 +63,11 @@ def search(engine: Engine, candidates: Sequence[Candidate], told: Callable[[str]
         sets = _extended(engine, found.sets[-1][:BEAM], candidates, SHORTLIST if size == 1 else SECONDS)
         if not sets:
             break
+        engine.refresh(sets[0])
+        sets[0] = engine.fitted(sets[0])
         found.sets.append(sets)
         if not _gains(found):
             break
-        engine.refresh(sets[0])
     return found
 
 

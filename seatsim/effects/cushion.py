@@ -13,19 +13,24 @@ from seatsim.plant import Plant
 @effect(
     "cushion.hardening",
     source="series of a foam's compression curve about the seated position",
-    forms=({"rise": 40.0}, {"rise": 40.0, "bend": 2e3}),
+    forms=({"rise": 40.0}, {"rise": 40.0, "bend": 2e3}, {"rise": 40.0, "loss": 40.0}),
 )
 class Hardening(NamedTuple):
-    """Foam that stiffens under compression: with d = -xc > 0 the force grows by `kc d (rise d + bend d^2)`."""
+    """Foam that stiffens under compression: with d = -xc > 0 the force grows by `kc d (rise d + bend d^2)`.
+
+    Its damping grows too, by `cc loss d`.
+    """
 
     rise: Annotated[float, param("1/m", "relative rise of stiffness with compression", low=0, high=1e4)]
     bend: Annotated[float, param("1/m^2", "relative rise with its square", low=0, high=1e7)] = 0.0
+    loss: Annotated[float, param("1/m", "relative rise of damping with compression", low=0, high=1e4)] = 0.0
 
     def cushion_force(self, force: float, plant: Plant, xc: float, vc: float, z: State) -> float:
         """Return the cushion's force in N, positive in tension."""
         if xc >= 0.0:
             return force
-        return force - plant.cushion_stiffness * xc * xc * (self.rise - self.bend * xc)
+        stiffer = plant.cushion_stiffness * xc * xc * (self.rise - self.bend * xc)
+        return force - stiffer - plant.cushion_damping * self.loss * xc * vc
 
 
 @effect(

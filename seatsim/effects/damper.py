@@ -17,7 +17,7 @@ SHORTEST = 2e-5
 FASTEST = 1000.0
 """1/s; greatest rate at which a yield force builds up."""
 SWITCH = 0.01
-"""m/s; scale of speed over which rebound turns into compression."""
+"""m/s; speed over which rebound turns into compression, unless stated otherwise."""
 
 
 @effect(
@@ -39,19 +39,21 @@ class GasSpring(NamedTuple):
 @effect(
     "damper.asymmetry",
     source="Yu et al. 2019 (Front. Mater. 6:227): rebound and compression differ",
-    forms=({"viscous": 0.1, "yielding": 0.1},),
+    off={"speed": SWITCH},
+    forms=({"viscous": 0.1, "yielding": 0.1}, {"viscous": 0.1, "yielding": 0.1, "speed": 0.05}),
 )
 class Asymmetry(NamedTuple):
-    """Rebound stronger and compression weaker: both parts of the force times `1 + a tanh(v / 1 cm/s)`."""
+    """Rebound stronger and compression weaker: both parts of the force times `1 + a tanh(v / speed)`."""
 
     viscous: Annotated[float, param("-", "a of the viscous part", low=-0.9, high=0.9)]
     yielding: Annotated[float, param("-", "a of the yield part", low=-0.9, high=0.9)] = 0.0
+    speed: Annotated[float, param("m/s", "speed over which one turns into the other", above=0, high=1)] = SWITCH
 
     def conditioned(self, heat: Heat, v: float, z: State) -> Heat:
         """Return the factors of the damper's parts at a speed."""
         if self.viscous == 0.0 and self.yielding == 0.0:
             return heat
-        side = math.tanh(v / SWITCH)
+        side = math.tanh(v / self.speed)
         viscous, yielding = heat.viscous * (1.0 + self.viscous * side), heat.yielding * (1.0 + self.yielding * side)
         return Heat(viscous, heat.stiffness, yielding)
 

@@ -74,7 +74,7 @@ class Timing(NamedTuple):
 
 
 class Setup(NamedTuple):
-    """The constant parts of a run; `max_command` in A is the most that the controller asks for, whatever the coil gets."""
+    """The constant parts of a run; `max_command` in A is the most that the controller asks for."""
 
     rig: Rig
     coil: Coil

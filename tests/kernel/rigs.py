@@ -52,7 +52,9 @@ def run(
     inputs = Inputs(floor, velocity, np.full(rows, temperature), replayed, prescribed, NONE, NONE, **start)
     timing = Timing(step, every, tolerance, thermal is not None)
     belief = truth(damper) if belief is None else belief
-    setup = Setup(Rig(plant, damper, effects), coil, factors, thermal or Thermal(), law, belief, timing, coil.max_current)
+    setup = Setup(
+        Rig(plant, damper, effects), coil, factors, thermal or Thermal(), law, belief, timing, coil.max_current
+    )
     out = np.empty((rows, len(CHANNELS)))
     loop = compiled(run_loop, (type(damper), type(law), type(belief.damper), *map(type, effects)))
     rest, believed = (card_of(type(part)).initial for part in (damper, belief.damper))
