@@ -31,8 +31,8 @@ LEAST_CUSHION = 1.5
 """Hz above which the cushion's deflection, twice an integral of measured accelerations, is trusted."""
 ROUNDS = 5
 """Iterations to the matched motion."""
-NEARLY = 0.35
-"""Share of a force that frame and driver do not exchange, below which it counts as the cushion's."""
+MARGIN = 1.3
+"""Factor on the power of what noise seems to lack."""
 
 
 @dataclass(frozen=True)
@@ -142,10 +142,6 @@ def twin(problem: Problem, point: Point) -> Problem:
         true = problem.simulated(run, point.u, point.effects, Drive(shaken))
         measured[run] = true + problem.noise[:, None] * rng.standard_normal(true.shape)
     return dataclasses.replace(problem, measured=measured)
-
-
-MARGIN = 1.3
-"""Factor on the power of what noise seems to lack."""
 
 
 def sizes(problem: Problem, lack: Missing) -> dict[str, float]:

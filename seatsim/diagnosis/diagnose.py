@@ -18,7 +18,7 @@ from seatsim.diagnosis.coverage import coverage
 from seatsim.diagnosis.evidence import causes, collected
 from seatsim.diagnosis.examination import examine, refuse
 from seatsim.diagnosis.experiment import experiment
-from seatsim.diagnosis.findings import Diagnosis, Estimate, Share
+from seatsim.diagnosis.findings import OUTSIDE, Diagnosis, Estimate, Share
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.isolability import isolable, losses
 from seatsim.diagnosis.latent import FORETOLD, Latent, latent, rms
@@ -31,9 +31,6 @@ from seatsim.diagnosis.whitening import whitening
 from seatsim.recording import Recording, load_recording
 from seatsim.registry import names
 from seatsim.replay import single
-
-OUTSIDE = "floor.unmeasured_input"
-"""The effect that no fit can foretell, found by what is left."""
 
 
 class Solution(NamedTuple):
@@ -121,7 +118,8 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     asked = experiment(engine, chosen, group) if group and not posed.bench else None
     scenario = asked.pop("scenario", None) if asked else None
     relevant = [cause.effect for cause in listed[:10] if cause.probability > 0.003]
-    selected = [name for name, p in judgement.probabilities.items() if p > 0.0 and name in _selected(solution)]
+    chosen_names = _selected(solution)
+    selected = [name for name in judgement.probabilities if name in chosen_names]
     diagnosis = Diagnosis(
         name=recording.folder.name, verdict=judgement.verdict, sentence="", where=where, causes=listed,
         probability_none=judgement.none, probability_unknown=judgement.unknown, selected=selected,

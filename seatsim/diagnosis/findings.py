@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+OUTSIDE = "floor.unmeasured_input"
+"""The effect whose course no fit can foretell: it is found by what is left, and cannot be simulated."""
+
 
 class Estimate(NamedTuple):
     """A fitted parameter with its standard deviation and unit."""

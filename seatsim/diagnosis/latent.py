@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import decimate
 
-from seatsim.diagnosis.blocks import Missing, missing
+from seatsim.diagnosis.blocks import Missing
 from seatsim.diagnosis.fit import Point
 from seatsim.diagnosis.problem import Problem
 
@@ -38,9 +38,8 @@ class Latent(NamedTuple):
     shares: dict[str, float]
 
 
-def latent(problem: Problem, point: Point, block: str, lack: Missing | None = None) -> Latent:
+def latent(problem: Problem, point: Point, block: str, lack: Missing) -> Latent:
     """Return the unexplained force or current of a block of the seat and what foretells it."""
-    lack = lack or missing(problem, point)
     courses = {"damper": lack.damper, "driver": lack.driver, "cushion": lack.driver, "coil": lack.coil}
     course = courses.get(block, lack.frame)
     if not any(np.any(values) for values in course.values()):

@@ -28,6 +28,8 @@ LARGEST = 3
 """Most effects of a set."""
 STRETCH = 6.0
 """Largest factor by which a start is stretched after the screening."""
+WORTHWHILE = 0.85
+"""A larger set is looked for while the last enlargement lowered the excess to below this share."""
 
 
 @dataclass(frozen=True)
@@ -69,10 +71,6 @@ def search(engine: Engine, candidates: Sequence[Candidate], told: Callable[[str]
         if not _gains(found):
             break
     return found
-
-
-WORTHWHILE = 0.85
-"""A larger set is looked for while the last enlargement lowered the excess to below this share."""
 
 
 def _gains(found: Search) -> bool:

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from seatsim.diagnosis.findings import Cause, Diagnosis, Estimate
+from seatsim.diagnosis.findings import OUTSIDE, Cause, Diagnosis, Estimate
 from seatsim.registry import find
-
-UNFORESEEN = "floor.unmeasured_input"
-"""The effect that is found but cannot be simulated."""
 
 
 def answer(diagnosis: Diagnosis) -> str:
@@ -28,7 +25,7 @@ def answer(diagnosis: Diagnosis) -> str:
     credit = 1.0 - gap.after["overall"] / gap.calibrated["overall"]
     sentence = f"{named}: it takes {credit:.0%} off the gap that refitted parameters leave ({size} to"
     sentence += f" {gap.after['overall']:.3f}, noise {gap.floor['overall']:.3f})"
-    if UNFORESEEN in diagnosis.selected:
+    if OUTSIDE in diagnosis.selected:
         sentence += "; the force's course cannot be foretold, so that its share of the gap stays"
     for group in diagnosis.indistinguishable:
         sentence += f"; these data cannot tell it from {_listed(group[1:])}"

@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from seatsim.plots import labels
-from seatsim.plots.style import COLOURS, LETTER, LINE, MARGIN, SAMPLE, Entry, Grid, Page
+from seatsim.plots.style import COLOURS, LETTER, LINE, MARGIN, SAMPLE, Entry, Grid, Page, panels
 
 WIDTH, WIDE = 5.8, 7.6
 DPI = 150
@@ -75,7 +75,7 @@ def frame(grid: Grid, legend: Sequence[Entry] = (), width: float = WIDTH) -> Pag
             handles=handles, ncols=columns, loc="upper left", frameon=False, fontsize=FONT, borderpad=0,
             bbox_to_anchor=(MARGIN / width, 1 - 0.06 / height), borderaxespad=0, columnspacing=1.2, handlelength=2.2,
         )  # fmt: skip
-    return Page(figure, _panels(figure, grid, width, height - header))
+    return Page(figure, panels(figure, grid, width, height - header))
 
 
 def mark(look: Entry) -> Line2D:
@@ -117,24 +117,3 @@ def _columns(legend: Sequence[Entry], width: float) -> int:
         if sum(LETTER * max(len(look.label) for look in row) + SAMPLE for row in rows) <= width - 2 * MARGIN:
             return count
     return 1
-
-
-def _panels(figure: Figure, grid: Grid, width: float, top: float) -> list[list[Axes]]:
-    height = float(figure.get_figheight())
-    wide = (width - grid.left - grid.right - grid.gap[0] * (grid.columns - 1)) / grid.columns
-    rows = []
-    for tall in grid.heights:
-        lefts = [grid.left + column * (wide + grid.gap[0]) for column in range(grid.columns)]
-        bottom = (top - tall) / height
-        rows.append([_panel(figure, (x / width, bottom, wide / width, tall / height)) for x in lefts])
-        top -= tall + grid.gap[1]
-    return rows
-
-
-def _panel(figure: Figure, place: tuple[float, float, float, float]) -> Axes:
-    axes = figure.add_axes(place)
-    axes.grid(True, color="0.9", linewidth=0.7)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.tick_params(labelsize=FONT)
-    return axes

@@ -89,7 +89,7 @@ def page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -> Pag
             handles=[_handle(entry) for entry in legend], ncols=columns, loc="upper left", frameon=False,
             bbox_to_anchor=(left, 1 - (MARGIN + 0.56) / height), borderaxespad=0, borderpad=0,
         )  # fmt: skip
-    return Page(figure, _panels(figure, grid, header, height))
+    return Page(figure, panels(figure, grid, WIDTH, height - header))
 
 
 def line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> None:
@@ -132,13 +132,15 @@ def _legend_columns(legend: Sequence[Entry]) -> int:
     return 1
 
 
-def _panels(figure: Figure, grid: Grid, header: float, height: float) -> list[list[Axes]]:
-    width = (WIDTH - grid.left - grid.right - grid.gap[0] * (grid.columns - 1)) / grid.columns
-    rows, top = [], height - header
+def panels(figure: Figure, grid: Grid, width: float, top: float) -> list[list[Axes]]:
+    """Return the axes of a grid, row by row, on a figure `width` inches wide, from `top` inches above its foot."""
+    height = float(figure.get_figheight())
+    wide = (width - grid.left - grid.right - grid.gap[0] * (grid.columns - 1)) / grid.columns
+    rows = []
     for tall in grid.heights:
-        lefts = [grid.left + column * (width + grid.gap[0]) for column in range(grid.columns)]
+        lefts = [grid.left + column * (wide + grid.gap[0]) for column in range(grid.columns)]
         bottom = (top - tall) / height
-        rows.append([_panel(figure, (x / WIDTH, bottom, width / WIDTH, tall / height)) for x in lefts])
+        rows.append([_panel(figure, (x / width, bottom, wide / width, tall / height)) for x in lefts])
         top -= tall + grid.gap[1]
     return rows
 
