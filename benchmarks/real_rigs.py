@@ -1,24 +1,8 @@
 """Recordings of rigs that nobody here built, and what the diagnosis says of them: `python benchmarks/real_rigs.py`.
 
 Out of `../shared/data` are written, into `--out` or a folder that is thrown away, never into the repository, folders
-`NAME`, `NAME-fit` (the records that the nominal was fitted to) and `NAME-unseen`, all with the same nominal:
-
-utfsm, utfsm-all  MR damper on a press, sines: 0 and 0.25 A, where the offset stands out of the model's own error, and
-    all five currents. Raw signals at 200 Hz (of the 1000 Hz files every fifth row, nothing smoothed), from 1.2 s
-    before the motion to 8 s after its start or to its end. The current is the constant that was set, a command; no coil
-    current was logged. Left out: velocity (a derivative of the displacement), and the force that relaxes after a stop.
-dyke  Prototype MR damper, random stroke and switched voltage, every fourth row (751.2 Hz; the filter's corner was 100
-    Hz). The current was not recorded: 2.25 V are taken as 1 A, which only names the unit of current. The nominal was
-    fitted where the voltage had stood for 25 ms and believes in a driver of 1000 1/s: the standard 130 1/s is already
-    the lag of 8 ms that is to be found (`dyke-130`: the same with 130 1/s, where there is no lag to find).
-quanser, quanser-travel  Quarter car as a seat: road = floor, middle plate = frame, body = driver, tyre = suspension,
-    body's spring = cushion. The chain of masses maps exactly. No force was recorded, so that masses, stiffnesses and
-    forces share a free factor; it makes the masses a seat's (x 30), since the contract's scales (100 N) are. Only
-    positions were measured: they are low-passed at 12 Hz without phase (the chirp ends at 10 Hz), accelerations are
-    their second derivatives; `quanser-travel` compares the travel alone, which is measured. Two things do NOT map, so
-    that this is no fair test of whether guide friction is named: a commanded force of up to 1 N (30 N here, in step
-    with the road) acts between frame and driver, where the contract's rig has no actuator; and the guides rub against
-    the ground, `suspension.friction` against the moving floor. Fitted dashpots absorb most of the friction as well.
+`NAME`, `NAME-fit` (the records that the nominal was fitted to) and `NAME-unseen`, all with the same nominal;
+`rig_records` says what they are.
 
 A nominal is a plain model without what the data are known to show. That this is in the data is shown without the
 diagnosis: the effect is added by hand, fitted with the nominal's parameters inside their tolerance to half of the runs,
@@ -31,9 +15,8 @@ import argparse
 import dataclasses
 import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -41,9 +24,9 @@ import numpy as np
 import pandas as pd
 from rich.console import Console
 from rich.table import Table
+from rig_records import Rig, Runs, Trial, dyke, quanser, utfsm
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
-from scipy.signal import butter, sosfiltfilt, welch
 
 import seatsim
 from seatsim.fields import bounds
@@ -53,49 +36,11 @@ from seatsim.registry import find
 from seatsim.replay import LEFT_OUT, pooled, single
 from seatsim.scenario import Scenario
 
-Runs = dict[str, dict[str, Any]]
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 TOLERANCE = 0.1
 """Fits to single records scatter by 8-20 % in the leading parameters of the nominals, by more in the others."""
 STEP = 1e-3
 """Relative step of the finite differences, above the error of the time integration."""
-SETTLED = 0.025
-"""s after which a switched voltage counts as steady."""
-SCALE = 30.0
-"""Factor from the forces and masses of the Quanser rig to those of its recording."""
-CUTOFF = 12.0
-"""Hz; the Quanser rig's chirp ends at 10 Hz."""
-BOUC_WEN = {"k0": 0.0, "x0": 0.0, "f0": 0.0, "n": 2.0}
-BENCH_FREE = ("damper.c_a", "damper.c_b", "damper.alpha_a", "damper.alpha_b", "damper.A")
-GAS = ("damper.gas_spring", {}, {"preload": 50.0})
-BIAS = ("sensor.bias", {"channel": "damper_force"}, {"share": 0.5})
-LAG = ("coil.lag", {}, {"time": 0.003})
-FRICTION = ("suspension.friction", {"presliding": 1e-4}, {"force": 20.0})
-
-Trial = tuple[tuple[str, dict[str, Any], dict[str, float]], ...]
-"""Effects to be added by hand: name, fixed parameters, free ones with their start."""
-
-
-class Rig(NamedTuple):
-    """A rig's records, split, with a nominal scenario whose parameters `free` are still a first guess.
-
-    `counted` says of a run's table which rows the nominal is fitted to. `noise` holds the RMS by channel.
-    """
-
-    name: str
-    kind: str
-    sample_rate: float
-    known: str
-    nominal: dict[str, Any]
-    free: tuple[str, ...]
-    noise: dict[str, float]
-    fit: Runs
-    runs: Runs
-    unseen: Runs
-    trials: tuple[Trial, ...]
-    voltage_gain: float | None = None
-    repeats: bool = False
-    counted: Callable[[Mapping[str, Any]], Any] = lambda table: np.full(len(next(iter(table.values()))), True)
 
 
 class Found(NamedTuple):
@@ -114,131 +59,6 @@ class Found(NamedTuple):
     def shrink(self) -> float:
         """Share by which the gap on the held-out runs is smaller than the nominal's."""
         return 1.0 - self.held_out / self.nominal
-
-
-def utfsm(data: Path, name: str, currents: Sequence[float]) -> Rig:
-    """Return the sines of the damper of UTFSM at some of their currents."""
-    records = {
-        file: pd.read_csv(data / "utfsm_mr_sine_raw" / f"raw_{file}.csv.gz")
-        for file in ("10mm_2Hz", "25mm_0p5Hz", "5mm_3Hz", "5mm_4Hz", "2mm_5Hz", "25mm_0p25Hz")
-    }
-    levels: dict[str, list[float]] = {"damper_force": [], "displacement": []}
-
-    def part(*files: str) -> Runs:
-        found: Runs = {}
-        for index, file in enumerate(files):
-            turn = -1 if index % 2 else 1  # so that every second run holds every current
-            for _, segment in list(records[file].groupby("segment"))[::turn]:
-                current = float(segment["current_A"].iloc[0])
-                if current not in currents:
-                    continue
-                time = segment["time_s"].to_numpy()
-                rate = 1.0 / float(np.median(np.diff(time)))
-                levels["damper_force"].append(white(segment["force_N"], rate))
-                levels["displacement"].append(white(segment["displacement_m"], rate))
-                rows = segment.iloc[:: round(rate / 200.0)]
-                start = int(np.flatnonzero(np.abs(rows["velocity_m_s"]) > 0.003)[0])
-                end = int(np.flatnonzero(np.abs(rows["velocity_m_s"]) > 0.003)[-1])
-                rows = rows.iloc[max(0, start - 240) : min(end, start + 1600) + 1]
-                found[f"{file}-{current:g}A".replace(".", "p")] = {
-                    "displacement": rows["displacement_m"].to_numpy(),
-                    "damper_force": rows["force_N"].to_numpy(),
-                    "current_command": np.full(len(rows), current),
-                }
-        return found
-
-    split = part("10mm_2Hz"), part("25mm_0p5Hz", "5mm_3Hz"), part("5mm_4Hz", "2mm_5Hz", "25mm_0p25Hz")
-    guess = {"c_a": 1100.0, "c_b": 4500.0, "alpha_a": 100.0, "alpha_b": 850.0, "A": 3e4, "beta": 1.5e4, "gamma": 1.5e4}
-    return Rig(
-        name, "damper_bench", 200.0, "static offset of 27-58 N", bench(guess, 130.0), BENCH_FREE,
-        {channel: float(np.median(values)) for channel, values in levels.items()}, *split, ((GAS,), (BIAS,)),
-    )  # fmt: skip
-
-
-def dyke(data: Path, name: str, rate: float) -> Rig:
-    """Return the random test of Dyke's prototype: 5 s to fit, three runs of 4 s, the last 30 % unseen."""
-    whole = pd.read_csv(data / "dyke_nees_2012_1158" / "ranran_50.csv.gz")
-    noise = {"displacement": white(whole["displacement_m"], 3004.8), "damper_force": white(whole["force_N"], 3004.8)}
-    table = {
-        channel: whole[column].to_numpy()[::4]
-        for channel, column in (
-            ("displacement", "displacement_m"), ("damper_force", "force_N"), ("command_voltage", "voltage_V"),
-        )
-    }  # fmt: skip
-    ends = [round(t * 751.2) for t in (0.0, 5.25, 9.25, 13.25, 17.25, 24.65)]
-    pieces = [{c: v[a:b] for c, v in table.items()} for a, b in pairwise(ends)]
-    guess = {"c_a": 1500.0, "c_b": 1000.0, "alpha_a": 110.0, "alpha_b": 670.0, "A": 1.8e4, "beta": 9e3, "gamma": 9e3}
-    return Rig(
-        name, "damper_bench", 751.2, "response lag near 8 ms, gas offset of -104 to -140 N", bench(guess, rate),
-        BENCH_FREE, noise, {"first": pieces[0]}, {f"piece-{k}": pieces[k] for k in (1, 2, 3)}, {"last": pieces[4]},
-        ((GAS,), (LAG,), (GAS, LAG)), voltage_gain=1.0 / 2.25, counted=_settled,
-    )  # fmt: skip
-
-
-def quanser(data: Path, name: str, outputs: Sequence[str]) -> Rig:
-    """Return the quarter car with these of its outputs: the nominal fitted to the first repeat, the others are runs."""
-    plates = {"floor_acceleration": "road", "frame_acceleration": "unsprung", "driver_acceleration": "sprung"}
-    band = butter(4, CUTOFF, fs=500.0, output="sos")
-    tables, noise = [], {}
-    for repeat in (1, 2, 3):
-        raw = pd.read_csv(data / "quanser_active_suspension" / f"chirp_A_rep{repeat}.csv.gz")
-        place = {plate: raw[f"{plate}_displacement_m"].to_numpy() for plate in plates.values()}
-        smooth = {plate: sosfiltfilt(band, values) for plate, values in place.items()}
-        table = {channel: _slope(_slope(smooth[plate])) for channel, plate in plates.items()}
-        table["suspension_displacement"] = smooth["unsprung"] - smooth["road"]
-        tables.append({channel: table[channel] for channel in ("floor_acceleration", *outputs)})
-        noise = {channel: in_band(place[plate], 2) for channel, plate in plates.items()}
-        noise["suspension_displacement"] = in_band(place["unsprung"] - place["road"], 0)
-    damper = {"c_a": 0.0, "c_b": 0.0, "alpha_a": 0.0, "alpha_b": 0.0, "A": 2e3, "beta": 1e3, "gamma": 1e3}
-    nominal = bench(damper, 130.0) | {
-        "plant": {
-            "frame_mass": 1.0 * SCALE, "driver_mass": 2.45 * SCALE, "suspension_stiffness": 3800.0 * SCALE,
-            "suspension_damping": 20.0 * SCALE, "cushion_stiffness": 3000.0 * SCALE, "cushion_damping": 60.0 * SCALE,
-        },
-        "controller": {"law": "replay", "current": 0.0},
-        "excitation": {"kind": "recording"},
-    }  # fmt: skip
-    free = ("suspension_stiffness", "suspension_damping", "cushion_stiffness", "cushion_damping")
-    return Rig(
-        name, "seat", 500.0, "guide friction (to the ground); actuator force that does not map", nominal,
-        tuple(f"plant.{key}" for key in free), noise, {"repeat-1": tables[0]},
-        {"repeat-2": tables[1], "repeat-3": tables[2]}, {}, ((FRICTION,),), repeats=True,
-    )  # fmt: skip
-
-
-def bench(damper: Mapping[str, float], rate: float) -> dict[str, Any]:
-    """Return a scenario with a simple Bouc-Wen damper."""
-    parameters = {**damper, **BOUC_WEN}
-    return {
-        "damper": {"model": "bouc_wen", "parameters": parameters},
-        "actuator": {"rate": rate, "max_current": 1.0},
-        "temperature": 20.0,
-    }
-
-
-def white(values: Any, rate: float) -> float:
-    """Return the RMS of white noise with the median density that is found above 0.7 of the Nyquist frequency."""
-    frequency, density = welch(np.asarray(values), rate, nperseg=min(1024, len(values)))
-    return float(np.sqrt(np.median(density[frequency > 0.35 * rate]) * rate / 2.0))
-
-
-def in_band(values: Any, derivative: int) -> float:
-    """Return the RMS, below CUTOFF, of a derivative of noise that is as dense as what is found at 100-200 Hz."""
-    frequency, density = welch(values, 500.0, nperseg=1024)
-    level = float(np.median(density[(frequency > 100.0) & (frequency < 200.0)]))
-    power = 2 * derivative + 1
-    return float(np.sqrt(level * (2.0 * np.pi) ** (power - 1) * CUTOFF**power / power))
-
-
-def _slope(values: Any) -> Any:
-    return np.gradient(values, 1.0 / 500.0)
-
-
-def _settled(table: Mapping[str, Any]) -> Any:
-    """Whether the voltage has stood for a while, shape (N,)."""
-    rows = np.arange(len(table["command_voltage"]))
-    switched = np.abs(np.diff(table["command_voltage"], prepend=table["command_voltage"][0])) > 0.5
-    return rows - np.maximum.accumulate(np.where(switched, rows, 0)) > SETTLED * 751.2
 
 
 def write(rig: Rig, folder: Path) -> Path:

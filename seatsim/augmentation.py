@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -46,11 +47,17 @@ def in_loop(effects: Sequence[Any]) -> tuple[Effects, Effects]:
 
 
 def _carried(effects: Sequence[Any], hooks: tuple[str, ...]) -> Effects:
-    registered = [cls for cls in (find("effect", name) for name in names("effect")) if acts_on(cls, hooks)]
+    registered = _acting(tuple(find("effect", name) for name in names("effect")), hooks)
     chosen = [effect for effect in effects if acts_on(type(effect), hooks)]
     first = {type(effect): effect for effect in reversed(chosen)}
     carried = [first.get(cls) or off(cls) for cls in registered]
     return tuple(carried + [effect for effect in chosen if not any(effect is kept for kept in carried)])
+
+
+@cache
+def _acting(classes: tuple[Any, ...], hooks: tuple[str, ...]) -> list[Any]:
+    """Return the effects that have one of the hooks."""
+    return [cls for cls in classes if acts_on(cls, hooks)]
 
 
 def damper_with(record: Any, effects: Effects) -> tuple[Any, tuple[float, ...]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -186,9 +187,10 @@ def _execute(groups: list[list[str]], chosen: list[Path | None], values: dict[st
             raise InputError(f"two of the files would write to {folder}; give them other names, or run them one by one")
     done: dict[int, Run] = {}
     interrupted = False
-    with _progress(len(scenarios)) as advance:
+    finished = itertools.count(1)
+    with _counted("simulating", len(scenarios)) as count:
         try:
-            for scenario, answer in run_many(scenarios, advance):
+            for scenario, answer in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
                 if isinstance(answer, SeatsimError):
                     err.print(f"failed: {answer}", style="red", markup=False, highlight=False, soft_wrap=True)
                 else:
@@ -226,18 +228,10 @@ def _present(runs: list[Run], folder: Path) -> None:
 
 
 @contextmanager
-def _progress(total: int) -> Iterator[Any]:
-    """Show a bar on the terminal while runs are under way."""
+def _counted(title: str, total: int | None = None) -> Iterator[Any]:
+    """Show a bar on the terminal that is told `(done, total)`."""
     with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
-        task = progress.add_task("simulating", total=total)
-        yield lambda _: progress.advance(task)
-
-
-@contextmanager
-def _counted(title: str) -> Iterator[Any]:
-    """Show a bar that is told `(done, total)`."""
-    with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
-        task = progress.add_task(title, total=None)
+        task = progress.add_task(title, total=total)
         yield lambda done, total: progress.update(task, completed=done, total=total)
 
 

@@ -13,10 +13,9 @@ from rich.table import Table
 from ruamel.yaml import YAML
 
 from seatsim.diagnosis.diagnose import diagnose
-from seatsim.diagnosis.evidence import as_dict
 from seatsim.diagnosis.findings import Diagnosis
 from seatsim.errors import SeatsimError
-from seatsim.files import write_json, write_whole
+from seatsim.files import plain, write_json, write_whole
 from seatsim.report import write_report
 
 PROCESSES = 2
@@ -54,8 +53,8 @@ def contents(diagnosis: Diagnosis) -> dict[str, Any]:
         },
         "notes": diagnosis.notes, "augmented": "augmented.yaml",
     }  # fmt: skip
-    plain: dict[str, Any] = as_dict(fields)
-    return plain
+    found: dict[str, Any] = plain(fields)
+    return found
 
 
 def tables(diagnosis: Diagnosis) -> list[Table]:

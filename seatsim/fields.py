@@ -53,7 +53,7 @@ def describe(record: type) -> list[FieldCard]:
     """List name, unit, meaning and default of every field of a record class, in order."""
     defaults: dict[str, Any] = getattr(record, "_field_defaults", {})
     cards = []
-    for name, hint in get_type_hints(record, include_extras=True).items():
+    for name, hint in _hints(record).items():
         info = _field_info(hint)
         extra = info.json_schema_extra if info else None
         unit = str(extra.get("unit", "")) if isinstance(extra, dict) else ""
@@ -65,7 +65,7 @@ def describe(record: type) -> list[FieldCard]:
 def bounds(record: type, name: str) -> tuple[float, float]:
     """Return the least and the greatest value of a field; infinite where it has no such bound."""
     limits = {"low": -math.inf, "high": math.inf}
-    info = _field_info(get_type_hints(record, include_extras=True)[name])
+    info = _field_info(_hints(record)[name])
     for mark in info.metadata if info else ():
         if isinstance(mark, Ge):
             limits["low"] = float(mark.ge)  # type: ignore[arg-type]
@@ -78,7 +78,12 @@ def bounds(record: type, name: str) -> tuple[float, float]:
 
 def choices(record: type, name: str) -> tuple[str, ...]:
     """Return the permitted values of a field that is one of several words."""
-    return get_args(get_args(get_type_hints(record, include_extras=True)[name])[0])
+    return get_args(get_args(_hints(record)[name])[0])
+
+
+@cache
+def _hints(record: Any) -> dict[str, Any]:
+    return get_type_hints(record, include_extras=True)
 
 
 def _field_info(hint: Any) -> FieldInfo | None:

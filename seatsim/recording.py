@@ -6,6 +6,7 @@ import lzma
 import zipfile
 import zlib
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -39,7 +40,13 @@ BENCH_CHANNELS = {
     "damper_temperature": "degC",
 }
 """Channels that a recording of each rig may have, with the unit they are in."""
+HEADER = "recording.yaml"
 KEYS = ("rig", "sample_rate", "parameter_tolerance", "nominal", "runs", "channels", "actuator", "note")
+
+
+KEPT = 32
+"""Files that are kept in memory while they are unchanged: every simulation of a run asks for them again."""
+Stamp = tuple[int, int, int] | None
 
 
 class Header(NamedTuple):
@@ -89,7 +96,7 @@ class Recording:
         return self.folder / self.header.nominal
 
     def table(self, run: str) -> dict[str, Array]:
-        """Return the recorded channels of a run, shape (N,) each.
+        """Return the recorded channels of a run, shape (N,) each, not to be written into.
 
         Raises:
             InputError: there is no such run, or its table is missing, empty, short of a channel, or not numeric.
@@ -99,7 +106,17 @@ class Recording:
             raise InputError(
                 f"{self.folder}: no run is called '{run}'{nearest(run, self.runs)}; permitted: {permitted}"
             )
-        return _read_table(self.folder / self.runs[run].file, list(self.channels))
+        path = self.folder / self.runs[run].file
+        return dict(_read_table(path, tuple(self.channels), _stamp(path)))
+
+
+def _stamp(path: Path) -> Stamp:
+    """Return what changes with the content of a file, None where there is none."""
+    try:
+        status = path.stat()
+    except OSError:
+        return None
+    return status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def load_recording(folder: str | Path) -> Recording:
@@ -108,8 +125,12 @@ def load_recording(folder: str | Path) -> Recording:
     Raises:
         InputError: a key or channel is unknown, missing or of the wrong unit.
     """
-    folder = Path(folder)
-    source = Source(folder / "recording.yaml")
+    return _load(Path(folder), _stamp(Path(folder) / HEADER))
+
+
+@lru_cache(maxsize=KEPT)
+def _load(folder: Path, stamp: Stamp) -> Recording:
+    source = Source(folder / HEADER)
     data = source.data
     check_keys(data, KEYS, source, ())
     header = build(Header, {k: data[k] for k in Header._fields if k in data}, source, ())
@@ -153,7 +174,8 @@ def _channels(data: dict[str, Any], source: Source, rig: str) -> dict[str, Chann
     return channels
 
 
-def _read_table(path: Path, channels: list[str]) -> dict[str, Array]:
+@lru_cache(maxsize=KEPT)
+def _read_table(path: Path, channels: tuple[str, ...], stamp: Stamp) -> dict[str, Array]:
     import pandas as pd
 
     try:
@@ -173,5 +195,6 @@ def _read_table(path: Path, channels: list[str]) -> dict[str, Array]:
         bad = np.flatnonzero(~np.isfinite(values))
         if bad.size:
             raise InputError(f"{path}, line {bad[0] + 2}, {name}: not a finite number; {bad.size} rows are not")
+        values.flags.writeable = False
         table[name] = values
     return table

@@ -148,7 +148,7 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) 
 def _history(plant: Plant, step: float, out: Array) -> History:
     """Return the recorded channels with the time and the energy stored in masses, suspension and cushion springs."""
     channels: dict[str, Any] = {"time": np.arange(len(out)) * step}
-    channels |= {name: np.ascontiguousarray(out[:, column]) for column, name in enumerate(CHANNELS)}
+    channels |= dict(zip(CHANNELS, np.ascontiguousarray(out.T), strict=True))
     v, driver = (
         channels["suspension_velocity"],
         channels["suspension_velocity"] + channels["cushion_velocity"],

@@ -21,8 +21,16 @@ excitation: {kind: iso7096, spectral_class: EM5, duration: 6.0}
 
 @pytest.fixture
 def seat_file(tmp_path):
-    """A short seat scenario on disk."""
+    """A short seat scenario on disk, which the test may edit."""
     path = tmp_path / "seat.yaml"
+    path.write_text(SEAT)
+    return path
+
+
+@pytest.fixture(scope="session")
+def kept_seat_file(tmp_path_factory):
+    """The same for all tests together, which none edits."""
+    path = tmp_path_factory.mktemp("kept") / "seat.yaml"
     path.write_text(SEAT)
     return path
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.random import Generator
 
 from seatsim.blind import commands, roads
-from seatsim.blind.rig import FINE, RATE, Motion, simulate
+from seatsim.blind.rig import FINE, RATE, STEP, Motion, simulate
 from seatsim.blind.sensors import readings
 from seatsim.blind.slots import Array, record
 from seatsim.blind.truth import Changes, Context, Push
@@ -141,8 +141,9 @@ def _push_of(setting: Setting, changes: Changes, run: int) -> Array:
 
 
 def drive(
-    setting: Setting, changes: Changes, run: int, command: Array | None = None, floor: Array | None = None
-) -> Motion:
+    setting: Setting, changes: Changes, run: int, command: Array | None = None, floor: Array | None = None,
+    step: float = STEP,
+) -> Motion:  # fmt: skip
     """Move the true rig through a run; with `command` (one per row) the loop is open; `floor` is given at the rows."""
     plan = setting.runs[run]
     values = dict(setting.true) | {"t_start": plan.temperature, "t_ambient": plan.temperature}
@@ -154,7 +155,8 @@ def drive(
             values[name] = number
     law, schedule = (plan.law, plan.schedule) if command is None else (np.zeros(6), command)
     ground, rate = (plan.floor, FINE) if floor is None else (floor, RATE)
-    return simulate(record(values), ground, _push_of(setting, changes, run), law, schedule, schedule.size, rate)
+    pushes = _push_of(setting, changes, run)
+    return simulate(record(values), ground, pushes, law, schedule, schedule.size, rate, step)
 
 
 def read(setting: Setting, changes: Changes, run: int, motion: Motion) -> dict[str, Array]:

@@ -10,7 +10,7 @@ from numpy.random import Generator
 
 from seatsim.blind.absorbed import Absorption
 from seatsim.blind.case import CHANNELS, Setting, context_of, draw_setting, drive, read
-from seatsim.blind.sizing import Bench, overlap, severity_for
+from seatsim.blind.sizing import COARSE, Bench, overlap, severity_for
 from seatsim.blind.slots import Array
 from seatsim.blind.truth import EFFECTS, Changes, Context, Shape, Truth
 from seatsim.blind.truths import TRUTHS, forms_of
@@ -118,7 +118,7 @@ def _attempt(order: Order, rng: Generator) -> Case | None:
     warm = any(truth.warm for truth in truths)
     setting = draw_setting(rng, bingham, channels, warm, order.scatter, order.background)
     recorded = len(setting.runs) - 1
-    plain = [drive(setting, Changes(), k) for k in range(recorded)]
+    plain = [drive(setting, Changes(), k, step=COARSE) for k in range(recorded)]
     bench = Bench(setting, [motion.command for motion in plain])
     context = context_of(setting, [read(setting, Changes(), k, plain[k]) for k in range(recorded)])
     first: list[Placed] = []

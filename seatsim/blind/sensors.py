@@ -11,7 +11,7 @@ from collections.abc import Iterable
 import numpy as np
 from scipy.signal import bilinear, lfilter, lfilter_zi
 
-from seatsim.blind.rig import FINE, RATE, STEP, Motion
+from seatsim.blind.rig import FINE, RATE, Motion
 from seatsim.blind.roads import coloured
 from seatsim.blind.slots import Array
 from seatsim.blind.truth import Fault
@@ -46,7 +46,7 @@ def skewed(motion: Motion, fault: Fault, run: int) -> tuple[Array, Array]:
     late = fault.size * (1.0 - fault.detail * time / time[-1] * (1.0 if run % 2 else 0.6))
     at = np.clip(time - late, 0.0, time[-1])
     rows = np.floor(at * RATE + 1e-6).astype(int)
-    fine = np.arange(motion.fine_current.size) * STEP
+    fine = np.arange(motion.fine_current.size) * (motion.command.size / (RATE * motion.fine_current.size))
     return motion.command[rows], np.interp(at, fine, motion.fine_current)
 
 

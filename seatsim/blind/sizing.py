@@ -22,6 +22,8 @@ from seatsim.blind.truth import Changes
 SHARE = 0.05
 TOLERANCE = 0.2
 """Of the logarithm of a materiality."""
+COARSE = 2.5e-4
+"""Step of the simulations that only measure sizes, s."""
 Readings = list[dict[str, Array]]
 
 
@@ -44,7 +46,7 @@ class Bench:
         if key not in self.kept:
             if len(self.kept) > 6:
                 self.kept.pop(list(self.kept)[1])
-            self.kept[key] = [drive(self.setting, changes, k, self.commands[k]) for k in self.runs]
+            self.kept[key] = [drive(self.setting, changes, k, self.commands[k], step=COARSE) for k in self.runs]
         return self.kept[key]
 
     def shown(self, changes: Changes) -> Readings:
@@ -88,7 +90,7 @@ class Bench:
         total: dict[str, list[Array]] = {name: [] for name in self.setting.compared}
         for k in self.runs:
             floor = shown[k]["floor_acceleration"] if on_floor else None
-            motion = drive(self.setting, clean, k, shown[k]["current_command"], floor)
+            motion = drive(self.setting, clean, k, shown[k]["current_command"], floor, COARSE)
             new, old = read(self.setting, clean, k, motion), read(self.setting, clean, k, base[k])
             for name, parts in total.items():
                 parts.append(new[name][skip:] - old[name][skip:])

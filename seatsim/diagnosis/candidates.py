@@ -15,9 +15,10 @@ from seatsim.registry import card_of, find, names
 
 Array = NDArray[np.float64]
 
-
 REACH = 8.0
 """Factor by which a parameter of shape may leave its start."""
+LIMITS = (1.0, 0.5, 0.7, 1.4, 2.0)
+"""Factors on the start of a limit."""
 
 
 class Candidate(NamedTuple):
@@ -41,6 +42,16 @@ class Candidate(NamedTuple):
         return self.cls(**self.fixed, **dict(zip(self.free, map(float, values), strict=True)))
 
     @property
+    def wanes(self) -> bool:
+        """Whether the effect falls as its first parameter grows, as with a limit or a clearance."""
+        return bool(card_of(self.cls).off.get(self.free[0], 0.0) > self.start[0])
+
+    @property
+    def form(self) -> tuple[Any, ...]:
+        """What candidates share that differ in their start alone."""
+        return self.effect, self.free, tuple(self.fixed.items())
+
+    @property
     def block(self) -> str:
         """Block of the rig that the effect lives in."""
         return self.effect.partition(".")[0]
@@ -56,8 +67,16 @@ def candidates(problem: Problem, without: Sequence[str] = ()) -> list[Candidate]
             continue
         for form in card_of(cls).forms:
             places = [{"channel": channel} for channel in _channels(cls, problem)] if card_of(cls).by_channel else [{}]
-            found += [_candidate(name, cls, form, place) for place in places]
+            placed = [_candidate(name, cls, form, place) for place in places]
+            found += [start for candidate in placed for start in _starts(candidate)]
     return found
+
+
+def _starts(candidate: Candidate) -> list[Candidate]:
+    """Return the candidate from every start: a limit must be near where it acts for a fit to feel it."""
+    first, *rest = candidate.start
+    factors = LIMITS if candidate.wanes else (1.0,)
+    return [candidate._replace(start=(factor * first, *rest)) for factor in factors]
 
 
 def _fits(cls: Any, problem: Problem) -> bool:

@@ -25,7 +25,7 @@ DRAWS = 400
 """Bootstrap samples."""
 LEVEL = (5.0, 95.0)
 """Percentiles of the interval."""
-ELSEWHERE = 0.05
+ELSEWHERE = 0.08
 """Standard deviation by which the shrink differs from one kind of excitation to another."""
 
 

@@ -11,7 +11,6 @@ from threadpoolctl import threadpool_limits
 
 from seatsim.diagnosis.alikeness import alikeness
 from seatsim.diagnosis.augmented import content
-from seatsim.diagnosis.blocks import missing
 from seatsim.diagnosis.candidates import Candidate, candidates
 from seatsim.diagnosis.claim import gaps, held_out, scenario_at, trained
 from seatsim.diagnosis.coverage import coverage
@@ -22,7 +21,7 @@ from seatsim.diagnosis.findings import OUTSIDE, Diagnosis, Estimate, Share
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.isolability import isolable, losses
 from seatsim.diagnosis.latent import FORETOLD, Latent, latent, rms
-from seatsim.diagnosis.place import places
+from seatsim.diagnosis.place import places, unexplained
 from seatsim.diagnosis.problem import Problem, problem
 from seatsim.diagnosis.search import Search, search
 from seatsim.diagnosis.sentences import answer
@@ -90,12 +89,14 @@ def _searched(
     judgement = judged(engine, found, effects)
     if judgement.verdict == "none":
         return Solution(engine, found, judgement, [], None, False)
-    explained = judgement.verdict != "unknown"
-    where = places(engine, found, judgement.chosen, explained)
-    rest = None
-    if not explained and not engine.problem.bench:
-        point = judgement.chosen.point
-        rest = latent(engine.problem, point, where[0].block, missing(engine.problem, point))
+    if judgement.verdict != "unknown":
+        return Solution(engine, found, judgement, places(engine, judgement.chosen, None), None, False)
+    if engine.problem.bench:
+        return Solution(engine, found, judgement, [Share("damper", 1.0)], None, False)
+    told("asking which block could hold the rest")
+    held, state = unexplained(engine, found, judgement.chosen)
+    rest = latent(engine.problem, state.point, held.block, held.suspects[held.block])
+    where = places(engine, judgement.chosen if state is judgement.chosen else found.calibrated, held)
     return Solution(engine, found, judgement, where, rest, False)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,14 +110,3 @@ def _comfort(traces: Sequence[Trace]) -> list[tuple[str, str, float, float, floa
 
 def _rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
-
-
-def as_dict(value: Any) -> Any:
-    """Return plain values of nested records, as JSON has them."""
-    if hasattr(value, "_asdict"):
-        return {key: as_dict(part) for key, part in value._asdict().items()}
-    if isinstance(value, dict):
-        return {key: as_dict(part) for key, part in value.items()}
-    if isinstance(value, list | tuple):
-        return [as_dict(part) for part in value]
-    return value.item() if isinstance(value, np.generic) else value

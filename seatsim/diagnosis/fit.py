@@ -20,7 +20,7 @@ from scipy.linalg import cholesky
 from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.problem import Problem
+from seatsim.diagnosis.problem import POOL, Problem
 from seatsim.diagnosis.whitening import Whitening
 
 Array = NDArray[np.float64]
@@ -96,7 +96,7 @@ class Engine:
     def states(self, points: Sequence[Point]) -> list[State]:
         """Simulate and weigh several points at once."""
         residuals = self.problem.residuals([(point.u, point.effects) for point in points])
-        return [self._state(point, residual) for point, residual in zip(points, residuals, strict=True)]
+        return list(POOL.map(self._state, points, residuals))
 
     def _state(self, point: Point, residual: dict[str, Array]) -> State:
         finite = all(np.all(np.isfinite(values)) for values in residual.values())

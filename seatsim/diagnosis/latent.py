@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import decimate
 
-from seatsim.diagnosis.blocks import Missing
 from seatsim.diagnosis.fit import Point
 from seatsim.diagnosis.problem import Problem
+from seatsim.diagnosis.suspects import Suspect
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ FORETOLD = 0.12
 
 
 class Latent(NamedTuple):
-    """An unexplained course by run, in N or A, and the shares of its variance that families of regressors foretell."""
+    """An unexplained course by run, and the shares of its variance that families of regressors foretell."""
 
     block: str
     quantity: str
@@ -38,20 +38,15 @@ class Latent(NamedTuple):
     shares: dict[str, float]
 
 
-def latent(problem: Problem, point: Point, block: str, lack: Missing) -> Latent:
-    """Return the unexplained force or current of a block of the seat and what foretells it."""
-    courses = {"damper": lack.damper, "driver": lack.driver, "cushion": lack.driver, "coil": lack.coil}
-    course = courses.get(block, lack.frame)
-    if not any(np.any(values) for values in course.values()):
-        course = lack.frame
-    quantity, unit = ("current", "A") if block == "coil" else ("force", "N")
+def latent(problem: Problem, point: Point, block: str, suspect: Suspect) -> Latent:
+    """Return the unexplained course in a block of the seat and what foretells it."""
     features = {run: _features(problem, point, run) for run in problem.runs}
-    target = {run: _thinned(problem, course[run]) for run in problem.runs}
+    target = {run: _thinned(problem, suspect.course[run]) for run in problem.runs}
     families = list(next(iter(features.values())))
     shares = {family: _foretold({run: f[family] for run, f in features.items()}, target) for family in families}
     everything = {run: np.concatenate(list(f.values())) for run, f in features.items()}
     shares["everything"] = max(_foretold(everything, target), *shares.values())
-    return Latent(block, quantity, unit, course, shares)
+    return Latent(block, suspect.quantity, suspect.unit, suspect.course, shares)
 
 
 def _thinned(problem: Problem, values: Array) -> Array:
@@ -124,7 +119,7 @@ def rms(found: Latent) -> float:
 
 def described(found: Latent) -> list[str]:
     """Return sentences on an unexplained course."""
-    sentences = [f"The missing {found.quantity} in the {found.block} has an RMS of {rms(found):.3g} {found.unit}."]
+    sentences = [f"The unexplained {found.quantity} in the {found.block} has an RMS of {rms(found):.3g} {found.unit}."]
     families = {family: share for family, share in found.shares.items() if family != "everything"}
     best = max(families, key=lambda family: families[family])
     if families[best] < 0.1:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,8 @@ from seatsim.diagnosis.fit import Engine, Point, State, solved
 from seatsim.diagnosis.problem import POOL
 
 Array = NDArray[np.float64]
+Trace = tuple[Candidate, dict[str, Array]]
+"""A candidate and what it, as it starts, changes in the whitened outputs of each run."""
 
 SHORTLIST = 12
 """Candidates whose fit is begun after the screening for a first effect."""
@@ -28,6 +31,12 @@ LARGEST = 3
 """Most effects of a set."""
 STRETCH = 6.0
 """Largest factor by which a start is stretched after the screening."""
+RIVAL = 1.5
+"""Factor on the cost of an effect, or of a set, within which another is tried in its place."""
+RIVALS = 3
+"""Effects that are tried in the place of each one."""
+AROUND = (0.6, 1.0, 1.6)
+"""Shares of that factor that are tried."""
 WORTHWHILE = 0.85
 """A larger set is looked for while the last enlargement lowered the excess to below this share."""
 
@@ -59,12 +68,15 @@ def search(engine: Engine, candidates: Sequence[Candidate], told: Callable[[str]
     engine.refresh(calibrated)
     calibrated = engine.fitted(calibrated)
     rows = sum(values.size for values in calibrated.whitened.values())
+    traces = _traces(engine, calibrated, candidates)
     found = Search(nominal, [[calibrated]], rows)
     for size in range(1, LARGEST + 1):
         told(f"fitting sets of {size}")
-        sets = _extended(engine, found.sets[-1][:BEAM], candidates, SHORTLIST if size == 1 else SECONDS)
+        sets = _extended(engine, found.sets[-1][:BEAM], traces, SHORTLIST if size == 1 else SECONDS)
         if not sets:
             break
+        if size > 1:
+            sets = _best_forms([*sets, *_exchanged(engine, sets[0], found.sets[1])])
         engine.refresh(sets[0])
         sets[0] = engine.fitted(sets[0])
         found.sets.append(sets)
@@ -78,15 +90,40 @@ def _gains(found: Search) -> bool:
     return last > 0.02 and last < WORTHWHILE * before
 
 
-def _extended(engine: Engine, bases: Sequence[State], candidates: Sequence[Candidate], count: int) -> list[State]:
+def _traces(engine: Engine, calibrated: State, candidates: Sequence[Candidate]) -> list[Trace]:
+    """Return what each candidate, as it starts, changes in the calibrated scenario."""
+    starts = engine.states([_with(calibrated.point, c, np.array(c.start)) for c in candidates])
+    return [
+        (candidate, {run: base - start.whitened[run] for run, base in calibrated.whitened.items()})
+        for candidate, start in zip(candidates, starts, strict=True) if np.isfinite(start.cost)
+    ]  # fmt: skip
+
+
+def _extended(engine: Engine, bases: Sequence[State], traces: Sequence[Trace], count: int) -> list[State]:
     """Return the fitted enlargements of some sets by one effect, best first, one form of each set of effects."""
     begun = []
     for base in bases:
         taken = {term.effect for term in base.point.terms}
-        offered = [c for c in candidates if c.effect not in taken]
-        begun += [engine.fitted(start, BEGUN) for start in _screened(engine, base, offered)[:count]]
+        offered = [trace for trace in traces if trace[0].effect not in taken]
+        begun += [engine.fitted(start, BEGUN) for start in _screened(engine, base, offered, count)]
     ranked = _best_forms(begun)
     return _best_forms([engine.fitted(state) for state in ranked[:FINALISTS]] + ranked[FINALISTS:])
+
+
+def _exchanged(engine: Engine, best: State, singles: Sequence[State]) -> list[State]:
+    """Return fitted sets in which one effect of the best set gives way to one that did nearly as well alone."""
+    point = best.point
+    alone = {state.point.terms[0].effect: state for state in singles}
+    starts = []
+    for k, term in enumerate(point.terms):
+        others = [j for j in range(len(point.terms)) if j != k]
+        kept = Point(point.u, tuple(point.terms[j] for j in others), tuple(point.values[j] for j in others))
+        taken = {term.effect for term in point.terms}
+        rivals = [state for name, state in alone.items() if name not in taken and term.effect in alone]
+        near = [state for state in rivals if state.cost < RIVAL * alone[term.effect].cost]
+        starts += [_with(kept, state.point.terms[0], state.point.values[0]) for state in near[:RIVALS]]
+    begun = [engine.fitted(state, BEGUN) for state in engine.states(starts)]
+    return [engine.fitted(state) if state.cost < RIVAL * best.cost else state for state in begun]
 
 
 def _best_forms(states: Sequence[State]) -> list[State]:
@@ -97,40 +134,43 @@ def _best_forms(states: Sequence[State]) -> list[State]:
     return list(best.values())
 
 
-def _screened(engine: Engine, base: State, offered: Sequence[Candidate]) -> list[State]:
-    """Return starts with each candidate added to a base, in the order of the cost that a linear model foresees."""
-    starts = engine.states([_with(base.point, c, np.array(c.start)) for c in offered])
+def _screened(engine: Engine, base: State, offered: Sequence[Trace], count: int) -> list[State]:
+    """Return starts with those candidates added to a base from which a linear model foresees the lowest costs."""
     own = engine.jacobian(base)
-    foreseen = list(POOL.map(lambda start: _foreseen(engine, base, start, own), starts))
-    order = sorted(range(len(starts)), key=lambda k: foreseen[k][0])
-    better = []
-    for k in order:
-        stretch = foreseen[k][1]
-        better.append(_stretched(base.point, offered[k], stretch))
-    chosen = engine.states(better[: 2 * SHORTLIST])
-    return [min(pair, key=lambda s: s.cost) for pair in zip(chosen, [starts[k] for k in order], strict=False)]
+    foreseen = list(POOL.map(lambda trace: _foreseen(engine, base, trace, own), offered))
+    order: dict[tuple[Any, ...], int] = {}
+    for k in sorted(range(len(offered)), key=lambda k: foreseen[k][0]):
+        order.setdefault(offered[k][0].form, k)
+    shortlist = list(order.values())[:count]
+    points = [
+        _stretched(base.point, offered[k][0], factor)
+        for k in shortlist for factor in (1.0, *(foreseen[k][1] * share for share in AROUND))
+    ]  # fmt: skip
+    states, each = engine.states(points), 1 + len(AROUND)
+    return [min(states[n : n + each], key=lambda state: state.cost) for n in range(0, len(states), each)]
 
 
-def _foreseen(engine: Engine, base: State, start: State, own: dict[str, Array]) -> tuple[float, float]:
-    """Return the cost that a multiple of the start's change foresees, and that multiple."""
-    if not np.isfinite(start.cost):
-        return np.inf, 1.0
+def _foreseen(engine: Engine, base: State, trace: Trace, own: dict[str, Array]) -> tuple[float, float]:
+    """Return the cost that a multiple of a candidate's trace foresees, and that multiple."""
+    candidate, changes = trace
     vector = base.point.vector
     low, high = base.point.limits
-    parts = []
-    for run, residual in base.whitened.items():
-        change = (residual - start.whitened[run]).ravel()
-        parts.append(engine.gram(run, np.vstack([own[run], change]), residual))
+    parts = [
+        engine.gram(run, np.vstack([own[run], changes[run].ravel()]), residual)
+        for run, residual in base.whitened.items()
+    ]
     matrix, right = np.sum([part[0] for part in parts], axis=0), np.sum([part[1] for part in parts], axis=0)
     count = len(base.point.u)
-    bounds = np.append(low, -STRETCH), np.append(high, STRETCH)
+    bounds = np.append(low, 0.0 if candidate.low[0] >= 0.0 else -STRETCH), np.append(high, STRETCH)
     step = solved(matrix, right, count, np.append(vector, 0.0), *bounds)
     return base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step), float(step[-1])
 
 
 def _stretched(point: Point, candidate: Candidate, factor: float) -> Point:
-    """Return the point with a candidate whose first parameter is stretched, within its bounds."""
+    """Return the point with a candidate that changes it by a factor more, its first parameter within its bounds."""
     values = np.array(candidate.start)
+    if candidate.wanes:
+        factor = 1.0 / max(factor, 1.0 / STRETCH)
     if abs(factor) > 1e-3:
         values[0] = np.clip(values[0] * factor, candidate.low[0], candidate.high[0])
     return _with(point, candidate, values)

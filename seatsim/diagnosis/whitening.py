@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import rfft
 
 from seatsim.diagnosis.problem import POOL, Drive, Problem
 from seatsim.simulation import Forces
@@ -39,7 +40,7 @@ class Whitening:
 
     def __call__(self, residual: Array, run: str) -> Array:
         """Return the whitened residual, shape (channels, 2 frequencies), mean square 1 where only noise is left."""
-        spectrum = np.fft.rfft(residual, axis=1)[:, : self.bins[run]] * self.weights[run]
+        spectrum = rfft(residual, axis=1)[:, : self.bins[run]] * self.weights[run]
         return np.concatenate([spectrum.real, spectrum.imag], axis=1)
 
 
@@ -62,7 +63,7 @@ def whitening(problem: Problem, pushes: Mapping[str, Array] | None = None) -> Wh
                 power, np.array([np.interp(frequency, repeated[0], row) for row in repeated[1]]) * samples
             )
         signal = np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True), axis=1)) ** 2
-        total = power + TRUST**2 * _smoothed(signal)
+        total = power + TRUST**2 * smoothed(signal)
         total = np.maximum(total, 1e-6 * problem.spread[:, None] ** 2 * samples)
         weights[run] = np.sqrt(2.0 / total[:, : bins[run]])
     return Whitening(weights, bins)
@@ -91,7 +92,7 @@ def _carried(problem: Problem, run: str, push: Array | None) -> Array:
 
     clean = problem.simulated(run, problem.rest, ())
     twins = list(POOL.map(shaken, range(TWINS)))
-    return _smoothed(np.mean([np.abs(np.fft.rfft(twin - clean, axis=1)) ** 2 for twin in twins], axis=0))
+    return smoothed(np.mean([np.abs(np.fft.rfft(twin - clean, axis=1)) ** 2 for twin in twins], axis=0))
 
 
 def _shuffled(course: Array, rng: np.random.Generator) -> Array:
@@ -100,7 +101,7 @@ def _shuffled(course: Array, rng: np.random.Generator) -> Array:
     return np.fft.irfft(np.abs(spectrum) * np.exp(2j * np.pi * rng.random(len(spectrum))), len(course))
 
 
-def _smoothed(power: Array) -> Array:
+def smoothed(power: Array) -> Array:
     """Return a power spectrum, shape (channels, frequencies), averaged over a constant relative band."""
     count = power.shape[1]
     cumulated = np.concatenate([np.zeros((len(power), 1)), np.cumsum(power, axis=1)], axis=1)
@@ -123,7 +124,7 @@ def _unrepeatable(problem: Problem) -> tuple[Array, Array] | None:
         samples = min(first.shape[1], second.shape[1])
         spectrum = np.fft.rfft(first[:, :samples] - second[:, :samples], axis=1)
         frequency = np.arange(samples // 2 + 1) * problem.recording.header.sample_rate / samples
-        found.append((frequency, 0.5 * _smoothed(np.abs(spectrum) ** 2) / samples))
+        found.append((frequency, 0.5 * smoothed(np.abs(spectrum) ** 2) / samples))
     if not found:
         return None
     frequency = found[0][0]

@@ -40,20 +40,28 @@ class GasSpring(NamedTuple):
     "damper.asymmetry",
     source="Yu et al. 2019 (Front. Mater. 6:227): rebound and compression differ",
     off={"speed": SWITCH},
-    forms=({"viscous": 0.1, "yielding": 0.1}, {"viscous": 0.1, "yielding": 0.1, "speed": 0.05}),
-)
+    forms=(
+        {"viscous": 0.1, "yielding": 0.1},
+        {"viscous": 0.1, "yielding": 0.1, "speed": 0.03},
+        {"viscous": 0.1, "yielding": 0.1, "speed": 0.03, "offset": 0.5},
+    ),
+)  # fmt: skip
 class Asymmetry(NamedTuple):
-    """Rebound stronger and compression weaker: both parts of the force times `1 + a tanh(v / speed)`."""
+    """Rebound stronger and compression weaker: both parts of the force times `1 + a (tanh(v / speed) + offset)`.
+
+    With an offset of 1 only rebound differs from the nominal damper, with -1 only compression.
+    """
 
     viscous: Annotated[float, param("-", "a of the viscous part", low=-0.9, high=0.9)]
     yielding: Annotated[float, param("-", "a of the yield part", low=-0.9, high=0.9)] = 0.0
     speed: Annotated[float, param("m/s", "speed over which one turns into the other", above=0, high=1)] = SWITCH
+    offset: Annotated[float, param("-", "mean of both sides over a", low=-1, high=1)] = 0.0
 
     def conditioned(self, heat: Heat, v: float, z: State) -> Heat:
         """Return the factors of the damper's parts at a speed."""
         if self.viscous == 0.0 and self.yielding == 0.0:
             return heat
-        side = math.tanh(v / self.speed)
+        side = math.tanh(v / self.speed) + self.offset
         viscous, yielding = heat.viscous * (1.0 + self.viscous * side), heat.yielding * (1.0 + self.yielding * side)
         return Heat(viscous, heat.stiffness, yielding)
 

@@ -1,14 +1,16 @@
 """Plants for the tests of the synthesis."""
 
 import json
+from functools import cache
 
 import numpy as np
 import pytest
 
+from controllers import synthesise
 from controllers.synthesis import GeneralisedPlant
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def seat():
     """Build the exact seat: disturbance z0'', control Fd, z = (e1 x, zc''), y = (x, v)."""
 
@@ -26,6 +28,12 @@ def seat():
         return GeneralisedPlant(A, B1, B2, C1, C2, nothing, nothing, nothing, structure)
 
     return build
+
+
+@pytest.fixture(scope="session")
+def designed(seat):
+    """The design for the exact seat, by e1, synthesised once."""
+    return cache(lambda e1: synthesise(seat(e1)))
 
 
 @pytest.fixture

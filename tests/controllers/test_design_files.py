@@ -6,13 +6,13 @@ import sys
 import numpy as np
 import pytest
 
-from controllers import Design, synthesise
+from controllers import Design
 from seatsim.errors import InputError
 
 
 @pytest.fixture
-def design(seat):
-    return synthesise(seat(30.0))
+def design(designed):
+    return designed(30.0)
 
 
 def test_round_trip_is_exact(design, tmp_path):

@@ -23,15 +23,18 @@ NOISE = {
 }
 DECIMALS = {"suspension_displacement": 6, "damper_force": 2, "damper_temperature": 2}
 G = 9.81
+QUICK = {"method": "gzip", "compresslevel": 1}
+FEEDBACK = {"excitation.duration": 8.0, "controller.sample_time": 0.008}
+"""Settings of the first run: the samples of the controller are every second row."""
 
 
-def healthy(scenario, folder, settings=None):
+def healthy(scenario, folder):
     """Simulate two runs of a seat scenario, 8 s at 250 Hz each, and save them as a recording with noise."""
     runs = {
-        "feedback": {"excitation.duration": 8.0},
+        "feedback": FEEDBACK,
         "switched": {"excitation.duration": 8.0, "controller": {"law": "on_off_skyhook", "on": 0.6}},
     }
-    result = seatsim.run(scenario, {"variants": runs, "solver": {"step": 1.0 / RATE}, **(settings or {})})
+    result = seatsim.run(scenario, {"variants": runs, "solver": {"step": 1.0 / RATE}})
     save_recording(result, folder, list(NOISE))
     generator = np.random.default_rng(5)
     rewrite(folder, lambda frame: noisy(frame, generator))
@@ -47,7 +50,7 @@ def noisy(frame, generator):
 def rewrite(folder, damage, files=None):
     """Hand the tables of a recording through a damage."""
     for path in files or sorted(folder.glob("*.csv.gz")):
-        damage(pd.read_csv(path)).to_csv(path, index=False, float_format="%.7g")
+        damage(pd.read_csv(path)).to_csv(path, index=False, float_format="%.7g", compression=QUICK)
 
 
 def edit(folder, change):

@@ -6,6 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import seatsim
+from seatsim.blind import absorbed, case
 from seatsim.blind.make import make
 from seatsim.blind.sealed import unseal
 from seatsim.cli import app
@@ -18,9 +19,13 @@ KINDS = ["none", "one", "outside"]
 def made(tmp_path_factory):
     """A faultless rig, one with a hidden effect, one with something outside the library, and their labels by kind."""
     folder = tmp_path_factory.mktemp("blind")
-    key = make(3, 11, folder / "set", folder / "set.sealed", kinds=KINDS, processes=1)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(case, "SECONDS", 12.0)
+        patch.setattr(case, "UNSEEN_SECONDS", 2.6)
+        patch.setattr(absorbed, "SECONDS", 4.0)
+        key = make(3, 11, folder / "set", folder / "set.sealed", kinds=KINDS, processes=1)
     labels = unseal(folder / "set.sealed", key, folder / "set").labels
-    return folder / "set", {label["kind"]: (case, label) for case, label in labels.items()}
+    return folder / "set", {label["kind"]: (name, label) for name, label in labels.items()}
 
 
 def test_a_faultless_rig_has_no_gap(made):
@@ -30,17 +35,18 @@ def test_a_faultless_rig_has_no_gap(made):
     assert diagnosis.selected == [] and diagnosis.where == []
 
 
-def test_a_hidden_effect_is_named_and_written(made, tmp_path):
+def test_a_hidden_effect_is_named_and_written(made, tmp_path, monkeypatch):
+    monkeypatch.setattr("seatsim.report.html.png", lambda figure: b"picture")
     folder, labels = made
-    case, label = labels["one"]
-    diagnosis = seatsim.diagnose(folder / case)
+    name, label = labels["one"]
+    diagnosis = seatsim.diagnose(folder / name)
     (effect,) = label["effects"]
     assert effect in diagnosis.selected or any(effect in group for group in diagnosis.indistinguishable)
     write_diagnosis(diagnosis, tmp_path)
     written = json.loads((tmp_path / "diagnosis.json").read_text())
     assert {cause["effect"] for cause in written["causes"]} == set(seatsim.registry.names("effect"))
     assert sum(place["share"] for place in written["where"]) == pytest.approx(1.0)
-    after = seatsim.gap(tmp_path / "augmented.yaml", folder / case, written["held_out"])
+    after = seatsim.gap(tmp_path / "augmented.yaml", folder / name, written["held_out"])
     assert after.overall == pytest.approx(written["gap"]["after"]["overall"], rel=1e-3)
     assert written["gap"]["after"]["overall"] < 0.8 * written["gap"]["calibrated"]["overall"]
     assert diagnosis.sentence in (tmp_path / "report.html").read_text()
@@ -48,16 +54,16 @@ def test_a_hidden_effect_is_named_and_written(made, tmp_path):
 
 def test_what_no_effect_explains_is_unknown(made):
     folder, labels = made
-    case, label = labels["outside"]
-    diagnosis = seatsim.diagnose(folder / case)
+    name, label = labels["outside"]
+    diagnosis = seatsim.diagnose(folder / name)
     assert diagnosis.verdict == "unknown"
     assert diagnosis.where[0].block in label["blocks"]
 
 
 def test_a_withheld_effect_is_not_named(made):
     folder, labels = made
-    case, label = labels["one"]
-    diagnosis = seatsim.diagnose(folder / case, without=label["effects"])
+    name, label = labels["one"]
+    diagnosis = seatsim.diagnose(folder / name, without=label["effects"])
     assert not set(label["effects"]) & {cause.effect for cause in diagnosis.causes}
 
 

@@ -12,27 +12,7 @@ from seatsim.diagnosis.coverage import coverage
 from seatsim.diagnosis.examination import examine, refuse
 from seatsim.recording import load_recording
 
-from .damaged import DAMAGES, DOUBTS, GAPS, at_rest, edit, healthy, rewrite, scaled
-
-ROOT_SEAT = """\
-plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-damper:
-  model: bouc_wen
-  parameters: {c_a: 250.0, c_b: 350.0, alpha_a: 45.0, alpha_b: 620.0, k0: 0.0, x0: 0.0, f0: 0.0, A: 2000.0,
-               beta: 1000.0, gamma: 1000.0, n: 2}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: 20.0
-controller: {law: static_output_feedback, gain: [2.0, 2147.6], sample_time: 0.008}
-excitation: {kind: iso7096, spectral_class: EM5, duration: 8.0}
-"""
-
-
-@pytest.fixture(scope="module")
-def sound(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("sound")
-    (folder / "seat.yaml").write_text(ROOT_SEAT)
-    return healthy(folder / "seat.yaml", folder / "recorded")
+from .damaged import DAMAGES, DOUBTS, FEEDBACK, GAPS, RATE, at_rest, edit, rewrite, scaled
 
 
 @pytest.fixture
@@ -192,9 +172,8 @@ def test_coverage_says_what_was_visited_and_what_was_not(copy):
     assert "thermal fade" not in missing
 
 
-def test_the_velocity_of_coverage_is_that_of_the_rig(tmp_path):
-    (tmp_path / "seat.yaml").write_text(ROOT_SEAT)
-    result = seatsim.run(tmp_path / "seat.yaml", {"solver": {"step": 0.004}})
+def test_the_velocity_of_coverage_is_that_of_the_rig(kept_seat_file, sound):
+    result = seatsim.run(kept_seat_file, {**FEEDBACK, "solver": {"step": 1.0 / RATE}})
     fast = np.max(np.abs(result["suspension_velocity"]))
-    edges = coverage(load_recording(healthy(tmp_path / "seat.yaml", tmp_path / "r"))).visited["velocity"]
+    edges = coverage(load_recording(sound)).visited["velocity"]
     assert max(-edges.low, edges.high) == pytest.approx(fast, rel=0.4)

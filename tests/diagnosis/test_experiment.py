@@ -1,5 +1,8 @@
 """How alike effects are in a recording, and the experiment that tells apart those that are."""
 
+import shutil
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from ruamel.yaml import YAML
@@ -11,24 +14,27 @@ from seatsim.diagnosis.experiment import experiment
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.problem import problem
 from seatsim.diagnosis.whitening import whitening
+from seatsim.effects.damper import GasSpring, SealFriction
+from seatsim.excitations.recording import RecordedRun
 from seatsim.recording import load_recording
+from seatsim.replay import COMPARED, single
+from seatsim.simulation import simulate
 
-from .damaged import edit, healthy, rewrite
-from .test_examination import ROOT_SEAT
+from .damaged import edit, noisy, rewrite
 
 FRICTIONS = ["damper.seal_friction", "suspension.friction"]
 
 
-def recorded(folder, effect, parameters, without=()):
-    """Save a recording of a seat with an effect that its nominal scenario lacks."""
-    (folder / "seat.yaml").write_text(ROOT_SEAT)
-    rig = healthy(folder / "seat.yaml", folder / "rig", {"effects": [{"effect": effect, "parameters": parameters}]})
+def recorded(sound, folder, effect, without=()):
+    """Save what the rig of a recording would have recorded with an effect that its nominal scenario lacks."""
+    rig = shutil.copytree(sound, folder / "rig")
+    nominal, generator = single(rig / "nominal.yaml"), np.random.default_rng(7)
+    for run in load_recording(rig).runs.values():
+        history = simulate(replace(nominal, effects=(effect,), excitation=RecordedRun(str(rig), run.name)))
+        shown = {name: history[name] for name in COMPARED["seat"]}
+        rewrite(rig, lambda frame, shown=shown: noisy(frame.assign(**shown), generator), [rig / run.file])
     rewrite(rig, lambda frame: frame.drop(columns=list(without)))
     edit(rig, lambda header: [header["channels"].pop(name) for name in without])
-    yaml = YAML(typ="safe")
-    nominal = yaml.load(rig / "nominal.yaml")
-    nominal.pop("effects")
-    yaml.dump(nominal, rig / "nominal.yaml")
     return rig
 
 
@@ -45,10 +51,9 @@ def fitted(rig, name):
 
 
 @pytest.fixture(scope="module")
-def rubbing(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("rubbing")
-    rig = recorded(folder, FRICTIONS[0], {"force": 35.0, "presliding": 3e-4}, ["damper_force"])
-    return fitted(rig, FRICTIONS[0])
+def rubbing(sound, tmp_path_factory):
+    effect = SealFriction(force=35.0, presliding=3e-4)
+    return fitted(recorded(sound, tmp_path_factory.mktemp("rubbing"), effect, ["damper_force"]), FRICTIONS[0])
 
 
 def test_without_a_load_cell_one_friction_is_like_the_other_and_unlike_the_rest(rubbing):
@@ -77,8 +82,8 @@ def test_a_calibration_tells_a_wrong_sensor_from_another_driver(rubbing):
     assert (found["kind"], found["name"]) == ("intervention", "calibrate_sensor") and "calibrating" in found["reason"]
 
 
-def test_a_proposed_excitation_is_a_scenario_that_runs(tmp_path):
-    rig = recorded(tmp_path, "damper.gas_spring", {"preload": 10.0, "stiffness": 600.0}, ["damper_force"])
+def test_a_proposed_excitation_is_a_scenario_that_runs(sound, tmp_path):
+    rig = recorded(sound, tmp_path, GasSpring(preload=10.0, stiffness=600.0), ["damper_force"])
     found = experiment(*fitted(rig, "damper.gas_spring"), ["damper.gas_spring", "suspension.progressive_spring"])
     assert found["kind"] == "excitation" and found["alikeness_then"] < 0.9
     YAML(typ="safe").dump(found["scenario"], tmp_path / "next.yaml")

@@ -43,6 +43,10 @@ def record(name, **values):
     return off(find("effect", name))._replace(**values)
 
 
+CARRIER = record("damper.gas_spring")
+"""An effect that is off, so that a rig without effects is compiled as one with them."""
+
+
 def starts(name):
     """The effect at the start values of each of its forms."""
     cls = find("effect", name)
@@ -57,7 +61,7 @@ def shaken(scenario, *effects):
 
 def carried(scenario):
     """The history without effects, of the compiled rig that carries all of them."""
-    return shaken(scenario, record("damper.gas_spring"))
+    return shaken(scenario, CARRIER)
 
 
 def distance(history, reference):
@@ -69,7 +73,8 @@ def distance(history, reference):
 
 def bench(effects, x, v, current=0.5, temperature=20.0, damper=BINGHAM, step=STEP, factors=TemperatureFactors()):  # noqa: B008
     """The force in N of a damper with effects on it, every step; motion and current every half step."""
-    augmented, rest = damper_with(damper, in_loop((*effects, record("damper.gas_spring")))[0])
+    carrier = [] if any(isinstance(effect, type(CARRIER)) for effect in effects) else [CARRIER]
+    augmented, rest = damper_with(damper, in_loop((*effects, *carrier))[0])
     return bench_force(augmented, x, v, current, temperature, step, changed(effects, "factors", factors), rest)
 
 

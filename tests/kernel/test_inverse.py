@@ -16,7 +16,7 @@ from .rigs import rms, rough, run
 
 HEAT = Heat(0.9, 1.0, 0.8)
 TOP = 1.2
-GRID = np.linspace(0.0, TOP, 20_001)
+GRID = np.linspace(0.0, TOP, 5_001)
 CASES = {
     "bouc_wen": (BoucWen(), ((-1.0, 1.0),)),
     "bingham": (Bingham(), ()),

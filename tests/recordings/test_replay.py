@@ -1,6 +1,7 @@
 """Replays: a rig's own recording leaves no gap, recordings of others leave one that is well defined."""
 
 import json
+import shutil
 
 import numpy as np
 import pandas as pd
@@ -20,19 +21,26 @@ VARIANTS = {
 }
 
 
+@pytest.fixture(scope="module")
+def result(kept_seat_file):
+    return seatsim.run(kept_seat_file, {"variants": VARIANTS})
+
+
+@pytest.fixture(scope="module")
+def kept(result, tmp_path_factory):
+    return save_recording(result, tmp_path_factory.mktemp("kept") / "recorded", CHANNELS)
+
+
 @pytest.fixture
-def recorded(seat_file):
-    result = seatsim.run(seat_file, {"variants": VARIANTS})
-    return save_recording(result, seat_file.parent / "recorded", CHANNELS)
+def recorded(kept, tmp_path):
+    return shutil.copytree(kept, tmp_path / "recorded")
 
 
 @pytest.mark.parametrize(
     "absent", [[], ["damper_force"], ["coil_current"], ["current_command"], ["damper_temperature"]]
 )
-def test_the_replay_of_an_own_noiseless_recording_leaves_no_gap(seat_file, absent):
-    result = seatsim.run(seat_file, {"variants": VARIANTS})
-    kept = [name for name in CHANNELS if name not in absent]
-    folder = save_recording(result, seat_file.parent / "recorded", kept)
+def test_the_replay_of_an_own_noiseless_recording_leaves_no_gap(result, tmp_path, absent):
+    folder = save_recording(result, tmp_path, [name for name in CHANNELS if name not in absent])
     assert seatsim.gap(folder / "nominal.yaml", folder).overall < 1e-3
 
 
@@ -107,6 +115,16 @@ def test_a_damaged_table_is_one_clear_error(recorded, damage, expected):
         seatsim.gap(recorded / "nominal.yaml", recorded)
 
 
+def test_a_table_is_read_once_and_anew_after_an_edit_and_nothing_is_written_into_it(recorded):
+    recording, path = seatsim.load_recording(recorded), recorded / "run-1.csv.gz"
+    force = recording.table("run-1")["damper_force"]
+    assert recording.table("run-1")["damper_force"] is force
+    with pytest.raises(ValueError, match="read-only"):
+        force[0] = 1.0
+    pd.read_csv(path).assign(damper_force=7.0).to_csv(path, index=False)
+    assert np.all(recording.table("run-1")["damper_force"] == 7.0)
+
+
 @pytest.mark.parametrize("step", [0.0007, 0.0005])
 def test_a_replay_takes_the_largest_step_that_divides_the_rows(recorded, step):
     nominal = recorded / "nominal.yaml"
@@ -130,12 +148,12 @@ def test_a_release_test_is_no_part_of_a_replay(recorded):
     assert seatsim.gap(nominal, recorded).overall < 1e-3
 
 
-def test_a_constant_current_that_is_not_recorded_stands_in_the_nominal(seat_file):
-    result = seatsim.run(seat_file, {"controller": {"law": "constant", "current": 0.6}})
-    folder = save_recording(result, seat_file.parent / "constant", ["floor_acceleration", "driver_acceleration"])
+def test_a_constant_current_that_is_not_recorded_stands_in_the_nominal(kept_seat_file, result, tmp_path):
+    constant = seatsim.run(kept_seat_file, {"controller": {"law": "constant", "current": 0.6}})
+    folder = save_recording(constant, tmp_path / "constant", ["floor_acceleration", "driver_acceleration"])
     assert "current: 0.6" in (folder / "nominal.yaml").read_text()
     with pytest.raises(seatsim.InputError, match="must be recorded"):
-        save_recording(seatsim.run(seat_file), seat_file.parent / "b", ["floor_acceleration", "driver_acceleration"])
+        save_recording(result, tmp_path / "b", ["floor_acceleration", "driver_acceleration"])
 
 
 def test_a_bench_recording_is_replayed_from_displacement_and_command(tmp_path):

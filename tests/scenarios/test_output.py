@@ -16,6 +16,12 @@ def seatsim_command(monkeypatch, *arguments):
     return stopped.value.code
 
 
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Leave out the pictures, which take most of the time."""
+    monkeypatch.setattr("seatsim.plots.draw", lambda result: {})
+
+
 def test_run_writes_table_histories_and_pictures(seat_file, monkeypatch, capsys):
     out = seat_file.parent / "results"
     variants = 'variants={"a": {}, "passive": {"controller": {"law": "constant", "current": 0.0}}}'
@@ -33,7 +39,7 @@ def test_run_writes_table_histories_and_pictures(seat_file, monkeypatch, capsys)
     assert not [path for path in out.iterdir() if path.name.startswith(".")]
 
 
-def test_a_failed_run_exits_with_1_and_keeps_the_others(seat_file, monkeypatch, capsys):
+def test_a_failed_run_exits_with_1_and_keeps_the_others(seat_file, undrawn, monkeypatch, capsys):
     out = seat_file.parent / "results"
     bad = '{"damper.parameters": {"c_a": 0.0, "c_b": 0.0, "alpha_a": 0.0, "alpha_b": 0.0, "k0": -1.0e+7, "x0": 0.0,' \
           ' "f0": 0.0, "A": 1.0, "beta": 0.0, "gamma": 0.0, "n": 1.0}}'  # fmt: skip
@@ -45,7 +51,7 @@ def test_a_failed_run_exits_with_1_and_keeps_the_others(seat_file, monkeypatch, 
     assert len(pd.read_csv(out / "summary.csv")) == 1
 
 
-def test_compare_puts_several_files_in_one_table(seat_file, monkeypatch):
+def test_compare_puts_several_files_in_one_table(seat_file, undrawn, monkeypatch):
     other = seat_file.with_name("other.yaml")
     other.write_text(seat_file.read_text().replace("EM5", "EM6"))
     out = seat_file.parent / "results"
@@ -53,7 +59,7 @@ def test_compare_puts_several_files_in_one_table(seat_file, monkeypatch):
     assert list(pd.read_csv(out / "summary.csv").scenario) == ["seat", "other"]
 
 
-def test_run_gives_each_of_several_files_a_folder(seat_file, monkeypatch):
+def test_run_gives_each_of_several_files_a_folder(seat_file, undrawn, monkeypatch):
     other = seat_file.with_name("other.yaml")
     other.write_text(seat_file.read_text())
     out = seat_file.parent / "results"
@@ -78,7 +84,7 @@ def test_two_files_never_write_to_one_folder(seat_file, monkeypatch, capsys):
     assert not out.exists()
 
 
-def test_names_are_shown_as_they_are_written(seat_file, monkeypatch, capsys):
+def test_names_are_shown_as_they_are_written(seat_file, undrawn, monkeypatch, capsys):
     out = seat_file.parent / "results"
     name = 'name="a[/b] [x]"'
     assert seatsim_command(monkeypatch, "run", seat_file, "--out", out, "--set", name) == 0

@@ -1,0 +1,174 @@
+"""Effects withheld both ways: `python benchmarks/diagnosis_withheld.py --out DIR`.
+
+For every effect of the library fresh cases are made with it alone, with the makers of the blind sets, in `DIR/case-*`,
+the labels in `DIR/labels`. Each is diagnosed twice: with the whole library, by which the effect must be named, into
+`CASE/diagnosis`, and by a library without it, which must refuse it as `unknown`, into `CASE/withheld`. What is there is
+skipped; more cases per effect may be asked for later.
+
+Which effects could stand for the withheld one is said beforehand, from Fisher projections: those whose trace in the
+recording, with the true effect fitted and the parameters projected out, has an alikeness c with its own above IMITATED.
+An effect counts as imitable where one other imitates it in at least half of its cases. An imitator leaves 1 - c^2 of
+the excess to first order; a fit may bend its form, so that what no projection foretells may still be imitated.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections import Counter
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cases import run, worked
+from threadpoolctl import threadpool_limits
+
+from seatsim.blind.draw import Order
+from seatsim.blind.make import make_case
+from seatsim.blind.verdicts import Verdict, is_right, read_verdict
+from seatsim.diagnosis.alikeness import alikeness, with_member
+from seatsim.diagnosis.candidates import candidates
+from seatsim.diagnosis.diagnose import diagnose
+from seatsim.diagnosis.fit import Engine, Point
+from seatsim.diagnosis.problem import problem
+from seatsim.diagnosis.whitening import whitening
+from seatsim.diagnosis_output import contents
+from seatsim.files import write_json
+from seatsim.recording import load_recording
+from seatsim.registry import names
+
+IMITATED = 0.97
+"""Alikeness from which one effect could stand for another."""
+
+
+class Case(NamedTuple):
+    """An effect, what was said of it by the whole library and by one without it, how alike the others are to it."""
+
+    effect: str
+    without: Verdict
+    alike: dict[str, float]
+    right: bool
+
+
+def made(k: int, effect: str, seed: int, out: Path) -> str:
+    """Make one case; where the effect cannot be made material the makers take another, and its label says so."""
+    make_case(k, Order("one", (effect,)), seed, out, out / "labels")
+    return f"made {case_name(k)}"
+
+
+def case_name(k: int) -> str:
+    """Return the name that the makers give to a case."""
+    return f"case-{k + 1:04d}"
+
+
+def diagnosed(without: Sequence[str], case: Path) -> dict[str, Any]:
+    """Return the diagnosis of a case by a library without some effects."""
+    return contents(diagnose(case, without=without))
+
+
+def projected(case: Path, effect: str) -> str:
+    """Write how alike the effects are to the true one in a recording; nothing where that has no trace to foretell."""
+    alike = {}
+    with threadpool_limits(1):
+        posed = problem(load_recording(case))
+        if any(candidate.effect == effect for candidate in candidates(posed)):
+            engine = Engine(posed, whitening(posed))
+            nominal = engine.states([Point(posed.rest)])[0]
+            engine.refresh(nominal)
+            true = with_member(engine, engine.fitted(nominal), effect, [effect])
+            engine.refresh(true)
+            known, matrix = alikeness(engine, true, names("effect"))
+            row = matrix[known.index(effect)]
+            alike = {name: float(value) for name, value in zip(known, row, strict=True) if name != effect}
+    write_json(case / "alike.json", alike)
+    return f"{case.name} projected"
+
+
+def label_of(out: Path, case: str) -> dict[str, Any]:
+    """Return the label of a case."""
+    label: dict[str, Any] = json.loads((out / "labels" / f"{case}.json").read_text(encoding="utf-8"))
+    return label
+
+
+def work(out: Path, wanted: Sequence[str], count: int, seed: int) -> list[str]:
+    """Make and diagnose what is not there yet of the effects wanted; return the names of the cases."""
+    (out / "labels").mkdir(parents=True, exist_ok=True)
+    note = out / "seed.json"
+    if note.exists() and json.loads(note.read_text(encoding="utf-8")) != seed:
+        raise SystemExit(f"{out}: holds cases of another seed; give that, or another --out")
+    write_json(note, seed)
+    effects = names("effect")
+    orders = {k: effects[k % len(effects)] for k in range(count * len(effects)) if effects[k % len(effects)] in wanted}
+    there = {path.stem for path in (out / "labels").glob("case-*.json")}
+    run([(made, k, effect, seed, out) for k, effect in orders.items() if case_name(k) not in there])
+    cases = [case_name(k) for k in orders]
+    jobs: list[tuple[Any, ...]] = []
+    for case in cases:
+        (effect,) = label_of(out, case)["effects"]
+        folder = out / case
+        jobs += [(projected, folder, effect)] if not (folder / "alike.json").exists() else []
+        for name, without in (("diagnosis", ()), ("withheld", (effect,))):
+            if not (folder / name / "diagnosis.json").exists():
+                jobs.append((worked, folder / name, partial(diagnosed, without)))
+    run(jobs)
+    return cases
+
+
+def read(out: Path, case: str) -> Case:
+    """Return what came of a case."""
+    label = label_of(out, case)
+    alike = json.loads((out / case / "alike.json").read_text(encoding="utf-8"))
+    whole, without = (read_verdict(out / case / name / "diagnosis.json") for name in ("diagnosis", "withheld"))
+    return Case(label["effects"][0], without, alike, is_right(label, whole))
+
+
+def table(cases: Sequence[Case]) -> list[str]:
+    """Return the lines of a markdown table, an effect each, and totals over those that no other can imitate."""
+    headings = "effect", "named", "refused as unknown", "taken for", "imitable by", "most alike"
+    lines = [f"| {' | '.join(headings)} |", "|---" * len(headings) + "|"]
+    alone, imitable = [], []
+    for effect in sorted({case.effect for case in cases}):
+        own = [case for case in cases if case.effect == effect]
+        taken = Counter(case.without.named for case in own if case.without.verdict != "unknown")
+        imitators = Counter(name for case in own for name, value in case.alike.items() if value > IMITATED)
+        (imitable if any(2 * times >= len(own) for times in imitators.values()) else alone).extend(own)
+        others = ", ".join(f"{name} {times}/{len(own)}" for name, times in imitators.most_common())
+        mistaken = ", ".join(f"{name} {times}" for name, times in taken.most_common())
+        cells = effect, _named(own), _refused(own), mistaken or "-", others or "-", _nearest(own)
+        lines.append(f"| {' | '.join(cells)} |")
+    for title, some in (("not imitable", alone), ("imitable", imitable), ("all", list(cases))):
+        effects = f"**{title}**, {len({case.effect for case in some})} effects"
+        lines.append(f"| {effects} | {_named(some)} | {_refused(some)} | | | |")
+    return lines
+
+
+def _nearest(cases: Sequence[Case]) -> str:
+    """Return the effect with the largest alikeness on average, with that."""
+    sums = {name: sum(case.alike.get(name, 0.0) for case in cases) for name in cases[0].alike}
+    nearest = max(sums, key=lambda name: sums[name], default=None)
+    return f"{nearest} {sums[nearest] / len(cases):.2f}" if nearest else "-"
+
+
+def _named(cases: Sequence[Case]) -> str:
+    return f"{sum(case.right for case in cases)}/{len(cases)}"
+
+
+def _refused(cases: Sequence[Case]) -> str:
+    return f"{sum(case.without.verdict == 'unknown' for case in cases)}/{len(cases)}"
+
+
+def main() -> None:
+    """Read the arguments, make, diagnose, and print the table."""
+    parser = argparse.ArgumentParser(description="every effect withheld from the rig's model and from the library")
+    parser.add_argument("--cases-per-effect", type=int, default=5)
+    parser.add_argument("--effects", nargs="+", choices=names("effect"), default=names("effect"), metavar="EFFECT")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--out", type=Path, required=True, help="folder of the cases; what is there is kept")
+    options = parser.parse_args()
+    cases = work(options.out, options.effects, options.cases_per_effect, options.seed)
+    print("\n".join(table([read(options.out, case) for case in cases])))
+
+
+if __name__ == "__main__":
+    main()

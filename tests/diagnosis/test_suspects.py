@@ -1,0 +1,61 @@
+"""The block that an unknown input acts in is found, whatever its course."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.fit import Engine, Point
+from seatsim.diagnosis.problem import Drive, problem
+from seatsim.diagnosis.suspects import INPUTS, suspects
+from seatsim.diagnosis.whitening import whitening
+from seatsim.recording import load_recording
+from seatsim.simulation import Forces
+
+
+@pytest.fixture(scope="module")
+def posed(sound):
+    return problem(load_recording(sound))
+
+
+def course(samples, rate):
+    time = np.arange(samples) / rate
+    return np.sin(2 * np.pi * 2.3 * time) + np.sin(2 * np.pi * 5.1 * time) * np.sign(np.sin(2 * np.pi * 0.9 * time))
+
+
+def with_input(posed, block):
+    """Return the problem with the recording of a rig that has an input more, and the stated noise."""
+    where, rng, measured = INPUTS[block], np.random.default_rng(3), {}
+    for run in posed.runs:
+        floor = posed.floors[run]
+        extra = 20.0 * course(len(floor.acceleration), 1.0 / floor.step)
+        forces = Forces(where.push * extra, where.lift * extra)
+        true = posed.simulated(run, posed.rest, (), Drive(None, forces))
+        parts = round(1.0 / posed.recording.header.sample_rate / floor.step)
+        cell = extra[::parts][posed.skip : posed.skip + true.shape[1]]
+        true[posed.channels.index("damper_force")] += where.cell * cell
+        measured[run] = true + posed.noise[:, None] * rng.standard_normal(true.shape)
+    return dataclasses.replace(posed, measured=measured)
+
+
+def likeliest(posed):
+    engine = Engine(posed, whitening(posed))
+    state = engine.states([Point(posed.rest)])[0]
+    engine.refresh(state)
+    found = suspects(engine, state)
+    return min(found, key=lambda block: found[block].doubt), found
+
+
+@pytest.mark.parametrize("block", ["damper", "suspension", "cushion", "driver"])
+def test_a_force_in_a_block_is_placed_there(posed, block):
+    assert likeliest(with_input(posed, block))[0] == block
+
+
+def test_an_error_of_one_channel_is_the_sensors(posed):
+    measured = {run: values.copy() for run, values in posed.measured.items()}
+    k = posed.channels.index("driver_acceleration")
+    for values in measured.values():
+        values[k] = np.clip(values[k], -posed.spread[k], posed.spread[k])
+    best, found = likeliest(dataclasses.replace(posed, measured=measured))
+    assert best == "sensor"
+    assert found["sensor"].quantity == "error of driver_acceleration"
