@@ -117,23 +117,15 @@ def _answers(engine: Engine, state: State, run: str) -> dict[str, Answer]:
 
 def _driven(engine: Engine, state: State, run: str, where: Input) -> Answer:
     """Return the answer to an input that matches the channels as well as it can."""
-    problem, weights = engine.problem, engine.white.weights[run]
-    floor, plant = problem.floors[run], problem.scenario.plant
-    assert floor is not None
-    assert plant is not None
-    size = SIZE * float(np.std(floor.acceleration)) * (1.0 if where.ground else plant.driver_mass)
-    samples, bins = problem.measured[run].shape[1], weights.shape[1]
-    test = size * _red(samples, problem.recording.header.sample_rate)
-    cause = np.fft.rfft(test)
-    answer = problem.measured[run] - state.residual[run]
-    change = _simulated(problem, state.point, run, where, test) - answer
-    signature = weights * _response(np.fft.rfft(change), cause)[:, :bins]
-    plausible = REACH**2 * _power(cause[:bins])
-    gain = signature.conj() / (np.sum(np.abs(signature) ** 2, axis=0) + 2.0 / plausible)
-    course, left = np.zeros(len(cause), dtype=complex), state.whitened[run]
+    problem, bins = engine.problem, engine.white.bins[run]
+    samples = problem.measured[run].shape[1]
+    signature, plausible = _signature(engine, state, run, where)
+    size = np.sum(np.abs(signature) ** 2, axis=0)
+    gain = signature.conj() / (size + 2.0 / plausible)
+    course, left = np.zeros(samples // 2 + 1, dtype=complex), state.whitened[run]
     for _ in range(ROUNDS):
         before = float(np.sum(left**2))
-        step = np.zeros(len(cause), dtype=complex)
+        step = np.zeros(len(course), dtype=complex)
         step[:bins] = np.sum(gain * (left[:, :bins] + 1j * left[:, bins:]), axis=0)
         for fraction in SHORTER:
             tried = _simulated(problem, state.point, run, where, np.fft.irfft(course + fraction * step, samples))
@@ -144,9 +136,22 @@ def _driven(engine: Engine, state: State, run: str, where: Input) -> Answer:
         if np.sum(left**2) > (1.0 - SETTLED) * before:
             break
     power = _power(course[:bins])
-    size = np.sum(np.abs(signature) ** 2, axis=0)
     course[:bins] *= np.maximum(0.0, 1.0 - 2.0 / (size * power))
     return Answer(left, [(signature, power)], np.fft.irfft(course, samples))
+
+
+def _signature(engine: Engine, state: State, run: str, where: Input) -> tuple[Spectra, Array]:
+    """Return what a unit input makes of the whitened channels, (channels, frequencies), and its plausible power."""
+    problem, bins = engine.problem, engine.white.bins[run]
+    floor, plant = problem.floors[run], problem.scenario.plant
+    assert floor is not None
+    assert plant is not None
+    scale = SIZE * float(np.std(floor.acceleration)) * (1.0 if where.ground else plant.driver_mass)
+    test = scale * _red(problem.measured[run].shape[1], problem.recording.header.sample_rate)
+    still = problem.measured[run] - state.residual[run]
+    cause = np.fft.rfft(test)
+    change = np.fft.rfft(_simulated(problem, state.point, run, where, test) - still)
+    return engine.white.weights[run] * _response(change, cause)[:, :bins], REACH**2 * _power(cause[:bins])
 
 
 def _power(spectrum: Spectra) -> Array:
