@@ -25,12 +25,21 @@ DRAWS = 400
 """Bootstrap samples."""
 LEVEL = (5.0, 95.0)
 """Percentiles of the interval."""
-ELSEWHERE = 0.08
-"""Standard deviation by which the shrink differs from one kind of excitation to another."""
+ELSEWHERE = 0.07
+"""Standard deviation by which the shrink differs between excitations that are alike."""
 
 
-def held_out(engine: Engine, chosen: State) -> str:
-    """Return the run to hold out: the last one whose absence leaves the effects well excited in the others."""
+def shrinks(problem: Problem, nominal: State, chosen: State) -> Array:
+    """Return by how much the gap shrinks in each run from one state to another."""
+    powers = [
+        [np.mean((state.residual[run] / problem.spread[:, None]) ** 2) for run in problem.runs]
+        for state in (nominal, chosen)
+    ]
+    return np.asarray(1.0 - np.sqrt(powers[1]) / np.sqrt(powers[0]))
+
+
+def held_out(engine: Engine, chosen: State, shrink: Array) -> str:
+    """Return the run to hold out: without it the others excite the effects well; its shrink is the most ordinary."""
     runs = engine.problem.runs
     if not chosen.point.terms or len(runs) < 2:
         return runs[-1]
@@ -42,7 +51,8 @@ def held_out(engine: Engine, chosen: State) -> str:
     share = np.array(shares) / np.maximum(np.sum(shares, axis=0), 1e-12)
     worst = share.max(axis=1)
     good = [k for k in range(len(runs)) if worst[k] < 0.6 and share[k].min() > 0.05]
-    return runs[good[-1]] if good else runs[int(np.argmin(worst))]
+    ordinary = np.abs(shrink - np.median(shrink))
+    return runs[min(good, key=lambda k: ordinary[k])] if good else runs[int(np.argmin(worst))]
 
 
 def trained(engine: Engine, state: State, run: str) -> tuple[State, State]:
@@ -63,13 +73,16 @@ def scenario_at(problem: Problem, nominal: Scenario, point: Point) -> Scenario:
     return dataclasses.replace(varied(nominal, problem.parameters, point.u), effects=(*nominal.effects, *point.effects))
 
 
-def gaps(problem: Problem, scenarios: Sequence[Scenario], runs: Sequence[str]) -> Gaps:
-    """Return the gaps of the nominal, the calibrated and the augmented scenario on some runs."""
+def gaps(problem: Problem, scenarios: Sequence[Scenario], runs: Sequence[str], spread: float) -> Gaps:
+    """Return the gaps of the nominal, the calibrated and the augmented scenario on some runs.
+
+    `spread` is the standard deviation of the shrink from run to run.
+    """
     before, calibrated, after = (gap(scenario, problem.recording, runs) for scenario in scenarios)
     shrink = 1.0 - after.overall / before.overall
     return Gaps(
         _stated(before), _stated(calibrated), _stated(after), before.floor, shrink,
-        _interval(problem, scenarios[0], scenarios[2], runs, shrink),
+        _interval(problem, (scenarios[0], scenarios[2]), runs, shrink, spread),
     )  # fmt: skip
 
 
@@ -78,11 +91,11 @@ def _stated(found: Any) -> dict[str, Any]:
 
 
 def _interval(
-    problem: Problem, nominal: Scenario, augmented: Scenario, runs: Sequence[str], shrink: float
+    problem: Problem, scenarios: tuple[Scenario, Scenario], runs: Sequence[str], shrink: float, spread: float
 ) -> tuple[float, float]:
     """Return the block bootstrap of the shrink, widened by what other excitations make of it."""
-    measured, first = pooled(nominal, problem.recording, runs)
-    second = pooled(augmented, problem.recording, runs)[1]
+    measured, first = pooled(scenarios[0], problem.recording, runs)
+    second = pooled(scenarios[1], problem.recording, runs)[1]
     length = max(1, round(BLOCK * problem.recording.header.sample_rate))
     count = max(1, len(next(iter(measured.values()))) // length)
     powers = np.array([
@@ -91,7 +104,7 @@ def _interval(
     ])  # fmt: skip
     rng = np.random.default_rng(0)
     drawn = powers[:, :, rng.integers(0, count, (DRAWS, count))].mean(axis=(1, 3))
-    samples = 1.0 - np.sqrt(drawn[1] / drawn[0]) + ELSEWHERE * rng.standard_normal(DRAWS)
+    samples = 1.0 - np.sqrt(drawn[1] / drawn[0]) + np.hypot(ELSEWHERE, spread) * rng.standard_normal(DRAWS)
     low, high = np.percentile(samples, LEVEL)
     return float(min(low, shrink)), float(min(1.0, max(high, shrink)))
 

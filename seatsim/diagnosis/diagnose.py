@@ -7,12 +7,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from seatsim.diagnosis.alikeness import alikeness
 from seatsim.diagnosis.augmented import content
 from seatsim.diagnosis.candidates import Candidate, candidates
-from seatsim.diagnosis.claim import gaps, held_out, scenario_at, trained
+from seatsim.diagnosis.claim import gaps, held_out, scenario_at, shrinks, trained
 from seatsim.diagnosis.coverage import coverage
 from seatsim.diagnosis.evidence import causes, collected
 from seatsim.diagnosis.examination import examine, refuse
@@ -105,11 +106,14 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     engine, judgement, posed = solution.engine, solution.judgement, solution.engine.problem
     chosen = judgement.chosen
     told("holding out a run")
-    run = held_out(engine, chosen)
+    shrink = shrinks(posed, solution.found.nominal, chosen)
+    run = held_out(engine, chosen, shrink)
     calibrated, augmented = trained(engine, chosen, run)
     nominal = single(recording.nominal)
     points = (Point(posed.rest), calibrated.point, augmented.point)
-    found = gaps(posed, [scenario_at(posed, nominal, point) for point in points], [run])
+    scenarios = [scenario_at(posed, nominal, point) for point in points]
+    spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
+    found = gaps(posed, scenarios, [run], spread)
     judgement, where = _with_outside(solution)
     listed = causes(engine, solution.found, judgement, calibrated, augmented, nominal, run)
     if solution.unmeasured and solution.rest is not None:
