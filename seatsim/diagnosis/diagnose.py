@@ -26,6 +26,7 @@ from seatsim.diagnosis.place import places, unexplained
 from seatsim.diagnosis.problem import Problem, problem
 from seatsim.diagnosis.search import Search, search
 from seatsim.diagnosis.sentences import answer
+from seatsim.diagnosis.suspects import unrepeated
 from seatsim.diagnosis.verdict import Judgement, judged
 from seatsim.diagnosis.whitening import whitening
 from seatsim.recording import Recording, load_recording
@@ -70,7 +71,11 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     offered = candidates(posed, without)
     effects = [name for name in names("effect") if name not in without]
     told("weighing the channels")
-    first = _searched(Engine(posed, whitening(posed)), offered, effects, told)
+    engine = Engine(posed, whitening(posed))
+    shaken = None if posed.bench else unrepeated(engine, engine.states([Point(posed.rest)])[0])
+    if shaken is not None:
+        engine = Engine(posed, whitening(posed, shaken))
+    first = _searched(engine, offered, effects, told)
     if first.judgement.verdict != "unknown" or posed.bench or OUTSIDE in without or first.rest is None:
         return first
     merged = () if "damper_force" in posed.channels else ("damper",)

@@ -42,6 +42,8 @@ SETTLED = 0.02
 """Corrections end where one lowers what is left by less than this share."""
 SHORTER = (1.0, 0.4, 0.15)
 """Fractions of a correction that are tried in turn."""
+REGAINED = 1.2
+"""Factor on a force that repeats show, for what its filter takes."""
 
 
 class Input(NamedTuple):
@@ -152,6 +154,26 @@ def _signature(engine: Engine, state: State, run: str, where: Input) -> tuple[Sp
     cause = np.fft.rfft(test)
     change = np.fft.rfft(_simulated(problem, state.point, run, where, test) - still)
     return engine.white.weights[run] * _response(change, cause)[:, :bins], REACH**2 * _power(cause[:bins])
+
+
+def unrepeated(engine: Engine, state: State) -> dict[str, Array] | None:
+    """Return a random force on the frame by run, shape (samples,), by which repeated runs differ; None without repeats.
+
+    The difference of two repeats holds twice the power of what does not repeat.
+    """
+    problem = engine.problem
+    for run, entry in problem.recording.runs.items():
+        first = problem.measured.get(entry.repeat_of or "", np.zeros(0))
+        second = problem.measured[run]
+        if first.shape == second.shape:
+            signature, plausible = _signature(engine, state, run, INPUTS["suspension"])
+            bins, left = engine.white.bins[run], engine.white((first - second) / np.sqrt(2.0), run)
+            size, complex_left = np.sum(np.abs(signature) ** 2, axis=0), left[:, :bins] + 1j * left[:, bins:]
+            course = np.sum(signature.conj() * complex_left, axis=0) / (size + 2.0 / plausible)
+            course *= REGAINED * np.maximum(0.0, 1.0 - 2.0 / (size * _power(course)))
+            force = np.fft.irfft(course, first.shape[1])
+            return {name: np.resize(force, values.shape[1]) for name, values in problem.measured.items()}
+    return None
 
 
 def _power(spectrum: Spectra) -> Array:

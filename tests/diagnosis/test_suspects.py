@@ -7,7 +7,7 @@ import pytest
 
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.problem import Drive, problem
-from seatsim.diagnosis.suspects import INPUTS, suspects
+from seatsim.diagnosis.suspects import INPUTS, suspects, unrepeated
 from seatsim.diagnosis.whitening import whitening
 from seatsim.recording import load_recording
 from seatsim.simulation import Forces
@@ -59,3 +59,31 @@ def test_an_error_of_one_channel_is_the_sensors(posed):
     best, found = likeliest(dataclasses.replace(posed, measured=measured))
     assert best == "sensor"
     assert found["sensor"].quantity == "error of driver_acceleration"
+
+
+def repeated(posed, newtons):
+    """Return the problem with a run and its repeat, between which a random force on the frame differs."""
+    first, second = posed.runs
+    rng, measured = np.random.default_rng(5), {}
+    for run in posed.runs:
+        push = Forces(newtons * rng.standard_normal(len(posed.floors[first].acceleration)))
+        true = posed.simulated(first, posed.rest, (), Drive(None, push))
+        measured[run] = true + posed.noise[:, None] * rng.standard_normal(true.shape)
+    runs = posed.recording.runs | {second: posed.recording.runs[second]._replace(repeat_of=first)}
+    return dataclasses.replace(posed, measured=measured, recording=dataclasses.replace(posed.recording, runs=runs))
+
+
+def test_a_force_that_does_not_repeat_is_found_for_every_run(posed):
+    found = []
+    for newtons in (0.0, 30.0):
+        problem = repeated(posed, newtons)
+        engine = Engine(problem, whitening(problem))
+        forces = unrepeated(engine, engine.states([Point(problem.rest)])[0])
+        assert set(forces) == set(problem.runs)
+        found.append(np.std(forces[problem.runs[0]]))
+    assert found[1] > 3.0 * found[0]
+
+
+def test_without_repeats_no_force_is_looked_for(posed):
+    engine = Engine(posed, whitening(posed))
+    assert unrepeated(engine, engine.states([Point(posed.rest)])[0]) is None
