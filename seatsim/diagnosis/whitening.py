@@ -1,10 +1,10 @@
 """Weights by which residuals of all channels and frequencies become comparable, from what noise and model leave.
 
-    P(f) = noise^2 + floor noise carried through the rig + (TRUST spectrum of the channel)^2
+    P(f) = noise^2 + input noise carried through the rig + (TRUST spectrum of the channel)^2
 
-is the power that a perfect model leaves: the stated noise, the noise of the recorded floor that drives the simulation
-(found by simulating it), and a small share of the signal for what no model of finite order gets right. It is never
-fitted to the residual under test, which would hide narrow gaps.
+is the power that a perfect model leaves: the stated noise; the noise of the recorded floor that drives the simulation,
+and of the coil current where no command is recorded, found by simulating it; and a small share of the signal for what
+no model of finite order gets right. It is never fitted to the residual under test, which would hide narrow gaps.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.fft import rfft
 
 from seatsim.diagnosis.problem import POOL, Drive, Problem
+from seatsim.excitations.base import Floor
 from seatsim.simulation import Forces
 
 Array = NDArray[np.float64]
@@ -70,29 +71,38 @@ def whitening(problem: Problem, pushes: Mapping[str, Array] | None = None) -> Wh
 
 
 def _carried(problem: Problem, run: str, push: Array | None) -> Array:
-    """Return the power spectrum that the noise of the recorded floor, and a random push, leave in the outputs."""
+    """Return the power spectrum that the noise of the recorded inputs, and a random push, leave in the outputs."""
     floor = problem.floors[run]
     if floor is None:
         return np.zeros((len(problem.channels), 1))
     rng = np.random.default_rng(0)
-    rate = problem.recording.header.sample_rate
-    noise = problem.recording.channels["floor_acceleration"].noise_rms
-    rows = np.arange(0, len(floor.acceleration), round(1.0 / rate / floor.step))
-    every = np.arange(len(floor.acceleration))
-    draws = noise * rng.standard_normal((TWINS, len(rows)))
-    forces = [None if push is None else _shuffled(push, rng) for _ in range(TWINS)]
-
-    def shaken(index: int) -> Array:
-        noisy = floor._replace(acceleration=floor.acceleration + np.interp(every, rows, draws[index]))
-        force = forces[index]
-        if force is None:
-            return problem.simulated(run, problem.rest, (), Drive(noisy))
-        held = np.interp(every, rows[: len(force)], force, right=0.0)
-        return problem.simulated(run, problem.rest, (), Drive(noisy, Forces(held)))
-
+    drives = [Drive(_noisy(problem, floor, rng), _drawn(problem, floor, push, rng)) for _ in range(TWINS)]
     clean = problem.simulated(run, problem.rest, ())
-    twins = list(POOL.map(shaken, range(TWINS)))
+    twins = list(POOL.map(lambda drive: problem.simulated(run, problem.rest, (), drive), drives))
     return smoothed(np.mean([np.abs(np.fft.rfft(twin - clean, axis=1)) ** 2 for twin in twins], axis=0))
+
+
+def _noisy(problem: Problem, floor: Floor, rng: np.random.Generator) -> Floor:
+    """Return the inputs of a run with the noise of their sensors once more."""
+    every, channels = np.arange(len(floor.acceleration)), problem.recording.channels
+    rows = every[:: round(1.0 / problem.recording.header.sample_rate / floor.step)]
+
+    def noise(channel: str) -> Array:
+        return np.interp(every, rows, channels[channel].noise_rms * rng.standard_normal(len(rows)))
+
+    noisy = floor._replace(acceleration=floor.acceleration + noise("floor_acceleration"))
+    if floor.command is None and floor.coil_current is not None:
+        noisy = noisy._replace(coil_current=floor.coil_current + noise("coil_current"))
+    return noisy
+
+
+def _drawn(problem: Problem, floor: Floor, push: Array | None, rng: np.random.Generator) -> Forces | None:
+    """Return a random force like a push, on the simulation's steps."""
+    if push is None:
+        return None
+    every = np.arange(len(floor.acceleration))
+    rows = every[:: round(1.0 / problem.recording.header.sample_rate / floor.step)]
+    return Forces(np.interp(every, rows[: len(push)], _shuffled(push, rng), right=0.0))
 
 
 def _shuffled(course: Array, rng: np.random.Generator) -> Array:
