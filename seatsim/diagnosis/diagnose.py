@@ -102,8 +102,7 @@ def _searched(
     told("asking which block could hold the rest")
     held, state = unexplained(engine, found, judgement.chosen)
     rest = latent(engine.problem, state.point, held.block, held.suspects[held.block])
-    where = places(engine, judgement.chosen if state is judgement.chosen else found.calibrated, held)
-    return Solution(engine, found, judgement, where, rest, False)
+    return Solution(engine, found, judgement, places(engine, state, held), rest, False)
 
 
 def _stated(recording: Recording, solution: Solution, notes: list[str], told: Callable[[str], None]) -> Diagnosis:

@@ -65,6 +65,11 @@ class Problem:
         """Rows at the start of a run that are not compared."""
         return round(LEFT_OUT * self.recording.header.sample_rate)
 
+    @property
+    def parts(self) -> int:
+        """Steps of the simulation in the time of a row."""
+        return round(1.0 / self.recording.header.sample_rate / self.scenario.solver.step)
+
     @cached_property
     def noise(self) -> Array:
         """Stated noise of the compared channels, shape (channels,)."""
@@ -89,10 +94,9 @@ class Problem:
             answer = replay_bench(scenario, self.recording, run)
         else:
             step = 1.0 / self.recording.header.sample_rate
-            parts = round(step / self.scenario.solver.step)
             drive = drive or Drive()
             history = simulate(scenario, drive.floor or self.floors[run], drive.forces)
-            answer = readings(scenario.effects, step, {name: history[name][::parts] for name in self.channels})
+            answer = readings(scenario.effects, step, {name: history[name][:: self.parts] for name in self.channels})
         return np.array([answer[name][self.skip : self.skip + self.measured[run].shape[1]] for name in self.channels])
 
     def _attempted(self, run: str, u: Array, effects: Sequence[Any]) -> Array:

@@ -104,12 +104,11 @@ def _nature(problem: Problem, name: str) -> tuple[str, str]:
 def _answers(engine: Engine, state: State, run: str) -> dict[str, Answer]:
     """Return the answer to an input in each block, and to an error of each channel's sensor."""
     weights, left = engine.white.weights[run], state.whitened[run]
-    half = weights.shape[1]
+    errors = _spectra(left) / weights
     found = {}
     for k, name in enumerate(engine.problem.channels):
         unit = np.asarray(np.eye(len(weights))[:, k : k + 1] * weights, dtype=complex)
-        error = (left[k, :half] + 1j * left[k, half:]) / weights[k]
-        found[name] = Answer(left, [(unit, _power(error))], state.residual[run][k])
+        found[name] = Answer(left, [(unit, _power(errors[k]))], state.residual[run][k])
     found |= {block: _driven(engine, state, run, where) for block, where in INPUTS.items()}
     if "coil_current" in found:
         sensed, driven = found["coil_current"], found["damper"]
@@ -128,7 +127,7 @@ def _driven(engine: Engine, state: State, run: str, where: Input) -> Answer:
     for _ in range(ROUNDS):
         before = float(np.sum(left**2))
         step = np.zeros(len(course), dtype=complex)
-        step[:bins] = np.sum(gain * (left[:, :bins] + 1j * left[:, bins:]), axis=0)
+        step[:bins] = np.sum(gain * _spectra(left), axis=0)
         for fraction in SHORTER:
             tried = _simulated(problem, state.point, run, where, np.fft.irfft(course + fraction * step, samples))
             rest = engine.white(problem.measured[run] - tried, run)
@@ -138,7 +137,7 @@ def _driven(engine: Engine, state: State, run: str, where: Input) -> Answer:
         if np.sum(left**2) > (1.0 - SETTLED) * before:
             break
     power = _power(course[:bins])
-    course[:bins] *= np.maximum(0.0, 1.0 - 2.0 / (size * power))
+    course[:bins] *= _share_above_noise(size * power)
     return Answer(left, [(signature, power)], np.fft.irfft(course, samples))
 
 
@@ -167,13 +166,24 @@ def unrepeated(engine: Engine, state: State) -> dict[str, Array] | None:
         second = problem.measured[run]
         if first.shape == second.shape:
             signature, plausible = _signature(engine, state, run, INPUTS["suspension"])
-            bins, left = engine.white.bins[run], engine.white((first - second) / np.sqrt(2.0), run)
-            size, complex_left = np.sum(np.abs(signature) ** 2, axis=0), left[:, :bins] + 1j * left[:, bins:]
-            course = np.sum(signature.conj() * complex_left, axis=0) / (size + 2.0 / plausible)
-            course *= REGAINED * np.maximum(0.0, 1.0 - 2.0 / (size * _power(course)))
+            left = _spectra(engine.white((first - second) / np.sqrt(2.0), run))
+            size = np.sum(np.abs(signature) ** 2, axis=0)
+            course = np.sum(signature.conj() * left, axis=0) / (size + 2.0 / plausible)
+            course *= REGAINED * _share_above_noise(size * _power(course))
             force = np.fft.irfft(course, first.shape[1])
             return {name: np.resize(force, values.shape[1]) for name, values in problem.measured.items()}
     return None
+
+
+def _spectra(whitened: Array) -> Spectra:
+    """Return whitened numbers, shape (..., 2 frequencies), as complex ones, shape (..., frequencies)."""
+    half = whitened.shape[-1] // 2
+    return np.asarray(whitened[..., :half] + 1j * whitened[..., half:])
+
+
+def _share_above_noise(power: Array) -> Array:
+    """Return Wiener's filter for a whitened power spectrum, in which noise has 2."""
+    return np.maximum(0.0, 1.0 - 2.0 / power)
 
 
 def _power(spectrum: Spectra) -> Array:
@@ -184,8 +194,7 @@ def _simulated(problem: Problem, point: Point, run: str, where: Input, course: A
     """Return the channels of a run with a course on its places, shape (channels, samples)."""
     floor = problem.floors[run]
     assert floor is not None
-    parts = round(1.0 / problem.recording.header.sample_rate / floor.step)
-    rows = np.arange(len(floor.acceleration)) / parts
+    rows = np.arange(len(floor.acceleration)) / problem.parts
     full = np.interp(rows, problem.skip + np.arange(len(course)), course, left=0.0, right=0.0)
     base = floor._replace(acceleration=floor.acceleration + where.ground * full)
     try:
@@ -219,9 +228,7 @@ def _doubt(engine: Engine, state: State, answers: dict[str, Answer]) -> float:
     matrix, right, cost, rows = np.zeros((count, count)), np.zeros(count), 0.0, 0
     for run, answer in answers.items():
         shape = answer.left.shape
-        every = np.concatenate([answer.left[None], engine.slopes[run].reshape(-1, *shape)])
-        half = shape[1] // 2
-        spectra = every[:, :, :half] + 1j * every[:, :, half:]
+        spectra = _spectra(np.concatenate([answer.left[None], engine.slopes[run].reshape(-1, *shape)]))
         rest = spectra
         for signature, power in answer.ways:
             size = np.sum(np.abs(signature) ** 2, axis=0)

@@ -85,7 +85,7 @@ def _carried(problem: Problem, run: str, push: Array | None) -> Array:
 def _noisy(problem: Problem, floor: Floor, rng: np.random.Generator) -> Floor:
     """Return the inputs of a run with the noise of their sensors once more."""
     every, channels = np.arange(len(floor.acceleration)), problem.recording.channels
-    rows = every[:: round(1.0 / problem.recording.header.sample_rate / floor.step)]
+    rows = every[:: problem.parts]
 
     def noise(channel: str) -> Array:
         return np.interp(every, rows, channels[channel].noise_rms * rng.standard_normal(len(rows)))
@@ -101,7 +101,7 @@ def _drawn(problem: Problem, floor: Floor, push: Array | None, rng: np.random.Ge
     if push is None:
         return None
     every = np.arange(len(floor.acceleration))
-    rows = every[:: round(1.0 / problem.recording.header.sample_rate / floor.step)]
+    rows = every[:: problem.parts]
     return Forces(np.interp(every, rows[: len(push)], _shuffled(push, rng), right=0.0))
 
 
