@@ -119,6 +119,42 @@ def diagnose(
 
 
 @app.command()
+def characterise(
+    data: Annotated[Path | None, typer.Argument(help="A bench table, or a folder of them.", show_default=False)] = None,
+    out_folder: Out = None,
+    model: Annotated[str | None, typer.Option("--model", help="A damper model, in place of data.")] = None,
+    parameters: Annotated[
+        Path | None, typer.Option("--parameters", help="A file with a damper, in place of data.")
+    ] = None,
+    currents: Annotated[str, typer.Option("--currents", metavar="A,A", help="Currents of a model's tests.")] = "",
+    temperatures: Annotated[str, typer.Option("--temperatures", metavar="C,C", help="Temperatures in degC.")] = "",
+    amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M", help="Amplitudes in m.")] = "",
+    frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ", help="Frequencies.")] = "",
+) -> None:
+    """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
+    from seatsim.bench_tables import load_bench
+    from seatsim.characterisation.of_model import characterise_model, settings_of, specimen
+    from seatsim.characterisation.summary import characterise as of_records
+    from seatsim.characterisation_output import remarks, tables, write_characterisation
+
+    grid = (currents, temperatures, amplitudes, frequencies)
+    if (data is None) == (model is None and parameters is None) or (data is not None and any(grid)):
+        raise InputError("characterise either DATA, or a model by --model or --parameters with its tests; see --help")
+    if data is not None:
+        found = of_records(load_bench(data), data.resolve().name.split(".")[0], str(data))
+    else:
+        tested = specimen(model, parameters)
+        found = characterise_model(tested, settings_of(tested, *grid))
+    for table in tables(found):
+        out.print(table)
+    for note in remarks(found):
+        err.print(f"note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+    folder = out_folder or Path("out") / f"characterise-{found.name}"
+    paths = write_characterisation(found, folder)
+    out.print(f"written to {folder}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
+
+
+@app.command()
 def describe(name: Annotated[str, typer.Argument(help="A name, such as bouc_wen or road.")] = "") -> None:
     """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds."""
     from seatsim.describe import describe as tell

@@ -1,0 +1,245 @@
+"""The same tests on a damper model: sines over a grid of settings, and steps of the commanded current."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.characterisation.response import Ensemble, Response, crossing, response
+from seatsim.characterisation.rows import row_of_loops
+from seatsim.characterisation.summary import Characterisation
+from seatsim.coil import Coil, relax
+from seatsim.dampers.base import DamperCard
+from seatsim.dampers.bench import bench_force, sine_test
+from seatsim.errors import InputError
+from seatsim.registry import card_of, find, name_of
+from seatsim.temperature import TemperatureFactors
+from seatsim.validation import build, check_keys, choose, mapping
+from seatsim.yaml_source import KeyPath, Source
+
+Array = NDArray[Any]
+
+FASTEST = (2.0, 1.0, 0.5, 0.2, 0.1)
+"""Hz; the first that keeps to the model's speeds is the highest frequency where none is stated."""
+LARGEST = 0.01
+"""m; largest amplitude where none is stated."""
+SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Currents over the largest for which the model holds."""
+SETTLED = 3.0
+"""Seconds a sine runs at least before its last cycle is taken: models forget their start in that time."""
+STEP = 1e-4
+"""Seconds of a step of current between two values of the force."""
+BEFORE = 0.2
+"""Seconds of constant speed before the step."""
+TIME_CONSTANTS = 12.0
+"""Time constants of the coil after the step."""
+
+
+class Specimen(NamedTuple):
+    """A damper model with its parameters, temperature factors and coil; `stated` where a file states them."""
+
+    damper: Any
+    factors: TemperatureFactors
+    coil: Coil
+    stated: bool = True
+
+    @property
+    def name(self) -> str:
+        """Name of the model."""
+        return name_of("damper", type(self.damper))
+
+    @property
+    def card(self) -> DamperCard:
+        """What is stated of the model."""
+        card: DamperCard = card_of(type(self.damper))
+        return card
+
+
+class Settings(NamedTuple):
+    """Currents [A], temperatures [degC], amplitudes [m] and frequencies [Hz] of the tests."""
+
+    currents: Sequence[float]
+    temperatures: Sequence[float]
+    amplitudes: Sequence[float]
+    frequencies: Sequence[float]
+
+
+def specimen(model: str | None, parameters: Path | None) -> Specimen:
+    """Return a model with the values of its record, or with the `parameters` of a file.
+
+    The file is a damper, `{model: NAME, parameters: {...}, temperature_factors: {...}}`, or has one under `damper`, as
+    a scenario has, with its coil under `actuator`.
+
+    Raises:
+        InputError: there is no such model, the file is not as described, or it is of another model.
+    """
+    if parameters is None:
+        cls: Any = find("damper", model or "")
+        return Specimen(cls(), card_of(cls).factors, Coil(max_current=card_of(cls).max_current), False)
+    source = Source(Path(parameters))
+    whole = "damper" in source.data
+    keys: KeyPath = ("damper",) if whole else ()
+    values = mapping(source.data["damper"], source, keys) if whole else source.data
+    check_keys(values, ("model", "parameters", "temperature_factors"), source, keys)
+    named = choose(values, "model", source, keys)
+    if model not in (None, named):
+        raise source.error((*keys, "model"), f"is '{named}', not the '{model}' of --model; leave --model out")
+    try:
+        cls = find("damper", named)
+    except InputError as error:
+        raise source.error((*keys, "model"), str(error)) from error
+    card: DamperCard = card_of(cls)
+    required = getattr(cls, "_fields", ()) if card.complete else ()
+    damper = build(cls, values.get("parameters", {}), source, (*keys, "parameters"), required)
+    factors = card.factors
+    if "temperature_factors" in values:
+        where = (*keys, "temperature_factors")
+        factors = build(TemperatureFactors, values["temperature_factors"], source, where)
+    coil = Coil(max_current=card.max_current)
+    if whole and "actuator" in source.data:
+        coil = build(Coil, source.data["actuator"], source, ("actuator",), ("rate", "max_current"))
+    return Specimen(damper, factors, coil)
+
+
+def settings_of(
+    tested: Specimen, currents: str = "", temperatures: str = "", amplitudes: str = "", frequencies: str = ""
+) -> Settings:
+    """Return the settings that are stated as numbers between commas, and for the others those for which a model holds.
+
+    By default: five currents up to the largest; the least, mean and largest temperature where these matter, else the
+    one at which the factors are 1; amplitudes up to 10 mm and frequencies up to 2 Hz, as far as the model's largest
+    speed permits.
+
+    Raises:
+        InputError: a list is not of numbers, or one of them is out of bounds.
+    """
+    card, factors = tested.card, tested.factors
+    largest = min(card.max_current, tested.coil.max_current)
+    low, high = card.temperatures
+    warm = (low, 0.5 * (low + high), high) if any(factors[:3]) and high > low else (factors.reference,)
+    far = _numbers("--amplitudes", amplitudes, "m", "0.005,0.01", above=0.0)
+    fast = _numbers("--frequencies", frequencies, "Hz", "0.5,1,2", above=0.0)
+    reach = card.max_speed / (2.0 * math.pi)
+    if not far:
+        largest_far = _rounded(min(LARGEST, reach / max(fast))) if fast else LARGEST
+        far = [0.5 * largest_far, largest_far]
+    if not fast:
+        top = next((f for f in FASTEST if f * max(far) <= reach), FASTEST[-1])
+        fast = [0.25 * top, 0.5 * top, top]
+    return Settings(
+        _numbers("--currents", currents, "A", "0,0.5,1", low=0.0) or [round(share * largest, 9) for share in SHARES],
+        _numbers("--temperatures", temperatures, "degC", "20,50,80", low=-50.0, high=200.0) or list(warm),
+        far,
+        fast,
+    )
+
+
+def _rounded(value: float) -> float:
+    """Return a value rounded down to one digit."""
+    digit = 10.0 ** math.floor(math.log10(value))
+    return round(math.floor(value / digit + 1e-9) * digit, 12)
+
+
+def _numbers(
+    option: str,
+    text: str,
+    unit: str,
+    example: str,
+    low: float = -math.inf,
+    high: float = math.inf,
+    above: float = -math.inf,
+) -> list[float]:
+    bounds = f" of at least {low:g}" if low > -math.inf else f" above {above:g}" if above > -math.inf else ""
+    bounds += f" and at most {high:g}" if high < math.inf else ""
+    values = []
+    for part in text.split(",") if text.strip() else []:
+        try:
+            value = float(part)
+        except ValueError:
+            value = math.nan
+        if not (low <= value <= high and value > above and math.isfinite(value)):
+            raise InputError(
+                f"{option} {text}: '{part.strip()}' is not permitted; write numbers{bounds} {unit} between commas,"
+                f" such as {option} {example}"
+            )
+        values.append(value)
+    return sorted(set(values))
+
+
+def characterise_model(tested: Specimen, chosen: Settings) -> Characterisation:
+    """Return what a bench would show of a model: sine tests at all settings, and steps of the command.
+
+    Raises:
+        RunError: the damper's state ran away in one of the tests.
+    """
+    rows = []
+    for x, f, warm, i in itertools.product(chosen.amplitudes, chosen.frequencies, chosen.temperatures, chosen.currents):
+        cycles = max(3, math.ceil(SETTLED * f) + 1)
+        test = sine_test(tested.damper, x, f, i, warm, tested.factors, cycles)
+        test = test._replace(time=test.time - test.time[0])
+        rows.append(row_of_loops([test], f"{1e3 * x:g} mm, {f:g} Hz, {i:g} A, {warm:g} degC", "", i, warm))
+    speed = 0.5 * min(max(row.peak_speed for row in rows), tested.card.max_speed)
+    answers = list(_responses(tested, chosen, speed))
+    return Characterisation(
+        tested.name, f"{tested.name}: {tested.damper}", False, rows, answers, list(_notes(tested, chosen))
+    )
+
+
+def _responses(tested: Specimen, chosen: Settings, speed: float) -> Iterator[Response]:
+    currents = [i for i in chosen.currents if i <= tested.coil.max_current] or [0.0]
+    low = min(currents)
+    for pair in itertools.chain(((low, i) for i in currents if i > low), ((i, low) for i in currents if i > low)):
+        yield step_response(tested, *pair, speed, chosen.temperatures[0])
+
+
+def step_response(tested: Specimen, before: float, after: float, speed: float, temperature: float) -> Response:
+    """Return the response of a model to a step of the command in A at a constant speed in m/s, through its coil.
+
+    The force is counted between those of the same motion at either current (`response`), so that a spring or a slow
+    state leaves no trace.
+
+    Raises:
+        RunError: the damper's state ran away.
+    """
+    coil = tested.coil
+    slowest = min(rate for rate in (coil.rate, coil.rate_fall) if rate > 0.0)
+    lead, rows = round(BEFORE / STEP), round((coil.delay + TIME_CONSTANTS / slowest) / STEP)
+    time = 0.5 * STEP * np.arange(-2 * lead, 2 * rows + 1)
+    late = np.maximum(time - coil.delay, 0.0)
+    current = np.array([relax(coil, before, after, t) for t in late])
+    motion = speed * time, np.full(len(time), speed)
+    step, off, on = (
+        bench_force(tested.damper, *motion, i, temperature, STEP, tested.factors) for i in (current, before, after)
+    )
+    share = (current[::2] - before) / (after - before)
+    blank = Response("", before, after, 1, "simulated", speed=speed, current_t95=crossing(time[::2], share, 0.95))
+    kept = slice(lead // 2, None)
+    if float(np.max(np.abs(on - off)[kept])) <= 1e-9 * float(np.max(np.abs(on))):
+        return blank._replace(method="", note="the force does not depend on the current")
+    step, off, on = (force[None, kept] for force in (step, off, on))
+    return response(Ensemble(step, off, on, np.zeros(1), lead - lead // 2, 1.0 / STEP), blank)
+
+
+def _notes(tested: Specimen, chosen: Settings) -> Iterator[str]:
+    """Yield what the user has to know of the settings."""
+    card = tested.card
+    if card.complete and not tested.stated:
+        yield f"{tested.name} is a form without a parameter set of its own; shown are the values of its record"
+    speed = 2.0 * math.pi * max(chosen.frequencies) * max(chosen.amplitudes)
+    if speed > 1.01 * card.max_speed:
+        yield f"speeds reach {speed:.3g} m/s; the model holds up to {card.max_speed:g} m/s"
+    if max(chosen.currents) > card.max_current:
+        yield f"currents reach {max(chosen.currents):g} A; the model holds up to {card.max_current:g} A"
+    if max(chosen.currents) > tested.coil.max_current:
+        yield f"the coil carries {tested.coil.max_current:g} A at most: no response to a larger current is told"
+    low, high = card.temperatures
+    if any(tested.factors[:3]) and not low <= min(chosen.temperatures) <= max(chosen.temperatures) <= high:
+        yield f"the model's temperatures are {low:g} to {high:g} degC"
+    if len(chosen.temperatures) > 1 and not any(tested.factors[:3]):
+        yield "temperature plays no part: state temperature_factors in a file for --parameters"

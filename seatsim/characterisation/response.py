@@ -1,0 +1,146 @@
+"""Response times of a force, or a current, to steps of the current, and the first-order rate that they imply."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+SHARES = (0.05, 0.90, 0.95)
+"""Shares of the change whose instants are told."""
+RESAMPLES = 200
+SETTLED_BY = 0.1
+"""Largest difference of the curve's last but one fifth from 1, for a response that has settled."""
+
+
+class Response(NamedTuple):
+    """How a force follows steps of the current between two levels; seconds from the step, 1/s, A.
+
+    t5, t90, t95: time to 5, 90 and 95 % of the change. The rates are those of a first-order lag, `1 - exp(-r t)`:
+
+        rate_95 = ln 20 / t95,   rate_90 = ln 10 / t90           without a delay
+        rate = ln 19 / (t95 - t5),   delay = t5 - ln(20/19) / rate   behind a delay
+
+    t95_sd: standard deviation of t95 by resampling the steps. current_t95: of the current itself, where it was measured
+    or is simulated. speed: in m/s, where it is constant. method: how the motion was taken out of the force, or empty
+    where the response cannot be determined; then `note` says why. time, share: the curve, shape (N,).
+    """
+
+    record: str
+    before: float
+    after: float
+    steps: int
+    method: str
+    note: str = ""
+    t5: float = math.nan
+    t90: float = math.nan
+    t95: float = math.nan
+    t95_sd: float = math.nan
+    rate_90: float = math.nan
+    rate_95: float = math.nan
+    rate: float = math.nan
+    delay: float = math.nan
+    current_t95: float = math.nan
+    speed: float = math.nan
+    time: Array | None = None
+    share: Array | None = None
+
+    @property
+    def rises(self) -> bool:
+        """Whether the current rises."""
+        return self.after > self.before
+
+
+UNITS = {
+    "before": "A", "after": "A", "t5": "s", "t90": "s", "t95": "s", "t95_sd": "s", "rate_90": "per_s",
+    "rate_95": "per_s", "rate": "per_s", "delay": "s", "current_t95": "s", "speed": "m_s",
+}  # fmt: skip
+"""Units that the names of a response's figures end in where it is written."""
+
+
+def columns_of_step(answer: Response) -> dict[str, Any]:
+    """Return a response as it is written: names with their units, without the curve."""
+    kept = {name: value for name, value in answer._asdict().items() if name not in ("time", "share")}
+    return {f"{name}_{UNITS[name]}" if name in UNITS else name: value for name, value in kept.items()}
+
+
+class Ensemble(NamedTuple):
+    """Forces about some steps, shape (steps, N), row by row from `before_rows` rows before each step.
+
+    off, on: the force that the same motion has at the current before, and at the current after the step. instants:
+    seconds from the step to row `before_rows`, of each.
+    """
+
+    force: Array
+    off: Array
+    on: Array
+    instants: Array
+    before_rows: int
+    rate: float
+
+
+def response(ensemble: Ensemble, blank: Response, window: int = 1) -> Response:
+    """Return the response of an ensemble: the share of the new level that fits all steps best, at each instant.
+
+        s(t) = sum (F - F_off) (F_on - F_off) / sum (F_on - F_off)^2
+
+    over the steps and a `window` of rows, then counted from its mean before the step and to that of its end, so that a
+    step that follows another before the force has settled does no harm to a first-order lag.
+    """
+    wanted = ensemble.on - ensemble.off
+    top, bottom = (ensemble.force - ensemble.off) * wanted, wanted * wanted
+    time = (np.arange(top.shape[1]) - ensemble.before_rows) / ensemble.rate + float(np.mean(ensemble.instants))
+    share, end = _curve(top.sum(axis=0), bottom.sum(axis=0), time, window)
+    if not abs(end - 1.0) <= SETTLED_BY:
+        return blank._replace(method="", note=f"the force has not settled within {1e3 * time[-1]:.0f} ms of a step")
+    t5, t90, t95 = (crossing(time, share, level) for level in SHARES)
+    rate = math.log(19.0) / (t95 - t5) if t95 > t5 else math.nan
+    return blank._replace(
+        t5=t5, t90=t90, t95=t95, t95_sd=_deviation(top, bottom, time, window),
+        rate_90=_over(math.log(10.0), t90), rate_95=_over(math.log(20.0), t95), rate=rate,
+        delay=t5 - math.log(20.0 / 19.0) / rate, time=time, share=share,
+    )  # fmt: skip
+
+
+def crossing(time: Array, share: Array, level: float) -> float:
+    """Return the first instant from 0 on at which a curve reaches a level, interpolated; NaN where it never does."""
+    after = np.flatnonzero((time >= 0.0) & (share >= level))
+    if not after.size:
+        return math.nan
+    k = int(after[0])
+    if k == 0 or share[k - 1] >= level or time[k - 1] < 0.0:
+        return float(time[k])
+    return float(np.interp(level, share[k - 1 : k + 1], time[k - 1 : k + 1]))
+
+
+def _curve(top: Array, bottom: Array, time: Array, window: int) -> tuple[Array, float]:
+    """Return the normalised curve, and its last but one fifth over its last."""
+    ones = np.ones(window)
+    share = np.convolve(top, ones, "same") / np.maximum(np.convolve(bottom, ones, "same"), 1e-300)
+    start = float(np.mean(share[time < 0.0]))
+    fifth = max(1, len(time[time > 0.0]) // 5)
+    span = float(np.mean(share[-fifth:])) - start
+    if span <= 0.0:
+        return share, math.nan
+    curve = np.asarray((share - start) / span, dtype=float)
+    return curve, float(np.mean(curve[-2 * fifth : -fifth]))
+
+
+def _deviation(top: Array, bottom: Array, time: Array, window: int) -> float:
+    """Return the standard deviation of t95 over resampled steps; NaN for fewer than three steps."""
+    steps = len(top)
+    if steps < 3:
+        return math.nan
+    draws = np.random.default_rng(0).integers(0, steps, (RESAMPLES, steps))
+    counts = np.stack([np.bincount(draw, minlength=steps) for draw in draws]).astype(float)
+    curves = (_curve(a, b, time, window)[0] for a, b in zip(counts @ top, counts @ bottom, strict=True))
+    times = [crossing(time, curve, SHARES[-1]) for curve in curves]
+    return float(np.std([t for t in times if math.isfinite(t)])) if any(map(math.isfinite, times)) else math.nan
+
+
+def _over(value: float, time: float) -> float:
+    return value / time if time > 0.0 else math.nan

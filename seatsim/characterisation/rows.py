@@ -1,0 +1,219 @@
+"""One row of the table of a characterisation: what a record's cycles, or a record without cycles, amount to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from seatsim.characterisation.cycles import Cycle, loops_of, mean_loop, steady_cycles, whole_cycles
+from seatsim.dampers.bench import SineTest
+
+if TYPE_CHECKING:
+    from seatsim.bench_tables import BenchRecord
+
+Array = NDArray[np.float64]
+
+COARSE = 16
+"""Rows of a cycle below which its peaks and areas are coarse."""
+DISAGREE = 0.05
+"""Difference of the energy over displacement from that over velocity that is told, relative."""
+DRIFT = 0.1
+"""Change of the energy over the cycles that is told, relative to its mean."""
+UNEVEN = 0.05
+"""Asymmetric part of the motion itself, RMS over that of the motion, that is told."""
+VARIES = 0.05
+"""Range of a current, over its largest, that is told."""
+MOST_POINTS = 3000
+"""Points of the cloud of a record without cycles."""
+
+
+class Cloud(NamedTuple):
+    """Samples of a record without cycles: displacement [m], velocity [m/s], force [N], current [A]."""
+
+    displacement: Array
+    velocity: Array
+    force: Array
+    current: Array
+
+
+class Row(NamedTuple):
+    """Figures of one record; SI units, degC. NaN where a figure does not exist; `sd` is the spread over the cycles.
+
+    amplitude: half the stroke. peak_rebound, peak_compression: largest and smallest force, positive opposes extension.
+    energy: dissipated in a cycle, the area of the loop. damping: viscous damping that dissipates the same, `E / (pi w
+    X^2)`. offset: mean force of a cycle. centre: middle between the peaks. asymmetry: RMS of the asymmetric part
+    (difference from the centrosymmetric loop, `(F(t) + F(t + T/2)) / 2`) over that of the force; `asymmetry_peak` is
+    its largest magnitude, `asymmetry_of_shape` the same ratio with the offset taken from both. `loop` is the mean of
+    the steady cycles; `cycle_values` holds temperature, peaks, energy and offset of each.
+    """
+
+    record: str
+    file: str
+    cycles: int
+    left_out: int
+    current: float
+    temperature: float = math.nan
+    temperature_range: float = math.nan
+    amplitude: float = math.nan
+    frequency: float = math.nan
+    peak_speed: float = math.nan
+    peak_rebound: float = math.nan
+    peak_rebound_sd: float = math.nan
+    peak_compression: float = math.nan
+    peak_compression_sd: float = math.nan
+    energy: float = math.nan
+    energy_sd: float = math.nan
+    damping: float = math.nan
+    damping_sd: float = math.nan
+    offset: float = math.nan
+    offset_sd: float = math.nan
+    centre: float = math.nan
+    force_rms: float = math.nan
+    asymmetry: float = math.nan
+    asymmetry_peak: float = math.nan
+    asymmetry_of_shape: float = math.nan
+    notes: tuple[str, ...] = ()
+    loop: SineTest | None = None
+    cloud: Cloud | None = None
+    cycle_values: dict[str, list[float]] | None = None
+
+
+UNITS = {
+    "current": "A", "temperature": "C", "temperature_range": "C", "amplitude": "m", "frequency": "Hz",
+    "peak_speed": "m_s", "peak_rebound": "N", "peak_rebound_sd": "N", "peak_compression": "N",
+    "peak_compression_sd": "N", "energy": "J", "energy_sd": "J", "damping": "N_s_m", "damping_sd": "N_s_m",
+    "offset": "N", "offset_sd": "N", "centre": "N", "force_rms": "N", "asymmetry_peak": "N",
+}  # fmt: skip
+"""Units that the columns of the table end in; the other columns are names, counts and ratios."""
+FIGURES: dict[str, Callable[[SineTest], float]] = {
+    "peak_rebound": lambda loop: float(np.max(loop.force)),
+    "peak_compression": lambda loop: float(np.min(loop.force)),
+    "energy": lambda loop: loop.dissipated_energy,
+    "damping": lambda loop: loop.equivalent_damping,
+    "offset": lambda loop: float(np.mean(loop.force[:-1])),
+}
+"""Figures that every cycle has."""
+
+
+def columns(row: Row) -> dict[str, Any]:
+    """Return a row as it stands in a table: names with their units, notes as one text."""
+    kept = row._asdict()
+    for name in ("loop", "cloud", "cycle_values"):
+        del kept[name]
+    named = {f"{name}_{UNITS[name]}" if name in UNITS else name: value for name, value in kept.items()}
+    return named | {"notes": "; ".join(row.notes)}
+
+
+def row_of_loops(
+    loops: Sequence[SineTest],
+    record: str,
+    file: str,
+    current: float,
+    temperature: ArrayLike,
+    left_out: int = 0,
+    notes: Sequence[str] = (),
+) -> Row:
+    """Return the row of a test: loops of equally many samples, and the temperature in degC of each (or one, or NaN)."""
+    loop = mean_loop(loops)
+    warmth = np.broadcast_to(np.asarray(temperature, dtype=float), len(loops))
+    each = {name: np.array([figure(one) for one in loops]) for name, figure in FIGURES.items()}
+    mean: dict[str, Any] = {name: float(np.mean(values)) for name, values in each.items()}
+    sd: dict[str, Any] = {f"{name}_sd": float(np.std(v, ddof=1)) for name, v in each.items() if len(v) > 1}
+    force, part = loop.force[:-1], loop.asymmetric_part[:-1]
+    offset = float(np.mean(force))
+    values = {"temperature": warmth, **each}
+    return Row(
+        record=record, file=file, cycles=len(loops), left_out=left_out, current=current,
+        temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
+        amplitude=0.5 * float(np.ptp(loop.displacement)), frequency=1.0 / float(loop.time[-1]),
+        peak_speed=float(np.max(np.abs(loop.velocity))), centre=0.5 * (mean["peak_rebound"] + mean["peak_compression"]),
+        force_rms=_rms(force), asymmetry=_ratio(_rms(part), _rms(force)), asymmetry_peak=float(np.max(np.abs(part))),
+        asymmetry_of_shape=_ratio(_rms(part - offset), _rms(force - offset)), notes=tuple(notes), loop=loop,
+        cycle_values={name: list(map(float, v)) for name, v in values.items()}, **mean, **sd,
+    )  # fmt: skip
+
+
+def row_of_record(record: BenchRecord) -> Row:
+    """Return the row of a measured record at one current: of its steady cycles, or as a record without cycles."""
+    found = whole_cycles(record.displacement)
+    steady = steady_cycles(found)
+    if not steady:
+        return row_without_cycles(record, found)
+    loops = loops_of(record, steady)
+    notes = [*_of_current(record), *_of_loops(loops), *_of_sign(record)]
+    if min(cycle.length for cycle in steady) < COARSE:
+        notes.append(f"fewer than {COARSE} rows a cycle: peaks and areas are coarse")
+    return row_of_loops(
+        loops, record.name, record.file, round(record.mean_current, 6), _temperatures(record, steady),
+        len(found) - len(steady), notes,
+    )  # fmt: skip
+
+
+def row_without_cycles(record: BenchRecord, found: Sequence[Cycle]) -> Row:
+    """Return the row of a record that is no steady cycle: peaks, RMS and mean of the force, and what the motion is."""
+    warmth = record.temperature if record.temperature is not None else np.array([math.nan])
+    every = slice(None, None, max(1, len(record.force) // MOST_POINTS))
+    cloud = Cloud(*(y[every] for y in (record.displacement, record.velocity, record.force, record.current)))
+    return Row(
+        record=record.name, file=record.file, cycles=0, left_out=len(found), current=round(record.mean_current, 6),
+        temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
+        amplitude=0.5 * float(np.ptp(record.displacement)), peak_speed=float(np.max(np.abs(record.velocity))),
+        peak_rebound=float(np.max(record.force)), peak_compression=float(np.min(record.force)),
+        offset=float(np.mean(record.force)), force_rms=_rms(record.force), cloud=cloud,
+        notes=(_motion(record, found), *_of_current(record), *_of_sign(record)),
+    )  # fmt: skip
+
+
+def _motion(record: BenchRecord, found: Sequence[Cycle]) -> str:
+    if len(found) < 2:
+        return f"not cyclic: {len(found)} whole cycle{'' if len(found) == 1 else 's'} in {record.time[-1]:.3g} s"
+    low, high = np.percentile([record.rate / cycle.length for cycle in found], (5, 95))
+    small, large = 1e3 * np.percentile([cycle.amplitude for cycle in found], (5, 95))
+    return f"not cyclic: {len(found)} cycles, {low:.2g} to {high:.2g} Hz, {small:.2g} to {large:.2g} mm"
+
+
+def _of_current(record: BenchRecord) -> list[str]:
+    low, high = (float(q) for q in np.percentile(record.current, (1, 99)))
+    return [f"the current varies from {low:.2f} to {high:.2f} A"] if high - low > VARIES * max(high, 1e-9) else []
+
+
+def _of_sign(record: BenchRecord) -> list[str]:
+    power = float(np.mean((record.force - np.mean(record.force)) * record.velocity))
+    return ["the force drives the motion on average: its sign is the other way round"] if power < 0.0 else []
+
+
+def _of_loops(loops: Sequence[SineTest]) -> list[str]:
+    notes = []
+    loop = mean_loop(loops)
+    energy = loop.dissipated_energy
+    over_stroke = float(np.trapezoid(loop.force, loop.displacement))
+    if abs(over_stroke - energy) > DISAGREE * abs(energy):
+        notes.append(f"velocity and displacement disagree: the area over displacement is {over_stroke:.3g} J")
+    moved = loop._replace(force=loop.displacement - np.mean(loop.displacement[:-1]))
+    uneven = _ratio(_rms(moved.asymmetric_part), _rms(moved.force))
+    if uneven > UNEVEN:
+        notes.append(f"the motion itself is asymmetric by {uneven:.0%}")
+    if len(loops) > 2:
+        energies = np.array([one.dissipated_energy for one in loops])
+        slope = np.polyfit(np.linspace(-0.5, 0.5, len(energies)), energies, 1)[0] / np.mean(energies)
+        if abs(slope) > DRIFT:
+            notes.append(f"the energy changes by {slope:+.0%} over the cycles")
+    return notes
+
+
+def _temperatures(record: BenchRecord, cycles: Sequence[Cycle]) -> Array:
+    if record.temperature is None:
+        return np.full(len(cycles), math.nan)
+    return np.array([float(np.mean(record.temperature[cycle.rows])) for cycle in cycles])
+
+
+def _rms(values: Array) -> float:
+    return math.sqrt(float(np.mean(np.square(values))))
+
+
+def _ratio(part: float, whole: float) -> float:
+    return part / whole if whole > 0.0 else math.nan

@@ -1,0 +1,91 @@
+"""What a characterisation found, of measured records or of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from seatsim.characterisation.cycles import whole_cycles
+from seatsim.characterisation.measured_steps import responses
+from seatsim.characterisation.response import Response, columns_of_step
+from seatsim.characterisation.rows import Row, columns, row_of_record, row_without_cycles
+from seatsim.characterisation.steps import plateaus
+
+if TYPE_CHECKING:
+    from seatsim.bench_tables import BenchRecord
+
+SETTLED = 0.2
+"""Seconds after a step of current from which on cycles are counted."""
+ALIKE = 0.05
+"""Relative difference of amplitudes and frequencies that are the same setting."""
+WARMER = 4.0
+"""degC; least difference of temperatures that are different settings."""
+
+
+class Characterisation(NamedTuple):
+    """The rows of a damper's records (or of a model's tests), its responses to steps, and what is to be known of them.
+
+    measured: whether the rows are of records. source: the data, or the model with its parameters, as text.
+    """
+
+    name: str
+    source: str
+    measured: bool
+    rows: list[Row]
+    responses: list[Response]
+    notes: list[str]
+
+
+def characterise(records: Sequence[BenchRecord], name: str, source: str = "") -> Characterisation:
+    """Return what bench records show before anything is modelled.
+
+    A record whose current rests at several levels, with steady cycles at one of them, has a row for each such stretch;
+    any other record has one row.
+    """
+    rows = [row for record in records for row in _rows(record)]
+    answers = [answer for record in records for answer in responses(record)]
+    return Characterisation(name, source or name, True, rows, answers, [])
+
+
+def _rows(record: BenchRecord) -> list[Row]:
+    rests = plateaus(record.current, record.rate)
+    if len(rests) < 2:
+        return [row_of_record(record)]
+    skipped = round(SETTLED * record.rate)
+    parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
+    rows = [
+        row_of_record(part)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s") for rest, part in parts
+    ]
+    cyclic = [row for row in rows if row.loop is not None]
+    return cyclic or [row_without_cycles(record, whole_cycles(record.displacement))]
+
+
+def contents(found: Characterisation) -> dict[str, Any]:
+    """Return a characterisation as it stands in `characterisation.json`."""
+    records = []
+    for row in found.rows:
+        values = columns(row) | {"notes": list(row.notes)}
+        records.append(values | ({"cycle_values": row.cycle_values} if row.cycle_values and found.measured else {}))
+    steps = [columns_of_step(answer) for answer in found.responses]
+    return {
+        "name": found.name, "source": found.source, "measured": found.measured, "records": records, "steps": steps,
+        "notes": found.notes,
+    }  # fmt: skip
+
+
+def settings(rows: Sequence[Row]) -> list[list[Row]]:
+    """Return rows with cycles in groups of the same amplitude and frequency, in the order of these."""
+    groups: list[list[Row]] = []
+    for row in rows:
+        if row.loop is None:
+            continue
+        group = next((group for group in groups if _same(group[0], row)), None)
+        if group is None:
+            groups.append([row])
+        else:
+            group.append(row)
+    return sorted(groups, key=lambda group: (round(1e3 * group[0].amplitude), group[0].frequency))
+
+
+def _same(a: Row, b: Row) -> bool:
+    return all(abs(p - q) <= ALIKE * p for p, q in ((a.amplitude, b.amplitude), (a.frequency, b.frequency)))

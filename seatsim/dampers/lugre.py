@@ -1,0 +1,101 @@
+"""LuGre dampers: bristles that bend, slip and have a damping of their own."""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+from seatsim.dampers.base import State, damper
+from seatsim.fields import param
+from seatsim.temperature import Heat
+
+DEFLECTION = "w, deflection of the bristles over its bound, from -1 to 1"
+
+
+@damper(
+    "lugre_jimenez",
+    source="Jimenez and Alvarez-Icaza 2005, Struct. Control Health Monit. 12:91; form recalled, unsurely; defaults"
+    " fitted by us to measured sine tests of the damper of UTFSM",
+    initial=(0.0,),
+    state=DEFLECTION,
+    max_speed=0.13,
+    max_current=1.0,
+    temperatures=(20.0, 20.0),
+)
+class LuGreJimenez(NamedTuple):
+    """LuGre damper whose bristle force grows with the current and saturates, after Jimenez and Alvarez-Icaza.
+
+        F  = V / {a0 (1 + a1 V)} w + sigma1 (v - |v| w) + sigma2 v + f0,   V = I + i0
+        w' = sigma0 a0 (1 + a1 V) (v - |v| w),   |w| <= 1
+
+    At constant current this is `F = sigma0 z V + sigma1 z' + sigma2 v`, `z' = v - sigma0 a0 |v| z (1 + a1 V)`,
+    which is recalled, not read in the paper, and not surely. Ours: w is z over its bound at the present
+    current, so that the force follows a changing current without overshoot and every term is dissipative;
+    the current `i0` that stands for what friction there is at zero current.
+
+    Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
+    removed; rms error 25 N at 0 A to 192 N at 1 A, 12 % of the peak force. Valid to 0.13 m/s and 1 A.
+    Temperature scales sigma1 and sigma2 (viscous) and the bristle force (yield).
+    """
+
+    sigma0: Annotated[float, param("N/(m A)", "stiffness of the bristles per current", low=1e5, high=1e9)] = 1.2e7
+    a0: Annotated[float, param("A/N", "current over yield force, small currents", low=1e-5, high=0.1)] = 8.33e-4
+    a1: Annotated[float, param("1/A", "saturation of the yield force with current", low=2e-4, high=2)] = 0.02
+    sigma1: Annotated[float, param("N s/m", "damping of the bristles", low=0)] = 6120.0
+    sigma2: Annotated[float, param("N s/m", "viscous damping", low=0)] = 1420.0
+    i0: Annotated[float, param("A", "current that stands for the friction at zero current", low=0)] = 0.068
+    f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
+
+    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+        """Return F in N."""
+        level = i + self.i0
+        bristles = level / (self.a0 * (1.0 + self.a1 * level)) * heat.yielding * z[0]
+        return bristles + (self.sigma1 * (v - abs(v) * z[0]) + self.sigma2 * v) * heat.viscous + self.f0
+
+    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+        """Return (w',)."""
+        return (self.sigma0 * self.a0 * (1.0 + self.a1 * (i + self.i0)) * (v - abs(v) * z[0]),)
+
+
+@damper(
+    "lugre_sakai",
+    source="Sakai, Ohmori and Sano 2003; Terasawa et al. 2004 (IEEE CDC); form recalled; defaults fitted by us"
+    " to measured sine tests of the damper of UTFSM",
+    initial=(0.0,),
+    state=DEFLECTION,
+    current_order=1,
+    max_speed=0.13,
+    max_current=1.0,
+    temperatures=(20.0, 20.0),
+)
+class LuGreSakai(NamedTuple):
+    """LuGre damper linear in the current, after Sakai et al.
+
+        F  = (fa + fb I) w + sigma1 (v - |v| w) + (sigma2 + sigmab I) v + f0
+        w' = a0 (v - |v| w),   |w| <= 1
+
+    This is `F = sigmaa z + sigma0 z V + sigma1 z' + sigma2 v + sigmab v V`, `z' = v - a0 |v| z` with w = a0 z,
+    fa = sigmaa / a0, fb = sigma0 / a0, in the current instead of the voltage; recalled, not read in the paper.
+    Every term is dissipative.
+
+    Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
+    removed; rms error 21 N at 0 A to 131 N at 1 A, 10 % of the peak force. Valid to 0.13 m/s and 1 A.
+    Temperature scales sigma1, sigma2, sigmab (viscous), fa and fb (yield).
+    """
+
+    fa: Annotated[float, param("N", "bristle force at zero current", low=0)] = 106.0
+    fb: Annotated[float, param("N/A", "rise of the bristle force with current", low=0)] = 888.0
+    sigma1: Annotated[float, param("N s/m", "damping of the bristles", low=0)] = 6190.0
+    sigma2: Annotated[float, param("N s/m", "viscous damping at zero current", low=0)] = 1000.0
+    sigmab: Annotated[float, param("N s/(m A)", "rise of the viscous damping with current", low=0)] = 5100.0
+    a0: Annotated[float, param("1/m", "inverse of the bound of the deflection", low=100, high=1e6)] = 9780.0
+    f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
+
+    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+        """Return F in N."""
+        bristles = (self.fa + self.fb * i) * heat.yielding * z[0]
+        slip = self.sigma1 * (v - abs(v) * z[0])
+        return bristles + (slip + (self.sigma2 + self.sigmab * i) * v) * heat.viscous + self.f0
+
+    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+        """Return (w',)."""
+        return (self.a0 * (v - abs(v) * z[0]),)

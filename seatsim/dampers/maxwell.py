@@ -1,0 +1,129 @@
+"""Maxwell dampers: a spring and dashpot in series, beside friction or limited by a nonlinear slider."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+from seatsim.dampers.base import State, damper
+from seatsim.dampers.bingham import CurrentLaw
+from seatsim.dampers.pieces import cubic, power
+from seatsim.dampers.pieces_series import SETTLING, UTFSM, inertance, inertance_rate, limited, slip
+from seatsim.fields import param
+from seatsim.jit import jit
+from seatsim.temperature import Heat
+
+
+@damper(
+    "bingmax",
+    source="Makris, Burton, Hill and Jordan 1996, J. Eng. Mech. 122:1003; form recalled, no parameter set found;"
+    f" {UTFSM}",
+    initial=(0.0,),
+    state="e, deflection in m of the Maxwell element's spring",
+    max_speed=0.13,
+    max_current=1.0,
+    temperatures=(20.0, 20.0),
+)
+class Bingmax(NamedTuple):
+    """Maxwell element beside set-valued Coulomb friction.
+
+        F = F_m + fy(I) sgn(v) + f0,   F_m' = k v - F_m / lambda,   lambda = c(I) / k
+
+    The form is recalled. The state is the deflection e = F_m / k, e' = v - k e / c, which stays valid where the
+    stiffness k = k_a + k_b I follows the current. c and fy are cubic laws, held beyond `law_end`. The defaults are
+    derived by us (see `pieces_series.UTFSM`); rms error 35, 82, 161, 241, 308 N at 0, 0.25, 0.5, 0.75, 1 A. Valid
+    to 0.13 m/s and 1 A. Temperature scales c (viscous), k (elastic) and fy (yield).
+    """
+
+    c: Annotated[CurrentLaw, param("N s/m", "damping c(I) of the Maxwell element")] = (1282.0, 4943.0, 13030.0, -8457.0)
+    fy: Annotated[CurrentLaw, param("N", "yield force fy(I)")] = (93.9, 426.7, 797.4, -601.6)
+    k_a: Annotated[float, param("N/m", "stiffness k at zero current", low=1e4, high=1e8)] = 3.15e5
+    k_b: Annotated[float, param("N/(m A)", "rise of the stiffness with current", low=0, high=1e8)] = 3.4e5
+    f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
+    law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
+
+    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+        """Return F in N, without the friction."""
+        return (self.k_a + self.k_b * min(i, self.law_end)) * heat.stiffness * z[0] + self.f0
+
+    def coulomb(self, i: float, heat: Heat) -> float:
+        """Return the magnitude of the set-valued friction in N."""
+        return max(0.0, cubic(self.fy, min(i, self.law_end)) * heat.yielding)
+
+    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+        """Return (e',)."""
+        held = min(i, self.law_end)
+        k = (self.k_a + self.k_b * held) * heat.stiffness
+        return (v - k * z[0] / (cubic(self.c, held) * heat.viscous),)
+
+
+@jit
+def rising_power(b: float, n: float, size: float, tangent_below: float) -> float:
+    """Return `b size^n`, continued below a transition by its tangent there."""
+    if size >= tangent_below:
+        return b * power(size, n)
+    return b * power(tangent_below, n) * (1.0 + n * (size / tangent_below - 1.0))
+
+
+@damper(
+    "maxwell_nonlinear_slider",
+    source="Chae, Ricles and Sause 2010, 2013; form recalled, parameters of the 200 kN RD-9001-01 in a file of Chae"
+    f" 2010; {UTFSM}",
+    initial=(0.0, 0.0),
+    state="e, deflection in m of the Maxwell element's spring; u, inner speed in m/s of the inertance",
+    max_speed=0.13,
+    max_current=1.0,
+    temperatures=(20.0, 20.0),
+)
+class MaxwellNonlinearSlider(NamedTuple):
+    """Maxwell nonlinear slider (MNS): a Maxwell element before yield, a power law of the speed past it.
+
+        pre-yield:   F = k e + f0,   e' = v - k e / c
+        post-yield:  F = {a(I) + b(I) |v|^n + m0 |v|' (where |v|' < 0)} sgn(v) + f0
+
+    The form is recalled; below the transition speed v_t the power law goes on as its tangent. The change of mode is
+    ours: the Maxwell element's force is limited to the slider's, and what k e exceeds it by relaxes within
+    `pieces_series.SETTLING`, which is continuous and lets the element unload at a reversal. m0 |v|' is an
+    inertance behind a dashpot m0 / tau, tau = `pieces_series.INERTANCE_TIME`; it scales with the viscous factor of
+    the temperature (ours). Both directions share one law. k = k_a + k_b I, c = c_a + c_b I; a and b are cubic
+    laws, held beyond `law_end`.
+
+    The file of Chae gives for the RD-9001-01 at 1 A, extension, in kN, m, s: c 12000, k 118000, m0 1.6, v_t 0.01, a
+    91.46, b 122.5, n 0.517. It is not used: the defaults are derived by us for a seat's damper (see
+    `pieces_series.UTFSM`), with n and v_t chosen; rms error 23, 44, 72, 90, 130 N at 0, 0.25, 0.5, 0.75, 1 A. Valid
+    to 0.13 m/s and 1 A. Temperature scales b, c, m0 (viscous), k (elastic) and a (yield).
+    """
+
+    a: Annotated[CurrentLaw, param("N", "force a(I) of the slider at rest")] = (50.5, 158.1, 805.0, -436.8)
+    b: Annotated[CurrentLaw, param("N (s/m)^n", "coefficient b(I) of the power law")] = (348.4, 1605.0, 2070.0, -1832.0)
+    n: Annotated[float, param("-", "exponent n of the power law", low=0.1, high=2)] = 0.35
+    v_t: Annotated[float, param("m/s", "transition speed to the tangent", low=2e-4, high=0.1)] = 5e-3
+    c_a: Annotated[float, param("N s/m", "pre-yield damping c at zero current", low=1e3, high=1e6)] = 1.9e4
+    c_b: Annotated[float, param("N s/(m A)", "rise of that damping with current", low=0, high=1e7)] = 1.16e5
+    k_a: Annotated[float, param("N/m", "stiffness k at zero current", low=1e4, high=1e8)] = 3.0e6
+    k_b: Annotated[float, param("N/(m A)", "rise of the stiffness with current", low=0, high=1e8)] = 3.2e6
+    m0: Annotated[float, param("kg", "inertance m0 while it slows down", low=0, high=100)] = 10.0
+    f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
+    law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
+
+    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+        """Return F in N."""
+        held = min(i, self.law_end)
+        maxwell = (self.k_a + self.k_b * held) * heat.stiffness * z[0]
+        return limited(maxwell, slider(self, v, held, heat, z[1])) + self.f0
+
+    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+        """Return (e', u')."""
+        held = min(i, self.law_end)
+        k = (self.k_a + self.k_b * held) * heat.stiffness
+        creep = k * z[0] / ((self.c_a + self.c_b * held) * heat.viscous)
+        over = slip(k * z[0], slider(self, v, held, heat, z[1]), k * SETTLING)
+        return (v - creep - over, inertance_rate(v, z[1]))
+
+
+@jit
+def slider(d: MaxwellNonlinearSlider, v: float, held: float, heat: Heat, u: float) -> float:
+    """Return the magnitude in N of the post-yield force at the current `held`."""
+    braking = min(0.0, math.copysign(1.0, v) * inertance(d.m0, v, u))
+    rising = rising_power(cubic(d.b, held), d.n, abs(v), d.v_t)
+    return (rising + braking) * heat.viscous + cubic(d.a, held) * heat.yielding

@@ -1,0 +1,189 @@
+"""Visco-elastic-plastic dampers: a solid before yield, a flow past it; and the elasto-slide element."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+from seatsim.dampers.base import State, damper
+from seatsim.dampers.bingham import CurrentLaw
+from seatsim.dampers.pieces import cubic
+from seatsim.dampers.pieces_series import SETTLING, UTFSM, inertance, inertance_rate, limited, slip
+from seatsim.fields import param
+from seatsim.jit import jit
+from seatsim.temperature import Heat
+
+
+@jit
+def yielded(force: float, limit: float) -> float:
+    """Return the share Y of the flow, rising from 0 to 1 as the force of the solid reaches its limit."""
+    return 1.0 if abs(force) >= limit else (force / limit) ** 2
+
+
+@jit
+def solid_force(k1: float, k2: float, heat: Heat, z: State) -> float:
+    """Return the force in N of a standard solid with the deflections z[0] of spring k1 and z[1] of spring k2."""
+    return (k1 * z[0] + k2 * z[1]) * heat.stiffness
+
+
+@damper(
+    "viscoelastic_plastic",
+    source="Kamath and Wereley 1997, J. Guidance Control Dyn. 20:1125; shape functions recalled, the elements"
+    f" between them read by us, no parameter set found; {UTFSM}",
+    initial=(0.0, 0.0),
+    state="e, deflection in m of the pre-yield spring; u, inner speed in m/s of the inertance",
+    max_speed=0.13,
+    max_current=1.0,
+    temperatures=(20.0, 20.0),
+)
+class ViscoelasticPlastic(NamedTuple):
+    """General visco-elastic-plastic damper: shape functions of the speed pass from a pre-yield to a post-yield branch.
+
+        F = S_ve k1(I) e + S_vi [c(I) v + m u'] + S_c fc(I) + f0
+        S_vi = {1 + tanh[(|v| - vy) / (4 eps)]} / 2,   S_ve = 1 - S_vi
+        S_c = {tanh[(v - vy) / (4 eps)] + tanh[(v + vy) / (4 eps)]} / 2
+        e' = S_ve v - k1 e / c1(I),   u' = (S_vi v - u) / tau
+
+    S_ve and S_vi are recalled. S_c, vaguely recalled as S_vi sgn(v), is read as its continuous form, which is that
+    for vy >> eps; one eps serves all three. Pre-yield is a Maxwell element, the recalled solid without its
+    equilibrium spring, which would make the force depend on where the motion started. The speed is split (ours):
+    each branch is driven by its share, S_ve v or S_vi v, because a branch that is weighted in force but driven by
+    all of v can return more work than it took. m u' stands for m v': an inertance behind a dashpot m / tau, tau =
+    `pieces_series.INERTANCE_TIME`; it scales with the viscous factor of the temperature (ours). k1 = k_a + k_b I;
+    c1, c and fc are cubic laws, held beyond `law_end`. The defaults are derived by us (see `pieces_series.UTFSM`),
+    with m and vy chosen; rms error 22, 44, 74, 102, 140 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and 1 A.
+    Temperature scales c1, c, m (viscous), k1 (elastic) and fc (yield).
+    """
+
+    c1: Annotated[CurrentLaw, param("N s/m", "damping c1(I) before yield")] = (15770.0, 58330.0, 166400.0, -93440.0)
+    c: Annotated[CurrentLaw, param("N s/m", "damping c(I) past yield")] = (330.3, 612.6, 4254.0, -1902.0)
+    fc: Annotated[CurrentLaw, param("N", "yield force fc(I)")] = (166.4, 763.6, 1361.0, -1069.0)
+    k_a: Annotated[float, param("N/m", "stiffness k1 at zero current", low=1e4, high=1e8)] = 6.9e5
+    k_b: Annotated[float, param("N/(m A)", "rise of the stiffness with current", low=0, high=1e8)] = 4.64e6
+    m: Annotated[float, param("kg", "inertance m past yield", low=0, high=100)] = 1.0
+    v_y: Annotated[float, param("m/s", "yield speed vy", low=1e-3, high=0.3)] = 0.02
+    eps: Annotated[float, param("m/s", "quarter width eps of the passage through yield", low=2e-4, high=0.1)] = 6.25e-3
+    f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
+    law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
+
+    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+        """Return F in N."""
+        held, width = min(i, self.law_end), 4.0 * self.eps
+        low, high = math.tanh((v - self.v_y) / width), math.tanh((v + self.v_y) / width)
+        post = 0.5 * (1.0 + math.tanh((abs(v) - self.v_y) / width))
+        solid = (1.0 - post) * (self.k_a + self.k_b * held) * heat.stiffness * z[0]
+        flow = post * heat.viscous * (cubic(self.c, held) * v + inertance(self.m, post * v, z[1]))
+        return solid + flow + 0.5 * (low + high) * cubic(self.fc, held) * heat.yielding + self.f0
+
+    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+        """Return (e', u')."""
+        held = min(i, self.law_end)
+        post = 0.5 * (1.0 + math.tanh((abs(v) - self.v_y) / (4.0 * self.eps)))
+        elastic = (self.k_a + self.k_b * held) * heat.stiffness * z[0]
+        creep = elastic / (cubic(self.c1, held) * heat.viscous)
+        return ((1.0 - post) * v - creep, inertance_rate(post * v, z[1]))
+
+
+@damper(
+    "li_viscoelastic_plastic",
+    source="Li, Yao, Chen, Yeo and Yap 2000, Smart Mater. Struct. 9:95; form vaguely recalled, the passage through"
+    f" yield read by us, no parameter set found; {UTFSM}",
+    initial=(0.0, 0.0, 0.0),
+    state="e1, deflection in m of spring k1; e2, deflection in m of spring k2; u, inner speed in m/s of the inertance",
+    max_speed=0.13,
+    max_current=1.0,
+    temperatures=(20.0, 20.0),
+)
+class LiViscoelasticPlastic(NamedTuple):
+    """Visco-elastic-plastic damper after Li et al.: a standard solid until its force reaches the yield force.
+
+        |f| < fc:  F = f + fs sgn(v) + f0,   f = k1(I) e1 + k2 e2,   e1' = v,   e2' = v - k2 e2 / c2
+        |f| = fc:  F = fc(I) sgn(v) + cv(I) v + R v' + fs sgn(v) + f0
+
+    Vaguely recalled: the two modes and the criterion. Ours is what makes their passage continuous and passive: at
+    yield the solid slips at y' = (f - fc sgn f) / (k tau), k = k1 + k2, tau = `pieces_series.SETTLING`, which is
+    taken off both rates, and gives fc; the flow's terms are weighted by Y = min(1, |f| / fc)^2, the inertance
+    driven by its share Y v. R v' is an inertance behind a dashpot R / tau', tau' =
+    `pieces_series.INERTANCE_TIME`; it scales with the viscous factor of the temperature (ours). The seal's
+    friction fs is set-valued. k1 = k_a + k_b I; fc and cv are cubic laws, held beyond `law_end`. The defaults are
+    derived by us (see `pieces_series.UTFSM`), with R chosen; rms error 29, 51, 92, 133, 174 N at 0, 0.25, 0.5,
+    0.75, 1 A. Valid to 0.13 m/s and 1 A. Temperature scales cv, c2, R (viscous), k1, k2 (elastic), fc and fs
+    (yield).
+    """
+
+    fc: Annotated[CurrentLaw, param("N", "yield force fc(I)")] = (65.2, 506.4, 902.5, -617.9)
+    cv: Annotated[CurrentLaw, param("N s/m", "damping cv(I) past yield")] = (1054.0, 3828.0, 10170.0, -7645.0)
+    k_a: Annotated[float, param("N/m", "stiffness k1 at zero current", low=1e3, high=1e7)] = 1.67e5
+    k_b: Annotated[float, param("N/(m A)", "rise of the stiffness k1 with current", low=0, high=1e7)] = 1.1e6
+    k2: Annotated[float, param("N/m", "stiffness k2", low=1e4, high=1e8)] = 7.8e6
+    c2: Annotated[float, param("N s/m", "damping c2 in series with k2", low=1e3, high=1e6)] = 1.0e5
+    R: Annotated[float, param("kg", "inertance R of the flow", low=0, high=100)] = 1.0
+    fs: Annotated[float, param("N", "static friction fs of the seal", low=0, high=200)] = 43.0
+    f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
+    law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
+
+    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+        """Return F in N, without the friction of the seal."""
+        held = min(i, self.law_end)
+        f, fc = solid_force(self.k_a + self.k_b * held, self.k2, heat, z), cubic(self.fc, held) * heat.yielding
+        share = yielded(f, fc)
+        flow = cubic(self.cv, held) * v + inertance(self.R, share * v, z[2])
+        return limited(f, fc) + share * heat.viscous * flow + self.f0
+
+    def coulomb(self, i: float, heat: Heat) -> float:
+        """Return the magnitude of the seal's set-valued friction in N."""
+        return self.fs * heat.yielding
+
+    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+        """Return (e1', e2', u')."""
+        held = min(i, self.law_end)
+        k1, fc = self.k_a + self.k_b * held, cubic(self.fc, held) * heat.yielding
+        f = solid_force(k1, self.k2, heat, z)
+        rate = v - slip(f, fc, (k1 + self.k2) * heat.stiffness * SETTLING)
+        creep = self.k2 * heat.stiffness * z[1] / (self.c2 * heat.viscous)
+        return (rate, rate - creep, inertance_rate(yielded(f, fc) * v, z[2]))
+
+
+@damper(
+    "stiffness_viscosity_elasto_slide",
+    source="named in Table 2.1 of Braz-Cesar and Barros 2012, of the group of Wereley; form recalled, no parameter set"
+    f" found; {UTFSM}",
+    initial=(0.0,),
+    state="e, deflection in m of the elasto-slide element",
+    max_speed=0.13,
+    max_current=1.0,
+    temperatures=(20.0, 20.0),
+)
+class StiffnessViscosityElastoSlide(NamedTuple):
+    """Spring and dashpot beside an elasto-slide (Jenkins) element: a spring ke that slides at the force N_s.
+
+        F = k0 x + c0(I) v + F_e + f0,   F_e = ke(I) e limited to N_s(I)
+        e' = v - (ke e - F_e) / (ke tau)
+
+    The form is recalled: F_e' = ke v while |F_e| < N_s, clipped there. The slide is ours: what ke e exceeds F_e by
+    relaxes within tau = `pieces_series.SETTLING`, also where N_s falls with the current, so that F_e never exceeds
+    N_s and leaves it at a reversal. ke = ke_a + ke_b I; c0 and N_s are cubic laws, held beyond `law_end`. The
+    defaults are derived by us (see `pieces_series.UTFSM`); rms error 27, 60, 105, 141, 186 N at 0, 0.25, 0.5, 0.75,
+    1 A. Valid to 0.13 m/s and 1 A. Temperature scales c0 (viscous), k0 and ke (elastic), and N_s (yield).
+    """
+
+    c0: Annotated[CurrentLaw, param("N s/m", "viscous damping c0(I)")] = (1169.0, 5098.0, 8317.0, -6917.0)
+    n_s: Annotated[CurrentLaw, param("N", "slide force N_s(I)")] = (101.0, 427.2, 1022.0, -668.0)
+    ke_a: Annotated[float, param("N/m", "elasto-slide stiffness ke at zero current", low=1e4, high=1e8)] = 5.6e6
+    ke_b: Annotated[float, param("N/(m A)", "rise of that stiffness with current", low=0, high=1e8)] = 1.9e6
+    k0: Annotated[float, param("N/m", "stiffness k0", low=0, high=1e5)] = 900.0
+    f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
+    law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
+
+    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+        """Return F in N."""
+        held = min(i, self.law_end)
+        linear = self.k0 * heat.stiffness * x + cubic(self.c0, held) * heat.viscous * v
+        elastic = (self.ke_a + self.ke_b * held) * heat.stiffness * z[0]
+        return linear + limited(elastic, cubic(self.n_s, held) * heat.yielding) + self.f0
+
+    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+        """Return (e',)."""
+        held = min(i, self.law_end)
+        ke = (self.ke_a + self.ke_b * held) * heat.stiffness
+        return (v - slip(ke * z[0], cubic(self.n_s, held) * heat.yielding, ke * SETTLING),)

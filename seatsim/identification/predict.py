@@ -1,0 +1,101 @@
+"""The force that a model predicts on a bench record."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.bench_tables import BenchRecord
+from seatsim.jit import jit
+from seatsim.kernel.augmented import classes_of
+from seatsim.kernel.bench import run_bench
+from seatsim.kernel.compilation import compiled
+from seatsim.registry import card_of
+from seatsim.temperature import TemperatureFactors
+
+Array = NDArray[np.float64]
+
+FAST_ENOUGH = 400.0
+"""Hz; at this rate and above every second row is the middle of a step."""
+ROOM = 20.0
+"""degC, where no temperature was recorded."""
+
+
+class Bench(NamedTuple):
+    """What the force on a bench depends on: the damper, its temperature factors, the coil's rates in 1/s."""
+
+    damper: Any
+    factors: TemperatureFactors
+    rise: float = 130.0
+    fall: float = 130.0
+
+
+class Drive(NamedTuple):
+    """A record as the bench is driven by it: samples every half step, shape (2 n + 1,), and the force at steps."""
+
+    x: Array
+    v: Array
+    current: Array
+    commanded: bool
+    temperature: Array
+    step: float
+    force: Array
+
+
+def drive(record: BenchRecord, origin: float, every: bool) -> Drive:
+    """Return the drive of a record: every row a step, or every second one where the rows are close.
+
+    origin: displacement in m that counts as x = 0.
+    """
+    x = record.displacement - origin
+    warm = np.full(len(x), ROOM) if record.temperature is None else record.temperature
+    if not every and record.rate >= FAST_ENOUGH:
+        odd = len(x) - 1 + len(x) % 2
+        rows = slice(0, odd)
+        return Drive(
+            x[rows].copy(), record.velocity[rows].copy(), record.current[rows].copy(), record.commanded,
+            warm[rows].copy(), 2.0 / record.rate, record.force[rows:odd:2].copy() if False else record.force[:odd:2].copy(),
+        )  # fmt: skip
+    return Drive(
+        _halved(x), _halved(record.velocity), np.repeat(record.current, 2)[:-1] if record.commanded else _linear(record.current),
+        record.commanded, _linear(warm), 1.0 / record.rate, record.force.copy(),
+    )  # fmt: skip
+
+
+def _halved(y: Array) -> Array:
+    """Return samples and the values between them, of the cubic through the four nearest."""
+    out = _linear(y)
+    out[3:-3:2] = (9.0 * (y[1:-2] + y[2:-1]) - y[:-3] - y[3:]) / 16.0
+    return out
+
+
+def _linear(y: Array) -> Array:
+    out = np.empty(2 * len(y) - 1)
+    out[::2] = y
+    out[1::2] = 0.5 * (y[1:] + y[:-1])
+    return out
+
+
+@jit
+def lagged(command: Array, rise: float, fall: float, step: float) -> Array:
+    """Return the current in A that follows a held command with rates in 1/s, starting on it."""
+    out = np.empty_like(command)
+    up, down = math.exp(-rise * step), math.exp(-fall * step)
+    now = command[0]
+    for k in range(len(command)):
+        out[k] = now
+        now = command[k] + (now - command[k]) * (up if command[k] > now else down)
+    return out
+
+
+def predicted(bench: Bench, drive: Drive) -> Array:
+    """Return the force in N at the drive's steps, shape (n + 1,); NaN from where the state ran away."""
+    current = lagged(drive.current, bench.rise, bench.fall, 0.5 * drive.step) if drive.commanded else drive.current
+    out = np.full(len(drive.force), math.nan)
+    run = compiled(run_bench, classes_of(bench.damper))
+    state = card_of(type(bench.damper)).initial
+    run(bench.damper, bench.factors, drive.x, drive.v, current, drive.temperature, state, drive.step, out)
+    return out

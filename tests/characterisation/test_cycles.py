@@ -1,0 +1,104 @@
+"""Cycles of measured records: what is cut, what is left out, and the figures of a known damper."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatsim.characterisation.cycles import steady_cycles, whole_cycles
+from seatsim.characterisation.rows import row_of_record
+from seatsim.characterisation.summary import characterise
+from seatsim.dampers.bench import sine_test
+from seatsim.dampers.bingham import Bingham
+
+FRICTION = Bingham(c_a=300.0, c_b=200.0, fc_a=50.0, fc_b=400.0, f0=30.0, v_ref=0.0)
+
+
+def test_energy_damping_and_offset_of_a_bingham_damper(record, sine):
+    # 4 fc X from friction, pi c w X^2 from the dashpot; at 0.5 A fc = 250 N, c = 400 N s/m
+    motion, seconds = sine(0.01, 2.0)
+    row = row_of_record(record(motion, seconds, lambda t: 0.5 + 0.0 * t, FRICTION, noise=2.0))
+    w = 4.0 * math.pi
+    energy = 4.0 * 250.0 * 0.01 + math.pi * 400.0 * w * 0.01**2
+    assert row.cycles == 8 and row.left_out == 2
+    assert row.amplitude == pytest.approx(0.01, rel=2e-3) and row.frequency == pytest.approx(2.0, rel=1e-3)
+    assert row.peak_speed == pytest.approx(0.01 * w, rel=5e-3)
+    assert row.energy == pytest.approx(energy, rel=3e-3) and row.energy_sd < 0.01 * energy
+    assert row.damping == pytest.approx(energy / (math.pi * w * 0.01**2), rel=5e-3)
+    assert row.offset == pytest.approx(30.0, abs=1.0) and row.centre == pytest.approx(30.0, abs=2.0)
+    assert row.peak_rebound == pytest.approx(280.0 + 400.0 * 0.01 * w, abs=8.0)
+    assert row.asymmetry_peak == pytest.approx(30.0, abs=6.0)
+    assert row.asymmetry_of_shape < 0.01 < row.asymmetry
+    assert row.current == 0.5 and math.isnan(row.temperature) and row.notes == ()
+
+
+def test_the_figures_of_a_record_are_those_of_a_sine_test(record, sine, damper):
+    motion, seconds = sine(0.008, 1.5)
+    row = row_of_record(record(motion, seconds, lambda t: 1.0 + 0.0 * t))
+    test = sine_test(damper, 0.008, 1.5, 1.0, 20.0)
+    assert row.energy == pytest.approx(test.dissipated_energy, rel=2e-3)
+    assert row.damping == pytest.approx(test.equivalent_damping, rel=2e-3)
+    assert [row.peak_rebound, -row.peak_compression] == pytest.approx([test.peak_force] * 2, rel=2e-3)
+    assert row.asymmetry < 0.01
+
+
+def test_an_offset_stroke_noise_and_rests_are_no_matter(record, sine):
+    centred, seconds = sine(0.005, 2.0)
+    offset, _ = sine(0.005, 2.0, offset=0.031)
+    a = row_of_record(record(centred, seconds))
+    moved = record(offset, seconds)
+    noise = 2e-5 * np.random.default_rng(0).standard_normal(len(moved.force))
+    b = row_of_record(moved._replace(displacement=moved.displacement + noise))
+    assert a.cycles == b.cycles
+    assert b.energy == pytest.approx(a.energy, rel=5e-3) and b.amplitude == pytest.approx(a.amplitude, rel=2e-2)
+
+
+@pytest.mark.parametrize("kind", ["chirp", "random", "still", "one cycle"])
+def test_what_is_not_cyclic_is_told(record, kind):
+    t = np.linspace(0.0, 8.0, 4000)
+    walk = np.cumsum(np.random.default_rng(3).standard_normal(400))
+    motion = {
+        "chirp": lambda t: 0.004 * np.sin(2.0 * math.pi * (0.5 * t + 0.6 * t**2)),
+        "random": lambda t: 1e-3 * np.interp(t, np.linspace(0.0, 8.0, 400), walk),
+        "still": lambda t: 0.0 * t,
+        "one cycle": lambda t: 0.004 * np.sin(2.0 * math.pi * t / 7.0),
+    }[kind]
+    assert steady_cycles(whole_cycles(motion(t))) == []
+    row = row_of_record(record(motion, 8.0))
+    assert row.cycles == 0 and math.isnan(row.energy) and row.cloud is not None
+    assert row.notes[0].startswith("not cyclic") and math.isfinite(row.force_rms)
+
+
+def test_each_rest_of_the_current_is_a_row(record, sine):
+    motion, seconds = sine(0.01, 2.0, cycles=24)
+    found = characterise([record(motion, seconds, lambda t: np.where(t < 6.5, 0.0, 0.8))], "two")
+    assert [row.current for row in found.rows] == [0.0, 0.8]
+    assert found.rows[1].peak_rebound > 3.0 * found.rows[0].peak_rebound
+
+
+def test_temperature_is_kept_cycle_by_cycle(record, sine):
+    motion, seconds = sine(0.01, 2.0)
+    row = row_of_record(record(motion, seconds, temperature=lambda t: 20.0 + 5.0 * t))
+    warmth = row.cycle_values["temperature"]
+    assert np.diff(warmth) == pytest.approx(np.full(7, 2.5), rel=0.02)
+    assert row.temperature_range == pytest.approx(17.5, rel=0.02)
+
+
+def test_a_force_of_the_wrong_sign_and_a_velocity_of_the_wrong_unit_are_told(record, sine):
+    motion, seconds = sine(0.01, 2.0)
+    made = record(motion, seconds)
+    assert "other way round" in row_of_record(made._replace(force=-made.force)).notes[-1]
+    assert "disagree" in row_of_record(made._replace(velocity=1.2 * made.velocity)).notes[0]
+
+
+def test_measured_sines(shared):
+    from seatsim.bench_tables import load_bench
+
+    found = characterise(load_bench(shared / "data" / "utfsm_mr_sine_raw"), "sines")
+    assert len(found.rows) == 30 and all(row.cycles >= 4 for row in found.rows) and not found.responses
+    strongest = next(row for row in found.rows if row.record == "raw_10mm_2Hz, 1 A")
+    assert strongest.peak_rebound == pytest.approx(1667.0, abs=15.0)
+    assert strongest.energy == pytest.approx(57.2, rel=0.01)
+    assert all(20.0 < row.offset < 60.0 for row in found.rows)
+    swept = characterise(load_bench(shared / "data" / "utfsm_mr_chirp"), "chirps")
+    assert all(row.cycles == 0 for row in swept.rows)
