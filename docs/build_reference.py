@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 from pathlib import Path
 
 from seatsim import registry
+from seatsim.dampers.base import CONFIDENCE
 from seatsim.describe import KINDS, SECTIONS, describe
 
 PAGE = Path(__file__).with_name("reference.md")
@@ -14,11 +16,26 @@ What `seatsim describe NAME` prints, for every name. Built by `python docs/build
 """
 
 
+def catalogue(names: list[str]) -> str:
+    """Return the table of the damper models, with what their words of confidence mean."""
+    lines = ["Confidence says how far a model's equation is that of its source:\n"]
+    lines += [f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items()]
+    lines += ["", "| model | is | confidence | states | speed | current |", "|---|---|---|---|---|---|"]
+    for name in names:
+        cls = registry.find("damper", name)
+        card, title = registry.card_of(cls), (inspect.getdoc(cls) or "").partition("\n\n")[0]
+        title = " ".join(title.partition(": `")[0].split()).rstrip(".")
+        row = name, title, card.confidence, len(card.initial), f"{card.max_speed:g} m/s", f"{card.max_current:g} A"
+        lines.append(f"| [{row[0]}](#{row[0]}) | {' | '.join(str(cell) for cell in row[1:])} |")
+    return "\n".join([*lines, ""])
+
+
 def page() -> str:
     """Return the text of the page."""
     parts = [HEAD]
     for kind, names in {**{kind: registry.names(kind) for kind in KINDS}, "section": list(SECTIONS)}.items():
         parts.append(f"## {kind.capitalize()}s\n")
+        parts += [catalogue(names)] if kind == "damper" else []
         parts += [f"### {name}\n\n```text\n{describe(name)}\n```\n" for name in names]
     return "\n".join(parts)
 

@@ -1,10 +1,10 @@
 """Records of dampers on test benches: tables of measured motion, current, temperature and force.
 
-A table is a CSV file whose columns are named by what they hold and, where it is not the SI unit, by the unit:
-`time_s`, `displacement_mm`, `velocity_m_s`, `force_kN`, `current_A`, `voltage_V`, `temperature_C`. A force column may name
-its current, `force_0p4A_N`, so that one motion has several. What is constant over a table may stand in a sidecar of the
-same name, `sine.yaml` beside `sine.csv`, under the same names. Tables are split into records where the time jumps, where
-the column `segment` changes, and where `valid` is 0. A folder with `recording.yaml` is read as it says.
+A table is a CSV file whose columns are named by what they hold and by the unit where it is not the SI unit: `time_s`,
+`displacement_mm`, `velocity_m_s`, `force_kN`, `current_A`, `voltage_V`, `temperature_C`. A force column may name its
+current, `force_0p4A_N`, so that one motion has several. What is constant over a table may stand in a sidecar of the same
+name, `sine.yaml` beside `sine.csv`, under the same names. Tables are split into records where the time jumps, where the
+column `segment` changes, and where `valid` is 0. A folder with `recording.yaml` is read as it says.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from fnmatch import fnmatch
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -120,7 +121,7 @@ def matching(records: list[BenchRecord], patterns: list[str]) -> list[BenchRecor
 
 def stem(file: str) -> str:
     """Return a table's file name without its endings."""
-    return file.split(".csv")[0]
+    return file.partition(".csv")[0]
 
 
 def _records(file: Path) -> Iterator[BenchRecord]:
@@ -194,7 +195,7 @@ def _split(table: dict[str, Array], file: Path) -> Iterator[BenchRecord]:
     if "segment" in table:
         jumps |= np.diff(table["segment"][kept]) != 0.0
     edges = [0, *(np.flatnonzero(jumps) + 1), len(kept)]
-    parts = [kept[a:b] for a, b in zip(edges, edges[1:], strict=False) if b - a >= LEAST_ROWS]
+    parts = [kept[a:b] for a, b in pairwise(edges) if b - a >= LEAST_ROWS]
     if sum(map(len, parts)) < 0.9 * len(kept):
         raise InputError(f"{file}: the rows are unevenly spaced in time; resample them to a constant rate")
     records = [_record({role: values[rows] for role, values in table.items()}, file) for rows in parts]

@@ -155,6 +155,62 @@ def characterise(
 
 
 @app.command()
+def identify(
+    data: Annotated[Path, typer.Argument(help="A bench table, or a folder of them.")],
+    model: Annotated[str, typer.Option("--model", help="A damper model, or all for the league.")],
+    test: Annotated[
+        list[str] | None, typer.Option("--test", metavar="GLOB", help="Hold out the files whose names match.")
+    ] = None,
+    test_fraction: Annotated[
+        float, typer.Option("--test-fraction", help="Hold out the last part of each record.")
+    ] = 0.0,
+    fix: Annotated[
+        list[str] | None, typer.Option("--fix", metavar="NAME=VALUE", help="Keep a parameter at a value.")
+    ] = None,
+    ignore_temperature: Annotated[bool, typer.Option("--ignore-temperature", help="Do not fit its influence.")] = False,
+    further: Annotated[
+        list[Path] | None, typer.Option("--predict", metavar="DATA", help="Predict further records, not fitted.")
+    ] = None,
+    moving_average: Annotated[
+        float, typer.Option("--moving-average", metavar="S", help="Average that the predicted records went through.")
+    ] = 0.0,
+    centred: Annotated[bool, typer.Option("--centred", help="The predicted records' mean force was removed.")] = False,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of the global search.")] = 0,
+    out_folder: Out = None,
+) -> None:
+    """Fit a damper model to bench records and judge it on records held out; or every model, as a league."""
+    from seatsim.bench_tables import load_bench
+    from seatsim.identification.identify import Request, identify_records, predict
+    from seatsim.identification.league import league
+    from seatsim.identification_output import league_table, tables, write_identification, write_league
+    from seatsim.registry import find
+
+    request = Request(tuple(test or ()), test_fraction, _settings(fix, "--fix"), ignore_temperature, seed)
+    folder = out_folder or Path("out") / f"identify-{data.resolve().name.split('.')[0]}-{model}"
+    records = load_bench(data)
+
+    def keep(found: Any, where: Path) -> Any:
+        for path in further or []:
+            found = predict(found, path, moving_average, centred)
+        return found, write_identification(found, where)
+
+    if model == "all":
+        with _told() as tell:
+            places = league(records, request, folder, tell, lambda found: keep(found, folder / found.model))
+        out.print(league_table(places))
+        out.print(f"written: {write_league(places, folder)}", markup=False, highlight=False)
+        return
+    find("damper", model)
+    with _told() as tell:
+        found, paths = keep(identify_records(records, model, request, tell), folder)
+    for table in tables(found):
+        out.print(table)
+    for note in found.notes:
+        err.print(f"note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+    out.print(f"written to {folder}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
+
+
+@app.command()
 def describe(name: Annotated[str, typer.Argument(help="A name, such as bouc_wen or road.")] = "") -> None:
     """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds."""
     from seatsim.describe import describe as tell
@@ -278,15 +334,15 @@ def _told() -> Iterator[Any]:
         yield status.update
 
 
-def _settings(pairs: list[str] | None) -> dict[str, Any]:
+def _settings(pairs: list[str] | None, option: str = "--set") -> dict[str, Any]:
     """Read `KEY=VALUE` pairs, the value as YAML."""
     values = {}
     for pair in pairs or []:
         key, sign, text = pair.partition("=")
         if not sign or not key:
-            raise InputError(f"--set {pair}: write KEY=VALUE, such as --set plant.driver_mass=55")
+            raise InputError(f"{option} {pair}: write KEY=VALUE, such as --set plant.driver_mass=55 or --fix k0=0")
         try:
             values[key] = YAML(typ="safe").load(text)
         except YAMLError as error:
-            raise InputError(f"--set {pair}: '{text}' is not a YAML value") from error
+            raise InputError(f"{option} {pair}: '{text}' is not a YAML value") from error
     return values

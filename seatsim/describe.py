@@ -7,6 +7,7 @@ from typing import Any
 
 from seatsim import registry
 from seatsim.coil import Coil
+from seatsim.dampers.base import CONFIDENCE
 from seatsim.errors import InputError, nearest
 from seatsim.fields import FieldCard
 from seatsim.fields import describe as fields_of
@@ -57,6 +58,8 @@ def _page(name: str, kind: str, cls: type) -> str:
             f"Range of the data: |v| <= {card.max_speed:g} m/s, 0 to {card.max_current:g} A, {low:g} to {high:g} degC"
         ]
         lines += [f"State: {card.state}"] if card.state else []
+        lines += [f"Confidence: {card.confidence}; {CONFIDENCE[card.confidence]}"]
+        lines += [f"Held in a fit unless asked: {', '.join(card.held)}"] if card.held else []
     return "\n".join([*lines, "", "Keys:", *(_line(field) for field in fields_of(cls))])
 
 

@@ -6,22 +6,22 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.pieces import BRANCH_STATE, branch, branch_rate, cubic
+from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, CurrentLaw, branch, branch_rate, cubic
 from seatsim.fields import param
 from seatsim.temperature import Heat
 
 
 @damper(
     "weng_arctangent",
-    source="Weng et al., as eq 12 of Braz-Cesar and Barros 2012; defaults fitted by us to measured sine tests"
-    " of the damper of UTFSM (Chile, repository DanielMaurelE/vRTHS_AMBC_MRdamper, MIT)",
+    source=f"Weng et al., as eq 12 of Braz-Cesar and Barros 2012; {UTFSM}",
     initial=(0.0,),
     state=BRANCH_STATE,
     centred=True,
     max_speed=0.126,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="published",
+    smooth=True,
 )
 class WengArctangent(NamedTuple):
     """Arctangent S-curve with a hysteresis of constant width in velocity.

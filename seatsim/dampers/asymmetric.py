@@ -50,6 +50,9 @@ def opening(q: Seven, d: Six, u: float) -> float:
     max_current=1.2,
     temperatures=(20.0, 80.0),
     factors=TemperatureFactors(-0.00667, -0.00667, -0.00667, 20.0),
+    confidence="published",
+    held=("p_den", "n_den", "q_den", "held_from", "asymmetry"),
+    smooth=True,
 )
 class Yu2019(NamedTuple):
     """Asymmetric damper: viscous, elastic, and a hysteresis that differs between extension and compression.

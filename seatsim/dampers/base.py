@@ -12,13 +12,22 @@ the model multiplies its viscous, elastic and yield terms. Methods are compiled 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Any, Literal, NamedTuple, Protocol, TypeVar
 
 from seatsim.registry import register
 from seatsim.temperature import Heat, TemperatureFactors
 
 T = TypeVar("T", bound=type)
 State = tuple[float, ...]
+
+Confidence = Literal["published", "recalled", "reading", "derived"]
+CONFIDENCE: dict[Confidence, str] = {
+    "published": "equation and source were seen in print or in public code",
+    "recalled": "the form is known from the literature, not checked against the original",
+    "reading": "a sound physical reading, because the original's equation could not be had",
+    "derived": "composed here",
+}
+"""How far a model's equation is that of its source; a docstring tells what else is of whom, parameters above all."""
 
 
 class Damper(Protocol):
@@ -36,6 +45,9 @@ class DamperCard(NamedTuple):
     model branches on sgn(x) or sgn(dv/dt), so that it is wrong where the motion is not centred about x = 0.
     The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it. complete: the
     model is a form without a parameter set of its own; a scenario states all of its parameters.
+    confidence: a word of `CONFIDENCE`. held: fields that an identification holds unless asked, beside `law_end`:
+    they state the model's range, or no data tell them from the others. smooth: the rates are smooth functions of
+    motion and state, without switch or corner, so that an integrator keeps its order.
     """
 
     source: str
@@ -48,6 +60,9 @@ class DamperCard(NamedTuple):
     temperatures: tuple[float, float]
     factors: TemperatureFactors
     complete: bool
+    confidence: Confidence
+    held: tuple[str, ...]
+    smooth: bool
 
 
 def damper(
@@ -62,6 +77,9 @@ def damper(
     temperatures: tuple[float, float] = (20.0, 80.0),
     factors: TemperatureFactors | None = None,
     complete: bool = False,
+    confidence: Confidence = "published",
+    held: tuple[str, ...] = (),
+    smooth: bool = False,
 ) -> Callable[[T], T]:
     """Register a record class as the damper `model: name`; see `DamperCard` for the facts."""
     card = DamperCard(
@@ -75,5 +93,8 @@ def damper(
         temperatures,
         factors or TemperatureFactors(),
         complete,
+        confidence,
+        held,
+        smooth,
     )
     return register("damper", name, card)

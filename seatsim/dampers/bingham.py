@@ -6,19 +6,12 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.pieces import cubic
+from seatsim.dampers.pieces import CurrentLaw, cubic
 from seatsim.fields import param
 from seatsim.temperature import Heat
 
 SET_VALUED_BELOW = 1e-6
 """m/s; a sharper `v_ref` than this is taken as the set-valued sign itself."""
-
-CurrentLaw = tuple[
-    Annotated[float, param("", "constant")],
-    Annotated[float, param("1/A", "linear")],
-    Annotated[float, param("1/A^2", "quadratic")],
-    Annotated[float, param("1/A^3", "cubic")],
-]
 
 
 @damper(
@@ -26,6 +19,8 @@ CurrentLaw = tuple[
     source="Stanway, Sproston and Stevens 1987, J. Electrostatics 20:167",
     current_order=1,
     complete=True,
+    confidence="published",
+    held=("v_ref",),
 )
 class Bingham(NamedTuple):
     """Bingham damper with laws linear in the current.
@@ -62,6 +57,7 @@ class Bingham(NamedTuple):
     " printed numbers are lost: defaults fitted by us to their modified Bouc-Wen model of the RD-1005-3",
     max_speed=0.13,
     max_current=1.0,
+    confidence="published",
 )
 class OriginalBingham(NamedTuple):
     """Bingham damper with cubic current laws and a set-valued yield force: `F = c0(I) v + fc(I) sgn(v) + f0`.

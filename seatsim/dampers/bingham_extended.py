@@ -6,9 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.pieces import cubic, power
-from seatsim.dampers.pieces_series import UTFSM
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic, power
 from seatsim.fields import param
 from seatsim.temperature import Heat
 
@@ -20,6 +18,7 @@ from seatsim.temperature import Heat
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="reading",
 )
 class UpdatedBingham(NamedTuple):
     """Bingham damper whose viscous damping depends on the speed, with a set-valued yield force.
@@ -29,7 +28,7 @@ class UpdatedBingham(NamedTuple):
     Vaguely recalled is that the viscous coefficient is a function of current and speed; which one was not
     found. The function here is ours: c0 at rest, c0 v_s^(1-p) |v|^(p-1) for |v| >> v_s, a power law without its
     infinite damping at rest; p = 1 is the Bingham damper. c0 and fc are cubic laws, held beyond `law_end`. The
-    defaults are derived by us (see `pieces_series.UTFSM`), with fc, which these data leave next to nothing of,
+    defaults are derived by us (see `pieces.UTFSM`), with fc, which these data leave next to nothing of,
     chosen; rms error 28, 62, 133, 216, 284 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and 1 A. Temperature
     scales c0 (viscous) and fc (yield).
     """
@@ -57,6 +56,7 @@ class UpdatedBingham(NamedTuple):
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class Powell(NamedTuple):
     """Three elements side by side: a spring, a dashpot, and friction that falls from static to dynamic.
@@ -65,7 +65,7 @@ class Powell(NamedTuple):
 
     fc is the dynamic and fs the static friction; tanh(e v) regularises the sign. The form is recalled; the
     original has e large. c and fc are cubic laws, held beyond `law_end`. The defaults are derived by us (see
-    `pieces_series.UTFSM`) with k chosen; rms error 25, 58, 129, 213, 281 N at 0, 0.25, 0.5, 0.75, 1 A. In them e is
+    `pieces.UTFSM`) with k chosen; rms error 25, 58, 129, 213, 281 N at 0, 0.25, 0.5, 0.75, 1 A. In them e is
     the slope of the pre-yield flow, and r and a round its corner: no static friction was seen. Valid to 0.13 m/s
     and 1 A. Temperature scales c (viscous), k (elastic) and fc (yield).
     """

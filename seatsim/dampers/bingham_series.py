@@ -9,9 +9,8 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.pieces import cubic
-from seatsim.dampers.pieces_series import UTFSM, slip
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
+from seatsim.dampers.pieces_series import slip
 from seatsim.fields import param
 from seatsim.temperature import Heat
 
@@ -24,6 +23,7 @@ from seatsim.temperature import Heat
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="published",
 )
 class ModifiedBingham(NamedTuple):
     """Bingham element (displacement x1) in series with a spring k1.
@@ -33,7 +33,7 @@ class ModifiedBingham(NamedTuple):
     The form is as printed. Solved for the state by us: with q = k1 e, x1' = 0 for |q| <= fc and (q - fc sgn q) /
     c0 beyond, e' = v - x1', which is continuous and holds the friction at rest without a set-valued sign. k1 =
     k_a + k_b I; c0 and fc are cubic laws, held beyond `law_end`. The defaults are derived by us (see
-    `pieces_series.UTFSM`); rms error 29, 69, 117, 150, 190 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and
+    `pieces.UTFSM`); rms error 29, 69, 117, 150, 190 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and
     1 A. Temperature scales c0 (viscous), k1 (elastic) and fc (yield).
     """
 
@@ -64,6 +64,7 @@ class ModifiedBingham(NamedTuple):
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class GamotaFilisko(NamedTuple):
     """Bingham element (x1) in series with a standard linear solid: spring k1 beside dashpot c1 (x2 - x1), spring k2.
@@ -75,7 +76,7 @@ class GamotaFilisko(NamedTuple):
     The form is recalled, the yield criterion read without the offset. Solved for the states by us: q = k2 e2, x1'
     = 0 for |q| <= fc and (q - fc sgn q) / c0 beyond, e1' = (q - k1 e1) / c1, e2' = v - x1' - e1'. k2 = k2_a +
     k2_b I; c0 and fc are cubic laws, held beyond `law_end`. The defaults are derived by us (see
-    `pieces_series.UTFSM`); rms error 29, 65, 98, 106, 141 N at 0, 0.25, 0.5, 0.75, 1 A; these data leave next to
+    `pieces.UTFSM`); rms error 29, 65, 98, 106, 141 N at 0, 0.25, 0.5, 0.75, 1 A; these data leave next to
     no k1, so that the solid creeps. Valid to 0.13 m/s and 1 A. Temperature scales c0 and c1 (viscous), k1 and k2
     (elastic) and fc (yield).
     """

@@ -6,9 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.pieces import BRANCH_STATE, branch, branch_rate, cubic
-from seatsim.dampers.pieces_series import SETTLING, UTFSM, limited
+from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, CurrentLaw, between, branch, branch_rate, cubic
+from seatsim.dampers.pieces_series import SETTLING, limited
 from seatsim.fields import param
 from seatsim.jit import jit
 from seatsim.temperature import Heat
@@ -28,6 +27,7 @@ def two_slopes(pre: float, post: float, fy: float, v: float, shift: float) -> fl
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class Biviscous(NamedTuple):
     """Nonlinear bi-viscous damper, without hysteresis.
@@ -36,7 +36,7 @@ class Biviscous(NamedTuple):
         vy = fy / (c_pre - c_post)
 
     The form is recalled. All three coefficients are cubic laws in the current, held beyond `law_end`; c_pre is
-    above c_post. The defaults are derived by us (see `pieces_series.UTFSM`); rms error 28, 62, 135, 219, 288 N at
+    above c_post. The defaults are derived by us (see `pieces.UTFSM`); rms error 28, 62, 135, 219, 288 N at
     0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and 1 A. Temperature scales the damping (viscous) and fy (yield).
     """
 
@@ -62,6 +62,8 @@ class Biviscous(NamedTuple):
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
+    smooth=True,
 )
 class HystereticBiviscous(NamedTuple):
     """Nonlinear hysteretic bi-viscous damper: the pre-yield line crosses zero force at a speed v0, not at rest.
@@ -73,7 +75,7 @@ class HystereticBiviscous(NamedTuple):
     The form is recalled, its signs checked by us on measured loops. Both branches are c_post v + [(c_pre - c_post)
     v - c_pre v0 sgn(v')] limited to fy; -sgn(v') is the smoothed sign of the displacement about its recent mean
     (`pieces.branch`). v0 = v0_a + v0_b I; the rest are cubic laws, held beyond `law_end`. The defaults are derived
-    by us (see `pieces_series.UTFSM`); rms error 23, 47, 96, 155, 206 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13
+    by us (see `pieces.UTFSM`); rms error 23, 47, 96, 155, 206 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13
     m/s and 1 A. Temperature scales the damping (viscous) and fy (yield).
     """
 
@@ -106,6 +108,8 @@ class HystereticBiviscous(NamedTuple):
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
+    smooth=True,
 )
 class HystereticArctangent(NamedTuple):
     """Nonlinear hysteretic arctangent damper: the hysteretic bi-viscous one with rounded corners.
@@ -115,7 +119,7 @@ class HystereticArctangent(NamedTuple):
     The form is recalled. It is that of `weng_arctangent` with a steepness K, k_0 to k_1, that follows the
     current, so that the damping before yield, about c_post + 2 fy K / pi, has a law of its own. -sgn(v') is the
     smoothed sign of the displacement about its recent mean (`pieces.branch`); v0 = v0_a + v0_b I; c_post and fy
-    are cubic laws, held beyond `law_end`. The defaults are derived by us (see `pieces_series.UTFSM`), with c_post
+    are cubic laws, held beyond `law_end`. The defaults are derived by us (see `pieces.UTFSM`), with c_post
     chosen; rms error 23, 45, 94, 152, 202 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and 1 A. Temperature
     scales c_post (viscous) and fy (yield).
     """
@@ -133,8 +137,7 @@ class HystereticArctangent(NamedTuple):
         """Return F in N."""
         held = min(i, self.law_end)
         shifted = v + (self.v0_a + self.v0_b * held) * branch(z)
-        steepness = self.k_0 + (self.k_1 - self.k_0) * held / self.law_end
-        angle = math.atan(steepness * shifted)
+        angle = math.atan(between(self.k_0, self.k_1, i, self.law_end) * shifted)
         yielding = cubic(self.fy, held) * heat.yielding * 2.0 / math.pi * angle
         return cubic(self.c_post, held) * heat.viscous * v + yielding + self.f0
 
@@ -152,6 +155,7 @@ class HystereticArctangent(NamedTuple):
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class LumpedBiviscous(NamedTuple):
     """Lumped bi-viscous damper: the fluid's mass m and compressibility k in series with a bi-viscous flow.
@@ -162,7 +166,7 @@ class LumpedBiviscous(NamedTuple):
     before yield, where c_pre / m can be 10^4 1/s, the mass counts as m + tau dFb/du (ours): a mass that depends on
     the speed still stores what it takes, so the model stays passive, and motion slow against tau does not feel it.
     The mass scales with the viscous factor of the temperature (ours), so that three equal factors scale the whole
-    force. The defaults are derived by us (see `pieces_series.UTFSM`), with m chosen; rms error 25, 50, 84, 102, 143 N
+    force. The defaults are derived by us (see `pieces.UTFSM`), with m chosen; rms error 25, 50, 84, 102, 143 N
     at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s, 1 A and 20 Hz. Temperature scales the damping (viscous), k
     (elastic) and fy (yield).
     """

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.pieces import bouc_wen_rate, cubic
+from seatsim.dampers.pieces import CurrentLaw, bouc_wen_rate, cubic
 from seatsim.fields import param
 from seatsim.temperature import Heat
 
@@ -20,6 +19,8 @@ HYSTERESIS = "z, the hysteretic displacement"
     state=HYSTERESIS,
     current_order=1,
     complete=True,
+    confidence="published",
+    held=("A", "x0"),
 )
 class BoucWen(NamedTuple):
     """Simple Bouc-Wen damper with laws linear in the current.
@@ -59,6 +60,8 @@ class BoucWen(NamedTuple):
     state=HYSTERESIS,
     max_speed=0.13,
     max_current=1.0,
+    confidence="published",
+    held=("A",),
 )
 class SimpleBoucWen(NamedTuple):
     """Simple Bouc-Wen damper of the RD-1005-3 with cubic current laws.
@@ -98,6 +101,8 @@ class SimpleBoucWen(NamedTuple):
     state="y, displacement behind the series dashpot; z, hysteretic displacement",
     max_speed=0.13,
     max_current=1.0,
+    confidence="published",
+    held=("A", "x0"),
 )
 class ModifiedBoucWen(NamedTuple):
     """Modified Bouc-Wen damper: a Bouc-Wen element in series with a dashpot c1.

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.bouc_wen_variants import NORMALISED, normalised_rate
-from seatsim.dampers.pieces import BRANCH_MEMORY, branch_rate
+from seatsim.dampers.pieces import BRANCH_MEMORY, UTFSM, branch_rate
 from seatsim.fields import param
 from seatsim.jit import jit
 from seatsim.temperature import Heat
@@ -41,13 +41,13 @@ def excitation_factor(d2: float, d4: float, s: float, r: float) -> float:
 
 @damper(
     "current_dependent_bouc_wen",
-    source="Dominguez, Sedaghati and Stiharu 2004, Smart Mater. Struct. 13:1351; form recalled; defaults fitted by"
-    " us to measured sine tests of the damper of UTFSM",
+    source=f"Dominguez, Sedaghati and Stiharu 2004, Smart Mater. Struct. 13:1351; form recalled; {UTFSM}",
     initial=(0.0,),
     state=NORMALISED,
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class CurrentDependentBoucWen(NamedTuple):
     """Bouc-Wen damper whose damping and yield force saturate in the current.
@@ -96,14 +96,14 @@ class CurrentDependentBoucWen(NamedTuple):
 @damper(
     "frequency_dependent_bouc_wen",
     source="Dominguez, Sedaghati and Stiharu 2006, Smart Mater. Struct. 15:1179, of which only the structure is"
-    " recalled; frequency and amplitude from running mean squares are ours; defaults fitted by us to measured sine"
-    " tests of the damper of UTFSM",
+    f" recalled; frequency and amplitude from running mean squares are ours; {UTFSM}",
     initial=(0.0, 0.5 * AMPLITUDE**2, 0.5 * (FREQUENCY * AMPLITUDE) ** 2, 0.0),
     state="d, displacement about its recent mean in m; s, recent mean square of d in m^2; r, recent mean square of"
     f" the velocity in m^2/s^2; {NORMALISED}",
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="reading",
 )
 class FrequencyDependentBoucWen(NamedTuple):
     """Bouc-Wen damper that depends on current, frequency and amplitude.

@@ -6,21 +6,13 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.pieces import cubic, power
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic, power
+from seatsim.dampers.pieces_series import inertance, inertance_rate
 from seatsim.fields import param
 from seatsim.jit import jit
 from seatsim.temperature import Heat
 
 NORMALISED = "w, hysteretic variable from -1 to 1"
-INERTANCE_LAG = 2e-3
-"""Time in s after which an inertance follows the acceleration, chosen by us: far below the periods of a seat."""
-
-
-@jit
-def between(first: float, last: float, i: float, end: float) -> float:
-    """Return the law that is `first` at zero current, `last` at the current `end`, linear between, held beyond."""
-    return first + (last - first) * min(i, end) / end
 
 
 @jit
@@ -33,12 +25,13 @@ def normalised_rate(rho: float, sigma: float, n: float, r: float, w: float) -> f
 @damper(
     "shear_bouc_wen",
     source="Jansen and Dyke 2000, normalised after Ikhouane and Dyke 2007, Smart Mater. Struct. 16:605; form recalled;"
-    " defaults fitted by us to measured sine tests of the damper of UTFSM",
+    f" {UTFSM}",
     initial=(0.0,),
     state=NORMALISED,
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class ShearBoucWen(NamedTuple):
     """Shear-mode Bouc-Wen damper: a dashpot beside a hysteresis, no spring.
@@ -77,13 +70,13 @@ class ShearBoucWen(NamedTuple):
 
 @damper(
     "large_scale_bouc_wen",
-    source="Yang, Spencer, Jung and Carlson 2004, J. Eng. Mech. 130:1107; form recalled; defaults fitted by us to"
-    " measured sine tests of the damper of UTFSM",
+    source=f"Yang, Spencer, Jung and Carlson 2004, J. Eng. Mech. 130:1107; form recalled; {UTFSM}",
     initial=(0.0, 0.0),
     state=f"{NORMALISED}; u, velocity of the inertance in m/s",
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class LargeScaleBoucWen(NamedTuple):
     """Bouc-Wen damper for large dampers: damping that falls with speed, and the inertia of fluid and piston.
@@ -92,9 +85,9 @@ class LargeScaleBoucWen(NamedTuple):
         w' = rho(I) {v - sigma |v| |w|^(n-1) w + (sigma - 1) v |w|^n},   |w| <= 1
         u' = (v - u) / tau
 
-    The form is recalled, not read in the paper; its hysteresis is normalised here. The paper has m v' where
-    we have an inertance behind a dashpot m / tau, tau = 2 ms: the same in slow motion, and passive without
-    need of the acceleration. a1 exp{..} is stiction at low speed and shear thinning at high speed.
+    The form is recalled, not read in the paper; its hysteresis is normalised here. The paper has m v' where we have
+    an inertance behind a dashpot m / tau, tau = `pieces_series.INERTANCE_TIME`: the same in slow motion, and passive
+    without need of the acceleration. a1 exp{..} is stiction at low speed and shear thinning at high speed.
 
     Defaults: derived by us from measurement, steady cycles of 2-25 mm and 0.5-5 Hz at 0-1 A, offset
     removed; rms error 16 N at 0 A to 75 N at 1 A, 6 % of the peak force. Valid to 0.13 m/s and 1 A.
@@ -118,25 +111,25 @@ class LargeScaleBoucWen(NamedTuple):
         """Return F in N."""
         held = min(i, self.law_end)
         thinned = cubic(self.a1, held) * math.exp(-power(self.a2 * abs(v), self.p)) * v
-        inertia = self.m * (v - z[1]) / INERTANCE_LAG
-        elastic = self.k * heat.stiffness * x
-        return (thinned + inertia) * heat.viscous + elastic + cubic(self.alpha, held) * heat.yielding * z[0] + self.f0
+        flow = (thinned + inertance(self.m, v, z[1])) * heat.viscous
+        return flow + self.k * heat.stiffness * x + cubic(self.alpha, held) * heat.yielding * z[0] + self.f0
 
     def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
         """Return (w', u')."""
         rho = between(self.rho0, self.rho1, i, self.law_end)
-        return (normalised_rate(rho, self.sigma, self.n, v, z[0]), (v - z[1]) / INERTANCE_LAG)
+        return (normalised_rate(rho, self.sigma, self.n, v, z[0]), inertance_rate(v, z[1]))
 
 
 @damper(
     "nonsymmetrical_bouc_wen",
-    source="Kwok, Ha, Nguyen, Li and Samali 2007, ISA Trans. 46:167; form recalled; defaults fitted by us to"
-    " measured sine tests of the damper of UTFSM",
+    source=f"Kwok, Ha, Nguyen, Li and Samali 2007, ISA Trans. 46:167; form recalled; {UTFSM}",
     initial=(0.0,),
     state=NORMALISED,
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
+    held=("mu",),
 )
 class NonsymmetricalBoucWen(NamedTuple):
     """Bouc-Wen damper whose hysteresis sees the velocity shifted by mu, so that the loop is not symmetric.

@@ -5,22 +5,22 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.bouc_wen_variants import NORMALISED, between
-from seatsim.dampers.pieces import cubic
+from seatsim.dampers.bouc_wen_variants import NORMALISED
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic
 from seatsim.fields import param
 from seatsim.temperature import Heat
 
 
 @damper(
     "modified_dahl",
-    source="Zhou and Qu 2002; form recalled; defaults fitted by us to measured sine tests of the damper of UTFSM",
+    source=f"Zhou and Qu 2002; form recalled; {UTFSM}",
     initial=(0.0,),
     state=NORMALISED,
     current_order=1,
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class ModifiedDahl(NamedTuple):
     """Modified Dahl damper: spring, dashpot and Dahl friction with laws linear in the current.
@@ -56,12 +56,13 @@ class ModifiedDahl(NamedTuple):
 @damper(
     "viscous_dahl",
     source="Ikhouane and Dyke 2007, Smart Mater. Struct. 16:605; form as in public code of UTFPR (Brazil, repository"
-    " labcontrol-data/mr-damper, MIT); defaults fitted by us to measured sine tests of the damper of UTFSM",
+    f" labcontrol-data/mr-damper, MIT); {UTFSM}",
     initial=(0.0,),
     state=NORMALISED,
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="published",
 )
 class ViscousDahl(NamedTuple):
     """Viscous Dahl damper: a dashpot beside Dahl friction.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.pieces import cubic
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
+from seatsim.dampers.pieces_series import slip
 from seatsim.fields import param
 from seatsim.temperature import Heat
 
@@ -14,12 +14,13 @@ from seatsim.temperature import Heat
 @damper(
     "equivalent_oh_onoda",
     source="Oh and Onoda 2002, Smart Mater. Struct. 11:156, whose equations were not at hand: our reading of its"
-    " lumped elements; defaults fitted by us to measured sine tests of the damper of UTFSM",
+    f" lumped elements; {UTFSM}",
     initial=(0.0,),
     state="e, elongation of the series spring in m",
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="reading",
 )
 class EquivalentOhOnoda(NamedTuple):
     """Lumped elements: a spring before friction and dashpot of the flow, beside seal and accumulator.
@@ -53,9 +54,7 @@ class EquivalentOhOnoda(NamedTuple):
         """Return (e',)."""
         held = min(i, self.law_end)
         q = self.ks * heat.stiffness * z[0]
-        fy = cubic(self.fy, held) * heat.yielding
-        beyond = q - min(max(q, -fy), fy)
-        return (v - beyond / (cubic(self.c, held) * heat.viscous),)
+        return (v - slip(q, cubic(self.fy, held) * heat.yielding, cubic(self.c, held) * heat.viscous),)
 
     def coulomb(self, i: float, heat: Heat) -> float:
         """Return the friction of the seal in N."""

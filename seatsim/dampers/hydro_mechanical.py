@@ -6,9 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.pieces import cubic
-from seatsim.dampers.pieces_series import SETTLING, UTFSM
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
+from seatsim.dampers.pieces_series import SETTLING
 from seatsim.fields import param
 from seatsim.temperature import Heat
 
@@ -22,6 +21,9 @@ from seatsim.temperature import Heat
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="reading",
+    held=("A",),
+    smooth=True,
 )
 class HydroMechanical(NamedTuple):
     """Piston of area A between chambers of compliance C, joined by a gap with inertance L and resistance R.
@@ -39,7 +41,7 @@ class HydroMechanical(NamedTuple):
 
     The current acts through the flow, so that the force at a given state does not depend on it: an inverse needs
     another model to believe in. A is geometry, which the force does not tell from the other parameters. The
-    defaults are derived by us (see `pieces_series.UTFSM`), with A, C, L and fs chosen; rms error 22, 40, 71, 95,
+    defaults are derived by us (see `pieces.UTFSM`), with A, C, L and fs chosen; rms error 22, 40, 71, 95,
     136 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s, 1 A and 20 Hz. Temperature scales R and L (viscous), 1/C
     and k_g (elastic), P_y and fs (yield).
     """

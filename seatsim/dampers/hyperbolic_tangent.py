@@ -21,6 +21,8 @@ from seatsim.temperature import Heat
     max_speed=0.1,
     max_current=2.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
+    smooth=True,
 )
 class KwokTanh(NamedTuple):
     """Hyperbolic tangent of the velocity, shifted by the branch of the loop.

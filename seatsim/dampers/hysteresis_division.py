@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.pieces import BRANCH_STATE, branch, branch_rate
+from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, branch, branch_rate
 from seatsim.fields import param
 from seatsim.jit import jit
 from seatsim.temperature import Heat
@@ -25,15 +25,15 @@ def envelope_rate(speed: float, envelope: float) -> float:
 
 @damper(
     "yu2017",
-    source="Yu, Dong and Zhang 2017, Smart Mater. Struct. 26, as eq 5 of Yu et al. 2019 (conventional model);"
-    " defaults fitted by us to measured sine tests of the damper of UTFSM (repository"
-    " DanielMaurelE/vRTHS_AMBC_MRdamper, MIT)",
+    source=f"Yu, Dong and Zhang 2017, Smart Mater. Struct. 26, as eq 5 of Yu et al. 2019 (conventional model); {UTFSM}",
     initial=(0.0, 0.0),
     state=f"{BRANCH_STATE}; e, envelope of the speed in m/s, for the cycle's peak speed",
     centred=True,
     max_speed=0.126,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="published",
+    held=("c_i2", "d2"),
 )
 class Yu2017(NamedTuple):
     """Backbone and branch of a symmetric loop, divided and scaled by one height S.

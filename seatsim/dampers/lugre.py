@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
+from seatsim.dampers.pieces import UTFSM
 from seatsim.fields import param
 from seatsim.temperature import Heat
 
@@ -13,13 +14,13 @@ DEFLECTION = "w, deflection of the bristles over its bound, from -1 to 1"
 
 @damper(
     "lugre_jimenez",
-    source="Jimenez and Alvarez-Icaza 2005, Struct. Control Health Monit. 12:91; form recalled, unsurely; defaults"
-    " fitted by us to measured sine tests of the damper of UTFSM",
+    source=f"Jimenez and Alvarez-Icaza 2005, Struct. Control Health Monit. 12:91; form recalled, unsurely; {UTFSM}",
     initial=(0.0,),
     state=DEFLECTION,
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class LuGreJimenez(NamedTuple):
     """LuGre damper whose bristle force grows with the current and saturates, after Jimenez and Alvarez-Icaza.
@@ -58,17 +59,17 @@ class LuGreJimenez(NamedTuple):
 
 @damper(
     "lugre_sakai",
-    source="Sakai, Ohmori and Sano 2003; Terasawa et al. 2004 (IEEE CDC); form recalled; defaults fitted by us"
-    " to measured sine tests of the damper of UTFSM",
+    source=f"Sakai, Ohmori and Sano 2003; Terasawa et al. 2004 (IEEE CDC); form recalled; {UTFSM}",
     initial=(0.0,),
     state=DEFLECTION,
     current_order=1,
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class LuGreSakai(NamedTuple):
-    """LuGre damper linear in the current, after Sakai et al.
+    """LuGre damper after Sakai et al., linear in the current.
 
         F  = (fa + fb I) w + sigma1 (v - |v| w) + (sigma2 + sigmab I) v + f0
         w' = a0 (v - |v| w),   |w| <= 1

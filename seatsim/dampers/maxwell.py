@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.pieces import cubic, power
-from seatsim.dampers.pieces_series import SETTLING, UTFSM, inertance, inertance_rate, limited, slip
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic, power
+from seatsim.dampers.pieces_series import SETTLING, inertance, inertance_rate, limited, slip
 from seatsim.fields import param
 from seatsim.jit import jit
 from seatsim.temperature import Heat
@@ -23,6 +21,8 @@ from seatsim.temperature import Heat
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
+    smooth=True,
 )
 class Bingmax(NamedTuple):
     """Maxwell element beside set-valued Coulomb friction.
@@ -31,7 +31,7 @@ class Bingmax(NamedTuple):
 
     The form is recalled. The state is the deflection e = F_m / k, e' = v - k e / c, which stays valid where the
     stiffness k = k_a + k_b I follows the current. c and fy are cubic laws, held beyond `law_end`. The defaults are
-    derived by us (see `pieces_series.UTFSM`); rms error 35, 82, 161, 241, 308 N at 0, 0.25, 0.5, 0.75, 1 A. Valid
+    derived by us (see `pieces.UTFSM`); rms error 35, 82, 161, 241, 308 N at 0, 0.25, 0.5, 0.75, 1 A. Valid
     to 0.13 m/s and 1 A. Temperature scales c (viscous), k (elastic) and fy (yield).
     """
 
@@ -74,6 +74,7 @@ def rising_power(b: float, n: float, size: float, tangent_below: float) -> float
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class MaxwellNonlinearSlider(NamedTuple):
     """Maxwell nonlinear slider (MNS): a Maxwell element before yield, a power law of the speed past it.
@@ -83,14 +84,14 @@ class MaxwellNonlinearSlider(NamedTuple):
 
     The form is recalled; below the transition speed v_t the power law goes on as its tangent. The change of mode is
     ours: the Maxwell element's force is limited to the slider's, and what k e exceeds it by relaxes within
-    `pieces_series.SETTLING`, which is continuous and lets the element unload at a reversal. m0 |v|' is an
-    inertance behind a dashpot m0 / tau, tau = `pieces_series.INERTANCE_TIME`; it scales with the viscous factor of
-    the temperature (ours). Both directions share one law. k = k_a + k_b I, c = c_a + c_b I; a and b are cubic
-    laws, held beyond `law_end`.
+    `pieces_series.SETTLING`, which is continuous and lets the element unload at a reversal. m0 |v|' is an inertance
+    behind a dashpot m0 / tau, tau = `pieces_series.INERTANCE_TIME`; it scales with the viscous factor of the
+    temperature and fades out below v_t, so that the force has no jump at a reversal (ours). Both directions share one
+    law. k = k_a + k_b I, c = c_a + c_b I; a and b are cubic laws, held beyond `law_end`.
 
     The file of Chae gives for the RD-9001-01 at 1 A, extension, in kN, m, s: c 12000, k 118000, m0 1.6, v_t 0.01, a
     91.46, b 122.5, n 0.517. It is not used: the defaults are derived by us for a seat's damper (see
-    `pieces_series.UTFSM`), with n and v_t chosen; rms error 23, 44, 72, 90, 130 N at 0, 0.25, 0.5, 0.75, 1 A. Valid
+    `pieces.UTFSM`), with n and v_t chosen; rms error 23, 45, 73, 91, 130 N at 0, 0.25, 0.5, 0.75, 1 A. Valid
     to 0.13 m/s and 1 A. Temperature scales b, c, m0 (viscous), k (elastic) and a (yield).
     """
 
@@ -124,6 +125,6 @@ class MaxwellNonlinearSlider(NamedTuple):
 @jit
 def slider(d: MaxwellNonlinearSlider, v: float, held: float, heat: Heat, u: float) -> float:
     """Return the magnitude in N of the post-yield force at the current `held`."""
-    braking = min(0.0, math.copysign(1.0, v) * inertance(d.m0, v, u))
+    braking = min(0.0, min(max(v / d.v_t, -1.0), 1.0) * inertance(d.m0, v, u))
     rising = rising_power(cubic(d.b, held), d.n, abs(v), d.v_t)
     return (rising + braking) * heat.viscous + cubic(d.a, held) * heat.yielding

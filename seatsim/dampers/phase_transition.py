@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.bouc_wen_variants import between
-from seatsim.dampers.pieces import cubic
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic
 from seatsim.fields import param
 from seatsim.temperature import Heat
 
@@ -18,12 +16,14 @@ V_REF = 0.1
 @damper(
     "phase_transition",
     source="Wang and Kamath 2006, Smart Mater. Struct. 15:1725, whose equations were not at hand: our reading of its"
-    " idea; defaults fitted by us to measured sine tests of the damper of UTFSM",
+    f" idea; {UTFSM}",
     initial=(0.0,),
     state="p, order parameter of the flow",
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="reading",
+    smooth=True,
 )
 class PhaseTransition(NamedTuple):
     """Yield as a phase transition: the flow's order parameter relaxes in a Landau potential.

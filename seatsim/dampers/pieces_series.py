@@ -4,17 +4,6 @@ from __future__ import annotations
 
 from seatsim.jit import jit
 
-UTFSM = (
-    "defaults fitted by us to measured sine tests of the damper of UTFSM (Chile, repository"
-    " DanielMaurelE/vRTHS_AMBC_MRdamper, MIT)"
-)
-"""Where defaults come from that are of no published set.
-
-Derived by us from one steady cycle each of 2 mm 5 Hz, 5 mm 3 and 4 Hz, 10 mm 1 and 2 Hz, 25 mm 0.1, 0.25 and 0.5 Hz at
-0, 0.25, 0.5, 0.75, 1 A, offset removed; every test counts alike. Stiffnesses were kept to what explicit steps of 1 ms
-bear; inertances, which such tests do not show, were chosen.
-"""
-
 SETTLING = 1e-3
 """Shortest time in s in which an inner element settles, chosen by us so that explicit steps of 1 ms are stable.
 

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.hysteresis_division import envelope_rate
-from seatsim.dampers.pieces import BRANCH_STATE, branch, branch_rate
+from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, branch, branch_rate
 from seatsim.fields import param
 from seatsim.jit import jit
 from seatsim.temperature import Heat
@@ -21,14 +21,15 @@ def logistic(k: float, a: float, s: float) -> float:
 
 @damper(
     "sigmoid",
-    source="Ma, Wang, Rakheja and Su 2002-2007; form recalled; defaults fitted by us to measured sine tests of the"
-    " damper of UTFSM",
+    source=f"Ma, Wang, Rakheja and Su 2002-2007; form recalled; {UTFSM}",
     initial=(0.0, 0.0),
     state=f"{BRANCH_STATE}; e, envelope of the speed in m/s, for the cycle's peak speed",
     centred=True,
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
+    held=("k0", "k2"),
 )
 class Sigmoid(NamedTuple):
     """Generalised sigmoid: an S-curve of the velocity whose height and shift follow current and peak speed.

@@ -6,9 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
-from seatsim.dampers.bingham import CurrentLaw
-from seatsim.dampers.pieces import cubic
-from seatsim.dampers.pieces_series import SETTLING, UTFSM, inertance, inertance_rate, limited, slip
+from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
+from seatsim.dampers.pieces_series import SETTLING, inertance, inertance_rate, limited, slip
 from seatsim.fields import param
 from seatsim.jit import jit
 from seatsim.temperature import Heat
@@ -35,6 +34,7 @@ def solid_force(k1: float, k2: float, heat: Heat, z: State) -> float:
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="reading",
 )
 class ViscoelasticPlastic(NamedTuple):
     """General visco-elastic-plastic damper: shape functions of the speed pass from a pre-yield to a post-yield branch.
@@ -50,7 +50,7 @@ class ViscoelasticPlastic(NamedTuple):
     each branch is driven by its share, S_ve v or S_vi v, because a branch that is weighted in force but driven by
     all of v can return more work than it took. m u' stands for m v': an inertance behind a dashpot m / tau, tau =
     `pieces_series.INERTANCE_TIME`; it scales with the viscous factor of the temperature (ours). k1 = k_a + k_b I;
-    c1, c and fc are cubic laws, held beyond `law_end`. The defaults are derived by us (see `pieces_series.UTFSM`),
+    c1, c and fc are cubic laws, held beyond `law_end`. The defaults are derived by us (see `pieces.UTFSM`),
     with m and vy chosen; rms error 22, 44, 74, 102, 140 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s and 1 A.
     Temperature scales c1, c, m (viscous), k1 (elastic) and fc (yield).
     """
@@ -93,6 +93,7 @@ class ViscoelasticPlastic(NamedTuple):
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="reading",
 )
 class LiViscoelasticPlastic(NamedTuple):
     """Visco-elastic-plastic damper after Li et al.: a standard solid until its force reaches the yield force.
@@ -106,7 +107,7 @@ class LiViscoelasticPlastic(NamedTuple):
     driven by its share Y v. R v' is an inertance behind a dashpot R / tau', tau' =
     `pieces_series.INERTANCE_TIME`; it scales with the viscous factor of the temperature (ours). The seal's
     friction fs is set-valued. k1 = k_a + k_b I; fc and cv are cubic laws, held beyond `law_end`. The defaults are
-    derived by us (see `pieces_series.UTFSM`), with R chosen; rms error 29, 51, 92, 133, 174 N at 0, 0.25, 0.5,
+    derived by us (see `pieces.UTFSM`), with R chosen; rms error 29, 51, 92, 133, 174 N at 0, 0.25, 0.5,
     0.75, 1 A. Valid to 0.13 m/s and 1 A. Temperature scales cv, c2, R (viscous), k1, k2 (elastic), fc and fs
     (yield).
     """
@@ -153,6 +154,7 @@ class LiViscoelasticPlastic(NamedTuple):
     max_speed=0.13,
     max_current=1.0,
     temperatures=(20.0, 20.0),
+    confidence="recalled",
 )
 class StiffnessViscosityElastoSlide(NamedTuple):
     """Spring and dashpot beside an elasto-slide (Jenkins) element: a spring ke that slides at the force N_s.
@@ -163,7 +165,7 @@ class StiffnessViscosityElastoSlide(NamedTuple):
     The form is recalled: F_e' = ke v while |F_e| < N_s, clipped there. The slide is ours: what ke e exceeds F_e by
     relaxes within tau = `pieces_series.SETTLING`, also where N_s falls with the current, so that F_e never exceeds
     N_s and leaves it at a reversal. ke = ke_a + ke_b I; c0 and N_s are cubic laws, held beyond `law_end`. The
-    defaults are derived by us (see `pieces_series.UTFSM`); rms error 27, 60, 105, 141, 186 N at 0, 0.25, 0.5, 0.75,
+    defaults are derived by us (see `pieces.UTFSM`); rms error 27, 60, 105, 141, 186 N at 0, 0.25, 0.5, 0.75,
     1 A. Valid to 0.13 m/s and 1 A. Temperature scales c0 (viscous), k0 and ke (elastic), and N_s (yield).
     """
 

@@ -1,16 +1,16 @@
 """The parameters of a damper model as a vector that a fit can search.
 
-Every component is a pure number of order one: a parameter over its size, or the logarithm of that ratio where it must be
-positive. A law in the current counts by its values at currents spread over its range, not by its coefficients, which are
-strongly correlated.
+Every component is a pure number of order one: a parameter over its size, or the logarithm of that ratio where it must
+be positive. A law in the current counts by its values at currents spread over its range, not by its coefficients, which
+are strongly correlated.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
-from typing import Annotated, Any, NamedTuple, get_args, get_type_hints
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +40,7 @@ class Scales(NamedTuple):
         powers = dimension(unit)
         time = self.stroke / self.speed
         sizes = {"N": self.force, "m": self.stroke, "s": time, "A": self.current}
-        return math.prod(sizes[name] ** power for name, power in powers.items())
+        return float(math.prod(sizes[name] ** power for name, power in powers.items()))
 
 
 def dimension(unit: str) -> dict[str, float]:
@@ -77,19 +77,19 @@ class Component(NamedTuple):
 class Coordinates:
     """The free parameters of a record class, between the record and a vector of shape (P,).
 
-    start: a record of the class, from which sizes are taken; fixed: fields that stay as they are in it.
+    start: a record of the class, from which sizes are taken; held: fields that stay as they are in it; levels: how many
+    currents the data hold, which a law's degree stays below.
     """
 
-    def __init__(self, start: Any, scales: Scales, fixed: Mapping[str, float] | None = None) -> None:
-        self.start, self.cls = start, type(start)
-        self.fixed = {**{name: getattr(start, name) for name in SETTINGS if hasattr(start, name)}, **(fixed or {})}
+    def __init__(self, start: Any, scales: Scales, held: Sequence[str] = (), levels: int = 99) -> None:
+        self.start, self.cls, self.levels = start, type(start), levels
         self.end = float(getattr(start, "law_end", scales.current) or 1.0)
         self.components: list[Component] = []
         for card in describe(self.cls):
             value = getattr(start, card.name)
-            if card.name in self.fixed or isinstance(value, int | str):
-                continue
-            self.components += self._of_field(card.name, card.unit, value, scales)
+            moot = scales.current == 0.0 and dimension(card.unit).get("A", 0.0) < 0.0
+            if card.name not in (*SETTINGS, *held) and not moot and not isinstance(value, int | str):
+                self.components += self._of_field(card.name, card.unit, value, scales)
         self.low = np.array([c.low for c in self.components])
         self.high = np.array([c.high for c in self.components])
 
@@ -103,12 +103,12 @@ class Coordinates:
                 least, most = max(low, size / SPAN), min(high, size * SPAN)
                 return [Component(name, None, unit, size, True, math.log(least / size), math.log(most / size), None)]
             return [Component(name, None, unit, size, False, low / size, high / size, None)]
-        at = nodes(self.end, len(value)) if is_law(self.cls, name) else None
-        values = law_values(value, at) if at is not None else np.array(value)
-        size = float(np.max(np.abs(values))) or guess
+        count, law = len(value), is_law(self.cls, name)
+        at = np.linspace(0.0, self.end, min(count, self.levels)) if law else np.full(count, math.nan)
+        size = float(np.max(np.abs(law_values(value, at) if law else np.array(value)))) or guess
         return [
-            Component(name, k, unit, size, False, -math.inf, math.inf, None if at is None else float(at[k]))
-            for k in range(len(value))
+            Component(name, k, unit, size, False, -math.inf, math.inf, float(a) if law else None)
+            for k, a in enumerate(at)
         ]
 
     def vector(self, record: Any) -> Array:
@@ -121,7 +121,7 @@ class Coordinates:
             elif c.place is not None:
                 value = value[c.place]
             values.append(math.log(max(value, 1e-12 * c.size) / c.size) if c.logarithmic else value / c.size)
-        return np.clip(np.array(values), self.low, self.high)
+        return np.asarray(np.clip(values, self.low, self.high), dtype=float)
 
     def record(self, vector: Array) -> Any:
         """Return the record of a vector."""
@@ -135,7 +135,8 @@ class Coordinates:
         for name, values in changed.items():
             if isinstance(values, list):
                 law = is_law(self.cls, name)
-                changed[name] = tuple(law_coefficients(np.array(values), self.end) if law else values)
+                rest = [0.0] * (len(getattr(self.start, name)) - len(values))
+                changed[name] = (*law_coefficients(np.array(values), self.end), *rest) if law else tuple(values)
         return self.start._replace(**changed)
 
 
@@ -145,11 +146,6 @@ def is_law(cls: type, name: str) -> bool:
     parts = get_args(get_args(hint)[0])
     inner = [str(getattr(get_args(part)[1], "json_schema_extra", {}).get("unit", "")) for part in parts]
     return len(inner) > 1 and inner[:2] == ["", "1/A"]
-
-
-def nodes(end: float, count: int) -> Array:
-    """Return the currents in A at which a law of `count` coefficients counts."""
-    return np.linspace(0.0, end, count)
 
 
 def law_values(coefficients: Any, currents: Array) -> Array:
@@ -165,7 +161,7 @@ def law_coefficients(values: Array, end: float) -> list[float]:
 
 
 def scaled(record: Any, force: float, end: float) -> Any:
-    """Return a record for a damper of another size: its forces times `force`, its laws stretched to the current `end`."""
+    """Return a record for another damper: its forces times `force`, its laws stretched to the current `end`."""
     cls = type(record)
     stretch = end / float(getattr(record, "law_end", end) or end)
     changed: dict[str, Any] = {"law_end": end} if hasattr(record, "law_end") else {}
@@ -183,13 +179,18 @@ def scaled(record: Any, force: float, end: float) -> Any:
     return record._replace(**changed)
 
 
-def chosen(cls: type, values: Mapping[str, float]) -> Mapping[str, float]:
-    """Return values that the user fixes, or raise InputError at the first that is no number of the model."""
+def fixed(record: Any, values: Mapping[str, float]) -> Any:
+    """Return a record with some numbers as the user fixes them.
+
+    Raises:
+        InputError: a name is no number of the model, or its value is out of bounds.
+    """
+    cls = type(record)
     known = [card.name for card in describe(cls) if not isinstance(card.default, tuple)]
-    for name in values:
+    for name, value in values.items():
         if name not in known:
             raise InputError(f"--fix {name}: no such number{nearest(name, known)}; permitted: {', '.join(known)}")
-    return values
-
-
-__all__ = ["Annotated", "Coordinates", "Scales", "chosen", "scaled"]
+        low, high = bounds(cls, name)
+        if not low <= value <= high:
+            raise InputError(f"--fix {name}={value:g}: is not permitted; it must lie between {low:g} and {high:g}")
+    return record._replace(**values)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from seatsim.bench_tables import BenchRecord
 from seatsim.jit import jit
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.bench import run_bench
+from seatsim.kernel.bench import MOST_PARTS, run_bench
 from seatsim.kernel.compilation import compiled
 from seatsim.registry import card_of
 from seatsim.temperature import TemperatureFactors
@@ -25,12 +25,16 @@ ROOM = 20.0
 
 
 class Bench(NamedTuple):
-    """What the force on a bench depends on: the damper, its temperature factors, the coil's rates in 1/s."""
+    """What the force on a bench depends on: the damper, its temperature factors, the coil's rates in 1/s.
+
+    warming: N/K by which the offset grows as the gas warms up from the factors' reference temperature.
+    """
 
     damper: Any
     factors: TemperatureFactors
     rise: float = 130.0
     fall: float = 130.0
+    warming: float = 0.0
 
 
 class Drive(NamedTuple):
@@ -46,26 +50,22 @@ class Drive(NamedTuple):
 
 
 def drive(record: BenchRecord, origin: float, every: bool) -> Drive:
-    """Return the drive of a record: every row a step, or every second one where the rows are close.
+    """Return the drive of a record: every row a step, or, unless `every`, each second one where the rows are close.
 
     origin: displacement in m that counts as x = 0.
     """
-    x = record.displacement - origin
+    x, v = record.displacement - origin, record.velocity
     warm = np.full(len(x), ROOM) if record.temperature is None else record.temperature
-    if not every and record.rate >= FAST_ENOUGH:
-        odd = len(x) - 1 + len(x) % 2
-        rows = slice(0, odd)
-        return Drive(
-            x[rows].copy(), record.velocity[rows].copy(), record.current[rows].copy(), record.commanded,
-            warm[rows].copy(), 2.0 / record.rate, record.force[rows:odd:2].copy() if False else record.force[:odd:2].copy(),
-        )  # fmt: skip
-    return Drive(
-        _halved(x), _halved(record.velocity), np.repeat(record.current, 2)[:-1] if record.commanded else _linear(record.current),
-        record.commanded, _linear(warm), 1.0 / record.rate, record.force.copy(),
-    )  # fmt: skip
+    rate = record.rate
+    if not every and rate >= FAST_ENOUGH:
+        odd = slice(0, len(x) - 1 + len(x) % 2)
+        x, v, current, warm = (np.ascontiguousarray(y[odd]) for y in (x, v, record.current, warm))
+        return Drive(x, v, current, record.commanded, warm, 2.0 / rate, record.force[odd][::2].copy())
+    held = np.repeat(record.current, 2)[:-1] if record.commanded else _linear(record.current)
+    return Drive(_cubic(x), _cubic(v), held, record.commanded, _linear(warm), 1.0 / rate, record.force.copy())
 
 
-def _halved(y: Array) -> Array:
+def _cubic(y: Array) -> Array:
     """Return samples and the values between them, of the cubic through the four nearest."""
     out = _linear(y)
     out[3:-3:2] = (9.0 * (y[1:-2] + y[2:-1]) - y[:-3] - y[3:]) / 16.0
@@ -91,11 +91,14 @@ def lagged(command: Array, rise: float, fall: float, step: float) -> Array:
     return out
 
 
-def predicted(bench: Bench, drive: Drive) -> Array:
-    """Return the force in N at the drive's steps, shape (n + 1,); NaN from where the state ran away."""
+def predicted(bench: Bench, drive: Drive, most: int = MOST_PARTS) -> Array:
+    """Return the force in N at the drive's steps, shape (n + 1,); NaN from where the state ran away.
+
+    A step is divided into at most `most` parts where the state is stiff.
+    """
     current = lagged(drive.current, bench.rise, bench.fall, 0.5 * drive.step) if drive.commanded else drive.current
     out = np.full(len(drive.force), math.nan)
     run = compiled(run_bench, classes_of(bench.damper))
     state = card_of(type(bench.damper)).initial
-    run(bench.damper, bench.factors, drive.x, drive.v, current, drive.temperature, state, drive.step, out)
-    return out
+    run(bench.damper, bench.factors, drive.x, drive.v, current, drive.temperature, state, drive.step, most, out)
+    return out + bench.warming * (drive.temperature[::2] - bench.factors.reference)

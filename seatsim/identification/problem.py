@@ -17,61 +17,73 @@ from seatsim.temperature import TemperatureFactors
 
 Array = NDArray[np.float64]
 
-WARMTH = 5.0
-"""K that a temperature must vary by for its factors to be fitted."""
+RATE = 130.0
+"""1/s, the size of the coil's rates: those of Braz-Cesar and Barros 2012."""
 PER_KELVIN = 0.01
 """1/K, the size of a temperature factor's component."""
+MOST_PER_KELVIN = 0.03
+WARMING = 1.0
+"""N/K, the size of the component of the offset's growth."""
 QUIET = 0.05
 """Least standard deviation of a record's force, over the largest one's, that its residuals are divided by."""
+PARTS = 32
+"""Most parts of a step while a fit is looking: a stiffer model than that is a bad one, found quickly."""
 AWAY = 10.0
 """Scaled residual that stands for a force that is not finite."""
 
 
 class Problem(NamedTuple):
-    """What is fitted: `coordinates` of the damper, then the coil's rates, then the temperature factors."""
+    """What is fitted: `coordinates` of the damper, then the coil's rates, then what temperature does.
+
+    reference: temperature in degC at which the factors are 1, None where temperature is no input.
+    """
 
     coordinates: Coordinates
     drives: list[Drive]
     weights: list[float]
     coil: bool
-    warm: bool
-    reference: float
+    reference: float | None
 
     @property
     def names(self) -> list[str]:
         """Names of the components."""
-        coil = ["actuator.rate", "actuator.rate_fall"] if self.coil else []
-        warm = [f"temperature_factors.{name}" for name in TemperatureFactors._fields[:3]] if self.warm else []
-        return [component.name for component in self.coordinates.components] + coil + warm
+        warm = [*(f"temperature_factors.{name}" for name in TemperatureFactors._fields[:3]), "bench.offset_per_kelvin"]
+        names = [component.name for component in self.coordinates.components]
+        names += ["actuator.rate", "actuator.rate_fall"] if self.coil else []
+        return names + (warm if self.reference is not None else [])
 
     @property
     def bounds(self) -> tuple[Array, Array]:
         """Least and greatest value of every component."""
-        size = math.log(30.0)
-        low = [self.coordinates.low, [-size] * 2 * self.coil, [-3.0] * 3 * self.warm]
-        high = [self.coordinates.high, [size] * 2 * self.coil, [3.0] * 3 * self.warm]
-        return np.concatenate(low), np.concatenate(high)
+        coil = [math.log(30.0)] * 2 * self.coil
+        warm = [MOST_PER_KELVIN / PER_KELVIN] * 3 + [math.inf] if self.reference is not None else []
+        beside = np.array(coil + warm)
+        return np.append(self.coordinates.low, -beside), np.append(self.coordinates.high, beside)
 
     def vector(self, bench: Bench) -> Array:
         """Return the vector of a bench."""
-        coil = np.log(np.array([bench.rise, bench.fall]) / RATE) if self.coil else np.zeros(0)
-        warm = np.array(bench.factors[:3]) / PER_KELVIN if self.warm else np.zeros(0)
-        return np.concatenate([self.coordinates.vector(bench.damper), coil, warm])
+        coil = [math.log(rate / RATE) for rate in (bench.rise, bench.fall)] if self.coil else []
+        warm = [factor / PER_KELVIN for factor in bench.factors[:3]] + [bench.warming / WARMING]
+        beside = coil + (warm if self.reference is not None else [])
+        return np.append(self.coordinates.vector(bench.damper), beside)
 
     def bench(self, vector: Array) -> Bench:
         """Return the bench of a vector."""
         count = len(self.coordinates.components)
-        rest = [float(number) for number in vector[count:]]
-        rise, fall = (RATE * math.exp(rest.pop(0)), RATE * math.exp(rest.pop(0))) if self.coil else (RATE, RATE)
-        factors = TemperatureFactors(*(PER_KELVIN * number for number in rest), reference=self.reference)
-        return Bench(self.coordinates.record(vector[:count]), factors, rise, fall)
+        damper, rest = self.coordinates.record(vector[:count]), [float(number) for number in vector[count:]]
+        rise, fall = (RATE * math.exp(number) for number in (rest[:2] if self.coil else (0.0, 0.0)))
+        if self.reference is None:
+            return Bench(damper, TemperatureFactors(), rise, fall)
+        viscous, stiffness, yielding = (PER_KELVIN * number for number in rest[-4:-1])
+        factors = TemperatureFactors(viscous, stiffness, yielding, self.reference)
+        return Bench(damper, factors, rise, fall, WARMING * rest[-1])
 
     def residuals(self, vector: Array) -> Array:
         """Return the residuals, each record's over the size of its force and the root of its length."""
         bench = self.bench(vector)
         parts = []
         for drive, weight in zip(self.drives, self.weights, strict=True):
-            part = weight * (predicted(bench, drive) - drive.force)
+            part = weight * (predicted(bench, drive, PARTS) - drive.force)
             limit = AWAY / math.sqrt(len(part))
             parts.append(np.clip(np.where(np.isfinite(part), part, limit), -limit, limit))
         return np.concatenate(parts)
@@ -79,10 +91,6 @@ class Problem(NamedTuple):
     def cost(self, vector: Array) -> float:
         """Return the mean square over records of the error over the size of the force."""
         return float(np.sum(self.residuals(vector) ** 2)) / len(self.drives)
-
-
-RATE = 130.0
-"""1/s, the size of the coil's rates: those of Braz-Cesar and Barros 2012."""
 
 
 def weights(records: Sequence[BenchRecord], drives: Sequence[Drive]) -> list[float]:
@@ -94,7 +102,7 @@ def weights(records: Sequence[BenchRecord], drives: Sequence[Drive]) -> list[flo
 
 def jacobian(problem: Problem, vector: Array, residuals: Array, step: float = 1e-3) -> Array:
     """Return the derivatives of the residuals, shape (N, P), by differences, on all processors."""
-    low, high = problem.bounds
+    _, high = problem.bounds
 
     def column(k: int) -> Any:
         size = step if vector[k] + step <= high[k] else -step

@@ -13,6 +13,9 @@ from seatsim.identification.problem import Problem, jacobian
 Array = NDArray[np.float64]
 Tell = Callable[[str], None]
 
+SPREAD = 0.3
+"""Standard deviation of the first generation, in components of order one."""
+
 
 def started(problem: Problem, start: Array, seed: int, evaluations: int, tell: Tell) -> Array:
     """Return the best vector of a CMA-ES from `start` (Hansen 2016, arXiv:1604.00772)."""
@@ -21,8 +24,14 @@ def started(problem: Problem, start: Array, seed: int, evaluations: int, tell: T
     problem.cost(start)  # compiles, which threads must not do at once
 
     low, high = problem.bounds
-    options = {"seed": seed + 1, "verbose": -9, "bounds": [list(low), list(high)], "maxfevals": evaluations, "tolfun": 1e-7}
-    strategy = cma.CMAEvolutionStrategy(list(start), 0.4, options)
+    options = {
+        "seed": seed + 1,
+        "verbose": -9,
+        "bounds": [list(low), list(high)],
+        "maxfevals": evaluations,
+        "tolfun": 1e-7,
+    }
+    strategy = cma.CMAEvolutionStrategy(list(start), SPREAD, options)
     with ThreadPoolExecutor() as pool:
         while not strategy.stop():
             found = strategy.ask()
@@ -49,5 +58,5 @@ def refined(problem: Problem, start: Array, tell: Tell, most: int = 60) -> tuple
 
     low, high = problem.bounds
     inside = np.clip(start, low + 1e-9, high - 1e-9)
-    found = least_squares(value, inside, slopes, bounds=(low, high), x_scale="jac", ftol=1e-5, xtol=1e-5, max_nfev=most)
+    found = least_squares(value, inside, slopes, bounds=(low, high), x_scale="jac", ftol=1e-4, xtol=1e-4, max_nfev=most)
     return np.asarray(found.x), 2.0 * float(found.cost) / len(problem.drives)

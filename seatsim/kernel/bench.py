@@ -36,13 +36,14 @@ def run_bench(
     temperature: Array,
     initial_state: Tuple,
     step: float,
+    most: int,
     out: Array,
 ) -> int:
     """Fill `out`, shape (n + 1,), with the force in N every `step`; return the samples reached.
 
     x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step;
     temperature is held over a step. The number returned is n + 1 if all went well. Set-valued friction acts
-    as `coulomb sgn(v)`, zero at v = 0. To be compiled by `compiled`.
+    as `coulomb sgn(v)`, zero at v = 0. A step is divided into at most `most` parts. To be compiled by `compiled`.
     """
     z = initial_state
     parts = 1
@@ -58,7 +59,7 @@ def run_bench(
             break
         if len(z) > 0:
             span = slice(j, j + 3)
-            z, parts, good = _advance(damper, factor, x[span], v[span], current[span], z, step, parts)
+            z, parts, good = _advance(damper, factor, x[span], v[span], current[span], z, step, parts, most)
             if not good:
                 return k + 1
     return int(out.shape[0])
@@ -66,7 +67,7 @@ def run_bench(
 
 @jit
 def _advance(
-    damper: Any, heat: Heat, x: Array, v: Array, current: Array, z: Tuple, step: float, parts: int
+    damper: Any, heat: Heat, x: Array, v: Array, current: Array, z: Tuple, step: float, parts: int, most: int
 ) -> tuple[Tuple, int, bool]:
     """Return the state after a step, the parts to try next, and whether the state is still finite."""
     while True:
@@ -75,7 +76,7 @@ def _advance(
             state, error = _part(damper, heat, x, v, current, state, step / parts, part / parts, 1.0 / parts)
             if not error <= worst:
                 worst = error
-        if worst <= 1.0 or parts >= MOST_PARTS:
+        if worst <= 1.0 or parts >= most:
             break
         parts *= 2
     if worst < 1.0 / 32.0 and parts > 1:

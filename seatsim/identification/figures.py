@@ -1,0 +1,48 @@
+"""How well a model predicts measured force: the figures of the literature."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+GUARD = 0.05
+"""Share of a record's peak force below which a measured force does not count in the mean deviation."""
+
+
+class Figures(NamedTuple):
+    """Agreement of a predicted force s with a measured one y.
+
+    r2            1 - sum (y - s)^2 / sum (y - mean y)^2
+    md            mean of |y - s| / |y|, over the samples where |y| is more than 5 % of its peak
+    rmse          sqrt(mean (y - s)^2), N
+    fit_percent   100 (1 - ||y - s|| / ||y - mean y||)
+
+    Source: Yu et al. 2019 eqs 6-8 for the first three. Its eq 7 diverges where the measured force crosses zero; the
+    guard is ours.
+    """
+
+    r2: float
+    md: float
+    rmse: float
+    fit_percent: float
+
+
+def figures(measured: Array, predicted: Array) -> Figures:
+    """Return the figures of one record, arrays of shape (N,) in N."""
+    error = measured - predicted
+    spread = float(np.sum((measured - np.mean(measured)) ** 2))
+    share = float(np.sum(error**2)) / spread if spread > 0.0 else np.inf
+    counted = np.abs(measured) > GUARD * np.max(np.abs(measured))
+    deviation = float(np.mean(np.abs(error[counted] / measured[counted]))) if counted.any() else np.inf
+    rmse = float(np.sqrt(np.mean(error**2)))
+    return Figures(1.0 - share, deviation, rmse, 100.0 * (1.0 - share**0.5))
+
+
+def averaged(each: Sequence[Figures]) -> Figures:
+    """Return the mean of every figure over records, each of which counts alike."""
+    return Figures(*(float(np.mean(values)) for values in zip(*each, strict=True)))

@@ -1,0 +1,67 @@
+"""Pictures of an identification: measured and predicted loops, and force over time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from seatsim.identification.identify import Identification, Judged
+from seatsim.plots import labels, style
+from seatsim.plots.style import Entry, Grid
+
+MOST = 6
+"""Most records that are drawn."""
+SHOWN = 1500
+"""Most rows of a record in the loops, from the stretch with the highest speed."""
+MEASURED, PREDICTED = Entry("measured", "#000000", width=1.6), Entry("predicted", style.COLOURS[1])
+
+
+def loops(found: Identification) -> Figure:
+    """Return force over velocity, over displacement and over time of some records, held-out ones before fitted ones."""
+    chosen = _chosen(found.judged)
+    grid = Grid(heights=(2.2,) * len(chosen), columns=3, top=0.4, gap=(0.75, 0.95))
+    drawn = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
+    mean = found.mean("test") or found.mean("train")
+    note = f"{len(chosen)} of {len(found.judged)} records; mean fit {mean.fit_percent:.1f} %" if mean else ""
+    note += " of held-out records" if found.mean("test") else ""
+    page = style.page(f"{found.model}: measured and predicted force", note, grid, (MEASURED, PREDICTED))
+    for panels, judged in zip(page.rows, chosen, strict=True):
+        title = labels.clean(judged.record.name, labels.LONGEST_TITLE)
+        panels[0].set_title(f"{title} ({drawn[judged.part]}), fit {judged.figures.fit_percent:.1f} %", loc="left")
+        _draw(panels, judged)
+    return page.figure
+
+
+def _chosen(judged: Sequence[Judged]) -> list[Judged]:
+    """Return records spread evenly over the held-out ones, or the fitted ones where none is held out."""
+    first = [each for each in judged if each.part != "train"] or list(judged)
+    places = np.unique(np.linspace(0, len(first) - 1, min(MOST, len(first))).round().astype(int))
+    return [first[place] for place in places]
+
+
+def _draw(panels: Sequence[Axes], judged: Judged) -> None:
+    record = judged.record
+    last = len(record.force) if judged.part != "train" else len(judged.measured)
+    first = last - len(judged.measured)
+    x, v, t = (1e3 * record.displacement[first:last], record.velocity[first:last], record.time[first:last])
+    part = _liveliest(np.abs(v))
+    for axes, across, name in (
+        (panels[0], v, "velocity [m/s]"),
+        (panels[1], x, "displacement [mm]"),
+        (panels[2], t, "time [s]"),
+    ):
+        style.line(axes, across[part], judged.measured[part], MEASURED)
+        style.line(axes, across[part], judged.predicted[part], PREDICTED)
+        axes.set_xlabel(name)
+    panels[0].set_ylabel("force [N]")
+
+
+def _liveliest(speed: np.ndarray[tuple[int], np.dtype[np.float64]]) -> slice:
+    if len(speed) <= SHOWN:
+        return slice(None)
+    travel = np.concatenate([[0.0], np.cumsum(speed)])
+    first = int(np.argmax(travel[SHOWN:] - travel[:-SHOWN]))
+    return slice(first, first + SHOWN)
