@@ -175,7 +175,7 @@ def damper_force(y: Array, dy: Array, mem: Array, x: float, speed: float, p: Par
         force = main_force(y, mem, x, v, p)
     if p.rem_gain != 0.0:
         rise = y[s.CUR] - y[s.MAGNET]
-        dy[s.MAGNET] = rise * 200.0 if rise > 0.0 else rise / p.rem_tau
+        dy[s.MAGNET] = rise * 200.0 if rise > 0.0 else rise * (0.4 - 2.0 * rise) / p.rem_tau
     if p.seal_force != 0.0:
         rate = bristle_rate(y[s.SEAL], v, p.seal_length, p.seal_stribeck, p.seal_speed)
         dy[s.SEAL] = rate

@@ -43,8 +43,14 @@ class Candidate(NamedTuple):
 
     @property
     def wanes(self) -> bool:
-        """Whether the effect falls as its first parameter grows, as with a limit or a clearance."""
-        return bool(card_of(self.cls).off.get(self.free[0], 0.0) > self.start[0])
+        """Whether the effect falls as its first parameter grows in size, as with a limit or a clearance."""
+        return self.limits[0]
+
+    @property
+    def limits(self) -> list[bool]:
+        """Which free parameters are such limits: larger where the effect is off."""
+        off = card_of(self.cls).off
+        return [abs(off.get(name, 0.0)) > abs(start) for name, start in zip(self.free, self.start, strict=True)]
 
     @property
     def form(self) -> tuple[Any, ...]:
@@ -74,9 +80,9 @@ def candidates(problem: Problem, without: Sequence[str] = ()) -> list[Candidate]
 
 def _starts(candidate: Candidate) -> list[Candidate]:
     """Return the candidate from every start: a limit must be near where it acts for a fit to feel it."""
-    first, *rest = candidate.start
+    starts = list(zip(candidate.start, candidate.limits, strict=True))
     factors = LIMITS if candidate.wanes else (1.0,)
-    return [candidate._replace(start=(factor * first, *rest)) for factor in factors]
+    return [candidate._replace(start=tuple(f * x if limit else x for x, limit in starts)) for f in factors]
 
 
 def _fits(cls: Any, problem: Problem) -> bool:

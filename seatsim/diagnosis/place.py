@@ -17,6 +17,8 @@ DECISIVE = 0.1
 """Share of what the best block explains by which another must fall short to be told from it."""
 TWICE = 0.02
 """Doubt by which a coil, whose current and force err at will, must be better than its sensor alone."""
+SLIGHT = 0.02
+"""Share of the gap by which effects that do not explain it must help an unknown input, not to be given up for it."""
 
 
 class Rest(NamedTuple):
@@ -54,19 +56,27 @@ def unexplained(engine: Engine, found: Search, chosen: State) -> tuple[Rest, Sta
     if not chosen.point.terms:
         return plain, chosen
     beside = _rest(engine, chosen)
-    if plain.suspects[plain.block].doubt < beside.suspects[beside.block].doubt:
+    slight = SLIGHT * found.excess(found.calibrated)
+    if plain.suspects[plain.block].doubt < beside.suspects[beside.block].doubt + slight:
         return plain, found.calibrated
     return beside, chosen
 
 
 def _rest(engine: Engine, state: State) -> Rest:
+    """Return the blocks that could hold what a state leaves.
+
+    A slow force on the driver is one on the frame, since the two move as one: where both explain nearly the same, it is
+    the frame's.
+    """
     engine.refresh(state)
     found = suspects(engine, state)
-    if "coil" in found:
-        found["coil"] = found["coil"]._replace(doubt=found["coil"].doubt + TWICE)
     rows = sum(values.size for values in state.whitened.values())
     before, best = state.cost / rows - 1.0, min(suspect.doubt for suspect in found.values())
     width = DECISIVE * max(before - best, 1e-6)
+    for block, doubt in (("coil", TWICE), ("driver", width)):
+        if block in found:
+            found[block] = found[block]._replace(doubt=found[block].doubt + doubt)
+    best = min(suspect.doubt for suspect in found.values())
     weights = {block: math.exp(-(suspect.doubt - best) / width) for block, suspect in found.items()}
     ranked = sorted(weights.items(), key=lambda item: -item[1])
     return Rest(found, {block: weight / sum(weights.values()) for block, weight in ranked})

@@ -38,46 +38,52 @@ class MagneticSaturation(NamedTuple):
 
 @effect(
     "damper.remanence",
-    source="play operator (Krasnosel'skii and Pokrovskii 1989), two of them",
-    initial=(0.0, 0.0),
+    source="play operator (Krasnosel'skii and Pokrovskii 1989), two of them; magnetic after-effect",
+    initial=(0.0, 0.0, 0.0),
     forms=(
         {"width": 0.01},
         {"width": 0.01, "spread": 0.7},
         {"width": 0.01, "lift": 0.5},
         {"width": 0.02, "decay": 1.0},
         {"width": 0.1, "decay": 20.0},
+        {"share": 0.1, "decay": 2.0},
     ),
 )
 class Remanence(NamedTuple):
-    """Yield force that remembers past current: it feels the mean of two plays of the current.
+    """Yield force that remembers past current: it feels the mean of two plays of the current, and an after-effect.
 
-    Their half-widths are `width (1 +- spread)`; the current has to go further than that back before the magnetisation
-    follows; held back, it creeps towards the current at the rate `decay`. Of the play's two sides, `lift` is how far it
-    is raised: 0 lags a rising and a falling current alike, 1 leaves the rising one as it is, so that only a current
-    that fell is remembered.
+    The plays' half-widths are `width (1 +- spread)`; the current has to go further than that back before the
+    magnetisation follows; held back, it creeps towards the current at the rate `decay`. Of the play's two sides, `lift`
+    is how far it is raised: 0 lags a rising and a falling current alike, 1 leaves the rising one as it is, so that only
+    a current that fell is remembered. The after-effect adds `share (m - i)`, where m follows a rising current at once
+    and falls as `m' = decay (i - m)`.
     """
 
     width: Annotated[float, param("A", "current that stays remembered", low=0, high=2)]
     spread: Annotated[float, param("-", "difference between the two plays", low=0, high=1)] = 0.0
     lift: Annotated[float, param("-", "share of the width added to a current that flows", low=0, high=1)] = 0.0
     decay: Annotated[float, param("1/s", "rate at which the memory fades", low=0, high=200)] = 0.0
+    share: Annotated[float, param("-", "share of a current that fell that stays for a while", low=0, high=1)] = 0.0
 
     def yield_current(self, i: float, z: State) -> float:
         """Return the current that the yield force feels, in A."""
+        after = self.share * max(z[2] - i, 0.0)
         if self.width <= 0.0:
-            return i
+            return i + after
         wide, narrow = self.width * (1.0 + self.spread), self.width * (1.0 - self.spread)
         felt = 0.5 * (_play(z[0], i, wide) + _play(z[1], i, narrow))
-        return felt + self.lift * min(self.width, max(felt, 0.0))
+        return felt + self.lift * min(self.width, max(felt, 0.0)) + after
 
     def rates(self, x: float, v: float, i: float, pull: float, target: float, z: State) -> State:
-        """Return the rates of the two plays."""
+        """Return the rates of the two plays and of the current that fell."""
+        fading = (self.decay if z[2] > i else FOLLOWING) * (i - z[2])
         if self.width <= 0.0:
-            return (0.0, 0.0)
+            return (0.0, 0.0, fading)
         wide, narrow = self.width * (1.0 + self.spread), self.width * (1.0 - self.spread)
         return (
             FOLLOWING * (_play(z[0], i, wide) - z[0]) + self.decay * (i - z[0]),
             FOLLOWING * (_play(z[1], i, narrow) - z[1]) + self.decay * (i - z[1]),
+            fading,
         )
 
 

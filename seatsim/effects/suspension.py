@@ -61,10 +61,7 @@ class ProgressiveSpring(NamedTuple):
     "suspension.end_stop",
     source="unilateral spring with Hunt-Crossley damping, k d (1 + c d')",
     off={"low": -1.0, "high": 1.0, "power": 1.0},
-    forms=(
-        {"low": -0.02, "high": 0.02, "stiffness": 20000.0, "damping": 0.5},
-        {"low": -0.012, "high": 0.012, "stiffness": 10000.0, "damping": 0.5},
-    ),
+    forms=({"low": -0.012, "high": 0.012, "stiffness": 10000.0, "damping": 0.5},),
 )
 class EndStop(NamedTuple):
     """Buffers at the ends of the travel.
