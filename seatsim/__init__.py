@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from seatsim.diagnosis.diagnose import diagnose
     from seatsim.diagnosis.findings import Diagnosis
     from seatsim.errors import InputError, RunError, SeatsimError, SynthesisError
+    from seatsim.identification.identify import Identification, identify
     from seatsim.loading import load
     from seatsim.recording import Recording, load_recording
     from seatsim.replay import Gap, gap
@@ -18,8 +19,9 @@ if TYPE_CHECKING:
 
 _HOME = {
     "Channel": "result",
-    "Gap": "replay",
     "Diagnosis": "diagnosis.findings",
+    "Gap": "replay",
+    "Identification": "identification.identify",
     "InputError": "errors",
     "Recording": "recording",
     "Result": "result",
@@ -31,6 +33,7 @@ _HOME = {
     "compare": "runs",
     "diagnose": "diagnosis.diagnose",
     "gap": "replay",
+    "identify": "identification.identify",
     "load": "loading",
     "load_recording": "recording",
     "run": "runs",
@@ -39,6 +42,7 @@ __all__ = [
     "Channel",
     "Diagnosis",
     "Gap",
+    "Identification",
     "InputError",
     "Recording",
     "Result",
@@ -50,6 +54,7 @@ __all__ = [
     "compare",
     "diagnose",
     "gap",
+    "identify",
     "load",
     "load_recording",
     "run",

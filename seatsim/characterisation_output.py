@@ -24,6 +24,8 @@ CROWDED = 14
 """Columns from which on they stand closer."""
 WIDEST = 16
 """Letters of a record's name."""
+WIDEST_TABLE = 110
+"""Letters of a table, which a file has room for."""
 
 
 class Column(NamedTuple):

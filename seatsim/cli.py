@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import itertools
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.progress import Progress
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
+from seatsim.cli_bench import characterise, identify
 from seatsim.errors import InputError, SeatsimError
+from seatsim.terminal import Out, complain, counted, err, out, pairs, say, told, warn, wrote
 
 if TYPE_CHECKING:
     from seatsim.result import Run
@@ -25,16 +21,14 @@ app = typer.Typer(
     help="Simulate semi-active MR-damper seats and compare what is done to them.",
     no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False,
 )  # fmt: skip
-out = Console()
-err = Console(stderr=True)
 
 Scenarios = Annotated[list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)]
 OneScenario = Annotated[str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)]
-Out = Annotated[Path | None, typer.Option("--out", help="Folder for the files.", show_default="out/NAME")]
 Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Replace a value by dotted key, such as plant.driver_mass=55."),
 ]
+SET = ("--set", "plant.driver_mass=55")
 
 
 def main() -> None:
@@ -42,7 +36,7 @@ def main() -> None:
     try:
         app()
     except SeatsimError as error:
-        err.print(f"error: {error}", style="red", markup=False, highlight=False, soft_wrap=True)
+        complain(f"error: {error}")
         sys.exit(error.exit_status)
     except KeyboardInterrupt:
         err.print("interrupted")
@@ -54,13 +48,13 @@ def run(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None)
     """Simulate scenarios and print a table for each."""
     several = out_folder is not None and len(scenarios) > 1
     folders = [out_folder / Path(path).stem if several and out_folder else out_folder for path in scenarios]
-    _execute([[path] for path in scenarios], folders, _settings(settings))
+    _execute([[path] for path in scenarios], folders, pairs(settings, *SET))
 
 
 @app.command()
 def compare(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None) -> None:
     """Simulate scenarios and print one table over all of them."""
-    _execute([scenarios], [out_folder], _settings(settings))
+    _execute([scenarios], [out_folder], pairs(settings, *SET))
 
 
 @app.command()
@@ -69,7 +63,7 @@ def synthesise(scenario: OneScenario, out_folder: Out = None, settings: Settings
     from seatsim.replay import single
     from seatsim.synthesis import design_for, report
 
-    chosen = single(scenario, _settings(settings))
+    chosen = single(scenario, pairs(settings, *SET))
     design = design_for(chosen)
     out.print(report(design))
     folder = out_folder or Path("out") / chosen.name
@@ -106,108 +100,18 @@ def diagnose(
     withheld = without or []
     for name in withheld:
         find("effect", name)
-    with _told() as tell:
+    with told() as tell:
         diagnosis = find_cause(recording, withheld, tell)
     for table in tables(diagnosis):
         out.print(table)
-    for note in diagnosis.notes:
-        err.print(f"note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
-    out.print(diagnosis.sentence, markup=False, highlight=False, soft_wrap=True)
+    warn(diagnosis.notes)
+    say(diagnosis.sentence)
     folder = out_folder or Path("out") / f"diagnosis-{Path(recording).resolve().name}"
-    paths = write_diagnosis(diagnosis, folder)
-    out.print(f"written to {folder}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
+    wrote(folder, write_diagnosis(diagnosis, folder))
 
 
-@app.command()
-def characterise(
-    data: Annotated[Path | None, typer.Argument(help="A bench table, or a folder of them.", show_default=False)] = None,
-    out_folder: Out = None,
-    model: Annotated[str | None, typer.Option("--model", help="A damper model, in place of data.")] = None,
-    parameters: Annotated[
-        Path | None, typer.Option("--parameters", help="A file with a damper, in place of data.")
-    ] = None,
-    currents: Annotated[str, typer.Option("--currents", metavar="A,A", help="Currents of a model's tests.")] = "",
-    temperatures: Annotated[str, typer.Option("--temperatures", metavar="C,C", help="Temperatures in degC.")] = "",
-    amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M", help="Amplitudes in m.")] = "",
-    frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ", help="Frequencies.")] = "",
-) -> None:
-    """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
-    from seatsim.bench_tables import load_bench
-    from seatsim.characterisation.of_model import characterise_model, settings_of, specimen
-    from seatsim.characterisation.summary import characterise as of_records
-    from seatsim.characterisation_output import remarks, tables, write_characterisation
-
-    grid = (currents, temperatures, amplitudes, frequencies)
-    if (data is None) == (model is None and parameters is None) or (data is not None and any(grid)):
-        raise InputError("characterise either DATA, or a model by --model or --parameters with its tests; see --help")
-    if data is not None:
-        found = of_records(load_bench(data), data.resolve().name.split(".")[0], str(data))
-    else:
-        tested = specimen(model, parameters)
-        found = characterise_model(tested, settings_of(tested, *grid))
-    for table in tables(found):
-        out.print(table)
-    for note in remarks(found):
-        err.print(f"note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
-    folder = out_folder or Path("out") / f"characterise-{found.name}"
-    paths = write_characterisation(found, folder)
-    out.print(f"written to {folder}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
-
-
-@app.command()
-def identify(
-    data: Annotated[Path, typer.Argument(help="A bench table, or a folder of them.")],
-    model: Annotated[str, typer.Option("--model", help="A damper model, or all for the league.")],
-    test: Annotated[
-        list[str] | None, typer.Option("--test", metavar="GLOB", help="Hold out the files whose names match.")
-    ] = None,
-    test_fraction: Annotated[
-        float, typer.Option("--test-fraction", help="Hold out the last part of each record.")
-    ] = 0.0,
-    fix: Annotated[
-        list[str] | None, typer.Option("--fix", metavar="NAME=VALUE", help="Keep a parameter at a value.")
-    ] = None,
-    ignore_temperature: Annotated[bool, typer.Option("--ignore-temperature", help="Do not fit its influence.")] = False,
-    further: Annotated[
-        list[Path] | None, typer.Option("--predict", metavar="DATA", help="Predict further records, not fitted.")
-    ] = None,
-    moving_average: Annotated[
-        float, typer.Option("--moving-average", metavar="S", help="Average that the predicted records went through.")
-    ] = 0.0,
-    centred: Annotated[bool, typer.Option("--centred", help="The predicted records' mean force was removed.")] = False,
-    seed: Annotated[int, typer.Option("--seed", help="Seed of the global search.")] = 0,
-    out_folder: Out = None,
-) -> None:
-    """Fit a damper model to bench records and judge it on records held out; or every model, as a league."""
-    from seatsim.bench_tables import load_bench
-    from seatsim.identification.identify import Request, identify_records, predict
-    from seatsim.identification.league import league
-    from seatsim.identification_output import league_table, tables, write_identification, write_league
-    from seatsim.registry import find
-
-    request = Request(tuple(test or ()), test_fraction, _settings(fix, "--fix"), ignore_temperature, seed)
-    folder = out_folder or Path("out") / f"identify-{data.resolve().name.split('.')[0]}-{model}"
-    records = load_bench(data)
-
-    def keep(found: Any, where: Path) -> Any:
-        for path in further or []:
-            found = predict(found, path, moving_average, centred)
-        return found, write_identification(found, where)
-
-    if model == "all":
-        with _told() as tell:
-            places = league(records, request, folder, tell, lambda found: keep(found, folder / found.model))
-        out.print(league_table(places))
-        out.print(f"written: {write_league(places, folder)}", markup=False, highlight=False)
-        return
-    find("damper", model)
-    with _told() as tell:
-        found, paths = keep(identify_records(records, model, request, tell), folder)
-    for table in tables(found):
-        out.print(table)
-    for note in found.notes:
-        err.print(f"note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
-    out.print(f"written to {folder}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
+app.command()(characterise)
+app.command()(identify)
 
 
 @app.command()
@@ -215,7 +119,7 @@ def describe(name: Annotated[str, typer.Argument(help="A name, such as bouc_wen 
     """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds."""
     from seatsim.describe import describe as tell
 
-    out.print(tell(name), markup=False, highlight=False, soft_wrap=True)
+    say(tell(name))
 
 
 blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed.", no_args_is_help=True)
@@ -235,10 +139,10 @@ def blind_make(
     """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""
     from seatsim.blind.make import make
 
-    with _counted("making recordings") as count:
+    with counted("making recordings") as count:
         key = make(cases, seed, out_folder, sealed, count, kinds)
     out.print(f"written: {cases} recordings in {out_folder}, labels sealed in {sealed}", markup=False, highlight=False)
-    out.print(f"key (shown once): {key}", markup=False, highlight=False, soft_wrap=True)
+    say(f"key (shown once): {key}")
 
 
 @blind.command("score")
@@ -256,9 +160,9 @@ def blind_score(
     from seatsim.files import write_json
 
     unseal(sealed, key, folder)
-    with _counted("diagnosing") as count:
+    with counted("diagnosing") as count:
         diagnose_all(folder, count)
-    with _counted("scoring") as count:
+    with counted("scoring") as count:
         found = score(folder, sealed, key, progress=count)
     for table in tables(found):
         out.print(table)
@@ -280,11 +184,11 @@ def _execute(groups: list[list[str]], chosen: list[Path | None], values: dict[st
     done: dict[int, Run] = {}
     interrupted = False
     finished = itertools.count(1)
-    with _counted("simulating", len(scenarios)) as count:
+    with counted("simulating", len(scenarios)) as count:
         try:
             for scenario, answer in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
                 if isinstance(answer, SeatsimError):
-                    err.print(f"failed: {answer}", style="red", markup=False, highlight=False, soft_wrap=True)
+                    complain(f"failed: {answer}")
                 else:
                     done[id(scenario)] = answer
         except KeyboardInterrupt:
@@ -313,36 +217,5 @@ def _present(runs: list[Run], folder: Path) -> None:
         return
     for table in [comparison(runs, _title([run.scenario for run in runs])), *published_tables(runs)]:
         out.print(table)
-    for sentence in dict.fromkeys(sentence for run in runs for sentence in run.warnings):
-        err.print(f"warning: {sentence}", style="yellow", markup=False, highlight=False, soft_wrap=True)
-    paths = write_result(Result(runs), folder)
-    out.print(f"written to {folder}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
-
-
-@contextmanager
-def _counted(title: str, total: int | None = None) -> Iterator[Any]:
-    """Show a bar on the terminal that is told `(done, total)`."""
-    with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
-        task = progress.add_task(title, total=total)
-        yield lambda done, total: progress.update(task, completed=done, total=total)
-
-
-@contextmanager
-def _told() -> Iterator[Any]:
-    """Show on the terminal what is being done."""
-    with err.status("reading") as status:
-        yield status.update
-
-
-def _settings(pairs: list[str] | None, option: str = "--set") -> dict[str, Any]:
-    """Read `KEY=VALUE` pairs, the value as YAML."""
-    values = {}
-    for pair in pairs or []:
-        key, sign, text = pair.partition("=")
-        if not sign or not key:
-            raise InputError(f"{option} {pair}: write KEY=VALUE, such as --set plant.driver_mass=55 or --fix k0=0")
-        try:
-            values[key] = YAML(typ="safe").load(text)
-        except YAMLError as error:
-            raise InputError(f"{option} {pair}: '{text}' is not a YAML value") from error
-    return values
+    warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
+    wrote(folder, write_result(Result(runs), folder))

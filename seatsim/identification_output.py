@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import math
+from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -19,17 +21,25 @@ from seatsim.identification.identify import Identification
 from seatsim.identification.league import Place
 from seatsim.output import PICTURE
 
-PARTS = ("train", "test", "predicted")
 LISTED = 40
 """Most records of the table on the terminal."""
+HEAD = """\
+# Found by `seatsim identify`. `damper` and `actuator` are as a scenario has them; under `bench`: the displacement [m]
+# that counts as zero, and the growth of the offset with temperature [N/K].
+"""
+NO_COIL = "# No command that changes was recorded: the rates of the actuator are defaults.\n"
 
 
-def write_identification(found: Identification, folder: Path) -> list[Path]:
+def write_identification(found: Identification, folder: str | Path) -> list[Path]:
     """Write `parameters.yaml`, `fit.json` and the picture of an identification; return their paths."""
     from seatsim.plots.identification import loops
 
-    text = io.StringIO()
-    YAML(typ="safe", pure=True).dump(parameters(found), text)
+    folder = Path(folder)
+    text = io.StringIO(HEAD + ("" if found.commanded else NO_COIL))
+    text.seek(0, io.SEEK_END)
+    yaml = YAML()
+    yaml.default_flow_style = False
+    yaml.dump(parameters(found), text)
     paths = [
         write_text(folder / "parameters.yaml", text.getvalue()),
         write_json(folder / "fit.json", contents(found)),
@@ -45,30 +55,32 @@ def parameters(found: Identification) -> dict[str, Any]:
         name: list(map(float, value)) if isinstance(value, tuple) else value if isinstance(value, int) else float(value)
         for name, value in bench.damper._asdict().items()
     }
-    result: dict[str, Any] = {"damper": {"model": found.model, "parameters": values}}
+    damper: dict[str, Any] = {"model": found.model, "parameters": values}
     if found.warm:
-        result["damper"]["temperature_factors"] = {k: float(v) for k, v in bench.factors._asdict().items()}
-    end = max(float(judged.record.current.max()) for judged in found.judged)
-    result["actuator"] = {"rate": float(bench.rise), "rate_fall": float(bench.fall), "max_current": end or 1.0}
-    result["bench"] = {"displacement_origin": found.origin, "offset_per_kelvin": float(bench.warming)}
-    return result
+        damper["temperature_factors"] = {name: float(value) for name, value in bench.factors._asdict().items()}
+    end = max(float(each.record.current.max()) for each in found.judged if each.part != "predicted")
+    return {
+        "damper": damper,
+        "actuator": {"rate": float(bench.rise), "rate_fall": float(bench.fall), "max_current": end or 1.0},
+        "bench": {"displacement_origin": found.origin, "offset_per_kelvin": float(bench.warming)},
+    }
 
 
 def contents(found: Identification) -> dict[str, Any]:
-    """Return what `fit.json` holds."""
-    means = {part: found.mean(part) for part in PARTS}
-    known = found.information
+    """Return what `fit.json` holds; `test` is null where nothing was held out."""
     records = {
-        f"{judged.record.name} ({judged.part})" if _twice(found, judged.record.name) else judged.record.name: {
-            "part": judged.part, "current": judged.record.mean_current, **judged.figures._asdict()
-        }
-        for judged in found.judged
-    }  # fmt: skip
+        name: {"part": each.part, "current": each.record.mean_current, **each.figures._asdict()}
+        for name, each in zip(_names(found), found.judged, strict=True)
+    }
+    known = found.information
+    further = {"predicted": found.mean("predicted")} if found.mean("predicted") else {}
     return {
         "model": found.model,
-        **{part: figures._asdict() for part, figures in means.items() if figures},
+        "train": found.mean("train"),
+        "test": found.mean("test"),
+        **further,
         "records": records,
-        "parameters": [estimate._asdict() for estimate in known.estimates],
+        "parameters": known.estimates,
         "not_identified": [estimate.name for estimate in known.estimates if not estimate.identified],
         "correlated": known.correlated,
         "coverage": found.coverage,
@@ -80,13 +92,27 @@ def contents(found: Identification) -> dict[str, Any]:
     }
 
 
+def _names(found: Identification) -> list[str]:
+    """Return the names of the judged records, with the part they had where the name alone does not tell them apart."""
+    names = [each.record.name for each in found.judged]
+    full = [
+        f"{name} ({each.part})" if names.count(name) > 1 else name
+        for name, each in zip(names, found.judged, strict=True)
+    ]
+    seen: Counter[str] = Counter()
+    for k, name in enumerate(full):
+        seen[name] += 1
+        full[k] = f"{name} {seen[name]}" if seen[name] > 1 else name
+    return full
+
+
 def tables(found: Identification) -> list[Table]:
     """Return the tables of figures and of parameters."""
     figures = _table(f"{found.model}: agreement with the measured force", ("", "R²", "MD", "RMSE [N]", "fit [%]"))
     for judged in found.judged if len(found.judged) <= LISTED else ():
         figures.add_row(f"{escape(judged.record.name)} ({judged.part})", *_figures(judged.figures))
     figures.add_section()
-    for part in PARTS:
+    for part in ("train", "test", "predicted"):
         mean = found.mean(part)
         if mean:
             figures.add_row(f"mean, {part}", *_figures(mean))
@@ -111,12 +137,13 @@ def league_table(places: Sequence[Place]) -> Table:
     table = _table("league", ("model", "train [%]", "test [%]", "parameters", "ns a step", "BIC", "s"))
     for place in places:
         if place.failed:
-            table.add_row(place.model, *["-"] * 5, escape(place.failed))
+            table.add_row(place.model, *["-"] * 6)
             continue
-        row = (place.train_fit_percent, place.test_fit_percent, place.parameters, place.ns_per_step, place.bic)
-        forms = (".1f", ".1f", ".0f", ".0f", ".0f")
-        cells = ["-" if value is None else format(value, form) for value, form in zip(row, forms, strict=True)]
-        table.add_row(place.model, *cells, f"{place.seconds:.0f}")
+        fits = [
+            f"{fit:.1f}" if math.isfinite(fit) else "-" for fit in (place.train_fit_percent, place.test_fit_percent)
+        ]
+        rest = (place.ns_per_step, place.bic, place.seconds)
+        table.add_row(place.model, *fits, str(place.parameters), *(f"{value:.0f}" for value in rest))
     return table
 
 
@@ -129,7 +156,3 @@ def _table(title: str, headings: Sequence[str]) -> Table:
 
 def _figures(figures: Figures) -> tuple[str, ...]:
     return f"{figures.r2:.4f}", f"{figures.md:.3f}", f"{figures.rmse:.1f}", f"{figures.fit_percent:.1f}"
-
-
-def _twice(found: Identification, name: str) -> bool:
-    return sum(judged.record.name == name for judged in found.judged) > 1

@@ -46,7 +46,8 @@ def _located(path: Path) -> Path:
             for name in (inside, inside.with_name(f"{inside.name}.yaml")):
                 if (folder / name).is_file():
                     return folder / name
-    known = sorted({str(p.relative_to(f)) for f in EXAMPLES if f.is_dir() for p in f.rglob("*.yaml")})
+    found = {path.relative_to(folder) for folder in EXAMPLES if folder.is_dir() for path in folder.rglob("*.yaml")}
+    known = sorted(str(path) for path in found if "data" not in path.parts)
     raise InputError(f"{path}: no such file; give the path of a scenario, or an example: {', '.join(known)}")
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from seatsim.dampers.base import DamperCard, State
 from seatsim.errors import InputError, RunError
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.bench import MOST_PARTS, run_bench
+from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
 from seatsim.kernel.compilation import compiled
 from seatsim.registry import card_of
 from seatsim.temperature import TemperatureFactors
@@ -129,7 +129,7 @@ def bench_force(
         card: DamperCard = card_of(type(damper))
         state, factors = card.initial if state is None else state, factors or card.factors
     run = compiled(run_bench, classes_of(damper))
-    reached = run(damper, factors, x, v, i, heat, state, float(step), MOST_PARTS, out)
+    reached = run(damper, factors, x, v, i, heat, state, float(step), MOST_PARTS, TOLERANCE, out)
     if reached < len(out) or not np.all(np.isfinite(out)):
         raise RunError(f"the force of {type(damper).__name__} is not finite after {reached * step:.3g} s")
     return out

@@ -2,7 +2,8 @@
 
 Every component is a pure number of order one: a parameter over its size, or the logarithm of that ratio where it must
 be positive. A law in the current counts by its values at currents spread over its range, not by its coefficients, which
-are strongly correlated.
+are strongly correlated; these values stay at least zero where they are so at the start, since a damping below zero lets
+a state run away at currents that the data hardly hold.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
@@ -57,12 +59,14 @@ class Component(NamedTuple):
     """One component of the vector: where it belongs, and how it is scaled.
 
     `place` is the index in a tuple field, None for a number. A law's component is its value at the current `at`.
+    `size` is what the component counts in, `natural` a tenth of the size that a quantity of its unit has in the data.
     """
 
     field: str
     place: int | None
     unit: str
     size: float
+    natural: float
     logarithmic: bool
     low: float
     high: float
@@ -73,43 +77,55 @@ class Component(NamedTuple):
         """Name as the parameter files have it."""
         return self.field if self.place is None else f"{self.field}[{self.place}]"
 
+    @property
+    def label(self) -> str:
+        """Name of what the component is: the same, or the value of a law at a current."""
+        return self.name if self.at is None else f"{self.field}({self.at:.3g} A)"
+
 
 class Coordinates:
     """The free parameters of a record class, between the record and a vector of shape (P,).
 
     start: a record of the class, from which sizes are taken; held: fields that stay as they are in it; levels: how many
-    currents the data hold, which a law's degree stays below.
+    currents the data hold, which a law's degree stays below, None for any number.
     """
 
-    def __init__(self, start: Any, scales: Scales, held: Sequence[str] = (), levels: int = 99) -> None:
-        self.start, self.cls, self.levels = start, type(start), levels
+    def __init__(self, start: Any, scales: Scales, held: Sequence[str] = (), levels: int | None = None) -> None:
+        self.start, self.levels = start, levels
+        self.cls: Any = type(start)
         self.end = float(getattr(start, "law_end", scales.current) or 1.0)
         self.components: list[Component] = []
+        self.bounds = {card.name: bounds(self.cls, card.name) for card in describe(self.cls)}
         for card in describe(self.cls):
             value = getattr(start, card.name)
-            moot = scales.current == 0.0 and dimension(card.unit).get("A", 0.0) < 0.0
+            moot = scales.current == 0.0 and dimension(card.unit).get("A", 0.0) != 0.0
             if card.name not in (*SETTINGS, *held) and not moot and not isinstance(value, int | str):
                 self.components += self._of_field(card.name, card.unit, value, scales)
         self.low = np.array([c.low for c in self.components])
         self.high = np.array([c.high for c in self.components])
 
     def _of_field(self, name: str, unit: str, value: Any, scales: Scales) -> list[Component]:
-        guess = 0.1 * scales.size(unit)
-        if not isinstance(value, tuple):
-            low, high = bounds(self.cls, name)
-            positive = low > 0.0 or (low == 0.0 and value > 0.0)
-            size = abs(value) or guess
-            if positive:
-                least, most = max(low, size / SPAN), min(high, size * SPAN)
-                return [Component(name, None, unit, size, True, math.log(least / size), math.log(most / size), None)]
-            return [Component(name, None, unit, size, False, low / size, high / size, None)]
-        count, law = len(value), is_law(self.cls, name)
-        at = np.linspace(0.0, self.end, min(count, self.levels)) if law else np.full(count, math.nan)
-        size = float(np.max(np.abs(law_values(value, at) if law else np.array(value)))) or guess
-        return [
-            Component(name, k, unit, size, False, -math.inf, math.inf, float(a) if law else None)
-            for k, a in enumerate(at)
-        ]
+        natural = 0.1 * scales.size(unit)
+        if isinstance(value, tuple):
+            return self._of_tuple(name, unit, value, natural)
+        low, high = self.bounds[name]
+        size = abs(value) or natural
+        if low > 0.0 or (low == 0.0 and value > 0.0):
+            ends = math.log(max(low, size / SPAN) / size), math.log(min(high, size * SPAN) / size)
+            return [Component(name, None, unit, size, natural, True, *ends, None)]
+        return [Component(name, None, unit, size, natural, False, low / size, high / size, None)]
+
+    def _of_tuple(self, name: str, unit: str, value: Any, natural: float) -> list[Component]:
+        if not is_law(self.cls, name):
+            size = float(np.max(np.abs(value))) or natural
+            return [
+                Component(name, k, unit, size, natural, False, -math.inf, math.inf, None) for k in range(len(value))
+            ]
+        at = np.linspace(0.0, self.end, min(len(value), self.levels or len(value)))
+        values = law_values(value, at)
+        size = float(np.max(np.abs(values))) or natural
+        low = 0.0 if np.min(values) >= 0.0 < np.max(values) else -math.inf
+        return [Component(name, k, unit, size, natural, False, low, math.inf, float(a)) for k, a in enumerate(at)]
 
     def vector(self, record: Any) -> Array:
         """Return the vector of a record."""
@@ -129,7 +145,8 @@ class Coordinates:
         for c, number in zip(self.components, vector, strict=True):
             value = c.size * (math.exp(number) if c.logarithmic else float(number))
             if c.place is None:
-                changed[c.field] = value
+                low, high = self.bounds[c.field]
+                changed[c.field] = min(max(value, low), high)
             else:
                 changed.setdefault(c.field, []).append(value)
         for name, values in changed.items():
@@ -140,7 +157,8 @@ class Coordinates:
         return self.start._replace(**changed)
 
 
-def is_law(cls: type, name: str) -> bool:
+@cache
+def is_law(cls: Any, name: str) -> bool:
     """Whether a tuple field holds the coefficients of a polynomial in the current."""
     hint = get_type_hints(cls, include_extras=True)[name]
     parts = get_args(get_args(hint)[0])
@@ -162,7 +180,7 @@ def law_coefficients(values: Array, end: float) -> list[float]:
 
 def scaled(record: Any, force: float, end: float) -> Any:
     """Return a record for another damper: its forces times `force`, its laws stretched to the current `end`."""
-    cls = type(record)
+    cls: Any = type(record)
     stretch = end / float(getattr(record, "law_end", end) or end)
     changed: dict[str, Any] = {"law_end": end} if hasattr(record, "law_end") else {}
     for card in describe(cls):
@@ -183,14 +201,22 @@ def fixed(record: Any, values: Mapping[str, float]) -> Any:
     """Return a record with some numbers as the user fixes them.
 
     Raises:
-        InputError: a name is no number of the model, or its value is out of bounds.
+        InputError: a name is no number of the model, or its value is none or out of bounds.
     """
-    cls = type(record)
-    known = [card.name for card in describe(cls) if not isinstance(card.default, tuple)]
+    known = numbers_of(type(record))
     for name, value in values.items():
         if name not in known:
             raise InputError(f"--fix {name}: no such number{nearest(name, known)}; permitted: {', '.join(known)}")
-        low, high = bounds(cls, name)
-        if not low <= value <= high:
-            raise InputError(f"--fix {name}={value:g}: is not permitted; it must lie between {low:g} and {high:g}")
-    return record._replace(**values)
+        low, high = bounds(type(record), name)
+        whole = isinstance(getattr(record, name), int)
+        number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+        if not number or not low <= value <= high or (whole and value != int(value)):
+            kind = "a whole number" if whole else "a number"
+            raise InputError(f"--fix {name}={value} is not permitted; it must be {kind} from {low:g} to {high:g}")
+        record = record._replace(**{name: int(value) if whole else float(value)})
+    return record
+
+
+def numbers_of(cls: type) -> list[str]:
+    """Return the names of the numbers of a record class, those that can be fixed."""
+    return [card.name for card in describe(cls) if isinstance(card.default, int | float)]

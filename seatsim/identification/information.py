@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.fields import describe
-from seatsim.identification.problem import Problem, jacobian
+from seatsim.identification.coordinates import Component
+from seatsim.identification.problem import PER_KELVIN, WARMING, Problem, jacobian
 
 Array = NDArray[np.float64]
 
 IDENTIFIED = 0.1
 """Standard deviation, over the parameter's size, above which the data are said not to identify it."""
 CORRELATED = 0.95
+"""Size of a correlation from which on a pair is told."""
 LEAST = 1e-13
-"""Eigenvalue of the information, over the largest, below which a direction is without any."""
+"""Sensitivity and eigenvalue of the information, over the largest, below which there is none."""
+LEAST_COST = 1e-30
+"""Mean square of the scaled error that stands for a perfect fit."""
+STEP = 1e-6
+FINE = 1e-6
+"""Tolerance of the simulation: at a fit's own, steps that divide otherwise would pass for an influence."""
 
 
 class Estimate(NamedTuple):
@@ -37,43 +44,34 @@ class Information(NamedTuple):
     correlated: list[tuple[str, str, float]]
     samples: float
 
+    def bic(self, cost: float) -> float:
+        """Return the Bayesian information criterion, `n ln(cost) + P ln(n)` with the effective samples n."""
+        return self.samples * math.log(max(cost, LEAST_COST)) + len(self.estimates) * math.log(self.samples)
+
 
 def information(problem: Problem, vector: Array) -> Information:
-    """Return what the records say of the parameters at `vector`.
+    """Return what the records say of the parameters at `vector`, shape (P,).
 
         C = s^2 (J' J)^-1 t,   t = 1 + 2 sum_k rho_k
 
     with J the derivatives of the scaled residuals, s^2 their mean square, and t the length over which the residuals'
     autocorrelation rho is positive (summed to its first zero): N / t samples count. Parameters are taken as their
-    files have them; a law's coefficients share the covariance of its values.
+    files have them; a law's coefficients share the covariance of its values. The data identify a parameter whose
+    standard deviation is at most a tenth of its size, or of a tenth of what its unit is worth in the data (a force of
+    their RMS force) where it may be zero.
     """
+    problem = problem._replace(tolerance=FINE)
     residuals = problem.residuals(vector)
-    slopes = jacobian(problem, vector, residuals)
-    lengths = [len(drive.force) for drive in problem.drives]
-    pieces = np.split(residuals, np.cumsum(lengths)[:-1])
+    pieces = np.split(residuals, np.cumsum([len(drive.force) for drive in problem.drives])[:-1])
     memory = float(np.mean([correlation_length(piece) for piece in pieces]))
-    variance = float(np.sum(residuals**2)) / max(1.0, len(residuals) / memory - len(vector)) / memory
-    scale = np.sqrt(np.sum(slopes**2, axis=0))
-    scale[scale == 0.0] = 1e-300
-    value, basis = np.linalg.eigh((slopes / scale).T @ (slopes / scale))
-    known = np.maximum(value, LEAST * value[-1])
-    covariance = memory * variance * ((basis / known) @ basis.T) / np.outer(scale, scale)
-    names, natural, units, turn = _natural(problem, vector)
-    spread = turn @ covariance @ turn.T
-    std = np.sqrt(np.maximum(np.diag(spread), 0.0))
-    sizes = _sizes(problem, natural)
-    estimates = [
-        Estimate(n, float(x), float(s), u, bool(s <= IDENTIFIED * size))
-        for n, x, s, u, size in zip(names, natural, std, units, sizes, strict=True)
-    ]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        correlation = covariance / np.sqrt(np.outer(np.diag(covariance), np.diag(covariance)))
-    pairs = [
-        (problem.names[a], problem.names[b], float(correlation[a, b]))
-        for a, b in zip(*np.triu_indices(len(vector), 1), strict=True)
-        if abs(correlation[a, b]) > CORRELATED
-    ]
-    return Information(estimates, sorted(pairs, key=lambda p: -abs(p[2])), len(residuals) / memory)
+    samples = len(residuals) / memory
+    square = float(np.sum(residuals**2)) / max(1.0, samples - len(vector))
+    covariance = square * _inverse(jacobian(problem, vector, residuals))
+    values, turn = _values(problem, vector), _turn(problem, vector)
+    std = np.sqrt(np.maximum(np.diag(turn @ covariance @ turn.T), 0.0))
+    parts = zip(_names(problem), values, std, _sizes(problem, values), strict=True)
+    estimates = [Estimate(name, float(x), float(s), unit, bool(s <= IDENTIFIED * b)) for (name, unit), x, s, b in parts]
+    return Information(estimates, _correlated(problem.labels, covariance), samples)
 
 
 def correlation_length(residuals: Array) -> float:
@@ -89,42 +87,71 @@ def correlation_length(residuals: Array) -> float:
     return max(1.0, 1.0 + 2.0 * float(np.sum(rho[1 : below[0] if below.size else len(rho)])))
 
 
-def _natural(problem: Problem, vector: Array) -> tuple[list[str], Array, list[str], Array]:
-    """Return names, values and units of the parameters, and their derivatives by the vector."""
-    names, values, units = _values(problem, vector)
-    step = 1e-6
-    turn = np.column_stack([
-        (_values(problem, vector + step * unit)[1] - values) / step for unit in np.eye(len(vector))
-    ])  # fmt: skip
-    return names, values, units, turn
+def _inverse(slopes: Array) -> Array:
+    """Return (J' J)^-1, large but finite in directions that the data say nothing of."""
+    scale = np.sqrt(np.sum(slopes**2, axis=0))
+    scale = np.maximum(scale, LEAST * (float(np.max(scale)) or 1.0))
+    value, basis = np.linalg.eigh((slopes / scale).T @ (slopes / scale))
+    known = np.maximum(value, LEAST * (float(value[-1]) or 1.0))
+    return np.asarray(((basis / known) @ basis.T) / np.outer(scale, scale))
 
 
-def _values(problem: Problem, vector: Array) -> tuple[list[str], Array, list[str]]:
-    bench = problem.bench(vector)
-    unit_of = {card.name: card.unit for card in describe(type(bench.damper))}
-    names, values, units = [], [], []
-    for component in problem.coordinates.components:
-        value: Any = getattr(bench.damper, component.field)
-        power = f"/A^{component.place}" if component.at is not None and component.place else ""
-        names.append(component.name)
-        values.append(value if component.place is None else value[component.place])
-        units.append(unit_of[component.field] + power)
-    rest = problem.names[len(names) :]
-    beside = {f"temperature_factors.{name}": (value, "1/K") for name, value in bench.factors._asdict().items()}
-    beside |= {"actuator.rate": (bench.rise, "1/s"), "actuator.rate_fall": (bench.fall, "1/s")}
-    beside["bench.offset_per_kelvin"] = (bench.warming, "N/K")
-    values += [beside[name][0] for name in rest]
-    return names + rest, np.array(values, dtype=float), units + [beside[name][1] for name in rest]
+def _correlated(labels: list[str], covariance: Array) -> list[tuple[str, str, float]]:
+    """Return the pairs with a high correlation, the highest first."""
+    spread = np.sqrt(np.diag(covariance))
+    correlation = covariance / np.outer(spread, spread)
+    above = zip(*np.triu_indices(len(labels), 1), strict=True)
+    pairs = [(labels[a], labels[b], float(correlation[a, b])) for a, b in above]
+    return sorted((pair for pair in pairs if abs(pair[2]) > CORRELATED), key=lambda pair: -abs(pair[2]))
 
 
-def _sizes(problem: Problem, natural: Array) -> list[float]:
-    """Return the size that a parameter's deviation is compared with: its own, or that of its law."""
+def _names(problem: Problem) -> list[tuple[str, str]]:
+    """Return the name and the unit of every parameter."""
     components = problem.coordinates.components
-    sizes = [abs(float(x)) or math.inf for x in natural]
-    for k, component in enumerate(components):
-        if component.at is not None:
-            end = problem.coordinates.end
-            own = [j for j, other in enumerate(components) if other.field == component.field]
-            sizes[k] = max(abs(float(natural[j])) * end ** (components[j].place or 0) for j in own)
-            sizes[k] /= end ** (component.place or 0)
-    return sizes
+    unit_of = {card.name: card.unit for card in describe(problem.coordinates.cls)}
+    own = [(c.name, unit_of[c.field] + _per_current(c)) for c in components]
+    units = {"temperature_factors": "1/K", "actuator": "1/s", "bench": "N/K"}
+    return own + [(name, units[name.partition(".")[0]]) for name in problem.beside]
+
+
+def _per_current(c: Component) -> str:
+    """Return what a law's coefficient has behind the law's unit."""
+    if c.at is None or not c.place:
+        return ""
+    return "/A" if c.place == 1 else f"/A^{c.place}"
+
+
+def _values(problem: Problem, vector: Array) -> Array:
+    """Return the parameters as their files have them, shape (P,)."""
+    bench = problem.bench(vector)
+    fields = [(getattr(bench.damper, c.field), c.place) for c in problem.coordinates.components]
+    own = [value if place is None else value[place] for value, place in fields]
+    beside = {f"temperature_factors.{name}": value for name, value in bench.factors._asdict().items()}
+    beside |= {"actuator.rate": bench.rise, "actuator.rate_fall": bench.fall, "bench.offset_per_kelvin": bench.warming}
+    return np.array([*own, *(beside[name] for name in problem.beside)], dtype=float)
+
+
+def _turn(problem: Problem, vector: Array) -> Array:
+    """Return the derivatives of the parameters by the vector, shape (P, P)."""
+    values = _values(problem, vector)
+    moved = [(_values(problem, vector + STEP * unit) - values) / STEP for unit in np.eye(len(vector))]
+    return np.column_stack(moved)
+
+
+def _sizes(problem: Problem, values: Array) -> list[float]:
+    """Return the size that each parameter's deviation is compared with."""
+    components, end = problem.coordinates.components, problem.coordinates.end
+    laws: dict[str, float] = {}
+    for c, value in zip(components, values[: len(components)], strict=True):
+        if c.at is not None:
+            laws[c.field] = max(laws.get(c.field, c.natural), abs(float(value)) * end ** (c.place or 0))
+    sizes = [_size(c, float(value), laws, end) for c, value in zip(components, values, strict=False)]
+    least = {"temperature_factors": PER_KELVIN, "actuator": 0.0, "bench": WARMING}
+    beside = zip(problem.beside, values[len(components) :], strict=True)
+    return sizes + [max(abs(float(value)), least[name.partition(".")[0]]) for name, value in beside]
+
+
+def _size(c: Component, value: float, laws: dict[str, float], end: float) -> float:
+    if c.at is not None:
+        return laws[c.field] / end ** (c.place or 0)
+    return abs(value) if c.logarithmic else max(abs(value), c.natural)

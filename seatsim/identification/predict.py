@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.bench_tables import BenchRecord
-from seatsim.jit import jit
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.bench import MOST_PARTS, run_bench
+from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
 from seatsim.kernel.compilation import compiled
 from seatsim.registry import card_of
 from seatsim.temperature import TemperatureFactors
@@ -27,7 +26,9 @@ ROOM = 20.0
 class Bench(NamedTuple):
     """What the force on a bench depends on: the damper, its temperature factors, the coil's rates in 1/s.
 
-    warming: N/K by which the offset grows as the gas warms up from the factors' reference temperature.
+        F = F_damper(x, v, i, T) + warming (T - T0),   di/dt = r (u - i),  r = rise where u > i, else fall
+
+    warming: N/K by which the offset grows as the gas warms up from the factors' reference temperature T0.
     """
 
     damper: Any
@@ -38,7 +39,10 @@ class Bench(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """A record as the bench is driven by it: samples every half step, shape (2 n + 1,), and the force at steps."""
+    """A record as the bench is driven by it: samples every half step, shape (2 n + 1,), and the force at steps.
+
+    x [m] from the origin, v [m/s], current [A], temperature [degC], step [s]; force [N] has shape (n + 1,).
+    """
 
     x: Array
     v: Array
@@ -79,9 +83,17 @@ def _linear(y: Array) -> Array:
     return out
 
 
-@jit
 def lagged(command: Array, rise: float, fall: float, step: float) -> Array:
-    """Return the current in A that follows a held command with rates in 1/s, starting on it."""
+    """Return the current in A that follows a held command with rates in 1/s, starting on it.
+
+    command: shape (N,), every `step` seconds. The solution is exact.
+    """
+    answer: Array = compiled(_lag, ())(command, rise, fall, step)
+    return answer
+
+
+def _lag(command: Array, rise: float, fall: float, step: float) -> Array:
+    """Solve for `lagged`; to be compiled by `compiled`."""
     out = np.empty_like(command)
     up, down = math.exp(-rise * step), math.exp(-fall * step)
     now = command[0]
@@ -91,14 +103,15 @@ def lagged(command: Array, rise: float, fall: float, step: float) -> Array:
     return out
 
 
-def predicted(bench: Bench, drive: Drive, most: int = MOST_PARTS) -> Array:
+def predicted(bench: Bench, drive: Drive, most: int = MOST_PARTS, tolerance: float = TOLERANCE) -> Array:
     """Return the force in N at the drive's steps, shape (n + 1,); NaN from where the state ran away.
 
-    A step is divided into at most `most` parts where the state is stiff.
+    A step is divided into at most `most` parts until its error, over the force, is below `tolerance`.
     """
     current = lagged(drive.current, bench.rise, bench.fall, 0.5 * drive.step) if drive.commanded else drive.current
     out = np.full(len(drive.force), math.nan)
     run = compiled(run_bench, classes_of(bench.damper))
     state = card_of(type(bench.damper)).initial
-    run(bench.damper, bench.factors, drive.x, drive.v, current, drive.temperature, state, drive.step, most, out)
+    given = (drive.x, drive.v, current, drive.temperature, state, drive.step, most, tolerance, out)
+    run(bench.damper, bench.factors, *given)
     return out + bench.warming * (drive.temperature[::2] - bench.factors.reference)

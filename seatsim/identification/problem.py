@@ -13,12 +13,15 @@ from numpy.typing import NDArray
 from seatsim.bench_tables import BenchRecord
 from seatsim.identification.coordinates import Coordinates
 from seatsim.identification.predict import Bench, Drive, predicted
+from seatsim.kernel.bench import TOLERANCE
 from seatsim.temperature import TemperatureFactors
 
 Array = NDArray[np.float64]
 
 RATE = 130.0
 """1/s, the size of the coil's rates: those of Braz-Cesar and Barros 2012."""
+RATE_SPAN = 30.0
+"""Factor by which they may differ from it."""
 PER_KELVIN = 0.01
 """1/K, the size of a temperature factor's component."""
 MOST_PER_KELVIN = 0.03
@@ -28,6 +31,8 @@ QUIET = 0.05
 """Least standard deviation of a record's force, over the largest one's, that its residuals are divided by."""
 PARTS = 32
 """Most parts of a step while a fit is looking: a stiffer model than that is a bad one, found quickly."""
+AT_END = 1e-3
+"""Distance from a bound, in components of order one, that counts as on it."""
 AWAY = 10.0
 """Scaled residual that stands for a force that is not finite."""
 
@@ -35,7 +40,8 @@ AWAY = 10.0
 class Problem(NamedTuple):
     """What is fitted: `coordinates` of the damper, then the coil's rates, then what temperature does.
 
-    reference: temperature in degC at which the factors are 1, None where temperature is no input.
+    reference: temperature in degC at which the factors are 1, None where it is no input; tolerance: that of the
+    simulation.
     """
 
     coordinates: Coordinates
@@ -43,27 +49,38 @@ class Problem(NamedTuple):
     weights: list[float]
     coil: bool
     reference: float | None
+    tolerance: float = TOLERANCE
 
     @property
-    def names(self) -> list[str]:
-        """Names of the components."""
+    def labels(self) -> list[str]:
+        """What the components are called; a law's is its value at a current."""
+        return [component.label for component in self.coordinates.components] + self.beside
+
+    @property
+    def beside(self) -> list[str]:
+        """Names of what is free beside the damper."""
         warm = [*(f"temperature_factors.{name}" for name in TemperatureFactors._fields[:3]), "bench.offset_per_kelvin"]
-        names = [component.name for component in self.coordinates.components]
-        names += ["actuator.rate", "actuator.rate_fall"] if self.coil else []
-        return names + (warm if self.reference is not None else [])
+        coil = ["actuator.rate", "actuator.rate_fall"] if self.coil else []
+        return coil + (warm if self.reference is not None else [])
 
     @property
     def bounds(self) -> tuple[Array, Array]:
         """Least and greatest value of every component."""
-        coil = [math.log(30.0)] * 2 * self.coil
+        coil = [math.log(RATE_SPAN)] * 2 * self.coil
         warm = [MOST_PER_KELVIN / PER_KELVIN] * 3 + [math.inf] if self.reference is not None else []
         beside = np.array(coil + warm)
         return np.append(self.coordinates.low, -beside), np.append(self.coordinates.high, beside)
 
+    def at_ends(self, vector: Array) -> list[str]:
+        """Return what stands at the least or the greatest value that it may have."""
+        low, high = self.bounds
+        near = (vector <= low + AT_END) | (vector >= high - AT_END)
+        return [label for label, end in zip(self.labels, near, strict=True) if end]
+
     def vector(self, bench: Bench) -> Array:
         """Return the vector of a bench."""
         coil = [math.log(rate / RATE) for rate in (bench.rise, bench.fall)] if self.coil else []
-        warm = [factor / PER_KELVIN for factor in bench.factors[:3]] + [bench.warming / WARMING]
+        warm = [*(factor / PER_KELVIN for factor in bench.factors[:3]), bench.warming / WARMING]
         beside = coil + (warm if self.reference is not None else [])
         return np.append(self.coordinates.vector(bench.damper), beside)
 
@@ -83,7 +100,7 @@ class Problem(NamedTuple):
         bench = self.bench(vector)
         parts = []
         for drive, weight in zip(self.drives, self.weights, strict=True):
-            part = weight * (predicted(bench, drive, PARTS) - drive.force)
+            part = weight * (predicted(bench, drive, PARTS, self.tolerance) - drive.force)
             limit = AWAY / math.sqrt(len(part))
             parts.append(np.clip(np.where(np.isfinite(part), part, limit), -limit, limit))
         return np.concatenate(parts)

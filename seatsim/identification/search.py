@@ -8,21 +8,59 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.identification.problem import Problem, jacobian
+from seatsim.identification.coordinates import scaled
+from seatsim.identification.predict import Bench, predicted
+from seatsim.identification.problem import PARTS, RATE, Problem, jacobian
+from seatsim.temperature import TemperatureFactors
 
 Array = NDArray[np.float64]
 Tell = Callable[[str], None]
 
 SPREAD = 0.3
 """Standard deviation of the first generation, in components of order one."""
+PER_PARAMETER = 60
+"""Simulations of the global search for every parameter."""
+SHORTLY, FULLY = 15, 60
+"""Most evaluations of least squares on short stretches and on whole records."""
 
 
-def started(problem: Problem, start: Array, seed: int, evaluations: int, tell: Tell) -> Array:
+def silent(text: str) -> None:
+    """Tell nothing."""
+
+
+def best(problem: Problem, short: Problem, seed: int, tell: Tell = silent) -> Array:
+    """Return the best vector of a problem, shape (P,), found from `short` stretches of its records.
+
+    Least squares from the defaults, from the defaults with their forces scaled to the measured ones, and from the end
+    of a global search; what comes out best on the stretches is refined on the records. A parameter without any
+    influence keeps its default.
+    """
+    plain = problem.vector(Bench(problem.coordinates.start, TemperatureFactors(), RATE, RATE))
+    first = min((refined(short, start, tell, SHORTLY) for start in (plain, _forced(short, plain))), key=_cost)
+    near = refined(short, started(short, first[0], seed, PER_PARAMETER * len(plain), tell), tell, SHORTLY)
+    found = refined(problem, min((first, near), key=_cost)[0], tell, FULLY)[0]
+    slopes = jacobian(short, found, short.residuals(found))
+    return np.where(np.any(slopes != 0.0, axis=0), found, plain)
+
+
+def _cost(end: tuple[Array, float]) -> float:
+    return end[1]
+
+
+def _forced(problem: Problem, vector: Array) -> Array:
+    """Return the vector with the forces of its damper scaled to the measured ones."""
+    bench = problem.bench(vector)
+    ours = np.concatenate([predicted(bench, drive, PARTS) for drive in problem.drives])
+    theirs = np.concatenate([drive.force for drive in problem.drives])
+    ratio = float(np.std(theirs) / np.std(ours)) if np.all(np.isfinite(ours)) and np.std(ours) > 0.0 else 1.0
+    return problem.vector(bench._replace(damper=scaled(bench.damper, ratio, problem.coordinates.end)))
+
+
+def started(problem: Problem, start: Array, seed: int, evaluations: int, tell: Tell = silent) -> Array:
     """Return the best vector of a CMA-ES from `start` (Hansen 2016, arXiv:1604.00772)."""
     import cma
 
     problem.cost(start)  # compiles, which threads must not do at once
-
     low, high = problem.bounds
     options = {
         "seed": seed + 1,
@@ -40,7 +78,7 @@ def started(problem: Problem, start: Array, seed: int, evaluations: int, tell: T
     return np.asarray(strategy.best.x, dtype=float)
 
 
-def refined(problem: Problem, start: Array, tell: Tell, most: int = 60) -> tuple[Array, float]:
+def refined(problem: Problem, start: Array, tell: Tell = silent, most: int = FULLY) -> tuple[Array, float]:
     """Return the vector of least squares near `start` and its cost (trust region, Branch et al. 1999)."""
     from scipy.optimize import least_squares
 
@@ -48,9 +86,9 @@ def refined(problem: Problem, start: Array, tell: Tell, most: int = 60) -> tuple
 
     def value(vector: Array) -> Array:
         last.clear()
-        last[vector.tobytes()] = problem.residuals(vector)
-        tell(f"fitting, error {100.0 * (np.sum(last[vector.tobytes()] ** 2) / len(problem.drives)) ** 0.5:.2f} %")
-        return last[vector.tobytes()]
+        residuals = last[vector.tobytes()] = problem.residuals(vector)
+        tell(f"fitting, error {100.0 * (np.sum(residuals**2) / len(problem.drives)) ** 0.5:.2f} %")
+        return residuals
 
     def slopes(vector: Array) -> Array:
         key = vector.tobytes()

@@ -24,7 +24,8 @@ def sharpened(record: BenchRecord, rows: int) -> BenchRecord:
     """Return the record with its motion as it was before a centred moving average over `rows` rows.
 
     Divided by the average's response, `sin(pi f n / r) / (n sin(pi f / r))` at the frequency f and the rate r, up to
-    85 % of its first zero r / n; nothing is left above. The force stays as it is.
+    85 % of its first zero r / n; nothing is left above. The record begins and ends at rest, else its ends are wrong.
+    The force stays as it is.
     """
     if rows < 2:
         return record

@@ -20,7 +20,7 @@ from seatsim.temperature import Heat, TemperatureFactors
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-4
-"""Error of the force that a step may add, relative to the force plus `FLOOR`."""
+"""Error of the force that a step may add by default, relative to the force plus `FLOOR`."""
 FLOOR = 10.0
 """N added to the force that the tolerance is relative to."""
 MOST_PARTS = 4096
@@ -37,13 +37,15 @@ def run_bench(
     initial_state: Tuple,
     step: float,
     most: int,
+    tolerance: float,
     out: Array,
 ) -> int:
     """Fill `out`, shape (n + 1,), with the force in N every `step`; return the samples reached.
 
     x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step;
     temperature is held over a step. The number returned is n + 1 if all went well. Set-valued friction acts
-    as `coulomb sgn(v)`, zero at v = 0. A step is divided into at most `most` parts. To be compiled by `compiled`.
+    as `coulomb sgn(v)`, zero at v = 0. A step is divided into at most `most` parts, so that it adds
+    an error of at most `tolerance`, relative to the force plus `FLOOR`. To be compiled by `compiled`.
     """
     z = initial_state
     parts = 1
@@ -59,7 +61,7 @@ def run_bench(
             break
         if len(z) > 0:
             span = slice(j, j + 3)
-            z, parts, good = _advance(damper, factor, x[span], v[span], current[span], z, step, parts, most)
+            z, parts, good = _advance(damper, factor, x[span], v[span], current[span], z, step, parts, most, tolerance)
             if not good:
                 return k + 1
     return int(out.shape[0])
@@ -67,7 +69,16 @@ def run_bench(
 
 @jit
 def _advance(
-    damper: Any, heat: Heat, x: Array, v: Array, current: Array, z: Tuple, step: float, parts: int, most: int
+    damper: Any,
+    heat: Heat,
+    x: Array,
+    v: Array,
+    current: Array,
+    z: Tuple,
+    step: float,
+    parts: int,
+    most: int,
+    tolerance: float,
 ) -> tuple[Tuple, int, bool]:
     """Return the state after a step, the parts to try next, and whether the state is still finite."""
     while True:
@@ -76,22 +87,21 @@ def _advance(
             state, error = _part(damper, heat, x, v, current, state, step / parts, part / parts, 1.0 / parts)
             if not error <= worst:
                 worst = error
-        if worst <= 1.0 or parts >= most:
+        if worst <= tolerance or parts >= most:
             break
         parts *= 2
-    if worst < 1.0 / 32.0 and parts > 1:
+    if worst < tolerance / 32.0 and parts > 1:
         parts //= 2
-    return state, parts, worst < 1e12
+    return state, parts, worst < 1e8
 
 
 @jit
 def _part(
     damper: Any, heat: Heat, x: Array, v: Array, current: Array, z: Tuple, h: float, s: float, ds: float
 ) -> tuple[Tuple, float]:
-    """Return the state after a part of `h` seconds from the fraction `s` of the step, and its scaled error.
+    """Return the state after a part of `h` seconds from the fraction `s` of the step, and its relative error.
 
-    The error, over the tolerance, is the difference in force to an embedded solution of order 3, as in the
-    time loop.
+    The error is the difference in force to an embedded solution of order 3, as in the time loop.
     """
     middle, end = s + 0.5 * ds, s + ds
     xm, vm, im = _between(x, middle), _between(v, middle), _between(current, middle)
@@ -105,7 +115,7 @@ def _part(
     embedded = axpy(axpy(state, -h / 6.0, k4), h / 6.0, k5)
     got = force(damper, xe, ve, ie, heat, state)
     error = abs(got - force(damper, xe, ve, ie, heat, embedded))
-    return state, error / (TOLERANCE * (FLOOR + abs(got)))
+    return state, error / (FLOOR + abs(got))
 
 
 @jit

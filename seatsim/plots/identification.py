@@ -7,15 +7,17 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
-from seatsim.identification.identify import Identification, Judged
+from seatsim.identification.identify import Identification
+from seatsim.identification.judging import Judged
 from seatsim.plots import labels, style
 from seatsim.plots.style import Entry, Grid
 
 MOST = 6
 """Most records that are drawn."""
 SHOWN = 1500
-"""Most rows of a record in the loops, from the stretch with the highest speed."""
+"""Most rows of a record that are drawn, from the stretch with the highest speed."""
 MEASURED, PREDICTED = Entry("measured", "#000000", width=1.6), Entry("predicted", style.COLOURS[1])
 
 
@@ -44,22 +46,19 @@ def _chosen(judged: Sequence[Judged]) -> list[Judged]:
 
 def _draw(panels: Sequence[Axes], judged: Judged) -> None:
     record = judged.record
-    last = len(record.force) if judged.part != "train" else len(judged.measured)
-    first = last - len(judged.measured)
-    x, v, t = (1e3 * record.displacement[first:last], record.velocity[first:last], record.time[first:last])
-    part = _liveliest(np.abs(v))
+    part = _liveliest(np.abs(record.velocity))
     for axes, across, name in (
-        (panels[0], v, "velocity [m/s]"),
-        (panels[1], x, "displacement [mm]"),
-        (panels[2], t, "time [s]"),
+        (panels[0], record.velocity, "velocity [m/s]"),
+        (panels[1], 1e3 * record.displacement, "displacement [mm]"),
+        (panels[2], record.time, "time [s]"),
     ):
-        style.line(axes, across[part], judged.measured[part], MEASURED)
+        style.line(axes, across[part], record.force[part], MEASURED)
         style.line(axes, across[part], judged.predicted[part], PREDICTED)
         axes.set_xlabel(name)
     panels[0].set_ylabel("force [N]")
 
 
-def _liveliest(speed: np.ndarray[tuple[int], np.dtype[np.float64]]) -> slice:
+def _liveliest(speed: NDArray[np.float64]) -> slice:
     if len(speed) <= SHOWN:
         return slice(None)
     travel = np.concatenate([[0.0], np.cumsum(speed)])

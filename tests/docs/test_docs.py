@@ -10,6 +10,10 @@ import pytest
 from seatsim.cli import app
 
 ROOT = Path(__file__).resolve().parents[2]
+BENCH = (
+    "--model", "--parameters", "--currents", "--temperatures", "--amplitudes", "--frequencies", "--test",
+    "--test-fraction", "--fix", "--ignore-temperature", "--predict", "--moving-average", "--centred",
+)  # fmt: skip
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 
 
@@ -34,7 +38,7 @@ def test_every_command_and_option_has_an_example():
         assert f"seatsim {command.callback.__name__} " in examples
     for command in ("make", "score"):
         assert f"seatsim blind {command} " in examples
-    for option in ("--out", "--set", "--without", "--cases", "--seed", "--sealed", "--kinds", "--key"):
+    for option in ("--out", "--set", "--without", "--cases", "--seed", "--sealed", "--kinds", "--key", *BENCH):
         assert option in examples
 
 

@@ -1,0 +1,180 @@
+"""Damper models identified from measured records: `python benchmarks/identification_league.py DIR`.
+
+DIR holds the measured data. Every result stands in `--out` as JSON and is not made again, so that a run may be stopped
+and resumed; `--only` takes some groups, `--models` some models.
+
+sines  Every model on the sines at five currents, all but those of 10 mm, 2 Hz and 5 mm, 4 Hz; it predicts these, and an
+    earthquake's motion (smoothed by its owner over 0.3 s, mean force removed) that it never saw the like of.
+random  The BEST models of the sines with at most MOST parameters on the first 70 % of a record with random motion and a
+    switched command; they predict the rest.
+heat  Every file of a passive damper apart: the first half fitted, the second predicted, with and without the recorded
+    temperature as input. Where it moves by less than 5 K both are one.
+joint  The modified Bouc-Wen model on all sines at once: what a fit costs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from rich.console import Console
+from rich.progress import track
+from rich.table import Table
+from threadpoolctl import threadpool_limits
+
+from seatsim.files import write_json
+from seatsim.identification.identify import Request, identify, predict
+from seatsim.identification_output import contents, parameters
+from seatsim.registry import names
+
+SINES, EARTHQUAKE = "utfsm_mr_sine_raw", "utfsm_mr_earthquake"
+RANDOM, HEAT = "dyke_nees_2012_1158/ranran_50.csv.gz", "fsae_damper_temperature"
+HELD_OUT = ("*10mm_2Hz*", "*5mm_4Hz*")
+AVERAGE = 0.3
+"""Seconds over which the earthquake's record was averaged by its owner."""
+BEST, MOST = 6, 20
+WARMED = ("ellis", "nonsymmetrical_bouc_wen", "modified_bouc_wen", "kwok_tanh", "shear_bouc_wen")
+COMPARED = ("original_bingham", "simple_bouc_wen", "modified_bouc_wen")
+"""Models that Braz-Cesar and Barros 2012 compare, in the order of rising merit that they found."""
+GROUPS = ("sines", "random", "heat", "joint")
+Found = dict[str, Any]
+
+
+class Task(NamedTuple):
+    """A fit: its group, the data's folder or file, the model, what is asked for, and what is predicted beside."""
+
+    group: str
+    data: Path
+    model: str
+    request: Request
+    further: Path | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the file that keeps the result."""
+        cold = "-ignored" if self.request.ignore_temperature else ""
+        return f"{self.group}-{self.data.name.partition('.')[0]}-{self.model}{cold}.json"
+
+
+def sines(data: Path, models: list[str]) -> list[Task]:
+    """Return the league on sines."""
+    return [Task("sines", data / SINES, model, Request(HELD_OUT), data / EARTHQUAKE) for model in models]
+
+
+def random(data: Path, models: list[str]) -> list[Task]:
+    """Return the fits to random motion."""
+    return [Task("random", data / RANDOM, model, Request(test_fraction=0.3)) for model in models]
+
+
+def heat(data: Path, models: list[str]) -> list[Task]:
+    """Return the fits with and without temperature, of every file apart."""
+    files = sorted((data / HEAT).glob("*.csv*"))
+    requests = [Request(test_fraction=0.5, ignore_temperature=cold) for cold in (False, True)]
+    return [Task("heat", file, model, request) for file in files for model in models for request in requests]
+
+
+def done(task: Task, out: Path) -> Found:
+    """Return the result of a task, from its file where that is there."""
+    path = out / task.name
+    if not path.exists():
+        found = identify(task.data, task.model, task.request)
+        found = predict(found, task.further, AVERAGE, centred=True) if task.further else found
+        write_json(path, {**contents(found), "warm": found.warm, "file": parameters(found)})
+    return dict(json.loads(path.read_text(encoding="utf-8")))
+
+
+def all_done(tasks: list[Task], out: Path) -> Iterator[tuple[Task, Found]]:
+    """Yield every task with its result; one that failed is told and left out."""
+    for task in track(tasks, tasks[0].group, disable=not Console().is_terminal):
+        try:
+            yield task, done(task, out)
+        except Exception as error:
+            print(f"{task.name}: {type(error).__name__}: {error}")
+
+
+def fit(found: Found, part: str) -> float:
+    """Return the mean fit in percent of a part, NaN where there is none."""
+    value = (found.get(part) or {}).get("fit_percent")
+    return float("nan") if value is None else float(value)
+
+
+def league(title: str, results: list[tuple[Task, Found]], parts: tuple[str, ...]) -> Table:
+    """Return a table of fits, the best prediction of held-out records first."""
+    table = Table(title=title, title_justify="left")
+    for column in ("model", *(f"{part} fit %" for part in parts), "parameters", "unknown", "ns/step", "s"):
+        table.add_column(column, justify="left" if column == "model" else "right")
+    for task, found in sorted(results, key=lambda pair: -np.nan_to_num(fit(pair[1], "test"), nan=-1e9)):
+        counts = str(len(found["parameters"])), str(len(found["not_identified"]))
+        fits = [f"{fit(found, part):.2f}" for part in parts]
+        table.add_row(task.model, *fits, *counts, f"{found['ns_per_step']:.0f}", f"{found['seconds']:.0f}")
+    return table
+
+
+def order(results: list[tuple[Task, Found]]) -> Table:
+    """Return the errors of the models that a paper ordered."""
+    table = Table(title="root mean square error in N; the paper finds the first worst, the last best")
+    for column in ("model", "train", "test", "predicted"):
+        table.add_column(column)
+    known = {task.model: found for task, found in results}
+    for model in COMPARED:
+        if model in known:
+            table.add_row(model, *(f"{known[model][part]['rmse']:.1f}" for part in ("train", "test", "predicted")))
+    return table
+
+
+def warmth(results: list[tuple[Task, Found]]) -> Table:
+    """Return the fits of the second halves with and without temperature."""
+    table = Table(title="second half of each file, fit %", title_justify="left")
+    for column in ("file", "degC", "model", "train with", "without", "test with", "without", "unknown with"):
+        table.add_column(column, justify="left" if column in ("file", "model") else "right")
+    pairs: dict[tuple[str, str], dict[bool, Found]] = {}
+    for task, found in results:
+        pairs.setdefault((task.data.name.partition(".")[0], task.model), {})[task.request.ignore_temperature] = found
+    for (file, model), pair in pairs.items():
+        if len(pair) == 2:
+            low, high = pair[False]["coverage"]["temperature"]
+            fits = [f"{fit(pair[cold], part):.2f}" for part in ("train", "test") for cold in (False, True)]
+            table.add_row(file, f"{high - low:.0f}", model, *fits, ", ".join(pair[False]["not_identified"]))
+    return table
+
+
+def report(data: Path, out: Path, groups: list[str], models: list[str]) -> None:
+    """Make what is not there and print the tables."""
+    console = Console(width=170)
+    ranked = models
+    if "sines" in groups:
+        results = list(all_done(sines(data, models), out))
+        console.print(league("sines, and an earthquake predicted from them", results, ("train", "test", "predicted")))
+        console.print(order(results))
+        few = [(task.model, found) for task, found in results if len(found["parameters"]) <= MOST]
+        ranked = [model for model, _ in sorted(few, key=lambda pair: -fit(pair[1], "test"))][:BEST]
+    if "random" in groups:
+        results = list(all_done(random(data, ranked), out))
+        console.print(league("random motion, switched command: the last 30 %", results, ("train", "test")))
+    if "heat" in groups:
+        chosen = [model for model in WARMED if model in models]
+        console.print(warmth(list(all_done(heat(data, chosen), out))))
+    if "joint" in groups:
+        results = list(all_done([Task("joint", data / SINES, "modified_bouc_wen", Request())], out))
+        console.print(league("one fit to all sines", results, ("train",)))
+
+
+def main() -> None:
+    """Read the arguments and run."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("data", type=Path, metavar="DIR", help="folder of the measured data")
+    parser.add_argument("--out", type=Path, default=Path("out/identification-league"), help="folder of the results")
+    parser.add_argument("--only", default=",".join(GROUPS), help="groups, joined by commas")
+    parser.add_argument("--models", default="", help="models, joined by commas; all where absent")
+    options = parser.parse_args()
+    with threadpool_limits(1):
+        models = options.models.split(",") if options.models else names("damper")
+        report(options.data, options.out, options.only.split(","), models)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,94 @@
+"""From records to the problems that a fit solves: the whole one, and a short one for the global search."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from seatsim.bench_tables import BenchRecord
+from seatsim.errors import InputError
+from seatsim.fields import describe
+from seatsim.identification.coordinates import Coordinates, Scales, fixed, scaled
+from seatsim.identification.predict import drive
+from seatsim.identification.problem import Problem, weights
+from seatsim.identification.split import Request
+from seatsim.registry import card_of
+
+SHORT = 10000
+"""Rows of all records together on which the global search simulates."""
+LEAST_SHORT = 300
+"""Rows of a record that it takes at least."""
+WARMTH = 5.0
+"""K that the temperature must vary by for its influence to be fitted."""
+OFF_CENTRE = 0.25
+"""Middle of all motion, over half its range, from which on it counts as the origin of the displacement."""
+
+
+def origin_of(records: Sequence[BenchRecord]) -> float:
+    """Return the displacement in m that counts as x = 0: 0, or the middle of all motion where that is far from it."""
+    low = min(float(np.min(record.displacement)) for record in records)
+    high = max(float(np.max(record.displacement)) for record in records)
+    middle = 0.5 * (low + high)
+    return round(middle, 4) if abs(middle) > OFF_CENTRE * 0.5 * (high - low) else 0.0
+
+
+def posed(records: Sequence[BenchRecord], cls: Any, origin: float, request: Request) -> tuple[Problem, Problem]:
+    """Return the problem of fitting a class to whole records, and to the liveliest stretch of each.
+
+    Raises:
+        InputError: nothing moves, the class has a number without default, or what is fixed is none of its numbers or
+            all of them.
+    """
+    blank = [card.name for card in describe(cls) if card.required]
+    if blank:
+        raise InputError(f"{cls.__name__}: a fit starts from defaults; give {', '.join(blank)} one")
+    scales = _scales(records)
+    start = fixed(scaled(cls(), 1.0, scales.current or 1.0), request.fix)
+    held = (*card_of(cls).held, *request.fix)
+    coordinates = Coordinates(start, scales, held, _levels(records))
+    if not coordinates.components:
+        raise InputError(f"--fix {', '.join(request.fix)} leaves no parameter of {cls.__name__} to fit; leave one free")
+    reference = None if request.ignore_temperature else _reference(records)
+
+    def problem(chosen: Sequence[BenchRecord]) -> Problem:
+        drives = [drive(record, origin, False) for record in chosen]
+        coil = any(record.commanded for record in records)
+        return Problem(coordinates, drives, weights(chosen, drives), coil, reference)
+
+    rows = max(LEAST_SHORT, SHORT // len(records))
+    return problem(records), problem([_liveliest(record, rows) for record in records])
+
+
+def _scales(records: Sequence[BenchRecord]) -> Scales:
+    force = float(np.sqrt(np.mean(np.concatenate([record.force for record in records]) ** 2)))
+    stroke = max(float(np.std(record.displacement)) for record in records)
+    speed = max(float(np.std(record.velocity)) for record in records)
+    if min(force, stroke, speed) == 0.0:
+        raise InputError("the records hold no motion or no force; identify a damper from records in which it moves")
+    return Scales(force, stroke, speed, max(float(np.max(record.current)) for record in records))
+
+
+def _levels(records: Sequence[BenchRecord]) -> int | None:
+    """Return the number of currents that are held, None where the current varies within a record."""
+    if any(np.ptp(record.current) > 0.0 for record in records):
+        return None
+    return len({round(record.mean_current, 3) for record in records})
+
+
+def _reference(records: Sequence[BenchRecord]) -> float | None:
+    """Return the mean temperature in degC, None where it was not recorded or hardly varies."""
+    warmth = [record.temperature for record in records if record.temperature is not None]
+    if len(warmth) < len(records) or max(map(np.max, warmth)) - min(map(np.min, warmth)) <= WARMTH:
+        return None
+    return float(np.mean(np.concatenate(warmth)))
+
+
+def _liveliest(record: BenchRecord, rows: int) -> BenchRecord:
+    """Return the stretch of so many rows with the highest mean speed."""
+    if len(record.force) <= rows:
+        return record
+    travel = np.concatenate([[0.0], np.cumsum(np.abs(record.velocity))])
+    first = int(np.argmax(travel[rows:] - travel[:-rows]))
+    return record.part(first, first + rows)

@@ -1,0 +1,77 @@
+"""What a fit may see: records, and parts of records, that are held out to judge it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from fnmatch import fnmatch
+from typing import NamedTuple
+
+from seatsim.bench_tables import LEAST_ROWS, BenchRecord, stem
+from seatsim.errors import InputError, nearest
+
+
+class Request(NamedTuple):
+    """What is asked of a fit.
+
+    test: globs of the files to hold out; test_fraction: share of every other record, its last part, to hold out; fix:
+    numbers of the model that keep a value, by name; ignore_temperature: whether the recorded temperature is no input;
+    seed: of the global search.
+    """
+
+    test: Sequence[str] = ()
+    test_fraction: float = 0.0
+    fix: Mapping[str, float] = {}
+    ignore_temperature: bool = False
+    seed: int = 0
+
+
+class Split(NamedTuple):
+    """Records of which the first part is fitted to, those parts, and records of which nothing is."""
+
+    train: list[BenchRecord]
+    fitted: list[BenchRecord]
+    held_out: list[BenchRecord]
+
+
+def split(records: Sequence[BenchRecord], request: Request) -> Split:
+    """Return which records, and which rows of them, are fitted to.
+
+    Raises:
+        InputError: a pattern matches nothing, nothing is left, or the fraction is out of bounds.
+    """
+    share = request.test_fraction
+    if not 0.0 <= share < 1.0:
+        raise InputError(f"--test-fraction {share:g} is not permitted; it must be at least 0 and below 1, such as 0.3")
+    held_out = matching(records, request.test)
+    train = [record for record in records if not _among(record, held_out)]
+    if not train:
+        raise InputError(f"--test {' '.join(request.test)} holds out every record; leave some to fit to")
+    fitted = [record.part(0, round((1.0 - share) * len(record.force))) for record in train]
+    for record, part in zip(train, fitted, strict=True):
+        least = min(len(part.force), len(record.force) - len(part.force) if share else len(part.force))
+        if least < LEAST_ROWS:
+            raise InputError(
+                f"--test-fraction {share:g} cuts off {least} rows of '{record.name}'; a part has at least {LEAST_ROWS}"
+            )
+    return Split(train, fitted, held_out)
+
+
+def matching(records: Sequence[BenchRecord], patterns: Sequence[str]) -> list[BenchRecord]:
+    """Return the records whose file, or whose own name, matches one of the globs.
+
+    Raises:
+        InputError: a pattern matches nothing.
+    """
+    chosen: list[BenchRecord] = []
+    for pattern in patterns:
+        found = [r for r in records if any(fnmatch(name, pattern) for name in (r.file, stem(r.file), r.name))]
+        if not found:
+            known = list(dict.fromkeys(stem(record.file) for record in records))
+            hint = nearest(pattern, known)
+            raise InputError(f"--test {pattern} matches no record{hint}; there are {', '.join(known)}")
+        chosen += [record for record in found if not _among(record, chosen)]
+    return chosen
+
+
+def _among(record: BenchRecord, records: Iterable[BenchRecord]) -> bool:
+    return any(record is other for other in records)

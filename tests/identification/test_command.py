@@ -1,0 +1,262 @@
+"""The command: files, tables and pictures, the league, what is refused and what fails."""
+
+import json
+import sys
+
+import pandas as pd
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from ruamel.yaml import YAML
+from typer.testing import CliRunner
+
+from seatsim.cli import app, main
+from seatsim.errors import InputError, RunError
+from seatsim.identification import league as league_module
+from seatsim.identification.identify import identify
+from seatsim.identification.judging import Further
+from seatsim.identification.league import Place, league, ranked
+from seatsim.identification.search import silent
+from seatsim.identification.split import Request
+from seatsim.identification_output import contents, write_identification
+from seatsim.plots.identification import loops
+
+from .benches import BINGHAM, made, sines, write
+
+FILES = {"parameters.yaml", "fit.json", "loops.png"}
+SCENARIO = """\
+plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
+        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
+temperature: 20.0
+controller: {law: constant, current: 0.5}
+excitation: {kind: sine, amplitude: 0.01, frequency: 2.0, duration: 2.0}
+"""
+
+
+def command(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def status(monkeypatch, *arguments):
+    """Return the exit status of the whole program."""
+    monkeypatch.setattr(sys, "argv", ["seatsim", *map(str, arguments)])
+    with pytest.raises(SystemExit) as end:
+        main()
+    return end.value.code
+
+
+@pytest.fixture(scope="session")
+def fitted(bench, tmp_path_factory):
+    """A folder with what the command writes, and what it prints."""
+    folder = tmp_path_factory.mktemp("fitted")
+    options = ("--model", "bingham", "--test", "*2.5Hz*", "--predict", bench / "sine_2Hz.csv")
+    done = command("identify", bench, *options, "--out", folder)
+    assert done.exit_code == 0, done.output
+    return folder, done.output
+
+
+def test_files_and_tables_are_written(fitted):
+    folder, said = fitted
+    assert {path.name for path in folder.iterdir()} == FILES
+    assert (folder / "loops.png").stat().st_size > 10000
+    for text in ("sine_2.5Hz, 1 A (test)", "mean, predicted", "c_b", "N s/(m A)", f"written to {folder}:"):
+        assert text in said.replace("\n", "") or text in said, text
+
+
+def test_fit_json_holds_the_figures_of_every_record_and_their_means(fitted):
+    fit = json.loads((fitted[0] / "fit.json").read_text())
+    for part in ("train", "test", "predicted"):
+        assert set(fit[part]) == {"r2", "md", "rmse", "fit_percent"} and fit[part]["fit_percent"] > 97.0
+    names = ["sine_2Hz, 0 A (train)", "sine_4Hz, 0.5 A", "sine_2.5Hz, 1 A", "sine_2Hz, 0 A (predicted)"]
+    assert sorted(fit["records"]) == sorted(names)
+    train = [record for record in fit["records"].values() if record["part"] == "train"]
+    assert fit["train"]["rmse"] == pytest.approx(sum(record["rmse"] for record in train) / 2.0)
+    assert fit["records"]["sine_2.5Hz, 1 A"]["current"] == 1.0
+    assert {estimate["name"] for estimate in fit["parameters"]} == {"c_a", "c_b", "fc_a", "fc_b", "f0"}
+    assert fit["not_identified"] == [] and fit["coverage"]["steady_currents"] == [0.0, 0.5]
+    assert fit["ns_per_step"] > 0.0 and fit["effective_samples"] > 100.0 and "commands" not in fit
+
+
+def test_the_parameters_run_in_a_scenario_and_are_characterised(fitted, tmp_path):
+    path = fitted[0] / "parameters.yaml"
+    values = YAML(typ="safe").load(path.read_text())
+    assert list(values) == ["damper", "actuator", "bench"]
+    assert values["damper"]["parameters"]["c_a"] == pytest.approx(BINGHAM.c_a, rel=0.05)
+    assert values["actuator"] == {"rate": 130.0, "rate_fall": 130.0, "max_current": 1.0}
+    assert "the rates of the actuator are defaults" in path.read_text()
+    pasted = path.read_text().partition("bench:\n")[0]
+    (tmp_path / "seat.yaml").write_text(SCENARIO + pasted)
+    done = command("run", tmp_path / "seat.yaml", "--out", tmp_path / "run")
+    assert done.exit_code == 0, done.output
+    done = command("characterise", "--parameters", path, "--currents", "0,1", "--amplitudes", "0.005",
+                   "--frequencies", "1", "--out", tmp_path / "shown")  # fmt: skip
+    assert done.exit_code == 0, done.output
+    shown = pd.read_csv(tmp_path / "shown" / "cycles.csv")
+    assert list(shown.offset_N.round()) == [30.0, 30.0]
+
+
+def test_factors_of_temperature_and_laws_are_written_and_read_again(tmp_path):
+    records = [made(current=i, temperature=warm, name=f"{warm:g}C_{i:g}A") for warm in (20.0, 60.0) for i in (0.0, 1.0)]
+    folder = tmp_path / "warm"
+    folder.mkdir()
+    for record in records:
+        table = {"time_s": record.time, "x_m": record.displacement, "force_N": record.force}
+        pd.DataFrame(table).to_csv(folder / record.file, index=False)
+        text = f"current_A: {record.mean_current}\ntemperature_C: {record.temperature[0]}\n"
+        (folder / f"{record.name}.yaml").write_text(text)
+    found = identify(folder, "original_bingham")
+    write_identification(found, tmp_path / "out")
+    values = YAML(typ="safe").load((tmp_path / "out" / "parameters.yaml").read_text())
+    assert values["damper"]["temperature_factors"]["reference"] == pytest.approx(40.0)
+    assert len(values["damper"]["parameters"]["c0"]) == 4
+    done = command("characterise", "--parameters", tmp_path / "out" / "parameters.yaml", "--currents", "0,1",
+                   "--temperatures", "20,60", "--amplitudes", "0.005", "--frequencies", "1",
+                   "--out", tmp_path / "shown")  # fmt: skip
+    assert done.exit_code == 0, done.output
+
+
+def test_without_held_out_records_there_is_no_test(bench):
+    fit = contents(identify(bench, "bingham"))
+    assert fit["test"] is None and "predicted" not in fit
+
+
+def test_a_fraction_is_held_out_of_every_record(bench):
+    fit = contents(identify(bench, "bingham", Request(test_fraction=0.3)))
+    parts = [record["part"] for record in fit["records"].values()]
+    assert parts == ["train"] * 3 + ["test"] * 3 and "sine_4Hz, 0.5 A (test)" in fit["records"]
+    assert fit["test"].fit_percent > 97.0
+
+
+def test_the_picture_is_labelled_and_inside_its_page(bench):
+    found = identify(bench, "bingham", Request(("*2.5Hz",)))
+    for judged in (found.judged, found.judged[:1], found.judged * 4):
+        figure = loops(found._replace(judged=list(judged)))
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        width, height = canvas.get_width_height()
+        for part in [*figure.texts, *figure.legends, *figure.axes]:
+            box = part.get_tightbbox()
+            assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, part
+        assert {axes.get_xlabel() for axes in figure.axes} == {"velocity [m/s]", "displacement [mm]", "time [s]"}
+    assert "held out" in loops(found).axes[0].get_title(loc="left")
+
+
+# --------------------------------------------------------------------------------------------------- the league
+
+
+@pytest.fixture
+def two(monkeypatch):
+    """Two small models in place of all."""
+    monkeypatch.setattr(league_module, "names", lambda kind: ["original_bingham", "bingham"])
+
+
+def test_the_league_ranks_models_by_what_was_held_out(two, bench, tmp_path):
+    options = ("--model", "all", "--test", "*2.5Hz*", "--fix", "v_ref=0.004")
+    done = command("identify", bench, *options, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    table = pd.read_csv(tmp_path / "out" / "league.csv")
+    assert list(table.columns[:5]) == ["model", "train_fit_percent", "test_fit_percent", "parameters", "ns_per_step"]
+    assert list(table.model) == ["bingham", "original_bingham"] and list(table.parameters) == [5, 5]
+    assert table.test_fit_percent.is_monotonic_decreasing and table.failed.isna().all()
+    for model in table.model:
+        assert {path.name for path in (tmp_path / "out" / model).iterdir()} == FILES
+    fit = json.loads((tmp_path / "out" / "bingham" / "fit.json").read_text())
+    assert fit["test"]["fit_percent"] == pytest.approx(table.test_fit_percent[0])
+    again = command("identify", bench, *options, "--out", tmp_path / "out")
+    assert again.exit_code == 0
+    assert pd.read_csv(tmp_path / "out" / "league.csv").equals(table), "times too: nothing is fitted again"
+
+
+def test_an_interrupted_league_goes_on_where_it_was(two, tmp_path, monkeypatch):
+    records, done, fit = sines(BINGHAM), [], league_module.identify_records
+
+    def interrupted(records, model, *rest):
+        if model == "bingham" and len(done) == 1:
+            done.append("interrupted")
+            raise KeyboardInterrupt
+        done.append(model)
+        return fit(records, model, *rest)
+
+    def run(seed=0, more=()):
+        return league(records, Request(seed=seed), Further(list(more)), tmp_path, silent, lambda found: None)
+
+    monkeypatch.setattr(league_module, "identify_records", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        run()
+    assert [place.model for place in run()] == ["bingham", "original_bingham"]
+    assert done == ["original_bingham", "interrupted", "bingham"]
+    run()
+    assert len(done) == 3
+    run(seed=1)
+    run(more=[made(name="other")])
+    assert len(done) == 7, "another request, or other records, are fitted anew"
+
+
+def test_a_league_goes_on_past_a_model_that_fails(two, bench, tmp_path, monkeypatch):
+    fit = league_module.identify_records
+
+    def failing(records, model, *rest):
+        if model == "bingham":
+            raise RunError("bingham: no parameters were found")
+        return fit(records, model, *rest)
+
+    monkeypatch.setattr(league_module, "identify_records", failing)
+    assert status(monkeypatch, "identify", bench, "--model", "all", "--out", tmp_path / "out") == 1
+    table = pd.read_csv(tmp_path / "out" / "league.csv")
+    assert list(table.model) == ["original_bingham", "bingham"]
+    assert table.failed[1] == "bingham: no parameters were found" and table.test_fit_percent.isna().all()
+
+
+def test_places_are_ranked_by_what_was_held_out_where_anything_was():
+    def place(model, train, test):
+        return Place(model, train, test, 5, 100.0, 0.0, 1.0)
+
+    nan, bad = float("nan"), float("-inf")
+    held_out = [place("wild", 99.0, bad), place("good", 80.0, 90.0), place("fair", 95.0, 85.0), place("none", nan, nan)]
+    assert [p.model for p in ranked(held_out)] == ["good", "fair", "wild", "none"]
+    assert [p.model for p in ranked([place("a", 80.0, nan), place("b", 90.0, nan)])] == ["b", "a"]
+
+
+# ------------------------------------------------------------------------------------------------- what is refused
+
+
+@pytest.mark.parametrize(
+    "options, problem",
+    [
+        (["--model", "bignham"], "did you mean 'bingham'"),
+        (["--model", "bingham", "--test", "*9Hz*"], "--test *9Hz* matches no record"),
+        (["--model", "bingham", "--test", "*"], "holds out every record"),
+        (["--model", "bingham", "--test-fraction", "1.5"], "--test-fraction 1.5 is not permitted"),
+        (["--model", "bingham", "--fix", "c_c=1"], "--fix c_c: no such number"),
+        (["--model", "bingham", "--fix", "c_a=much"], "--fix c_a=much is not permitted; it must be a number"),
+        (["--model", "bingham", "--fix", "c_a"], "--fix c_a: write KEY=VALUE, such as --fix v_ref=0.005"),
+        (["--model", "bingham", "--moving-average", "-1"], "--moving-average -1 s is not permitted"),
+        (["--model", "bingham", "--centred"], "name these by --predict"),
+        (["--model", "bingham", "--predict", "nowhere"], "nowhere: no such file or folder"),
+        (["--model", "all", "--test", "*9Hz*"], "--test *9Hz* matches no record"),
+        (["--model", "all", "--fix", "c_qq=1"], "--fix c_qq: no model has this number"),
+    ],
+)
+def test_bad_input_is_refused_and_nothing_written(options, problem, bench, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = command("identify", bench, *options)
+    assert isinstance(done.exception, InputError) and problem in str(done.exception)
+    assert not list(tmp_path.iterdir())
+
+
+def test_bad_input_ends_with_2_and_a_failed_model_with_1(bench, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert status(monkeypatch, "identify", "nowhere", "--model", "bingham") == 2
+
+    def failing(*_):
+        raise RunError("bingham: no parameters were found")
+
+    monkeypatch.setattr("seatsim.identification.identify.identify_records", failing)
+    assert status(monkeypatch, "identify", bench, "--model", "bingham") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_of_tables_is_named_after_its_data(bench, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = command("identify", write([made()], tmp_path / "bench") / "made.csv", "--model", "bingham")
+    assert done.exit_code == 0, done.output
+    assert {path.name for path in (tmp_path / "out" / "identify-made-bingham").iterdir()} == FILES

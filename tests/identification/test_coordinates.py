@@ -1,0 +1,140 @@
+"""The vector of a damper's free parameters: there and back, scaled to another damper, fixed by the user."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
+from seatsim.errors import InputError
+from seatsim.fields import bounds
+from seatsim.identification.coordinates import (
+    Coordinates,
+    Scales,
+    dimension,
+    fixed,
+    law_coefficients,
+    law_values,
+    numbers_of,
+    scaled,
+)
+from seatsim.registry import card_of, find, names
+
+MODELS = [name for name in names("damper") if find("damper", name).__module__.startswith("seatsim.dampers.")]
+SCALES = Scales(force=400.0, stroke=0.006, speed=0.06, current=1.0)
+
+
+def coordinates(record, scales=SCALES, **options):
+    return Coordinates(record, scales, card_of(type(record)).held, **options)
+
+
+def same(a, b):
+    for name, x, y in zip(a._fields, a, b, strict=True):
+        assert x == pytest.approx(y, rel=1e-9, abs=1e-12 * max(1.0, float(np.max(np.abs(y))))), name
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_record_comes_back_from_its_vector(model):
+    record = find("damper", model)()
+    between = coordinates(record)
+    vector = between.vector(record)
+    assert len(vector) == len(between.components) > 0 and np.all(np.isfinite(vector))
+    same(between.record(vector), record)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_vector_comes_back_from_its_record_and_stays_in_bounds(model):
+    between = coordinates(find("damper", model)())
+    rng = np.random.default_rng(0)
+    for _ in range(5):
+        draw = between.vector(between.start) + 0.5 * rng.standard_normal(len(between.components))
+        vector = np.clip(draw, between.low, between.high)
+        assert between.vector(between.record(vector)) == pytest.approx(vector, rel=1e-6, abs=1e-6)
+    ends = [np.where(np.isfinite(end), end, 0.0) for end in (between.low, between.high)]
+    for record in map(between.record, ends):
+        for name in numbers_of(type(record)):
+            low, high = bounds(type(record), name)
+            assert low <= getattr(record, name) <= high, "a file with it could not be read again"
+
+
+def test_held_fields_and_ranges_are_no_components():
+    between = coordinates(BoucWen())
+    assert {c.field for c in between.components}.isdisjoint({"A", "x0"})
+    assert "law_end" not in {c.field for c in coordinates(ModifiedBoucWen()).components}
+    assert "c_a" not in {c.field for c in Coordinates(BoucWen(), SCALES, ("c_a",)).components}
+
+
+def test_without_current_nothing_that_depends_on_it_is_free():
+    between = coordinates(BoucWen(), SCALES._replace(current=0.0))
+    assert {c.field for c in between.components}.isdisjoint({"c_b", "alpha_b"})
+    laws = coordinates(ModifiedBoucWen(), SCALES._replace(current=0.0), levels=1)
+    assert [c.name for c in laws.components if c.field == "c0"] == ["c0[0]"]
+
+
+def test_a_law_has_one_value_for_each_of_few_currents():
+    between = coordinates(ModifiedBoucWen(), levels=2)
+    ours = [c for c in between.components if c.field == "alpha"]
+    assert [(c.at, c.label) for c in ours] == [(0.0, "alpha(0 A)"), (1.0, "alpha(1 A)")]
+    assert between.record(between.vector(between.start)).alpha[2:] == (0.0, 0.0)
+
+
+def test_a_law_that_is_nowhere_negative_stays_so():
+    record = ModifiedBoucWen()
+    between = coordinates(record)
+    assert all(c.low == 0.0 for c in between.components if c.field in ("c0", "c1", "alpha"))
+    free = coordinates(record._replace(alpha=(100.0, -900.0, 0.0, 0.0), c0=(0.0, 0.0, 0.0, 0.0)))
+    assert all(c.low == -math.inf for c in free.components if c.field in ("c0", "alpha"))
+
+
+def test_laws_are_polynomials_through_their_values():
+    values = np.array([3.0, 5.0, 4.0])
+    coefficients = law_coefficients(values, 1.6)
+    assert law_values(coefficients, np.array([0.0, 0.8, 1.6])) == pytest.approx(values)
+
+
+def test_units_give_dimensions_and_sizes():
+    assert dimension("N s/(m A)") == {"N": 1.0, "s": 1.0, "m": -1.0, "A": -1.0}
+    assert dimension("1/m^2") == {"m": -2.0} and dimension("-") == {} and dimension("[z]/m") == {"m": -1.0}
+    assert SCALES.size("N s/m") == pytest.approx(400.0 / 0.06)
+    assert SCALES.size("N s^2/m^2") == pytest.approx(400.0 / 0.06**2)
+
+
+def test_a_damper_is_scaled_in_force_and_current():
+    record = ModifiedBoucWen()
+    other = scaled(record, 3.0, 2.0)
+    assert other.law_end == 2.0 and (other.A, other.n, other.beta) == (record.A, record.n, record.beta)
+    assert law_values(other.c0, np.array([2.0])) == pytest.approx(3.0 * law_values(record.c0, np.array([1.0])))
+    assert other.k0 == pytest.approx(3.0 * record.k0)
+    linear = scaled(BoucWen(), 2.0, 5.0)
+    assert (linear.c_a, linear.c_b, linear.beta) == (500.0, 700.0, BoucWen().beta)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_scaling_back_gives_the_record(model):
+    record = find("damper", model)()
+    end = float(getattr(record, "law_end", 1.0))
+    same(scaled(scaled(record, 2.5, end), 0.4, end), record)
+
+
+def test_numbers_are_fixed():
+    record = fixed(BoucWen(), {"n": 3, "k0": -5.0})
+    assert (record.n, record.k0) == (3.0, -5.0) and isinstance(record.n, float)
+
+
+@pytest.mark.parametrize(
+    "model, values, problem",
+    [
+        ("bouc_wen", {"c_aa": 1.0}, "--fix c_aa: no such number (did you mean 'c_a'?); permitted: c_a, c_b"),
+        ("modified_bouc_wen", {"alpha": 1.0}, "--fix alpha: no such number"),
+        ("bouc_wen", {"c_a": -1.0}, "--fix c_a=-1.0 is not permitted; it must be a number from 0 to inf"),
+        ("bouc_wen", {"n": 99}, "--fix n=99 is not permitted; it must be a number from 1 to 20"),
+        ("bouc_wen", {"n": "two"}, "--fix n=two is not permitted; it must be a number"),
+        ("bouc_wen", {"n": None}, "--fix n=None is not permitted"),
+        ("bouc_wen", {"k0": math.nan}, "--fix k0=nan is not permitted"),
+        ("bouc_wen", {"k0": True}, "--fix k0=True is not permitted"),
+    ],
+)
+def test_what_cannot_be_fixed_is_refused(model, values, problem):
+    with pytest.raises(InputError) as error:
+        fixed(find("damper", model)(), values)
+    assert problem in str(error.value)

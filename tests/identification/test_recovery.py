@@ -1,0 +1,172 @@
+"""What is put in comes out: dampers, coils and temperatures of simulated benches; what data cannot tell is told."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+import seatsim
+from seatsim.errors import InputError, RunError
+from seatsim.identification import identify as module
+from seatsim.identification.identify import identify_records
+from seatsim.identification.information import correlation_length
+from seatsim.identification.split import Request
+from seatsim.temperature import TemperatureFactors
+
+from .benches import BINGHAM, BOUC_WEN, made, sines
+
+
+def estimates(found):
+    return {estimate.name: estimate for estimate in found.information.estimates}
+
+
+@pytest.mark.parametrize("model, truth", [("bingham", BINGHAM), ("bouc_wen", BOUC_WEN)])
+def test_a_damper_comes_back_within_5_percent(model, truth):
+    found = identify_records(sines(truth), model)
+    known = estimates(found)
+    assert set(known) == set(truth._fields) - {"v_ref", "A", "x0"} and found.notes == []
+    for name, estimate in known.items():
+        assert estimate.identified and estimate.value == pytest.approx(getattr(truth, name), rel=0.05), name
+        assert abs(estimate.value - getattr(truth, name)) < 4.0 * estimate.std, name
+    assert found.mean("train").fit_percent == pytest.approx(98.0, abs=0.1), "2 % noise"
+    assert found.mean("test") is None and not found.warm and not found.commanded
+
+
+def test_the_rates_of_a_coil_come_back_from_a_square_wave():
+    record = made(current=lambda t: np.where(t % 0.5 < 0.25, 0.0, 1.0), coil=(200.0, 60.0), noise=0.02, seconds=4.0)
+    found = identify_records([record], "bingham", Request(test_fraction=0.25))
+    known = estimates(found)
+    assert found.commanded
+    assert known["actuator.rate"].value == pytest.approx(200.0, rel=0.05)
+    assert known["actuator.rate_fall"].value == pytest.approx(60.0, rel=0.05)
+    assert found.mean("test").fit_percent > 97.5
+
+
+def test_temperature_factors_come_back_and_may_be_ignored():
+    truth = TemperatureFactors(-0.004, 0.0, -0.008, 50.0)
+    records = [
+        made(current=i, temperature=warm, factors=truth, warming=0.5, noise=0.02, name=f"{warm:g}C_{i:g}A", seed=k)
+        for k, (warm, i) in enumerate(((20.0, 0.0), (20.0, 1.0), (50.0, 1.0), (80.0, 0.0), (80.0, 1.0)))
+    ]
+    found = identify_records(records, "bingham")
+    assert found.warm and found.bench.factors.reference == pytest.approx(50.0)
+    assert found.bench.factors.viscous == pytest.approx(-0.004, rel=0.1)
+    assert found.bench.factors.yield_force == pytest.approx(-0.008, rel=0.05)
+    assert found.bench.warming == pytest.approx(0.5, rel=0.05)
+    assert found.bench.factors.stiffness == 0.0, "this damper has none: what has no influence keeps its default"
+    assert found.notes == ["the data do not identify temperature_factors.stiffness"]
+    cold = identify_records(records, "bingham", Request(ignore_temperature=True))
+    assert not cold.warm and cold.mean("train").fit_percent < 90.0
+
+
+def test_a_temperature_that_hardly_varies_is_no_input():
+    records = [record._replace(temperature=np.full(len(record.force), 30.0 + k)) for k, record in
+               enumerate(sines(BINGHAM))]  # fmt: skip
+    assert not identify_records(records, "bingham").warm
+
+
+def test_a_stroke_far_from_zero_has_an_origin_of_its_own():
+    moved = [record._replace(displacement=record.displacement + 0.03) for record in sines(BOUC_WEN)]
+    found = identify_records(moved, "bouc_wen")
+    assert found.origin == pytest.approx(0.03, abs=1e-3)
+    assert found.bench.damper.k0 == pytest.approx(BOUC_WEN.k0, rel=0.05)
+
+
+def test_what_is_fixed_stays():
+    found = identify_records(sines(BOUC_WEN), "bouc_wen", Request(fix={"n": 3, "A": 1500.0}))
+    assert (found.bench.damper.n, found.bench.damper.A) == (3.0, 1500.0)
+    assert {"n", "A"}.isdisjoint(estimates(found)) and found.mean("train").fit_percent > 90.0
+
+
+def test_one_current_leaves_its_influence_unknown_and_the_rest_known():
+    found = identify_records([made(current=0.5, noise=0.02)], "bingham")
+    unknown = {name for name, estimate in estimates(found).items() if not estimate.identified}
+    assert unknown == {"c_a", "c_b", "fc_a", "fc_b"}
+    pairs = {frozenset(pair[:2]) for pair in found.information.correlated}
+    assert {frozenset(("c_a", "c_b")), frozenset(("fc_a", "fc_b"))} <= pairs
+    assert estimates(found)["f0"].identified
+
+
+def test_an_offset_of_zero_is_known_to_be_zero():
+    found = identify_records(sines(BINGHAM._replace(f0=0.0)), "bingham")
+    assert abs(found.bench.damper.f0) < 1.0 and estimates(found)["f0"].identified
+
+
+def test_a_passive_damper_has_nothing_that_depends_on_current():
+    found = identify_records([made(noise=0.02)], "bingham")
+    assert set(estimates(found)) == {"c_a", "fc_a", "f0"}
+    assert found.bench.damper.c_a == pytest.approx(BINGHAM.c_a, rel=0.05)
+
+
+def test_the_same_seed_gives_the_same_parameters():
+    first, again = (identify_records(sines(BINGHAM), "bingham").bench.damper for _ in range(2))
+    assert first == again
+
+
+def test_motion_beyond_what_was_fitted_is_told():
+    found = identify_records([made(), made(amplitude=0.03, current=1.5, name="far")], "bingham", Request(("far",)))
+    assert any("0.377 m/s of velocity, the fitted ones 0.126 m/s only" in note for note in found.notes)
+    assert any("1.5 A of current, the fitted ones 0 A only" in note for note in found.notes)
+
+
+def test_the_effective_number_of_samples_respects_memory():
+    rng = np.random.default_rng(0)
+    white = rng.standard_normal(20000)
+    assert correlation_length(white) == pytest.approx(1.0, abs=0.1)
+    coloured = np.convolve(white, np.full(10, 0.1), "valid")  # triangular: 1 + 2 sum (1 - k/10) = 10
+    assert correlation_length(coloured) == pytest.approx(10.0, rel=0.25)
+    assert correlation_length(np.zeros(50)) == 1.0
+
+
+@pytest.mark.parametrize("offset", [0.0, 30.0])
+def test_the_criterion_of_bayes_prefers_the_model_that_made_the_data(offset):
+    records = sines(BINGHAM._replace(f0=offset))
+    free, fixed = (identify_records(records, "bingham", Request(fix=fix)).bic for fix in ({}, {"f0": 0.0}))
+    assert (fixed < free) == (offset == 0.0)
+
+
+def test_the_function_of_the_package_reads_a_folder(bench):
+    found = seatsim.identify(bench, "bingham", Request(("*2.5Hz",)))
+    assert [judged.record.name for judged in found.judged if judged.part == "test"] == ["sine_2.5Hz, 1 A"]
+    assert isinstance(found, seatsim.Identification)
+
+
+def test_the_example_gives_the_damper_it_was_made_with():
+    folder = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "bench"
+    truth = YAML(typ="safe").load((folder / "sine_10mm_2Hz.yaml").read_text())["made_with"]
+    found = seatsim.identify(folder, truth["model"])
+    assert len(found.judged) == 9 and found.mean("train").fit_percent == pytest.approx(99.0, abs=0.1)
+    for name, estimate in estimates(found).items():
+        assert estimate.value == pytest.approx(truth["parameters"][name], rel=0.05), name
+
+
+def test_bad_requests_are_refused(bench):
+    with pytest.raises(InputError, match=r"no damper is called 'bignham' \(did you mean 'bingham'\?\)"):
+        seatsim.identify(bench, "bignham")
+    everything = {name: getattr(BINGHAM, name) for name in BINGHAM._fields}
+    with pytest.raises(InputError, match="leaves no parameter of Bingham to fit"):
+        seatsim.identify(bench, "bingham", Request(fix=everything))
+    still = [record._replace(velocity=0.0 * record.velocity) for record in sines(BINGHAM)]
+    with pytest.raises(InputError, match="no motion or no force"):
+        identify_records(still, "bingham")
+
+
+def test_a_model_that_fails_says_so(monkeypatch):
+    def singular(*_):
+        raise np.linalg.LinAlgError("singular")
+
+    monkeypatch.setattr(module, "best", singular)
+    with pytest.raises(RunError, match="bingham: the fit failed: singular; hold a parameter by --fix"):
+        identify_records(sines(BINGHAM), "bingham")
+    monkeypatch.undo()
+    monkeypatch.setattr(module, "judge", lambda *_: [judged(part) for part in ("train", "test")])
+    with pytest.raises(RunError, match="bingham: no parameters were found with which its state stays finite on made"):
+        identify_records(sines(BINGHAM), "bingham")
+
+
+def judged(part):
+    from seatsim.identification.judging import Judged
+
+    return Judged(made(), part, np.full(3, math.nan), None)

@@ -1,0 +1,210 @@
+"""Bench tables: what their names mean, how they are split into records, and what is refused."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from seatsim.bench_columns import KNOWN, meaning
+from seatsim.bench_tables import load_bench, unused_columns
+from seatsim.errors import InputError
+
+from .benches import columns, made
+
+TIME = np.arange(100) / 500.0
+
+
+def plain(**other):
+    """Return a table of a still damper, with other columns."""
+    table = {"time_s": TIME, "displacement_m": 0.01 * np.sin(6.0 * TIME), "force_N": np.full(100, 5.0)}
+    return pd.DataFrame(table | other)
+
+
+def loaded(folder, table, name="one.csv", sidecar=None):
+    table.to_csv(folder / name, index=False)
+    if sidecar is not None:
+        (folder / "one.yaml").write_text(sidecar)
+    return load_bench(folder / name)
+
+
+@pytest.mark.parametrize(
+    "name, quantity, value",
+    [
+        ("time", "time", 3.0), ("t_ms", "time", 3e-3), ("displacement_mm", "displacement", 3e-3),
+        ("Stroke [cm]", "displacement", 0.03), ("velocity (m/s)", "velocity", 3.0), ("speed_mm_s", "velocity", 3e-3),
+        ("force_kN", "force", 3e3), ("Damper force (N)", "force", 3.0), ("current_mA", "current", 3e-3),
+        ("current_command_A", "command", 3.0), ("voltage_V", "voltage", 3.0), ("command_voltage_mV", "voltage", 3e-3),
+        ("temperature_C", "temperature", 3.0), ("Temperature (°C)", "temperature", 3.0),
+        ("temperature_K", "temperature", -270.15), ("segment", "segment", 3.0), ("valid", "valid", 3.0),
+    ],
+)  # fmt: skip
+def test_a_name_tells_quantity_and_unit(name, quantity, value):
+    known = meaning(name)
+    assert known.quantity == quantity and known.factor * 3.0 + known.zero == pytest.approx(value)
+
+
+@pytest.mark.parametrize("name", ["f_Hz", "displacement_N", "displacement_cmd_m", "force_cmd_N", "amplitude_m", ""])
+def test_other_names_mean_nothing(name):
+    assert meaning(name) is None
+
+
+def test_a_force_names_its_current():
+    assert (meaning("force_0p4A_N").at, meaning("force_0.4A_N").at, meaning("force_1A_kN").factor) == (0.4, 0.4, 1e3)
+
+
+def test_units_are_turned_into_si(tmp_path):
+    record = made(current=0.5, temperature=40.0)
+    table = columns(record).assign(temperature_K=313.15)
+    (found,) = loaded(tmp_path, table)
+    assert found.name == "one, 0.5 A" and found.file == "one.csv" and found.rate == pytest.approx(500.0)
+    for name in ("displacement", "velocity", "force", "current", "temperature"):
+        np.testing.assert_allclose(getattr(found, name), getattr(record, name), rtol=1e-9, atol=1e-12, err_msg=name)
+    assert not found.commanded
+
+
+def test_every_kind_of_compressed_table_is_found_in_a_folder(tmp_path):
+    for suffix in (".csv", ".csv.gz", ".csv.xz", ".csv.zip", ".csv.bz2"):
+        plain().to_csv(tmp_path / f"table{suffix}", index=False)
+    (tmp_path / "notes.txt").write_text("no table")
+    found = load_bench(tmp_path)
+    assert [record.file for record in found] == sorted(f"table{s}" for s in (
+        ".csv", ".csv.gz", ".csv.xz", ".csv.zip", ".csv.bz2"
+    ))  # fmt: skip
+
+
+def test_a_velocity_is_derived_where_there_is_none(tmp_path):
+    record = made(frequency=1.0)
+    (found,) = loaded(tmp_path, columns(record).drop(columns="velocity_m_s"))
+    middle = slice(20, -20)
+    np.testing.assert_allclose(found.velocity[middle], record.velocity[middle], atol=0.002 * np.max(record.velocity))
+    (short,) = loaded(tmp_path, plain().iloc[:21].assign(time_s=np.arange(21) / 5000.0))
+    assert len(short.velocity) == 21
+
+
+def test_a_sidecar_states_what_is_constant(tmp_path):
+    text = "current_mA: 600\ntemperature_C: 45\nsample_rate_Hz: 250\nforce: a load cell\nvalid: true\n"
+    (found,) = loaded(tmp_path, plain().drop(columns="time_s"), sidecar=text)
+    assert found.rate == pytest.approx(250.0) and found.mean_current == pytest.approx(0.6)
+    assert np.all(found.temperature == 45.0)
+    (driven,) = loaded(tmp_path, plain(voltage_V=np.where(TIME > 0.1, 2.0, 0.0)), sidecar=text)
+    assert driven.commanded and np.ptp(driven.current) == 2.0, "a column counts before the sidecar"
+
+
+def test_forces_that_name_their_current_are_records_of_one_motion(tmp_path):
+    table = plain().drop(columns="force_N").assign(force_0p2A_N=1.0, force_1p0A_N=2.0)
+    first, second = loaded(tmp_path, table)
+    assert (first.name, second.name) == ("one, 0.2 A", "one, 1 A")
+    assert (first.mean_current, second.mean_current) == (0.2, 1.0)
+    assert np.array_equal(first.displacement, second.displacement) and second.force[0] == 2.0
+
+
+def test_a_record_ends_where_the_segment_changes_and_where_time_jumps(tmp_path):
+    segment = np.repeat([0, 1], 50)
+    found = loaded(tmp_path, plain(segment=segment, current_A=0.5 * segment))
+    assert [(r.name, len(r.force)) for r in found] == [("one, 0 A", 50), ("one, 0.5 A", 50)]
+    gap = plain()
+    gap.loc[40:, "time_s"] += 1.0
+    found = loaded(tmp_path, gap)
+    assert [(r.name, len(r.force)) for r in found] == [("one, 0 A, part 1", 40), ("one, 0 A, part 2", 60)]
+
+
+def test_invalid_rows_are_left_out_whatever_they_hold(tmp_path):
+    table = plain(valid=np.where((TIME > 0.08) & (TIME < 0.1), 0, 1))
+    table.loc[table.valid == 0, "force_N"] = np.nan
+    found = loaded(tmp_path, table)
+    assert len(found) == 2 and sum(len(r.force) for r in found) == int(table.valid.sum())
+
+
+def test_commands_are_told_from_currents(tmp_path):
+    square = np.where(TIME % 0.1 < 0.05, 0.0, 1.0)
+    assert loaded(tmp_path, plain(command_A=square))[0].commanded
+    assert not loaded(tmp_path, plain(current_A=square))[0].commanded
+    assert not loaded(tmp_path, plain(command_A=1.0))[0].commanded, "a coil has long settled on a constant command"
+    (both,) = loaded(tmp_path, plain(command_A=square, coil_current_A=0.5 * square - 0.1))
+    assert not both.commanded and both.current.min() == 0.0 and both.current.max() == pytest.approx(0.4)
+
+
+def test_unused_columns_are_told(tmp_path):
+    found = loaded(tmp_path, plain(amplitude_cmd_m=0.01, f_Hz=1.0))
+    assert unused_columns(found) == ["columns that are not used: amplitude_cmd_m, f_Hz"]
+    assert unused_columns(loaded(tmp_path, plain())) == []
+
+
+RECORDING = """\
+rig: {rig}
+sample_rate: 500.0
+nominal: nominal.yaml
+runs: [{{name: run-a, file: run-a.csv}}]
+channels: {{displacement: {{unit: m}}, damper_force: {{unit: N}}, command_voltage: {{unit: V}}}}
+actuator: {{gain: 0.5}}
+"""
+
+
+def test_a_recording_of_a_bench_is_read_as_it_says(tmp_path):
+    (tmp_path / "recording.yaml").write_text(RECORDING.format(rig="damper_bench"))
+    voltage = np.where(TIME > 0.1, 2.0, 0.0)
+    table = pd.DataFrame({"displacement": 0.01 * TIME, "damper_force": 5.0 + TIME, "command_voltage": voltage})
+    table.to_csv(tmp_path / "run-a.csv", index=False)
+    (found,) = load_bench(tmp_path)
+    assert found.name == "run-a" and found.commanded and found.current.max() == 1.0
+    assert found.velocity[50] == pytest.approx(0.01)
+    head = (tmp_path / "recording.yaml").read_text().replace("damper_bench", "seat").replace(
+        "displacement: {unit: m}", "floor_acceleration: {unit: m/s^2}"
+    ).replace("command_voltage: {unit: V}", "coil_current: {unit: A}")  # fmt: skip
+    (tmp_path / "recording.yaml").write_text(head)
+    with pytest.raises(InputError, match=r"rig 'seat' with floor_acceleration.* 'rig: damper_bench'"):
+        load_bench(tmp_path)
+
+
+def uneven():
+    return plain().assign(time_s=TIME + TIME**2)
+
+
+def jumping():
+    return plain().assign(time_s=np.where(np.arange(100) % 3 == 2, TIME + 0.0015, TIME))
+
+
+@pytest.mark.parametrize(
+    "table, sidecar, problem",
+    [
+        (plain().drop(columns="displacement_m").assign(displacment_m=0.0), None,
+         "column 'displacment_m' is not known; name it 'displacement_m' or 'displacement_cm'"),
+        (plain().drop(columns="displacement_m").assign(disp_mm=0.0), None,
+         "no column holds the displacement (did you mean 'disp_mm'?); name it 'displacement_m' or 'displacement_cm'"),
+        (plain().drop(columns="force_N").assign(force_filtered=0.0), None,
+         "no column holds the force (did you mean 'force_filtered'?); name it 'force_N' or 'force_kN'"),
+        (plain().drop(columns="time_s"), None, "or give 'sample_rate_Hz' in one.yaml"),
+        (plain(curent_A=1.0), None, "column 'curent_A' is not known; name it 'current_A' or 'current_mA'"),
+        (plain(temperature_F=70.0), None, "column 'temperature_F' is not known; name it 'temperature_C' or"),
+        (plain(stroke_mm=1.0), None, "'displacement_m' and 'stroke_mm' both hold the displacement"),
+        (plain(damper_force_kN=1.0), None, "'force_N' and 'damper_force_kN' both hold the force"),
+        (plain(temperature_C=["warm"] * 100), None, "line 2, temperature_C: 'warm' (and 99 more rows) is not"),
+        (plain(current_A=np.where(TIME == 0.05, np.nan, 1.0)), None, "line 27, current_A: 'nan' is not a finite"),
+        (plain().iloc[:7], None, "holds 7 rows of rising time; a record has at least 20"),
+        (plain().assign(time_s=0.0), None, "100 rows of rising time"),
+        (uneven(), None, "are not evenly spaced in time; resample them"),
+        (jumping(), None, "line 4, 0.0055 s: rows are not evenly spaced in time"),
+        (plain(), "sample_rate: 0", "one.yaml, line 1, sample_rate: 0 is not permitted"),
+        (plain(), "current_A: .nan", "one.yaml, line 1, current_A: nan is not permitted"),
+    ],
+)  # fmt: skip
+def test_a_bad_table_is_refused_at_its_place(table, sidecar, problem, tmp_path):
+    with pytest.raises(InputError) as error:
+        loaded(tmp_path, table, sidecar=sidecar)
+    assert problem in str(error.value) and "one." in str(error.value)
+
+
+def test_missing_and_empty_places_are_refused(tmp_path):
+    (tmp_path / "sines").mkdir()
+    with pytest.raises(InputError, match=r"sine: no such file or folder \(did you mean 'sines'\?\); give"):
+        load_bench(tmp_path / "sine")
+    with pytest.raises(InputError, match=r"sines: holds no table; give a folder with files that end in \.csv"):
+        load_bench(tmp_path / "sines")
+    (tmp_path / "empty.csv").write_text("")
+    (tmp_path / "no.csv.gz").write_text("not compressed")
+    for name in ("empty.csv", "no.csv.gz"):
+        with pytest.raises(InputError, match=f"{name}: cannot be read as a table"):
+            load_bench(tmp_path / name)
+
+
+def test_known_names_are_small_letters():
+    assert all(name == name.lower() and meaning(name) == KNOWN[name] for name in KNOWN)
