@@ -11,13 +11,13 @@ from seatsim.bench_tables import BenchRecord
 from seatsim.errors import InputError
 from seatsim.fields import describe
 from seatsim.identification.coordinates import Coordinates, Scales, fixed, scaled
-from seatsim.identification.predict import drive
+from seatsim.identification.predict import Drive, drive
 from seatsim.identification.problem import Problem, weights
 from seatsim.identification.split import Request
 from seatsim.registry import card_of
 
 SHORT = 10000
-"""Rows of all records together on which the global search simulates."""
+"""Rows of all records together that count in the global search."""
 LEAST_SHORT = 300
 """Rows of a record that it takes at least."""
 WARMTH = 5.0
@@ -52,13 +52,14 @@ def posed(records: Sequence[BenchRecord], cls: Any, origin: float, request: Requ
         raise InputError(f"--fix {', '.join(request.fix)} leaves no parameter of {cls.__name__} to fit; leave one free")
     reference = None if request.ignore_temperature else _reference(records)
 
-    def problem(chosen: Sequence[BenchRecord]) -> Problem:
-        drives = [drive(record, origin, False) for record in chosen]
-        coil = any(record.commanded for record in records)
-        return Problem(coordinates, drives, weights(chosen, drives), coil, reference)
-
+    coil = any(record.commanded for record in records)
+    drives = [drive(record, origin, False) for record in records]
     rows = max(LEAST_SHORT, SHORT // len(records))
-    return problem(records), problem([_liveliest(record, rows) for record in records])
+    stretches = [_liveliest(record, rows) for record in records]
+    short = [_warmed(record, stretch, origin) for record, stretch in zip(records, stretches, strict=True)]
+    parts = [record.part(*stretch) for record, stretch in zip(records, stretches, strict=True)]
+    whole = Problem(coordinates, drives, weights(records, drives), coil, reference)
+    return whole, whole._replace(drives=short, weights=weights(parts, short))
 
 
 def _scales(records: Sequence[BenchRecord]) -> Scales:
@@ -85,10 +86,18 @@ def _reference(records: Sequence[BenchRecord]) -> float | None:
     return float(np.mean(np.concatenate(warmth)))
 
 
-def _liveliest(record: BenchRecord, rows: int) -> BenchRecord:
-    """Return the stretch of so many rows with the highest mean speed."""
+def _liveliest(record: BenchRecord, rows: int) -> tuple[int, int]:
+    """Return first and last row (excluded) of the stretch of so many rows with the highest mean speed."""
     if len(record.force) <= rows:
-        return record
+        return 0, len(record.force)
     travel = np.concatenate([[0.0], np.cumsum(np.abs(record.velocity))])
     first = int(np.argmax(travel[rows:] - travel[:-rows]))
-    return record.part(first, first + rows)
+    return first, first + rows
+
+
+def _warmed(record: BenchRecord, stretch: tuple[int, int], origin: float) -> Drive:
+    """Return the drive of a stretch and of as many rows before it, in which the state forgets that it began at rest."""
+    first, last = stretch
+    begin = max(0, 2 * first - last)
+    found = drive(record.part(begin, last), origin, False)
+    return found._replace(counted=round((first - begin) / record.rate / found.step))

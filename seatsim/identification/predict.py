@@ -41,7 +41,8 @@ class Bench(NamedTuple):
 class Drive(NamedTuple):
     """A record as the bench is driven by it: samples every half step, shape (2 n + 1,), and the force at steps.
 
-    x [m] from the origin, v [m/s], current [A], temperature [degC], step [s]; force [N] has shape (n + 1,).
+    x [m] from the origin, v [m/s], current [A], temperature [degC], step [s]; force [N] has shape (n + 1,). Steps
+    before the one `counted` only bring the damper into its state.
     """
 
     x: Array
@@ -51,6 +52,7 @@ class Drive(NamedTuple):
     temperature: Array
     step: float
     force: Array
+    counted: int = 0
 
 
 def drive(record: BenchRecord, origin: float, every: bool) -> Drive:

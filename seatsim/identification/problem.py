@@ -100,7 +100,7 @@ class Problem(NamedTuple):
         bench = self.bench(vector)
         parts = []
         for drive, weight in zip(self.drives, self.weights, strict=True):
-            part = weight * (predicted(bench, drive, PARTS, self.tolerance) - drive.force)
+            part = weight * (predicted(bench, drive, PARTS, self.tolerance) - drive.force)[drive.counted :]
             limit = AWAY / math.sqrt(len(part))
             parts.append(np.clip(np.where(np.isfinite(part), part, limit), -limit, limit))
         return np.concatenate(parts)
@@ -114,7 +114,8 @@ def weights(records: Sequence[BenchRecord], drives: Sequence[Drive]) -> list[flo
     """Return the factors that make every record count alike."""
     spreads = np.array([np.std(record.force) for record in records])
     least = QUIET * float(np.max(spreads))
-    return [1.0 / (max(s, least) * math.sqrt(len(d.force))) for s, d in zip(spreads, drives, strict=True)]
+    counted = [len(drive.force) - drive.counted for drive in drives]
+    return [1.0 / (max(s, least) * math.sqrt(n)) for s, n in zip(spreads, counted, strict=True)]
 
 
 def jacobian(problem: Problem, vector: Array, residuals: Array, step: float = 1e-3) -> Array:

@@ -96,5 +96,5 @@ def refined(problem: Problem, start: Array, tell: Tell = silent, most: int = FUL
 
     low, high = problem.bounds
     inside = np.clip(start, low + 1e-9, high - 1e-9)
-    found = least_squares(value, inside, slopes, bounds=(low, high), x_scale="jac", ftol=1e-4, xtol=1e-4, max_nfev=most)
+    found = least_squares(value, inside, slopes, bounds=(low, high), x_scale="jac", ftol=1e-6, xtol=1e-6, max_nfev=most)
     return np.asarray(found.x), 2.0 * float(found.cost) / len(problem.drives)
