@@ -12,8 +12,6 @@ black box  Ridge regression on FEATURES random tanh features of the current and 
 from __future__ import annotations
 
 import argparse
-from fnmatch import fnmatch
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -23,11 +21,13 @@ from rich.table import Table
 from threadpoolctl import threadpool_limits
 
 from seatsim.bench_tables import BenchRecord, load_bench
+from seatsim.characterisation.cycles import loops_of, steady_cycles, whole_cycles
 from seatsim.identification.figures import Figures, averaged, figures
+from seatsim.identification.split import Request, split
 
 Array = NDArray[np.float64]
 
-SINES, HELD_OUT = "utfsm_mr_sine_raw", ["*10mm_2Hz*", "*5mm_4Hz*"]
+SINES, HELD_OUT = "utfsm_mr_sine_raw", ("*10mm_2Hz*", "*5mm_4Hz*")
 RATE = 200.0
 HISTORY = (0.005, 0.01, 0.02, 0.04, 0.08, 0.16)
 """Seconds."""
@@ -35,28 +35,14 @@ FEATURES = 600
 STEEPEST = 10.0
 """Slope of a feature, over the spread of an input."""
 PENALTIES = 10.0 ** np.arange(-8.0, 1.0)
-STEADY = 0.05
-"""How far period and stroke of a steady cycle may be off the record's median."""
 
 
 def repeats(record: BenchRecord) -> Figures | None:
     """Return how well the mean of every second steady cycle predicts the others, None where there are too few."""
-    middle = 0.5 * (np.percentile(record.displacement, 2.0) + np.percentile(record.displacement, 98.0))
-    x = record.displacement - middle
-    above, rises = x > 0.3 * np.max(x), []
-    for k in np.flatnonzero((x[:-1] <= 0.0) & (x[1:] > 0.0)):
-        if not rises or above[rises[-1] : k].any():
-            rises.append(int(k))
-    pairs = list(pairwise(rises))
-    period = np.array([b - a for a, b in pairs], dtype=float)
-    stroke = np.array([np.ptp(x[a:b]) for a, b in pairs])
-    good = [
-        pair for pair, p, s in zip(pairs, period, stroke, strict=True)
-        if abs(p / np.median(period) - 1.0) < STEADY and abs(s / np.median(stroke) - 1.0) < STEADY
-    ]  # fmt: skip
-    if len(good) < 4:
+    steady = steady_cycles(whole_cycles(record.displacement))
+    if len(steady) < 4:
         return None
-    cycles = np.array([np.interp(np.linspace(a, b, 400), np.arange(len(x)), record.force) for a, b in good])
+    cycles = np.array([loop.force for loop in loops_of(record, steady)])
     others = cycles[1::2]
     return figures(others.ravel(), np.tile(np.mean(cycles[::2], axis=0), len(others)))
 
@@ -132,10 +118,8 @@ def black_box(train: list[BenchRecord], test: list[BenchRecord]) -> tuple[list[F
 
 def report(data: Path) -> None:
     """Print both references, record by record and on average."""
-    records = load_bench(data / SINES)
-    held_out = [any(fnmatch(record.file, pattern) for pattern in HELD_OUT) for record in records]
-    test = [record for record, held in zip(records, held_out, strict=True) if held]
-    train = [record for record, held in zip(records, held_out, strict=True) if not held]
+    parts = split(load_bench(data / SINES), Request(HELD_OUT))
+    train, test = parts.train, parts.held_out
     fitted, predicted, penalty = black_box(train, test)
     table = Table(title=f"fit % (penalty {penalty:g})", title_justify="left")
     for column in ("record", "part", "repeats", "black box"):

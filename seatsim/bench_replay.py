@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, UnivariateSpline
 
 from seatsim.augmentation import changed, damper_with, in_loop, readings, undone
-from seatsim.coil import Coil, relax
+from seatsim.coil import Coil
 from seatsim.dampers.bench import bench_force
 from seatsim.effects.base import ON_SEAT, acts_on
 from seatsim.errors import InputError
+from seatsim.kernel.lag import lagged
 from seatsim.recording import Recording
 from seatsim.registry import name_of
 from seatsim.scenario import Scenario
@@ -65,12 +66,9 @@ def _current(coil: Coil, table: Mapping[str, Array], gain: float | None, rows: A
     if command is None:
         return np.interp(fine, rows, table["coil_current"]) if "coil_current" in table else np.zeros(len(fine))
     held = np.searchsorted(rows, fine - coil.delay + 1e-9 * rows[1], side="right") - 1
-    current = np.empty(len(fine))
-    current[0] = table["coil_current"][0] if "coil_current" in table else 0.0
-    wanted = np.where(held < 0, current[0], np.clip(command, 0.0, coil.max_current)[np.maximum(held, 0)])
-    for k in range(len(fine) - 1):
-        current[k + 1] = relax(coil, current[k], wanted[k], fine[1])
-    return current
+    start = table["coil_current"][0] if "coil_current" in table else 0.0
+    wanted = np.where(held < 0, start, np.clip(command, 0.0, coil.max_current)[np.maximum(held, 0)])
+    return lagged(coil, wanted, fine[1], start)
 
 
 def _temperature(scenario: Scenario, table: Mapping[str, Array], rows: Array, fine: Array) -> Array:

@@ -78,6 +78,14 @@ class BenchRecord(NamedTuple):
         arrays = {name: getattr(self, name)[cut] for name in ("displacement", "velocity", "force", "current")}
         return self._replace(temperature=warmth, **arrays)
 
+    def liveliest(self, rows: int) -> tuple[int, int]:
+        """Return first and last row (excluded) of the stretch of at most so many rows with the highest mean speed."""
+        if len(self.force) <= rows:
+            return 0, len(self.force)
+        travel = np.concatenate([[0.0], np.cumsum(np.abs(self.velocity))])
+        first = int(np.argmax(travel[rows:] - travel[:-rows]))
+        return first, first + rows
+
 
 def load_bench(path: str | Path) -> list[BenchRecord]:
     """Return the records of a table or of every table of a folder, in the order of their names.

@@ -16,7 +16,7 @@ from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row, columns
 from seatsim.characterisation.summary import Characterisation, contents
 from seatsim.files import write_json, write_whole
-from seatsim.output import PICTURE
+from seatsim.output import write_pictures
 
 LISTED = 45
 """Most rows of the table on the terminal."""
@@ -66,9 +66,7 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
         write_whole(folder / "cycles.csv", partial(table.to_csv, index=False)),
         write_json(folder / "characterisation.json", contents(found)),
     ]
-    for name, figure in draw(found).items():
-        paths.append(write_whole(folder / f"{name}.png", partial(figure.savefig, **PICTURE)))
-    return paths
+    return [*paths, *write_pictures(draw(found), folder)]
 
 
 def tables(found: Characterisation) -> list[Table]:

@@ -29,7 +29,7 @@ def characterise(
     frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ", help="Frequencies.")] = "",
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
-    from seatsim.bench_tables import load_bench, unused_columns
+    from seatsim.bench_tables import load_bench
     from seatsim.characterisation.of_model import characterise_model, settings_of, specimen
     from seatsim.characterisation.summary import characterise as of_records
     from seatsim.characterisation_output import WIDEST_TABLE, remarks, tables, write_characterisation
@@ -40,7 +40,6 @@ def characterise(
     if data is not None:
         records = load_bench(data)
         found = of_records(records, _title(data), str(data))
-        found.notes.extend(unused_columns(records))
     else:
         tested = specimen(model, parameters)
         found = characterise_model(tested, settings_of(tested, *grid))

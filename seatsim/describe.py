@@ -59,7 +59,7 @@ def _page(name: str, kind: str, cls: type) -> str:
         ]
         lines += [f"State: {card.state}"] if card.state else []
         lines += [f"Confidence: {card.confidence}; {CONFIDENCE[card.confidence]}"]
-        lines += [f"Held in a fit unless asked: {', '.join(card.held)}"] if card.held else []
+        lines += [f"Not fitted by an identification: {', '.join(card.held)}"] if card.held else []
     return "\n".join([*lines, "", "Keys:", *(_line(field) for field in fields_of(cls))])
 
 

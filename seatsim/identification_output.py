@@ -19,7 +19,7 @@ from seatsim.files import write_json, write_text, write_whole
 from seatsim.identification.figures import Figures
 from seatsim.identification.identify import Identification
 from seatsim.identification.league import Place
-from seatsim.output import PICTURE
+from seatsim.output import write_pictures
 
 LISTED = 40
 """Most records of the table on the terminal."""
@@ -44,8 +44,7 @@ def write_identification(found: Identification, folder: str | Path) -> list[Path
         write_text(folder / "parameters.yaml", text.getvalue()),
         write_json(folder / "fit.json", contents(found)),
     ]
-    figure = loops(found)
-    return [*paths, write_whole(folder / "loops.png", partial(figure.savefig, **PICTURE))]
+    return [*paths, *write_pictures({"loops": loops(found)}, folder)]
 
 
 def parameters(found: Identification) -> dict[str, Any]:

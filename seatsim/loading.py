@@ -8,15 +8,15 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from seatsim import registry
 from seatsim.coil import Coil
+from seatsim.dampers.stated import stated_damper
 from seatsim.errors import InputError
 from seatsim.expansion import expand
 from seatsim.plant import Plant
 from seatsim.published import check_published
 from seatsim.scenario import Control, DamperChoice, Inverse, Scenario, Solver, Start
-from seatsim.temperature import TemperatureFactors, Thermal
-from seatsim.validation import build, check_keys, choose, mapping
+from seatsim.temperature import Thermal
+from seatsim.validation import build, check_keys, chosen_class, mapping
 from seatsim.yaml_source import KeyPath, Source
 
 BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
@@ -79,25 +79,8 @@ def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
     )
 
 
-def _find(kind: str, name: str, source: Source, keys: KeyPath) -> type:
-    try:
-        return registry.find(kind, name)
-    except InputError as error:
-        raise source.error(keys, str(error)) from error
-
-
 def _damper(values: Any, source: Source, keys: KeyPath, extra: tuple[str, ...] = ()) -> DamperChoice:
-    mapping(values, source, keys)
-    check_keys(values, ("model", "parameters", "temperature_factors", *extra), source, keys)
-    cls = _find("damper", choose(values, "model", source, keys), source, (*keys, "model"))
-    card = registry.card_of(cls)
-    required: tuple[str, ...] = getattr(cls, "_fields", ()) if card.complete else ()
-    hint = "; this model has no set of its own, state every parameter" if card.complete else ""
-    record = build(cls, values.get("parameters", {}), source, (*keys, "parameters"), required, hint)
-    if "temperature_factors" not in values:
-        return DamperChoice(record, card.factors)
-    where = (*keys, "temperature_factors")
-    return DamperChoice(record, build(TemperatureFactors, values["temperature_factors"], source, where))
+    return DamperChoice(*stated_damper(values, source, keys, extra))
 
 
 def _temperature(value: Any, source: Source) -> float | Thermal:
@@ -110,7 +93,7 @@ def _temperature(value: Any, source: Source) -> float | Thermal:
 def _control(values: Any, source: Source) -> Control:
     keys: KeyPath = ("controller",)
     mapping(values, source, keys)
-    cls = _find("law", choose(values, "law", source, keys), source, (*keys, "law"))
+    cls = chosen_class("law", values, "law", source, keys)
     own = {key: value for key, value in values.items() if key not in ("law", "sample_time", "inverse")}
     if isinstance(own.get("design"), str):
         own["design"] = str(source.path.parent / own["design"])
@@ -139,7 +122,7 @@ def _is_number(value: Any) -> bool:
 def _excitation(values: Any, source: Source) -> Any:
     keys: KeyPath = ("excitation",)
     mapping(values, source, keys)
-    cls = _find("excitation", choose(values, "kind", source, keys), source, (*keys, "kind"))
+    cls = chosen_class("excitation", values, "kind", source, keys)
     own = {key: value for key, value in values.items() if key != "kind"}
     if isinstance(own.get("path"), str):
         own["path"] = str(source.path.parent / own["path"])
@@ -154,7 +137,7 @@ def _effects(values: Any, source: Source) -> tuple[Any, ...]:
         keys: KeyPath = ("effects", index)
         mapping(value, source, keys)
         check_keys(value, ("effect", "parameters"), source, keys)
-        cls = _find("effect", choose(value, "effect", source, keys), source, (*keys, "effect"))
+        cls = chosen_class("effect", value, "effect", source, keys)
         effects.append(build(cls, value.get("parameters", {}), source, (*keys, "parameters")))
     return tuple(effects)
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from seatsim.files import write_json, write_whole
 from seatsim.result import UNITS, Result, Run
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PICTURE: dict[str, Any] = {"dpi": 110, "metadata": {"Software": "seatsim"}, "pil_kwargs": {"compress_level": 3}}
 """How pictures are saved: the same bytes for the same result."""
@@ -27,9 +31,13 @@ def write_result(result: Result, folder: Path) -> list[Path]:
             write_whole(folder / "summary.csv", partial(result.table.to_csv, index=False)),
             write_json(folder / "summary.json", {"runs": [_summary(run) for run in result.runs]}),
         ]
-        for name, figure in draw(result).items():
-            paths.append(write_whole(folder / f"{name}.png", partial(figure.savefig, **PICTURE)))
-        return [*paths[:2], history.result(), *paths[2:]]
+        pictures = write_pictures(draw(result), folder)
+        return [*paths, history.result(), *pictures]
+
+
+def write_pictures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
+    """Write figures as `NAME.png` and return their paths."""
+    return [write_whole(folder / f"{name}.png", partial(figure.savefig, **PICTURE)) for name, figure in figures.items()]
 
 
 def _summary(run: Run) -> dict[str, Any]:

@@ -9,8 +9,9 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from seatsim.errors import nearest
+from seatsim.errors import InputError, nearest
 from seatsim.fields import adapter, describe
+from seatsim.registry import find
 from seatsim.yaml_source import KeyPath, Source
 
 
@@ -59,6 +60,15 @@ def choose(values: Mapping[str, Any], key: str, source: Source, keys: KeyPath) -
     if not isinstance(values[key], str):
         raise source.error((*keys, key), f"{_shown(values[key])} is not a name; write it as text")
     return str(values[key])
+
+
+def chosen_class(kind: str, values: Mapping[str, Any], key: str, source: Source, keys: KeyPath) -> type:
+    """Return the registered class of a kind that is named under a key, or raise InputError at that place."""
+    name = choose(values, key, source, keys)
+    try:
+        return find(kind, name)
+    except InputError as error:
+        raise source.error((*keys, key), str(error)) from error
 
 
 def _check_finite(value: Any, source: Source, keys: KeyPath) -> None:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.bench_tables import BenchRecord
 from seatsim.dampers.bench import SineTest
-
-if TYPE_CHECKING:
-    from seatsim.bench_tables import BenchRecord
 
 Array = NDArray[np.float64]
 

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.bench_tables import BenchRecord
 from seatsim.characterisation.response import Ensemble, Response, crossing, response
 from seatsim.characterisation.steps import Step, find_steps
-
-if TYPE_CHECKING:
-    from seatsim.bench_tables import BenchRecord
 
 Array = NDArray[Any]
 

@@ -17,10 +17,11 @@ from seatsim.characterisation.summary import Characterisation
 from seatsim.coil import Coil, relax
 from seatsim.dampers.base import DamperCard
 from seatsim.dampers.bench import bench_force, sine_test
+from seatsim.dampers.stated import stated_damper
 from seatsim.errors import InputError
 from seatsim.registry import card_of, find, name_of
 from seatsim.temperature import TemperatureFactors
-from seatsim.validation import build, check_keys, choose, mapping
+from seatsim.validation import build
 from seatsim.yaml_source import KeyPath, Source
 
 Array = NDArray[Any]
@@ -85,23 +86,12 @@ def specimen(model: str | None, parameters: Path | None) -> Specimen:
     source = Source(Path(parameters))
     whole = "damper" in source.data
     keys: KeyPath = ("damper",) if whole else ()
-    values = mapping(source.data["damper"], source, keys) if whole else source.data
-    check_keys(values, ("model", "parameters", "temperature_factors"), source, keys)
-    named = choose(values, "model", source, keys)
-    if model not in (None, named):
-        raise source.error((*keys, "model"), f"is '{named}', not the '{model}' of --model; leave --model out")
-    try:
-        cls = find("damper", named)
-    except InputError as error:
-        raise source.error((*keys, "model"), str(error)) from error
-    card: DamperCard = card_of(cls)
-    required = getattr(cls, "_fields", ()) if card.complete else ()
-    damper = build(cls, values.get("parameters", {}), source, (*keys, "parameters"), required)
-    factors = card.factors
-    if "temperature_factors" in values:
-        where = (*keys, "temperature_factors")
-        factors = build(TemperatureFactors, values["temperature_factors"], source, where)
-    coil = Coil(max_current=card.max_current)
+    values = source.data["damper"] if whole else source.data
+    damper, factors = stated_damper(values, source, keys)
+    if model not in (None, values["model"]):
+        problem = f"is '{values['model']}', not the '{model}' of --model; leave --model out"
+        raise source.error((*keys, "model"), problem)
+    coil = Coil(max_current=card_of(type(damper)).max_current)
     if whole and "actuator" in source.data:
         coil = build(Coil, source.data["actuator"], source, ("actuator",), ("rate", "max_current"))
     return Specimen(damper, factors, coil)

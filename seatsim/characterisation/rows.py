@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from seatsim.bench_tables import BenchRecord
 from seatsim.characterisation.cycles import Cycle, loops_of, mean_loop, steady_cycles, whole_cycles
 from seatsim.dampers.bench import SineTest
-
-if TYPE_CHECKING:
-    from seatsim.bench_tables import BenchRecord
 
 Array = NDArray[np.float64]
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
+from seatsim.bench_tables import BenchRecord, unused_columns
 from seatsim.characterisation.cycles import whole_cycles
 from seatsim.characterisation.measured_steps import responses
 from seatsim.characterisation.response import Response, columns_of_step
 from seatsim.characterisation.rows import Row, columns, row_of_record, row_without_cycles
 from seatsim.characterisation.steps import plateaus
-
-if TYPE_CHECKING:
-    from seatsim.bench_tables import BenchRecord
 
 SETTLED = 0.2
 """Seconds after a step of current from which on cycles are counted."""
@@ -44,7 +42,7 @@ def characterise(records: Sequence[BenchRecord], name: str, source: str = "") ->
     """
     rows = [row for record in records for row in _rows(record)]
     answers = [answer for record in records for answer in responses(record)]
-    return Characterisation(name, source or name, True, rows, answers, [])
+    return Characterisation(name, source or name, True, rows, answers, unused_columns(records))
 
 
 def _rows(record: BenchRecord) -> list[Row]:
@@ -75,16 +73,20 @@ def contents(found: Characterisation) -> dict[str, Any]:
 
 def settings(rows: Sequence[Row]) -> list[list[Row]]:
     """Return rows with cycles in groups of the same amplitude and frequency, in the order of these."""
+    groups = grouped([row for row in rows if row.loop is not None], _same)
+    return sorted(groups, key=lambda group: (round(1e3 * group[0].amplitude), group[0].frequency))
+
+
+def grouped(rows: Sequence[Row], alike: Callable[[Row, Row], bool]) -> list[list[Row]]:
+    """Return rows in groups, each row with the first group whose first row is like it, in the order they come."""
     groups: list[list[Row]] = []
     for row in rows:
-        if row.loop is None:
-            continue
-        group = next((group for group in groups if _same(group[0], row)), None)
+        group = next((group for group in groups if alike(group[0], row)), None)
         if group is None:
             groups.append([row])
         else:
             group.append(row)
-    return sorted(groups, key=lambda group: (round(1e3 * group[0].amplitude), group[0].frequency))
+    return groups
 
 
 def _same(a: Row, b: Row) -> bool:

@@ -45,8 +45,8 @@ class DamperCard(NamedTuple):
     model branches on sgn(x) or sgn(dv/dt), so that it is wrong where the motion is not centred about x = 0.
     The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it. complete: the
     model is a form without a parameter set of its own; a scenario states all of its parameters.
-    confidence: a word of `CONFIDENCE`. held: fields that an identification holds unless asked, beside `law_end`:
-    they state the model's range, or no data tell them from the others. smooth: the rates are smooth functions of
+    confidence: a word of `CONFIDENCE`. held: fields that an identification does not fit, beside `law_end`: they
+    state the model's range, or no data tell them from the others. smooth: the rates are smooth functions of
     motion and state, without switch or corner, so that an integrator keeps its order.
     """
 

@@ -55,7 +55,7 @@ def posed(records: Sequence[BenchRecord], cls: Any, origin: float, request: Requ
     coil = any(record.commanded for record in records)
     drives = [drive(record, origin, False) for record in records]
     rows = max(LEAST_SHORT, SHORT // len(records))
-    stretches = [_liveliest(record, rows) for record in records]
+    stretches = [record.liveliest(rows) for record in records]
     short = [_warmed(record, stretch, origin) for record, stretch in zip(records, stretches, strict=True)]
     parts = [record.part(*stretch) for record, stretch in zip(records, stretches, strict=True)]
     whole = Problem(coordinates, drives, weights(records, drives), coil, reference)
@@ -84,15 +84,6 @@ def _reference(records: Sequence[BenchRecord]) -> float | None:
     if len(warmth) < len(records) or max(map(np.max, warmth)) - min(map(np.min, warmth)) <= WARMTH:
         return None
     return float(np.mean(np.concatenate(warmth)))
-
-
-def _liveliest(record: BenchRecord, rows: int) -> tuple[int, int]:
-    """Return first and last row (excluded) of the stretch of so many rows with the highest mean speed."""
-    if len(record.force) <= rows:
-        return 0, len(record.force)
-    travel = np.concatenate([[0.0], np.cumsum(np.abs(record.velocity))])
-    first = int(np.argmax(travel[rows:] - travel[:-rows]))
-    return first, first + rows
 
 
 def _warmed(record: BenchRecord, stretch: tuple[int, int], origin: float) -> Drive:

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.bench_tables import BenchRecord
+from seatsim.coil import Coil
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
 from seatsim.kernel.compilation import compiled
+from seatsim.kernel.lag import lagged
 from seatsim.registry import card_of
 from seatsim.temperature import TemperatureFactors
 
@@ -85,32 +87,14 @@ def _linear(y: Array) -> Array:
     return out
 
 
-def lagged(command: Array, rise: float, fall: float, step: float) -> Array:
-    """Return the current in A that follows a held command with rates in 1/s, starting on it.
-
-    command: shape (N,), every `step` seconds. The solution is exact.
-    """
-    answer: Array = compiled(_lag, ())(command, rise, fall, step)
-    return answer
-
-
-def _lag(command: Array, rise: float, fall: float, step: float) -> Array:
-    """Solve for `lagged`; to be compiled by `compiled`."""
-    out = np.empty_like(command)
-    up, down = math.exp(-rise * step), math.exp(-fall * step)
-    now = command[0]
-    for k in range(len(command)):
-        out[k] = now
-        now = command[k] + (now - command[k]) * (up if command[k] > now else down)
-    return out
-
-
 def predicted(bench: Bench, drive: Drive, most: int = MOST_PARTS, tolerance: float = TOLERANCE) -> Array:
     """Return the force in N at the drive's steps, shape (n + 1,); NaN from where the state ran away.
 
     A step is divided into at most `most` parts until its error, over the force, is below `tolerance`.
     """
-    current = lagged(drive.current, bench.rise, bench.fall, 0.5 * drive.step) if drive.commanded else drive.current
+    current = drive.current
+    if drive.commanded:
+        current = lagged(Coil(bench.rise, rate_fall=bench.fall), current, 0.5 * drive.step, current[0])
     out = np.full(len(drive.force), math.nan)
     run = compiled(run_bench, classes_of(bench.damper))
     state = card_of(type(bench.damper)).initial

@@ -12,7 +12,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import Row
-from seatsim.characterisation.summary import WARMER, Characterisation, settings
+from seatsim.characterisation.summary import WARMER, Characterisation, grouped, settings
 from seatsim.plots import labels, style
 from seatsim.plots.style import LETTER, SAMPLE, Entry, Grid
 
@@ -79,10 +79,7 @@ def by_current(group: Sequence[Row]) -> Family:
     Where the current is always the same they are in the order of the temperatures; where neither tells them apart, of
     the records.
     """
-    coldest = min(row.temperature for row in group)
-    rows = [row for row in group if not row.temperature > coldest + WARMER]
-    if not _varied([row.current for row in group], SAME_CURRENT):
-        rows = list(group)
+    rows = coldest(group) if _varied([row.current for row in group], SAME_CURRENT) else list(group)
     rows = _spread(sorted(rows, key=lambda row: (row.current, row.temperature)), MOST_LINES)
     names = [f"{row.current:.3g} A" for row in rows]
     legend = "current"
@@ -106,6 +103,12 @@ def strongest(group: Sequence[Row]) -> list[Row]:
     """Return the rows at the largest current, within the noise of a measured one."""
     largest = max(row.current for row in group)
     return [row for row in group if row.current >= largest - SAME_CURRENT]
+
+
+def coldest(group: Sequence[Row]) -> list[Row]:
+    """Return the rows at the lowest temperature, or all where none was recorded."""
+    lowest = min(row.temperature for row in group)
+    return [row for row in group if not row.temperature > lowest + WARMER]
 
 
 def setting(row: Row) -> str:
@@ -149,16 +152,7 @@ def _label(panels: Sequence[Axes], title: str, displacement: str) -> None:
 
 def _clouds(rows: Sequence[Row]) -> list[list[Row]]:
     """Return the records without cycles in groups of the same motion."""
-    groups: list[list[Row]] = []
-    for row in rows:
-        if row.cloud is None:
-            continue
-        group = next((group for group in groups if _alike(group[0], row)), None)
-        if group is None:
-            groups.append([row])
-        else:
-            group.append(row)
-    return groups[:MOST_CLOUDS]
+    return grouped([row for row in rows if row.cloud is not None], _alike)[:MOST_CLOUDS]
 
 
 def _alike(a: Row, b: Row) -> bool:

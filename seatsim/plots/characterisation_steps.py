@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.characterisation.response import Response
+from seatsim.characterisation.response import SHARES, Response
 from seatsim.characterisation.summary import Characterisation
 from seatsim.plots import labels, style
 from seatsim.plots.style import GREY, Entry, Grid
@@ -41,7 +41,7 @@ def _draw(axes: Axes, answers: list[Response]) -> None:
     if not answers:
         style.say(axes, "none determined")
         return
-    for level in (0.05, 0.9, 0.95):
+    for level in SHARES:
         axes.axhline(level, color=GREY, linewidth=0.7, linestyle=(0.0, (1.0, 2.0)))
     shown = answers[:MOST]
     end = SHOWN * max((a.t95 for a in shown if math.isfinite(a.t95)), default=0.05)
@@ -51,7 +51,7 @@ def _draw(axes: Axes, answers: list[Response]) -> None:
         name = f"{round(answer.before, 2):g} to {round(answer.after, 2):g} A, {1e3 * answer.t95:.3g} ms"
         style.line(axes, 1e3 * answer.time, answer.share, Entry(name, colour, width=1.7))
         times = np.array([answer.t5, answer.t90, answer.t95])
-        axes.plot(1e3 * times, (0.05, 0.9, 0.95), "o", color=colour, markersize=4)
+        axes.plot(1e3 * times, SHARES, "o", color=colour, markersize=4)
         lag = np.linspace(0.0, end, 200)
         axes.plot(1e3 * lag, 1.0 - np.exp(-answer.rate_95 * lag), color=colour, linewidth=0.8, alpha=0.8)
     axes.set_xlim(-0.08e3 * end, 1e3 * end)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import WARMER, Characterisation, settings
 from seatsim.plots import labels, style
-from seatsim.plots.characterisation_loops import setting, strongest
+from seatsim.plots.characterisation_loops import coldest, setting, strongest
 from seatsim.plots.style import Entry, Grid
 
 MOST = 8
@@ -84,7 +84,7 @@ def blocks_of(rows: Sequence[Row]) -> list[tuple[Across, list[list[Row]]]]:
     frequency where neither varies.
     """
     groups = settings(rows)
-    currents = [_coldest(group) for group in groups]
+    currents = [coldest(group) for group in groups]
     blocks = []
     if any(len({row.current for row in group}) > 1 for group in currents):
         blocks.append((BY_CURRENT, currents))
@@ -137,11 +137,6 @@ def _cycle_dots(axes: Axes, rows: Sequence[Row], figured: Figured, look: Entry) 
         if row.temperature_range > WARMER and len(values):
             warmth = (row.cycle_values or {})["temperature"]
             axes.plot(warmth, values, ".", color=look.colour, markersize=3, alpha=0.5, zorder=1)
-
-
-def _coldest(group: Sequence[Row]) -> list[Row]:
-    coldest = min(row.temperature for row in group)
-    return [row for row in group if not row.temperature > coldest + WARMER]
 
 
 def _range(values: Sequence[float]) -> float:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from seatsim.identification.identify import Identification
 from seatsim.identification.judging import Judged
@@ -46,7 +45,7 @@ def _chosen(judged: Sequence[Judged]) -> list[Judged]:
 
 def _draw(panels: Sequence[Axes], judged: Judged) -> None:
     record = judged.record
-    part = _liveliest(np.abs(record.velocity))
+    part = slice(*record.liveliest(SHOWN))
     for axes, across, name in (
         (panels[0], record.velocity, "velocity [m/s]"),
         (panels[1], 1e3 * record.displacement, "displacement [mm]"),
@@ -56,11 +55,3 @@ def _draw(panels: Sequence[Axes], judged: Judged) -> None:
         style.line(axes, across[part], judged.predicted[part], PREDICTED)
         axes.set_xlabel(name)
     panels[0].set_ylabel("force [N]")
-
-
-def _liveliest(speed: NDArray[np.float64]) -> slice:
-    if len(speed) <= SHOWN:
-        return slice(None)
-    travel = np.concatenate([[0.0], np.cumsum(speed)])
-    first = int(np.argmax(travel[SHOWN:] - travel[:-SHOWN]))
-    return slice(first, first + SHOWN)

@@ -6,10 +6,11 @@ import numpy as np
 import pandas as pd
 
 from seatsim.bench_tables import BenchRecord
+from seatsim.coil import Coil
 from seatsim.dampers.bench import bench_force
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.identification.predict import lagged
+from seatsim.kernel.lag import lagged
 from seatsim.temperature import TemperatureFactors
 
 BINGHAM = Bingham(c_a=400.0, c_b=900.0, fc_a=60.0, fc_b=500.0, f0=30.0, v_ref=0.004)
@@ -30,7 +31,7 @@ def made(damper=BINGHAM, amplitude=0.01, frequency=2.0, current=0.0, seconds=2.0
     command = np.asarray(current(t) if callable(current) else current + 0.0 * t, dtype=float)
     if coil:
         command = np.repeat(command[::2], 2)[:-1]
-    flowing = lagged(command, *coil, 0.5 * step) if coil else command
+    flowing = lagged(Coil(coil[0], rate_fall=coil[1]), command, 0.5 * step, command[0]) if coil else command
     warm = 20.0 if temperature is None else temperature
     factors = factors or TemperatureFactors()
     force = bench_force(damper, x, v, flowing, warm, step, factors) + warming * (warm - factors.reference)

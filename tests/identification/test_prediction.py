@@ -12,9 +12,10 @@ from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.errors import InputError
 from seatsim.identification.figures import averaged, figures
 from seatsim.identification.judging import Further, foretold, further, judge
-from seatsim.identification.predict import Bench, drive, lagged, predicted
+from seatsim.identification.predict import Bench, drive, predicted
 from seatsim.identification.smoothing import sharpened, smoothed
 from seatsim.identification.split import Request, split
+from seatsim.kernel.lag import lagged
 from seatsim.temperature import TemperatureFactors
 
 from .benches import BINGHAM, BOUC_WEN, made, write
@@ -67,11 +68,11 @@ def test_the_origin_of_the_displacement_is_taken_off():
 
 def test_a_command_drives_the_damper_through_the_coil():
     command, step = np.repeat([0.0, 1.0, 0.2], 40), 1e-3
-    current = lagged(command, 200.0, 50.0, step)
-    now = command[0]
+    coil, now = Coil(rate=200.0, rate_fall=50.0), command[0]
+    current = lagged(coil, command, step, now)
     for k, wanted in enumerate(command):
         assert current[k] == pytest.approx(now, abs=1e-12)
-        now = relax(Coil(rate=200.0, rate_fall=50.0), now, wanted, step)
+        now = relax(coil, now, wanted, step)
     record = made(current=lambda t: np.where(t % 1.0 < 0.5, 0.0, 1.0), coil=(200.0, 50.0))
     force = predicted(Bench(BINGHAM, PLAIN, 200.0, 50.0), drive(record, 0.0, True))
     np.testing.assert_allclose(force, record.force, atol=1e-9)
