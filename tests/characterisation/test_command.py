@@ -81,7 +81,7 @@ actuator: {rate: 50, max_current: 0.8}
         ("model: original_bingham\nparam: {f0: 1.0}", "unknown key"),
         ("parameters: {f0: 1.0}", "'model' is missing"),
         ("model: bingham\nparameters: {c_a: 1.0}", "is missing"),
-        ("model: bingham", "not the 'original_bingham' of --model"),
+        ("model: ellis", "not the 'original_bingham' of --model"),
     ],
 )
 def test_bad_parameters_are_refused_at_their_place(text, problem, tmp_path):
