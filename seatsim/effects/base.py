@@ -15,9 +15,10 @@ Before a run, in Python:
 
 In the time loop, compiled by numba, with `z` the effect's own state:
 
-    on the damper       conditioned(self, heat, v, z)   engaged(self, h, pull, z)   yield_current(self, i, z)
-                        yield_speed(self, v, z)   yield_shape(self, shape, target, late, z)   added_force(self, x, v, z)
-                        stiction(self, z)   rates(self, x, v, i, pull, target, z)
+    on the damper       conditioned(self, heat, v, z)   yield_current(self, i, z)   yield_speed(self, v, z)
+                        yield_shape(self, shape, target, late, z)   yield_force(self, force, z)
+                        engaged(self, h, pull, z)   mount_force(self, force, z)   mount_stiffness(self, z)
+                        added_force(self, x, v, z)   stiction(self, z)   rates(self, x, v, u, i, pull, target, z)
     on the seat         suspension_force(self, plant, x, v, z)   linkage_friction(self, z)
                         cushion_force(self, force, plant, xc, vc, z)
                         inner_mass(self, plant, z)   inner_force(self, plant, z)   rates(self, plant, motion, z)
@@ -35,7 +36,8 @@ T = TypeVar("T", bound=type)
 Values = Mapping[str, float]
 
 ON_DAMPER = (
-    "conditioned", "engaged", "yield_current", "yield_speed", "yield_shape", "added_force", "stiction",
+    "conditioned", "engaged", "mount_force", "mount_stiffness", "yield_current", "yield_speed", "yield_shape",
+    "yield_force", "added_force", "stiction",
 )  # fmt: skip
 ON_SEAT = ("suspension_force", "linkage_friction", "cushion_force", "inner_mass", "inner_force")
 

@@ -44,18 +44,26 @@ class GasSpring(NamedTuple):
         {"viscous": 0.1, "yielding": 0.1},
         {"viscous": 0.1, "yielding": 0.1, "speed": 0.03},
         {"viscous": 0.1, "yielding": 0.1, "speed": 0.03, "offset": 0.5},
+        {"viscous": 0.1, "pulling": 0.1, "speed": 0.03, "offset": 0.5},
     ),
 )  # fmt: skip
 class Asymmetry(NamedTuple):
     """Rebound stronger and compression weaker: both parts of the force times `1 + a (tanh(v / speed) + offset)`.
 
-    With an offset of 1 only rebound differs from the nominal damper, with -1 only compression.
+    With an offset of 1 only rebound differs from the nominal damper, with -1 only compression. In a hysteretic damper
+    the side may also be that of the yield force Fy itself, which reverses after the speed: `Fy (1 + pulling (sgn Fy +
+    offset))`.
     """
 
     viscous: Annotated[float, param("-", "a of the viscous part", low=-0.9, high=0.9)]
     yielding: Annotated[float, param("-", "a of the yield part", low=-0.9, high=0.9)] = 0.0
     speed: Annotated[float, param("m/s", "speed over which one turns into the other", above=0, high=1)] = SWITCH
     offset: Annotated[float, param("-", "mean of both sides over a", low=-1, high=1)] = 0.0
+    pulling: Annotated[float, param("-", "a of the yield part, by its own sign", low=-0.9, high=0.9)] = 0.0
+
+    def yield_force(self, force: float, z: State) -> float:
+        """Return the yield force in N, given what it would be in both directions alike."""
+        return force * (1.0 + self.pulling * self.offset) + self.pulling * abs(force)
 
     def conditioned(self, heat: Heat, v: float, z: State) -> Heat:
         """Return the factors of the damper's parts at a speed."""
@@ -89,35 +97,51 @@ class SealFriction(NamedTuple):
         """Return the friction in N that builds up over a travel."""
         return self.force * z[0] if self.presliding > 0.0 else 0.0
 
-    def rates(self, x: float, v: float, i: float, pull: float, target: float, z: State) -> State:
+    def rates(self, x: float, v: float, u: float, i: float, pull: float, target: float, z: State) -> State:
         """Return z'."""
         return (dahl_rate(self.presliding, v, z[0]),)
 
 
 @effect(
     "damper.free_play",
-    source="backlash: the damper's end stays while the gap is crossed",
+    source="backlash: the damper's end stays while the gap is crossed; behind it a mount that yields",
     initial=(0.0,),
     off={"softness": 0.3},
-    forms=({"gap": 1e-4}, {"gap": 1e-3}, {"gap": 3e-4, "softness": 0.9}),
-)
+    forms=(
+        {"gap": 1e-4}, {"gap": 1e-3}, {"gap": 3e-4, "softness": 0.9}, {"gap": 3e-5, "stiffness": 4e6},
+        {"gap": 5e-4, "stiffness": 2e6},
+    ),
+)  # fmt: skip
 class FreePlay(NamedTuple):
     """Backlash at the mount or trapped air: after each reversal of the force a travel `gap` without force.
 
-    The damper hands on the share h of its force, and its own state gets the share h of the speed. With g the place in
-    the gap, `g' = v (1 - h)`, and u = 2 g sgn(F) / gap, h rises smoothly from 0 at `u = 1 - 2 softness` to 1 at u = 1.
+    With g the place in the gap, `g' = v - u` where u is the speed of the piston. Without stiffness the mount is rigid:
+    the damper hands on the share h of its force and `u = h v`; with s = 2 g sgn(F) / gap, h rises smoothly from 0 at
+    `s = 1 - 2 softness` to 1 at s = 1. With it the force is the mount's, `S = stiffness max(0, |g| - gap / 2) sgn g`,
+    and u is the speed at which the damper bears S.
     """
 
     gap: Annotated[float, param("m", "travel without force after a reversal", low=0, high=0.05)]
     softness: Annotated[float, param("-", "share of the gap over which the force returns", above=0, high=1)] = 0.3
+    stiffness: Annotated[float, param("N/m", "stiffness of the mount; 0: rigid", low=0, high=1e9)] = 0.0
 
     def engaged(self, h: float, pull: float, z: State) -> float:
         """Return the share of speed and force that gets through, of a damper that pulls with `pull` newton."""
         return h * _passed(self.gap, self.softness, pull, z[0]) if self.gap > 0.0 else h
 
-    def rates(self, x: float, v: float, i: float, pull: float, target: float, z: State) -> State:
+    def mount_stiffness(self, z: State) -> float:
+        """Return the stiffness in N/m of the mount, 0 where it is rigid."""
+        return self.stiffness
+
+    def mount_force(self, force: float, z: State) -> float:
+        """Return S in N, NaN where the mount is rigid."""
+        if self.stiffness <= 0.0:
+            return force
+        return math.copysign(self.stiffness * max(0.0, abs(z[0]) - 0.5 * self.gap), z[0])
+
+    def rates(self, x: float, v: float, u: float, i: float, pull: float, target: float, z: State) -> State:
         """Return g'."""
-        return (v * (1.0 - _passed(self.gap, self.softness, pull, z[0])) if self.gap > 0.0 else 0.0,)
+        return (v - u,)
 
 
 @jit
@@ -168,7 +192,7 @@ class PreyieldHysteresis(NamedTuple):
         built = late if self.behind > 0.0 else z[0]
         return self.share * built + (1.0 - self.share) * target
 
-    def rates(self, x: float, v: float, i: float, pull: float, target: float, z: State) -> State:
+    def rates(self, x: float, v: float, u: float, i: float, pull: float, target: float, z: State) -> State:
         """Return (z', u')."""
         rate = abs(v) / self.travel if self.travel > 0.0 else 0.0
         if self.lag > 0.0:

@@ -74,7 +74,7 @@ class Remanence(NamedTuple):
         felt = 0.5 * (_play(z[0], i, wide) + _play(z[1], i, narrow))
         return felt + self.lift * min(self.width, max(felt, 0.0)) + after
 
-    def rates(self, x: float, v: float, i: float, pull: float, target: float, z: State) -> State:
+    def rates(self, x: float, v: float, u: float, i: float, pull: float, target: float, z: State) -> State:
         """Return the rates of the two plays and of the current that fell."""
         fading = (self.decay if z[2] > i else FOLLOWING) * (i - z[2])
         if self.width <= 0.0:

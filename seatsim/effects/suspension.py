@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, NamedTuple
 
 from seatsim.effects.base import effect
@@ -43,18 +44,25 @@ class Friction(NamedTuple):
 
 @effect(
     "suspension.progressive_spring",
-    source="odd terms of a hardening spring's series",
-    forms=({"rise": 300.0}, {"rise": 300.0, "skew": 1.0}),
+    source="odd terms of a hardening spring's series; a helper spring that comes to bear",
+    forms=({"rise": 300.0}, {"rise": 300.0, "skew": 1.0}, {"helper": 0.5, "reach": 0.01}),
 )
 class ProgressiveSpring(NamedTuple):
-    """Stiffness that grows with travel: `f = kf x (1 + skew x + rise x^2)`."""
+    """Stiffness that grows with travel: `f = kf x (1 + skew x + rise x^2)`, and a helper spring beside it.
 
-    rise: Annotated[float, param("1/m^2", "relative rise of the spring force per squared travel", low=0, high=1e6)]
+    The helper adds `kf helper (sqrt(x^2 + reach^2) - reach) sgn x`: nothing at small travel, `helper` times the
+    stiffness beyond the travel `reach`.
+    """
+
+    rise: Annotated[float, param("1/m^2", "rise of the spring force per squared travel", low=0, high=1e6)] = 0.0
     skew: Annotated[float, param("1/m", "relative rise per travel, in extension only", low=-200, high=200)] = 0.0
+    helper: Annotated[float, param("-", "stiffness of a helper spring over the spring's", low=0, high=100)] = 0.0
+    reach: Annotated[float, param("m", "travel over which it comes to bear", low=0, high=0.5)] = 0.0
 
     def suspension_force(self, plant: Plant, x: float, v: float, z: State) -> float:
         """Return what the spring force has beyond `kf x`, in N."""
-        return plant.suspension_stiffness * x * x * (self.skew + self.rise * x)
+        helper = math.copysign(self.helper * (math.sqrt(x * x + self.reach * self.reach) - self.reach), x)
+        return plant.suspension_stiffness * (x * x * (self.skew + self.rise * x) + helper)
 
 
 @effect(

@@ -1,7 +1,8 @@
 """A damper with effects: a damper record that the kernel treats like any other.
 
-    h   = share of the stroke that reaches the damper (free play), i_y = current that its yield force feels
-    F   = h (F_damper(x, v, i) with the yield part at i_y, or of a shape of its own) + added forces
+    P   = F_damper(x, v, i) with the yield part at the current i_y that it feels, or of a shape of its own
+    F   = h P + added forces, u = h v          h: share that a free play hands on, u: speed of the piston
+    F   = S + added forces, P(u) = S           behind an elastic mount with the force S
 
 The yield part is what a damper loses when its temperature factor `yielding` is zero.
 """
@@ -18,12 +19,19 @@ from seatsim.temperature import Heat
 
 FAST = 10.0
 """m/s; speed at which a yield force has its full size."""
+SETTLING = 5000.0
+"""1/s; greatest rate at which a mount's force settles to the damper's, for the sake of the time steps."""
+NEAR, TRIALS = 0.01, 40
+"""N, how exactly the forces of mount and damper agree; and the most trials for it."""
 
 conditioned = folded("conditioned")
 engaged = folded("engaged")
+mount_force = folded("mount_force")
+mount_stiffness = summed("mount_stiffness")
 yield_current = folded("yield_current")
 yield_speed = folded("yield_speed")
 yield_shape = folded("yield_shape")
+yield_force = folded("yield_force")
 added_force = summed("added_force")
 stiction = summed("stiction")
 effect_rates = joined("rates")
@@ -38,21 +46,24 @@ class AugmentedDamper(NamedTuple):
     def force(self, x: float, v: float, i: float, heat: Heat, z: Tuple) -> float:
         """Return the smooth force in N."""
         effects, inner, outer = self.effects, before(self.effects, z), own(self.effects, z)
-        pull = _pull(self.damper, effects, x, v, i, heat, inner, outer)
-        answer: float = engaged(effects, outer, 1.0, pull) * pull + added_force(effects, outer, x, v)
+        passed = mount_force(effects, outer, math.nan)
+        if math.isnan(passed):
+            pull = _pull(self.damper, effects, x, v, i, heat, inner, outer)
+            passed = engaged(effects, outer, 1.0, pull) * pull
+        answer: float = passed + added_force(effects, outer, x, v)
         return answer
 
     def rates(self, x: float, v: float, i: float, heat: Heat, z: Tuple) -> Tuple:
         """Return the rates of the damper's state, then of the effects'."""
         effects, inner, outer = self.effects, before(self.effects, z), own(self.effects, z)
         pull = _pull(self.damper, effects, x, v, i, heat, inner, outer)
-        h = engaged(effects, outer, 1.0, pull)
+        u = _piston_speed(self.damper, effects, x, v, i, heat, inner, outer, pull)
         target = 0.0
         if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
             felt = conditioned(effects, outer, heat, v)
             target = _split(self.damper, x, v, yield_current(effects, outer, i), felt, inner).shape
-        theirs = effect_rates(effects, outer, x, v, i, pull, target)
-        answer: Tuple = rates(self.damper, x, h * v, i, heat, inner) + theirs
+        theirs = effect_rates(effects, outer, x, v, u, i, pull, target)
+        answer: Tuple = rates(self.damper, x, u, i, heat, inner) + theirs
         return answer
 
     def friction_limit(self, v: float, i: float, heat: Heat, z: Tuple) -> float:
@@ -66,17 +77,48 @@ class AugmentedDamper(NamedTuple):
 
 
 @jit
+def _piston_speed(
+    damper: Any, effects: Effects, x: float, v: float, i: float, heat: Heat, inner: Tuple, outer: Tuple, pull: float
+) -> float:
+    """Return the piston's speed u in m/s, where the damper's end goes at v and would pull with `pull` at that speed.
+
+    Behind an elastic mount u solves `P(u) + (u - v) stiffness / SETTLING = S`, by false position (Illinois).
+    """
+    passed = mount_force(effects, outer, math.nan)
+    if math.isnan(passed):
+        share: float = engaged(effects, outer, 1.0, pull)
+        return share * v
+    slope = mount_stiffness(effects, outer) / SETTLING
+    other, e_other = v, pull - passed
+    u: float = v - e_other / slope
+    e_u = _pull(damper, effects, x, u, i, heat, inner, outer) + (u - v) * slope - passed
+    for _ in range(TRIALS):
+        if abs(e_u) < NEAR or e_u == e_other:
+            break
+        trial = u - e_u * (u - other) / (e_u - e_other)
+        e_trial = _pull(damper, effects, x, trial, i, heat, inner, outer) + (trial - v) * slope - passed
+        if e_trial * e_u < 0.0:
+            other, e_other = u, e_u
+        else:
+            e_other *= 0.5
+        u, e_u = trial, e_trial
+    return u
+
+
+@jit
 def _pull(damper: Any, effects: Effects, x: float, v: float, i: float, heat: Heat, inner: Tuple, outer: Tuple) -> float:
     """Return the damper's force in N before what is lost in a gap and added beside it."""
     felt = conditioned(effects, outer, heat, v)
     i_y = yield_current(effects, outer, i)
-    if math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
-        return _with_current(damper, x, v, i, i_y, felt, inner)
-    parts = _split(damper, x, v, i_y, felt, inner)
-    late = _split(damper, x, yield_speed(effects, outer, v), i_y, felt, inner).shape
     rest = Heat(felt.viscous, felt.stiffness, 0.0)
-    shape = yield_shape(effects, outer, math.nan, parts.shape, late)
-    total: float = force(damper, x, v, i, rest, inner) + parts.middle + parts.size * shape
+    base: float = force(damper, x, v, i, rest, inner)
+    if math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
+        part = _yield(damper, x, v, i_y, felt, rest, inner)
+    else:
+        parts = _split(damper, x, v, i_y, felt, inner)
+        late = _split(damper, x, yield_speed(effects, outer, v), i_y, felt, inner).shape
+        part = parts.middle + parts.size * yield_shape(effects, outer, math.nan, parts.shape, late)
+    total: float = base + yield_force(effects, outer, part)
     return total
 
 
@@ -86,17 +128,6 @@ class YieldPart(NamedTuple):
     middle: float
     size: float
     shape: float
-
-
-@jit
-def _with_current(damper: Any, x: float, v: float, i: float, i_y: float, heat: Heat, z: Tuple) -> float:
-    """Return the damper's force in N at current i, its yield part at `i_y`."""
-    if i_y == i:
-        whole: float = force(damper, x, v, i, heat, z)
-        return whole
-    rest = Heat(heat.viscous, heat.stiffness, 0.0)
-    total: float = force(damper, x, v, i, rest, z) + _yield(damper, x, v, i_y, heat, rest, z)
-    return total
 
 
 @jit

@@ -87,6 +87,36 @@ def test_free_play_gives_no_force_over_a_travel_after_each_reversal():
         assert share[travel > 2.0 * gap] == pytest.approx(1.0, abs=0.02)
 
 
+def test_an_elastic_mount_and_a_dashpot_are_a_maxwell_element():
+    """S + T S' = c v with T = c / K, and 1 / 5000 s more in which the piston's speed settles."""
+    stiffness, c, hertz = 2e5, 600.0, 5.0
+    x, v = cycles(frequency=hertz, count=10)
+    force = bench([record("damper.free_play", gap=0.0, stiffness=stiffness)], x, v, damper=INERT._replace(c_a=c))
+    settled = slice(len(force) // 2, None)
+    expected = np.max(v) * c / math.hypot(1.0, 2.0 * math.pi * hertz * (c / stiffness + 2e-4))
+    assert np.max(np.abs(force[settled])) == pytest.approx(expected, rel=0.01)
+
+
+def test_an_elastic_mount_keeps_the_gap():
+    gap, stiffness = 2e-3, 4e6
+    x, v = strokes(speed=0.1, length=0.01, count=4)
+    force = bench([record("damper.free_play", gap=gap, stiffness=stiffness)], x, v, 0.5)
+    nominal = bench([], x, v, 0.5)
+    travel = 0.1 * STEP * np.arange(100)
+    unloading = np.max(np.abs(nominal)) / stiffness
+    for stroke in (1, 2, 3):
+        share = (force / nominal)[100 * stroke : 100 * (stroke + 1)]
+        free = (travel > unloading + 2e-4) & (travel < gap - 2e-4)
+        assert np.max(np.abs(share[free])) < 1e-6
+        assert share[travel > gap + 4.0 * unloading] == pytest.approx(1.0, abs=0.01)
+
+
+def test_asymmetry_may_follow_the_sign_of_the_yield_force():
+    effect = record("damper.asymmetry", viscous=0.0, pulling=0.2, offset=0.5)
+    assert steady([effect], 0.7) == pytest.approx(1.3 * yielded(0.7), rel=1e-6)
+    assert steady([effect], 0.7, v=-0.1) == pytest.approx(-0.9 * yielded(0.7), rel=1e-6)
+
+
 @pytest.mark.parametrize("presliding", [0.0, 2e-4])
 def test_seal_friction_is_the_same_at_every_speed_and_current(presliding):
     effects = [record("damper.seal_friction", force=35.0, presliding=presliding)]

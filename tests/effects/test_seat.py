@@ -88,6 +88,14 @@ def test_a_progressive_spring_adds_the_terms_of_its_series(loose):
     assert np.max(np.abs(expected)) > 20.0
 
 
+def test_a_helper_spring_comes_to_bear_beyond_its_reach(loose):
+    history = shaken(loose, record("suspension.progressive_spring", helper=2.0, reach=0.004))
+    x, push = history["suspension_displacement"], linkage(loose, history)
+    stiffness = loose.plant.suspension_stiffness
+    assert push == pytest.approx(2.0 * stiffness * np.sign(x) * (np.hypot(x, 0.004) - 0.004), abs=1e-6)
+    assert np.max(np.abs(push)) > 0.5 * 2.0 * stiffness * np.max(np.abs(x))
+
+
 def test_foam_hardens_in_compression_only(bingham):
     history = shaken(bingham, record("cushion.hardening", rise=40.0, bend=2e3))
     depth = np.maximum(-history["cushion_displacement"], 0.0)
