@@ -8,6 +8,13 @@ of floats, and answers with *one* of
 
 and, where it has a state, with `def update(self, y, state)`, the state for the next instant. Methods are compiled by
 numba: plain arithmetic and `math` only. A law that wants a force is served through the inverse damper of the scenario.
+
+A law that is designed for its seat returns its compiled form, another such record, from *one* of
+
+    def prepared(self, plant)
+    def sampled(self, plant, coil, sample_time)     where the design needs the coil, or the time in s between samples
+
+`Measurement` holds the true states, unless the scenario gives the law sensors (see `seatsim.sensors`).
 """
 
 from __future__ import annotations

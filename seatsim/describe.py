@@ -13,6 +13,7 @@ from seatsim.fields import FieldCard
 from seatsim.fields import describe as fields_of
 from seatsim.plant import Plant
 from seatsim.scenario import Solver, Start
+from seatsim.sensors import Sensors
 from seatsim.temperature import TemperatureFactors, Thermal
 
 KINDS = ("damper", "law", "excitation", "effect")
@@ -21,6 +22,7 @@ SECTIONS = {
     "actuator": Coil,
     "temperature_factors": TemperatureFactors,
     "temperature": Thermal,
+    "sensors": Sensors,
     "solver": Solver,
     "start": Start,
 }

@@ -15,12 +15,14 @@ from seatsim.expansion import expand
 from seatsim.plant import Plant
 from seatsim.published import check_published
 from seatsim.scenario import Control, DamperChoice, Inverse, Scenario, Solver, Start
+from seatsim.sensors import Sensors
 from seatsim.temperature import Thermal
 from seatsim.validation import build, check_keys, chosen_class, mapping
 from seatsim.yaml_source import KeyPath, Source
 
 BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
 SEAT_KEYS = (*BENCH_KEYS, "plant", "controller", "excitation", "start", "sweep", "variants", "published")
+CONTROL_KEYS = ("law", "sample_time", "inverse", "sensors")
 EXAMPLES = (Path(__file__).parent / "examples", Path(__file__).parents[1] / "scenarios")
 
 
@@ -94,14 +96,15 @@ def _control(values: Any, source: Source) -> Control:
     keys: KeyPath = ("controller",)
     mapping(values, source, keys)
     cls = chosen_class("law", values, "law", source, keys)
-    own = {key: value for key, value in values.items() if key not in ("law", "sample_time", "inverse")}
+    own = {key: value for key, value in values.items() if key not in CONTROL_KEYS}
     if isinstance(own.get("design"), str):
         own["design"] = str(source.path.parent / own["design"])
     inverse = _inverse(values["inverse"], source) if "inverse" in values else None
+    sensors = build(Sensors, values["sensors"], source, (*keys, "sensors")) if "sensors" in values else None
     sample_time = values.get("sample_time")
     if sample_time is not None and not (_is_number(sample_time) and 0 < sample_time <= 1):
         raise source.error((*keys, "sample_time"), f"{sample_time!r} is not permitted; it must be 0 to 1 s")
-    return Control(build(cls, own, source, keys), sample_time, inverse)
+    return Control(build(cls, own, source, keys), sample_time, inverse, sensors)
 
 
 def _inverse(values: Any, source: Source) -> Inverse:

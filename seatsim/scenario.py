@@ -11,6 +11,7 @@ from seatsim.coil import Coil
 from seatsim.errors import InputError
 from seatsim.fields import param
 from seatsim.plant import Plant
+from seatsim.sensors import Sensors
 from seatsim.temperature import TemperatureFactors, Thermal
 from seatsim.yaml_source import Source
 
@@ -47,11 +48,15 @@ class Inverse:
 
 @dataclass(frozen=True)
 class Control:
-    """A control law, its sample time in s (None: 1 ms, or every step for a law that replays) and its inverse."""
+    """A control law, its sample time in s (None: 1 ms, or every step for a law that replays), inverse and sensors.
+
+    Without sensors the law sees the true states.
+    """
 
     law: Any
     sample_time: float | None
     inverse: Inverse | None
+    sensors: Sensors | None = None
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.augmentation import changed, damper_with, in_loop, pushes, undone
+from seatsim.coil import Coil
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.errors import InputError, RunError
 from seatsim.excitations.base import Floor
@@ -22,6 +23,7 @@ from seatsim.kernel.rig import Rig
 from seatsim.plant import Plant
 from seatsim.registry import card_of
 from seatsim.scenario import Control, Scenario
+from seatsim.sensors import Direct, at_rest
 from seatsim.temperature import Thermal
 
 Array = NDArray[np.float64]
@@ -65,8 +67,12 @@ def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | No
             floor = scenario.excitation.floor(step, scenario.seed)
     setup, initial = _setup(scenario, scenario.plant, scenario.control, floor.temperature is not None)
     inputs = _inputs(scenario, scenario.control, floor, forces or Forces())
+    if scenario.control.sensors:
+        noise = scenario.control.sensors.noise(-(-len(floor.acceleration) // setup.timing.sample_every), scenario.seed)
+        inputs = inputs._replace(sensed=at_rest(scenario.start.displacement), noise=noise)
     out = np.empty((len(floor.acceleration), len(CHANNELS)))
-    parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), type(setup.law), type(setup.belief.damper))
+    variable = setup.law, setup.belief.damper, setup.sensors
+    parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
     states = (initial, _believed(setup.belief), card_of(type(scenario.control.law)).initial)
     reached = compiled(run_loop, parts)(setup, inputs, *states, out)
     if reached < len(out):
@@ -83,15 +89,25 @@ def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -
     damper, initial = damper_with(scenario.damper.record, on_damper)
     rig = Rig(changed(scenario.effects, "plant", plant), damper, on_seat)
     with scenario.placed("controller"):
-        law = control.law.prepared(plant) if hasattr(control.law, "prepared") else control.law
         sample_every = _sample_every(scenario.solver.step, control)
+        period = sample_every * scenario.solver.step
+        law = _ready(control.law, plant, scenario.coil, period)
     heated = isinstance(scenario.temperature, Thermal) and not recorded
     thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal()
     timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
     coil = changed(scenario.effects, "coil", scenario.coil)
     factors = changed(scenario.effects, "factors", scenario.damper.factors)
-    setup = Setup(rig, coil, factors, thermal, law, _belief(scenario, control), timing, scenario.coil.max_current)
+    sensors = control.sensors.instruments(scenario.solver.step, period) if control.sensors else Direct()
+    belief = _belief(scenario, control)
+    setup = Setup(rig, coil, factors, thermal, law, belief, timing, scenario.coil.max_current, sensors)
     return setup, initial + state_of([type(effect) for effect in on_seat])
+
+
+def _ready(law: Any, plant: Plant, coil: Coil, sample_time: float) -> Any:
+    """Return the compiled form of a law, designed for the nominal rig where the law asks for it."""
+    if hasattr(law, "sampled"):
+        return law.sampled(plant, coil, sample_time)
+    return law.prepared(plant) if hasattr(law, "prepared") else law
 
 
 def _belief(scenario: Scenario, control: Control) -> Truth | Belief:

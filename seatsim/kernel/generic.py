@@ -67,6 +67,18 @@ def update(self: Any, y: Any, state: Tuple) -> Tuple:
     return state
 
 
+@hook
+def passed(self: Any, floor: float, x: float, rates: Tuple, state: Tuple) -> Tuple:
+    """State of the sensors after a step of the loop."""
+    return state
+
+
+@hook
+def read(self: Any, true: Any, noise: Any, sample: int, state: Tuple) -> tuple[Any, Tuple]:
+    """Measurement that a law is given of what is true, and the state of the sensors after it."""
+    return true, state
+
+
 def wants_force(law: Any) -> bool:
     """Whether the law answers with a force (through the inverse) rather than with a current."""
     return hasattr(law, "wanted_force")

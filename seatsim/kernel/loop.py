@@ -13,10 +13,11 @@ from seatsim.control import Measurement
 from seatsim.jit import jit
 from seatsim.kernel.belief import follow, heat, state
 from seatsim.kernel.chain import before
-from seatsim.kernel.generic import Tuple, ask, heat_at, update, wants_force
+from seatsim.kernel.generic import Tuple, ask, heat_at, passed, read, update, wants_force
 from seatsim.kernel.inverse import CELLS, invert
 from seatsim.kernel.rig import Rig, Shake
 from seatsim.kernel.step import Drive, Progress, advance, relaxed, start
+from seatsim.sensors import READINGS, Direct
 from seatsim.temperature import Heat, TemperatureFactors, Thermal
 
 Array = NDArray[np.float64]
@@ -48,8 +49,8 @@ class Inputs(NamedTuple):
 
     `replayed` is a recorded command for laws that replay it, `prescribed` a coil current that bypasses the coil,
     `temperature` the damper's temperature in degC, `push` and `lift` forces on frame and driver in N; the
-    coil starts at `start_current`, the
-    suspension at `start_displacement` and `start_velocity`, the cushion at rest.
+    coil starts at `start_current`, the suspension at `start_displacement` and `start_velocity`, the cushion at rest,
+    the sensors at `sensed`. `noise`, shape (M, READINGS), is that of the readings at the law's samples.
     """
 
     floor_acceleration: Array
@@ -62,6 +63,8 @@ class Inputs(NamedTuple):
     start_current: float = 0.0
     start_displacement: float = 0.0
     start_velocity: float = 0.0
+    sensed: Tuple = ()
+    noise: Array = np.zeros((0, READINGS))
 
 
 class Timing(NamedTuple):
@@ -74,7 +77,10 @@ class Timing(NamedTuple):
 
 
 class Setup(NamedTuple):
-    """The constant parts of a run; `max_command` in A is the most that the controller asks for."""
+    """The constant parts of a run; `max_command` in A is the most that the controller asks for.
+
+    The law sees what `sensors` tell it: the true states, or what instruments make of them.
+    """
 
     rig: Rig
     coil: Coil
@@ -84,6 +90,7 @@ class Setup(NamedTuple):
     belief: Any
     timing: Timing
     max_command: float
+    sensors: Any = Direct()
 
 
 def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, law_state: Tuple, out: Array) -> int:
@@ -104,11 +111,14 @@ def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, la
     now = start(rig, mechanical + rig_state, shake, current, factors, step)
     command, wanted, served = 0.0, math.nan, math.nan
     grid = np.empty(CELLS + 1)
+    sensed = inputs.sensed
 
     for k in range(samples):
         floor = inputs.floor_acceleration[k]
+        sensed = passed(setup.sensors, floor, now.state[0], now.rates, sensed)
         if k % timing.sample_every == 0:
-            y = _measure(rig, inputs, now, k, step, current, temperature)
+            true = _measure(rig, inputs, now, k, step, current, temperature)
+            y, sensed = read(setup.sensors, true, inputs.noise, k // timing.sample_every, sensed)
             command, wanted, served = _decide(setup, y, now, factors, believed, law_state, grid)
             law_state = update(law, y, law_state)
         _record(out, k, now, floor, wanted, served, current, command, temperature)
@@ -185,7 +195,7 @@ def _decide(
 def _measure(
     rig: Rig, inputs: Inputs, now: Progress, k: int, step: float, current: float, temperature: float
 ) -> Measurement:
-    """Return what the law sees at sample `k`."""
+    """Return what is true at sample `k`, in the form in which a law sees it."""
     floor = inputs.floor_acceleration[k]
     frame = now.rates[1] + floor
     velocity = now.state[1] + inputs.floor_velocity[k]
