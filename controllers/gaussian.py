@@ -1,0 +1,76 @@
+"""Laws on estimated states: LQG, and the clipped-optimal control that switches the current by the measured force."""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+from controllers.kalman import REST, Estimator, Noise, corrected, dot, estimator, predicted
+from controllers.quadratic import QuadraticWeights, state_feedback
+from seatsim.coil import Coil
+from seatsim.control import Measurement, law
+from seatsim.fields import param
+from seatsim.plant import Plant
+
+State = tuple[float, ...]
+
+
+class EstimateFeedback(NamedTuple):
+    """Compiled form of LQG; its state is the predicted state of the seat."""
+
+    gain: State
+    estimator: Estimator
+
+    def wanted_force(self, y: Measurement, state: State) -> float:
+        """Return the wanted damper force in N."""
+        return dot(self.gain, corrected(self.estimator, y, state))
+
+    def update(self, y: Measurement, state: State) -> State:
+        """Return the prediction for the next sample."""
+        return predicted(self.estimator, y.damper_force, corrected(self.estimator, y, state))
+
+
+@law("lqg", initial=REST, source="textbook linear-quadratic-Gaussian control; solved by python-control and scipy")
+class Lqg(NamedTuple):
+    """LQG: the LQR's gain on the state that a Kalman filter estimates from x, zc'' and the damper force."""
+
+    weights: QuadraticWeights = QuadraticWeights()
+    noise: Noise = Noise()
+
+    def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> EstimateFeedback:
+        """Return the compiled form for a plant and a sample time."""
+        return EstimateFeedback(state_feedback(plant, self.weights), estimator(plant, self.noise, sample_time))
+
+
+class SwitchedFeedback(NamedTuple):
+    """Compiled form of clipped-optimal control; its state is the predicted state of the seat."""
+
+    gain: State
+    estimator: Estimator
+    on: float
+
+    def wanted_current(self, y: Measurement, state: State) -> float:
+        """Return the commanded current in A."""
+        wanted = dot(self.gain, corrected(self.estimator, y, state))
+        return self.on if (wanted - y.damper_force) * y.damper_force > 0.0 else 0.0
+
+    def update(self, y: Measurement, state: State) -> State:
+        """Return the prediction for the next sample."""
+        return predicted(self.estimator, y.damper_force, corrected(self.estimator, y, state))
+
+
+@law("clipped_optimal", initial=REST, source="Dyke, Spencer, Sain and Carlson 1996, Smart Mater. Struct. 5:565")
+class ClippedOptimal(NamedTuple):
+    """Clipped-optimal control: `i_cmd = on` where `(Fd* - Fd) Fd > 0`, else 0, with the LQG's force Fd*.
+
+    The current rises while the measured force Fd has the wanted one's sign and falls short of it; no damper model is
+    needed for it.
+    """
+
+    weights: QuadraticWeights = QuadraticWeights()
+    noise: Noise = Noise()
+    on: Annotated[float, param("A", "current that is switched", low=0, high=100)] = 1.0
+
+    def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> SwitchedFeedback:
+        """Return the compiled form for a plant and a sample time."""
+        gain = state_feedback(plant, self.weights)
+        return SwitchedFeedback(gain, estimator(plant, self.noise, sample_time), self.on)

@@ -1,0 +1,16 @@
+"""Every registered law, with the keys it must have, in the compiled form of the quickstart seat."""
+
+from seatsim import registry, simulation
+from seatsim.coil import Coil
+from seatsim.plant import Plant
+
+REQUIRED = {"constant": {"current": 0.5}, "static_output_feedback": {"gain": (2.0, 2147.6)}}
+SEAT, COIL = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0), Coil(130.0, 1.0)
+LAWS = [name for name in registry.names("law") if name != "replay"]
+
+
+def ready(name, sample_time=0.005, plant=SEAT, **keys):
+    """Return the compiled form of a law and its state at rest."""
+    cls = registry.find("law", name)
+    law = cls(**REQUIRED.get(name, {}), **keys)
+    return simulation._ready(law, plant, COIL, sample_time), registry.card_of(cls).initial

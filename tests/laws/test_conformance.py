@@ -1,0 +1,69 @@
+"""What every law must do: run through clip, inverse and coil, on true states and on sensors, and compile."""
+
+import numba
+import numpy as np
+import pytest
+
+import seatsim
+from seatsim.control import Measurement
+from seatsim.kernel.generic import ask, update
+
+from .records import LAWS, REQUIRED, ready
+
+NOISY = {"displacement_noise": 1e-4, "acceleration_noise": 0.05}
+
+
+def settings(law, sensors=None, seed=3):
+    controller = {"law": law, "sample_time": 0.005} | {k: list(v) if isinstance(v, tuple) else v
+                                                       for k, v in REQUIRED.get(law, {}).items()}  # fmt: skip
+    return {
+        "seed": seed,
+        "controller": controller | ({"sensors": sensors} if sensors else {}),
+        "excitation": {"kind": "road", "road_class": "D", "speed": 12.0, "duration": 1.2},
+        "start": {"displacement": 0.02},
+        "solver": {"step": 0.0025},
+    }
+
+
+@pytest.fixture(scope="module")
+def passive(interpreted, kept_seat_file):
+    """Driver RMS and travel of the softest or the stiffest passive damper, whichever is larger."""
+    both = [settings("constant") | {"controller": {"law": "constant", "current": i}} for i in (0.0, 1.0)]
+    return np.max([figures(seatsim.run(kept_seat_file, one).runs[0]) for one in both], axis=0)
+
+
+def figures(run):
+    return [run.metrics[name].value for name in ("driver_acceleration_rms", "suspension_displacement_peak")]
+
+
+@pytest.mark.parametrize("sensors", [None, NOISY], ids=["true", "sensors"])
+@pytest.mark.parametrize("law", LAWS)
+def test_every_law_runs_within_its_limits(passive, kept_seat_file, law, sensors):
+    run = seatsim.run(kept_seat_file, settings(law, sensors)).runs[0]
+    command = run["current_command"]
+    assert np.all((command >= 0.0) & (command <= 1.0))
+    for name in ("driver_acceleration", "suspension_displacement", "damper_force", "coil_current"):
+        assert np.all(np.isfinite(run[name])), name
+    assert np.all(figures(run) < 1.5 * passive)
+
+
+def test_a_run_follows_its_seed_and_nothing_else(interpreted, kept_seat_file):
+    first, again, other = (
+        seatsim.run(kept_seat_file, settings("lqg", NOISY, seed))["current_command"] for seed in (3, 3, 4)
+    )
+    np.testing.assert_array_equal(first, again)
+    assert not np.array_equal(first, other)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_compiled_and_interpreted_answers_agree(law):
+    record, state = ready(law)
+    answer = numba.njit(lambda law, y, s: (ask(law, y, s), update(law, y, s)))
+    rng = np.random.default_rng(0)
+    scale = [1, 0.02, 0.2, 0.2, 0.2, 1, 2, 2, 300, 0.5, 20, 1]
+    for _ in range(20):
+        y = Measurement(*(float(value) for value in scale * rng.standard_normal(12)))
+        got, after = answer(record, y, state)
+        assert got == pytest.approx(ask(record, y, state), rel=1e-9, abs=1e-9)
+        state = update(record, y, state)
+        np.testing.assert_allclose(after, state, rtol=1e-9, atol=1e-12)

@@ -1,0 +1,101 @@
+"""Every law that is linear at small motion: Hurwitz, stable as sampled, on sensors, with delay to spare."""
+
+import numpy as np
+import pytest
+
+from controllers.kalman import Noise, dot, estimator, predicted
+from controllers.margins import margins, sampled_radius
+from controllers.quadratic import QuadraticWeights, state_feedback
+from controllers.sampled_loop import sampled_loop
+from seatsim.errors import InputError
+from seatsim.plant import state_space
+from seatsim.sensors import Sensors
+
+from .records import COIL, LAWS, SEAT, ready
+
+SAMPLE_TIME = 0.005
+# Cancelling the spring leaves a mass without one: only the clip, which feeds in no energy, makes that law a damper's.
+ACTIVE = {"power_driven"}
+LINEAR = [name for name in LAWS if hasattr(ready(name)[0], "wanted_force") and name not in ACTIVE]
+
+
+def loop(name, sample_time=SAMPLE_TIME, sensors=None, plant=SEAT):
+    return sampled_loop(*ready(name, sample_time, plant), plant, COIL, sample_time, sensors)
+
+
+@pytest.mark.parametrize("mass", [50.0, 80.0, 120.0])
+@pytest.mark.parametrize("name", LINEAR)
+def test_every_linear_law_is_stable_as_sampled_with_a_sample_of_delay(name, mass):
+    plant = SEAT._replace(driver_mass=mass)
+    for sensors in (None, Sensors()):
+        found = loop(name, sensors=sensors, plant=plant)
+        assert found.radius() < 1
+        assert found.radius(delay_samples=1) < 1
+        assert found.delay_margin() > SAMPLE_TIME
+
+
+@pytest.mark.parametrize("name", [name for name in LINEAR if not ready(name)[1]])
+def test_every_linear_law_without_memory_is_hurwitz(name):
+    s = state_space(SEAT)
+    small = loop(name, sample_time=0.001)
+    assert np.linalg.eigvals(s.A + s.B2 @ small.C[None, :4]).real.max() < 0
+
+
+@pytest.mark.parametrize("name", [name for name in LINEAR if ready(name)[1]])
+def test_every_linear_law_with_memory_is_hurwitz(name):
+    assert loop(name, sample_time=0.001).radius() < 1
+
+
+def test_the_general_loop_is_that_of_static_feedback():
+    gain = np.array([[2.0, 2147.6]])
+    found = loop("static_output_feedback")
+    for late in (0, 1, 3):
+        assert found.radius(late) == pytest.approx(sampled_radius(SEAT, gain, COIL, SAMPLE_TIME, late), rel=1e-9)
+    # The hold delays by half a sample.
+    assert found.delay_margin() == pytest.approx(margins(SEAT, gain, COIL).delay - SAMPLE_TIME / 2, rel=1e-2)
+
+
+def test_the_delay_margin_is_where_stability_ends():
+    found = loop("lqg", sample_time=0.001, sensors=Sensors())
+    late = found.delay_margin() / found.sample_time
+    assert found.radius(int(0.9 * late)) < 1 < found.radius(int(1.1 * late) + 1)
+
+
+def test_a_law_that_is_unstable_as_sampled_has_no_margin():
+    plant = SEAT._replace(driver_mass=20.0)
+    found = sampled_loop(*ready("lqr", weights=QuadraticWeights(20.0, 1.0, 1e-3)), plant, COIL, SAMPLE_TIME)
+    assert found.radius() > 1
+    assert found.delay_margin() == 0
+
+
+def test_a_law_that_wants_a_current_has_no_linear_loop():
+    with pytest.raises(InputError, match="wants a current"):
+        loop("on_off_skyhook")
+
+
+def test_the_regulator_solves_the_riccati_equation():
+    weights = QuadraticWeights()
+    s, k = state_space(SEAT), np.array([state_feedback(SEAT, weights)])
+    z = s.C1 * [[weights.travel], [weights.acceleration]]
+    from scipy.linalg import solve_continuous_are
+
+    p = solve_continuous_are(s.A, s.B2, z.T @ z, [[weights.force**2]])
+    np.testing.assert_allclose(k, -s.B2.T @ p / weights.force**2, rtol=1e-6)
+
+
+def test_the_filter_is_the_limit_of_the_kalman_recursion():
+    noise = Noise()
+    e = estimator(SEAT, noise, SAMPLE_TIME)
+    flow, push, seen = (np.array(part) for part in (e.flow, e.push, e.seen))
+    fine, s = SAMPLE_TIME / 400, state_space(SEAT)
+    from scipy.linalg import expm
+
+    steps = [expm(s.A * fine * (k + 0.5)) @ s.B1 for k in range(400)]
+    spread = noise.floor * fine * sum(b @ b.T for b in steps) + noise.force**2 * np.outer(push, push)
+    reading, p = np.diag([noise.displacement**2, noise.acceleration**2]), np.eye(4)
+    for _ in range(3000):
+        gain = p @ seen.T @ np.linalg.inv(seen @ p @ seen.T + reading)
+        p = flow @ (p - gain @ seen @ p) @ flow.T + spread
+    np.testing.assert_allclose(np.array(e.correction).T, gain, rtol=1e-3, atol=1e-6)
+    np.testing.assert_allclose(predicted(e, 3.0, (1.0, 2.0, 3.0, 4.0)), flow @ [1, 2, 3, 4] + 3.0 * push)
+    assert dot(e.seen[0], (1.0, 2.0, 3.0, 4.0)) == 1.0
