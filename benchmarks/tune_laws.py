@@ -18,26 +18,27 @@ import seatsim
 SEED, BUFFER = 2, 0.045
 STATED = seatsim.load("laws")[0].source.data["controller"]
 CURRENTS = [0.2, 0.4, 0.7, 1.0]
-QUADRATIC = {"travel": [5.0, 10.0, 20.0, 40.0], "force": [0.007, 0.01, 0.015]}
+QUADRATIC = {"travel": [20.0, 40.0, 80.0, 160.0], "force": [0.007, 0.01, 0.015]}
 GRIDS: dict[str, dict[str, Any]] = {
     "constant": {"current": [0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0]},
     "on_off_skyhook": {"on": CURRENTS},
     "skyhook": {"damping": [500.0, 1000.0, 2000.0, 3000.0, 5000.0, 8000.0]},
     "no_jerk_skyhook": {"gain": [2e3, 5e3, 1e4, 2e4, 4e4, 8e4]},
-    "groundhook": {"damping": [100.0, 250.0, 500.0, 1000.0, 2000.0]},
-    "hybrid": {"damping": [1000.0, 2000.0, 4000.0, 8000.0], "share": [0.6, 0.7, 0.8, 0.9]},
+    "groundhook": {"damping": [250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0]},
+    "hybrid": {"damping": [1000.0, 2000.0, 4000.0, 8000.0], "share": [0.5, 0.55, 0.6, 0.7, 0.8]},
     "acceleration_driven": {"on": [0.1, *CURRENTS]},
     "skyhook_add": {"crossover": [1.0, 1.5, 2.0, 3.0, 4.0], "on": CURRENTS},
     "power_driven": {"share": [0.1, 0.3, 0.5, 0.7, 1.0]},
     "pid": {
         "proportional": [1000.0, 2000.0, 4000.0],
-        "integral": [0.0, 1000.0, 3000.0],
+        "integral": [0.0, 1000.0, 3000.0, 6000.0],
         "derivative": [0.0, 5.0, 20.0],
     },
-    "sliding_mode": {"damping": [500.0, 1000.0, 2000.0], "reaching": [0.5, 2.0, 5.0], "boundary": [0.05, 0.1, 0.2]},
+    "sliding_mode": {"damping": [1000.0, 2000.0, 4000.0], "reaching": [0.5, 2.0, 5.0], "boundary": [0.05, 0.1, 0.2]},
     "lqr": QUADRATIC,
     "lqg": QUADRATIC,
     "clipped_optimal": QUADRATIC | {"on": [0.4, 0.7, 1.0]},
+    "mpc": {"travel": [40.0, 60.0, 80.0, 120.0], "force": [0.0005, 0.002]},
 }
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
+from pydantic import Field
+
 from controllers.kalman import REST, Estimator, Noise, corrected, dot, estimator, predicted
 from controllers.quadratic import QuadraticWeights, state_feedback
 from seatsim.coil import Coil
@@ -33,8 +35,8 @@ class EstimateFeedback(NamedTuple):
 class Lqg(NamedTuple):
     """LQG: the LQR's gain on the state that a Kalman filter estimates from x, zc'' and the damper force."""
 
-    weights: QuadraticWeights = QuadraticWeights()
-    noise: Noise = Noise()
+    weights: Annotated[QuadraticWeights, Field(description="weights of the cost")] = QuadraticWeights()
+    noise: Annotated[Noise, Field(description="what the Kalman filter takes for noise")] = Noise()
 
     def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> EstimateFeedback:
         """Return the compiled form for a plant and a sample time."""
@@ -66,8 +68,8 @@ class ClippedOptimal(NamedTuple):
     needed for it.
     """
 
-    weights: QuadraticWeights = QuadraticWeights()
-    noise: Noise = Noise()
+    weights: Annotated[QuadraticWeights, Field(description="weights of the cost")] = QuadraticWeights()
+    noise: Annotated[Noise, Field(description="what the Kalman filter takes for noise")] = Noise()
     on: Annotated[float, param("A", "current that is switched", low=0, high=100)] = 1.0
 
     def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> SwitchedFeedback:

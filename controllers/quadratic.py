@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 import numpy as np
+from pydantic import Field
 
 from seatsim.control import Measurement, law
 from seatsim.fields import param
@@ -53,7 +54,7 @@ class Lqr(NamedTuple):
     No observer: `vc = zc' - zs'`, and `xc = -(m zc'' + cc vc) / kc` by the driver's equation of motion.
     """
 
-    weights: QuadraticWeights = QuadraticWeights()
+    weights: Annotated[QuadraticWeights, Field(description="weights of the cost")] = QuadraticWeights()
 
     def prepared(self, plant: Plant) -> StateFeedback:
         """Return the compiled form for a plant."""

@@ -218,4 +218,5 @@ def _present(runs: list[Run], folder: Path) -> None:
     for table in [comparison(runs, _title([run.scenario for run in runs])), *published_tables(runs)]:
         out.print(table)
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
+    warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
     wrote(folder, write_result(Result(runs), folder))

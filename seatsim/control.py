@@ -14,6 +14,8 @@ A law that is designed for its seat returns its compiled form, another such reco
     def prepared(self, plant)
     def sampled(self, plant, coil, sample_time)     where the design needs the coil, or the time in s between samples
 
+and a compiled form with `def notes(self)` returns sentences for the user after a run.
+
 `Measurement` holds the true states, unless the scenario gives the law sensors (see `seatsim.sensors`).
 """
 

@@ -47,6 +47,7 @@ def _summary(run: Run) -> dict[str, Any]:
         "label": dict(run.scenario.label),
         "metrics": metrics,
         "warnings": list(run.warnings),
+        "notes": list(run.history.notes),
     }
 
 

@@ -33,10 +33,14 @@ DEFAULT_SAMPLE_TIME = 0.001
 
 @dataclass(frozen=True)
 class History:
-    """The channels of one run by name, shape (N,) each, sampled every `step` seconds; SI units, degrees Celsius."""
+    """The channels of one run by name, shape (N,) each, sampled every `step` seconds; SI units, degrees Celsius.
+
+    `notes` are sentences that the law has for its user after the run.
+    """
 
     step: float
     channels: Mapping[str, Array]
+    notes: tuple[str, ...] = ()
 
     def __getitem__(self, name: str) -> Array:
         """Return one channel."""
@@ -80,7 +84,8 @@ def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | No
             f"{scenario.title}: no solution beyond {reached * step:.3f} s, where it leaves all bounds; check the signs"
             " of gains and stiffnesses, and the damper's parameters"
         )
-    return _history(setup.rig.plant, step, out)
+    notes = setup.law.notes() if hasattr(setup.law, "notes") else ()
+    return _history(setup.rig.plant, step, out, notes)
 
 
 def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -> tuple[Setup, tuple[float, ...]]:
@@ -161,7 +166,7 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) 
     )
 
 
-def _history(plant: Plant, step: float, out: Array) -> History:
+def _history(plant: Plant, step: float, out: Array, notes: tuple[str, ...]) -> History:
     """Return the recorded channels with the time and the energy stored in masses, suspension and cushion springs."""
     channels: dict[str, Any] = {"time": np.arange(len(out)) * step}
     channels |= dict(zip(CHANNELS, np.ascontiguousarray(out.T), strict=True))
@@ -176,4 +181,4 @@ def _history(plant: Plant, step: float, out: Array) -> History:
         + plant.suspension_stiffness * x**2
         + plant.cushion_stiffness * cushion**2
     )
-    return History(step, channels)
+    return History(step, channels, notes)

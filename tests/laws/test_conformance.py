@@ -19,7 +19,7 @@ def settings(law, sensors=None, seed=3):
     return {
         "seed": seed,
         "controller": controller | ({"sensors": sensors} if sensors else {}),
-        "excitation": {"kind": "road", "road_class": "D", "speed": 12.0, "duration": 1.2},
+        "excitation": {"kind": "road", "road_class": "D", "speed": 12.0, "duration": 0.8},
         "start": {"displacement": 0.02},
         "solver": {"step": 0.0025},
     }

@@ -2,21 +2,29 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import expm, solve_continuous_are
 
+from controllers.gaussian import EstimateFeedback, SwitchedFeedback
 from controllers.kalman import Noise, dot, estimator, predicted
 from controllers.margins import margins, sampled_radius
 from controllers.quadratic import QuadraticWeights, state_feedback
 from controllers.sampled_loop import sampled_loop
 from seatsim.errors import InputError
+from seatsim.loading import load
 from seatsim.plant import state_space
+from seatsim.registry import card_of, name_of
 from seatsim.sensors import Sensors
+from seatsim.simulation import _ready
 
 from .records import COIL, LAWS, SEAT, ready
 
 SAMPLE_TIME = 0.005
 # Cancelling the spring leaves a mass without one: only the clip, which feeds in no energy, makes that law a damper's.
-ACTIVE = {"power_driven"}
-LINEAR = [name for name in LAWS if hasattr(ready(name)[0], "wanted_force") and name not in ACTIVE]
+# A plan within a damper's forces is not linear, however small the motion.
+NOT_LINEAR = {"power_driven", "mpc"}
+LINEAR = [name for name in LAWS if hasattr(ready(name)[0], "wanted_force") and name not in NOT_LINEAR]
+DESIGNED = {*LINEAR, "clipped_optimal"}
+SHIPPED = [one for one in load("laws") if name_of("law", type(one.control.law)) in DESIGNED]
 
 
 def loop(name, sample_time=SAMPLE_TIME, sensors=None, plant=SEAT):
@@ -68,6 +76,18 @@ def test_a_law_that_is_unstable_as_sampled_has_no_margin():
     assert found.delay_margin() == 0
 
 
+@pytest.mark.parametrize("scenario", SHIPPED, ids=lambda one: one.title)
+def test_every_shipped_design_is_stable_on_its_sensors_with_a_sample_of_delay(scenario):
+    control, initial = scenario.control, card_of(type(scenario.control.law)).initial
+    law = _ready(control.law, scenario.plant, scenario.coil, control.sample_time)
+    if isinstance(law, SwitchedFeedback):  # whose linear design is that of the LQG it is clipped from
+        law = EstimateFeedback(law.gain, law.estimator)
+    found = sampled_loop(law, initial, scenario.plant, scenario.coil, control.sample_time, control.sensors)
+    assert found.radius() < 1
+    assert found.radius(delay_samples=1) < 1
+    assert found.delay_margin() > control.sample_time
+
+
 def test_a_law_that_wants_a_current_has_no_linear_loop():
     with pytest.raises(InputError, match="wants a current"):
         loop("on_off_skyhook")
@@ -77,8 +97,6 @@ def test_the_regulator_solves_the_riccati_equation():
     weights = QuadraticWeights()
     s, k = state_space(SEAT), np.array([state_feedback(SEAT, weights)])
     z = s.C1 * [[weights.travel], [weights.acceleration]]
-    from scipy.linalg import solve_continuous_are
-
     p = solve_continuous_are(s.A, s.B2, z.T @ z, [[weights.force**2]])
     np.testing.assert_allclose(k, -s.B2.T @ p / weights.force**2, rtol=1e-6)
 
@@ -88,8 +106,6 @@ def test_the_filter_is_the_limit_of_the_kalman_recursion():
     e = estimator(SEAT, noise, SAMPLE_TIME)
     flow, push, seen = (np.array(part) for part in (e.flow, e.push, e.seen))
     fine, s = SAMPLE_TIME / 400, state_space(SEAT)
-    from scipy.linalg import expm
-
     steps = [expm(s.A * fine * (k + 0.5)) @ s.B1 for k in range(400)]
     spread = noise.floor * fine * sum(b @ b.T for b in steps) + noise.force**2 * np.outer(push, push)
     reading, p = np.diag([noise.displacement**2, noise.acceleration**2]), np.eye(4)

@@ -1,0 +1,81 @@
+"""Model predictive control without preview: a quadratic programme at every sample, solved by OSQP."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numba import objmode
+from pydantic import Field
+
+from controllers.kalman import REST, Estimator, Noise, corrected, estimator, predicted
+from controllers.planner import Envelope, Planner
+from controllers.quadratic import QuadraticWeights
+from seatsim.coil import Coil
+from seatsim.control import Measurement, law
+from seatsim.fields import param
+from seatsim.jit import jit
+from seatsim.plant import Plant
+
+State = tuple[float, ...]
+_planners: dict[int, Planner] = {}
+_numbers = itertools.count()
+
+
+def plan(number: int, x: float, v: float, xc: float, vc: float) -> float:
+    """Return the force in N that a planner wants in a state."""
+    return _planners[number].force(np.array([x, v, xc, vc]))
+
+
+@jit
+def planned(number: int, x: State) -> float:
+    """Return the same to compiled code."""
+    with objmode(force="float64"):
+        force = plan(number, x[0], x[1], x[2], x[3])
+    return force
+
+
+class PlannedForce(NamedTuple):
+    """Compiled form of the law, which knows its planner by number; its state is the predicted state of the seat."""
+
+    number: int
+    estimator: Estimator
+    sample_time: float
+
+    def wanted_force(self, y: Measurement, state: State) -> float:
+        """Return the wanted damper force in N."""
+        return planned(self.number, corrected(self.estimator, y, state))
+
+    def update(self, y: Measurement, state: State) -> State:
+        """Return the prediction for the next sample."""
+        return predicted(self.estimator, y.damper_force, corrected(self.estimator, y, state))
+
+    def notes(self) -> tuple[str, ...]:
+        """Return what the run's user is told of the time that the programmes took, and let the planner go."""
+        times = 1e3 * np.array(_planners.pop(self.number).times)
+        return (
+            f"mpc: a sample's programme took {np.median(times):.2f} ms in the median, {np.max(times):.2f} ms at most;"
+            f" there are {1e3 * self.sample_time:g} ms between samples",
+        )
+
+
+@law("mpc", initial=REST, source="textbook model predictive control, condensed; semi-active limits derived here")
+class ModelPredictive(NamedTuple):
+    """MPC: the first of `horizon` forces with the least cost of driver acceleration, travel and force, within limits.
+
+    The forces lie in the `envelope` of the damper at the velocities of a first plan, so that none is driven. The state
+    comes from the Kalman filter of `lqg`; the floor's acceleration is predicted to be zero. How long the programmes
+    took stands in the run's notes. See `controllers.planner`.
+    """
+
+    horizon: Annotated[int, param("samples", "number of samples that are planned", low=1, high=200)] = 20
+    weights: Annotated[QuadraticWeights, Field(description="weights of the cost")] = QuadraticWeights()
+    envelope: Annotated[Envelope, Field(description="forces that the damper can deliver")] = Envelope()
+    noise: Annotated[Noise, Field(description="what the Kalman filter takes for noise")] = Noise()
+
+    def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> PlannedForce:
+        """Return the compiled form for a plant and a sample time."""
+        number = next(_numbers)
+        _planners[number] = Planner(plant, self.weights, self.envelope, self.horizon, sample_time)
+        return PlannedForce(number, estimator(plant, self.noise, sample_time), sample_time)
