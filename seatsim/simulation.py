@@ -79,12 +79,12 @@ def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | No
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
     states = (initial, _believed(setup.belief), card_of(type(scenario.control.law)).initial)
     reached = compiled(run_loop, parts)(setup, inputs, *states, out)
+    notes = setup.law.notes() if hasattr(setup.law, "notes") else ()
     if reached < len(out):
         raise RunError(
             f"{scenario.title}: no solution beyond {reached * step:.3f} s, where it leaves all bounds; check the signs"
             " of gains and stiffnesses, and the damper's parameters"
         )
-    notes = setup.law.notes() if hasattr(setup.law, "notes") else ()
     return _history(setup.rig.plant, step, out, notes)
 
 

@@ -8,7 +8,7 @@ import seatsim
 from seatsim.control import Measurement
 from seatsim.kernel.generic import ask, update
 
-from .records import LAWS, REQUIRED, ready
+from .records import LAWS, NOT_LINEAR, REQUIRED, ready
 
 NOISY = {"displacement_noise": 1e-4, "acceleration_noise": 0.05}
 
@@ -18,7 +18,7 @@ def settings(law, sensors=None, seed=3):
                                                        for k, v in REQUIRED.get(law, {}).items()}  # fmt: skip
     return {
         "seed": seed,
-        "controller": controller | ({"sensors": sensors} if sensors else {}),
+        "controller": controller | ({} if sensors is None else {"sensors": sensors}),
         "excitation": {"kind": "road", "road_class": "D", "speed": 12.0, "duration": 0.8},
         "start": {"displacement": 0.02},
         "solver": {"step": 0.0025},
@@ -45,6 +45,14 @@ def test_every_law_runs_within_its_limits(passive, kept_seat_file, law, sensors)
     for name in ("driver_acceleration", "suspension_displacement", "damper_force", "coil_current"):
         assert np.all(np.isfinite(run[name])), name
     assert np.all(figures(run) < 1.5 * passive)
+
+
+@pytest.mark.parametrize("law", NOT_LINEAR)
+def test_laws_without_a_linear_loop_only_take_energy_from_a_released_seat(interpreted, kept_seat_file, law):
+    rest = settings(law, {}) | {"excitation": {"kind": "rest", "duration": 1.0}}
+    energy = seatsim.run(kept_seat_file, rest).runs[0]["energy_stored"]
+    assert energy.max() <= energy[0] * (1 + 1e-9)
+    assert energy[-1] < energy[0]
 
 
 def test_a_run_follows_its_seed_and_nothing_else(interpreted, kept_seat_file):

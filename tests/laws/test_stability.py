@@ -16,13 +16,9 @@ from seatsim.registry import card_of, name_of
 from seatsim.sensors import Sensors
 from seatsim.simulation import _ready
 
-from .records import COIL, LAWS, SEAT, ready
+from .records import COIL, LINEAR, SEAT, ready
 
 SAMPLE_TIME = 0.005
-# Cancelling the spring leaves a mass without one: only the clip, which feeds in no energy, makes that law a damper's.
-# A plan within a damper's forces is not linear, however small the motion.
-NOT_LINEAR = {"power_driven", "mpc"}
-LINEAR = [name for name in LAWS if hasattr(ready(name)[0], "wanted_force") and name not in NOT_LINEAR]
 DESIGNED = {*LINEAR, "clipped_optimal"}
 SHIPPED = [one for one in load("laws") if name_of("law", type(one.control.law)) in DESIGNED]
 
