@@ -38,6 +38,7 @@ GRIDS: dict[str, dict[str, Any]] = {
     "lqr": QUADRATIC,
     "lqg": QUADRATIC,
     "clipped_optimal": QUADRATIC | {"on": [0.4, 0.7, 1.0]},
+    "static_output_feedback": {"gain": [[k1, k2] for k1 in (-3000.0, -2000.0, 0.0) for k2 in (600.0, 1000.0, 1500.0)]},
     "mpc": {"travel": [40.0, 60.0, 80.0, 120.0], "force": [0.0005, 0.002]},
 }
 
