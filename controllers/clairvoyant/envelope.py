@@ -1,0 +1,67 @@
+"""What a damper can do at a speed: least and largest dissipative force, between straight lines."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from controllers.clairvoyant.recursion import Array, Lines
+from seatsim.dampers.bench import sine_test
+from seatsim.errors import InputError
+from seatsim.scenario import DamperChoice
+
+TOP = 2.0
+"""m/s; speed up to which the lines hold."""
+SPEEDS = np.array([0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.4, TOP])
+CURRENTS = 9
+_STROKE, _FASTEST = 0.02, 2.0  # m and Hz: friction has its full size, and internal flows settle
+
+
+class Envelope(NamedTuple):
+    """Lines that hold every force of the damper between them (`outer`), and lines between which it has all (`inner`).
+
+    They are the same for a damper whose steady force is a viscous and a friction part.
+    """
+
+    outer: Lines
+    inner: Lines
+
+
+def envelope(damper: DamperChoice, max_current: float, temperature: float) -> Envelope:
+    """Return the lines of a damper's steady force, at 0 to `max_current` A and a temperature in degC.
+
+    The steady force at a speed is that of a sine test at its peak velocity, either way, where hysteresis is saturated and
+    elastic parts are without force. It holds to TOP m/s.
+
+    Raises:
+        InputError: the damper is not dissipative there, or has no force to choose from.
+    """
+    forces = np.array(
+        [[_steady(damper, speed, i, temperature) for i in np.linspace(0, max_current, CURRENTS)] for speed in SPEEDS]
+    )
+    least, most = forces.min(axis=1), forces.max(axis=1)
+    if (least < 0).any():
+        raise InputError(
+            f"the damper drives instead of damping at {SPEEDS[least.argmin(axis=0)].min():g} m/s (an offset of its force?);"
+            " the bracket is of dissipative dampers"
+        )
+    c = max(0.0, float(np.polyfit(SPEEDS, least.mean(axis=1), 1)[0]))
+    b = max(0.0, float(np.polyfit(SPEEDS, most.mean(axis=1), 1)[0]))
+    c = min(c, float((least.min(axis=1) / SPEEDS).min()))
+    weakest, strongest = least - c * SPEEDS[:, None], most - b * SPEEDS[:, None]
+    a = max(strongest.max(), float((b * SPEEDS[:, None] - least).max()))
+    found = Envelope(
+        Lines(c, float(weakest.min()), b, float(a)), Lines(c, float(weakest.max()), b, float(strongest.min()))
+    )
+    inner = found.inner
+    if inner.a <= inner.f or inner.a + inner.b * TOP <= inner.f + inner.c * TOP:
+        raise InputError("the damper's forces at no and at full current do not leave a straight band between them")
+    return found
+
+
+def _steady(damper: DamperChoice, speed: float, current: float, temperature: float) -> Array:
+    """Return the resisting force in N while extending and while compressing."""
+    stroke = max(_STROKE, speed / (2 * np.pi * _FASTEST))
+    test = sine_test(damper.record, stroke, speed / (2 * np.pi * stroke), current, temperature, damper.factors)
+    return np.array([test.force[0], -test.force[len(test.force) // 2]])
