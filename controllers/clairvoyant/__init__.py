@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 __all__ = ["WEIGHTS", "Bracket", "clairvoyant"]
 
 Array = NDArray[np.float64]
-WEIGHTS = tuple(float(w) ** 2 for w in np.geomspace(160.0, 8.0, 8))
-"""Weights of the squared travel in 1/s^4, from short travel to soft seats."""
-HOLD = 0.002
+WEIGHTS = tuple(float(w) ** 2 for w in np.geomspace(12.0, 150.0, 7))
+"""Weights of the squared travel in 1/s^4, from a soft seat to short travel."""
+HOLD = 0.005
 """s; the force is held so long."""
 
 
@@ -29,7 +29,7 @@ class Bracket:
     """Bounds and runs of an ideal semi-active damper on one seat and floor, one for each weight; shape (K,) each.
 
     The criterion is J = aw^2 + weight x^2 with the RMS Wk-weighted acceleration of the driver aw in m/s^2 and the RMS
-    travel x in m. No force that the damper's envelope holds has a J below `lower`; that of `force` (K, N), in N, held over
+    travel x in m. No force within the damper's envelope has a J below `lower`; that of `force` (K, N), in N, held over
     `step` seconds each, has the `acceleration` and the `travel`.
     """
 
@@ -86,8 +86,8 @@ def clairvoyant(
         tell: is told what is being done.
 
     Raises:
-        InputError: the scenario has no seat or one that is not linear, its damper is not dissipative, or a number is out
-            of its range.
+        InputError: the scenario has no seat or one that is not linear, its damper is not dissipative, or a number is
+            out of its range.
     """
     from controllers.clairvoyant.solve import solve
 

@@ -2,7 +2,7 @@
 
 Whatever the multipliers, the minimum is a bound, so that stopping early costs tightness and nothing else. They are hat
 functions of time; their logarithms are ascended (L-BFGS) with the logarithm of the determinant of the Lagrangian's
-Hessian as a barrier, which vanishes as `SHARES` fall.
+Hessian as a barrier, which shrinks stage by stage.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse
@@ -19,45 +20,55 @@ from controllers.clairvoyant.recursion import Array, Lines
 
 SPACING = 0.02
 """s between the nodes of the multipliers."""
-SHARES = (0.1, 0.02, 0.005)
-"""Size of the barrier over the criterion, stage by stage."""
+SHARES = (0.3, 0.1, 0.03, 0.01)
+"""Sizes of the barrier over the criterion, stage by stage."""
 STEPS = 120
-"""Most steps of a stage."""
-_MEMORY, _LONGEST, _SETTLED = 30, 2.0, 1e-6
+"""Most steps of a barrier."""
+_MEMORY, _LONGEST, _SETTLED, _RETREAT = 30, 2.0, 1e-6, 0.1
 _NU = 1e-9  # of the criterion a N^2, where the ascent starts
 
 Objective = Callable[[Array], tuple[float, Array] | None]
 
 
-def lower_bound(problem: Problem, lines: Lines, size: float, start: Array | None = None) -> tuple[float, Array]:
-    """Return a lower bound of J over all forces between the lines, and the logarithms of the nodes' multipliers.
+class Bound(NamedTuple):
+    """A lower bound of J, the logarithms of the multipliers (3 nodes,), and the law (N, n+1) that L is least under."""
+
+    value: float
+    logarithms: Array
+    gain: Array
+
+
+def lower_bound(problem: Problem, lines: Lines, size: float, start: Array | None = None) -> Bound:
+    """Return a lower bound of J over all forces between the lines.
 
     `size` is about J; `start` are the logarithms found at another weight.
     """
-    hats = _hats(problem.intervals, max(1, round(SPACING / problem.transcription.step)))
+    hats = _hats(problem.intervals, problem.transcription.step)
     y = _constant(problem, lines, hats, size) if start is None else start
-
-    def bound(y: Array) -> float:
-        found = problem.lagrangian(lines, _spread(hats, y), 0.0)
-        return found.bound if found else -math.inf
-
-    while bound(y) == -math.inf:
-        y = y - 0.3
-    best, at = bound(y), y
+    while (best := _bound(problem, lines, hats, y)) is None:
+        y = y - _RETREAT
     for share in SHARES:
-        y = _ascended(_objective(problem, lines, hats, share * size / problem.intervals), y)
-        reached = bound(y)
-        if reached > best:
-            best, at = reached, y
-    return best, at
+        y = _ascended(_objective(problem, lines, hats, share * size / problem.intervals), best.logarithms)
+        reached = _bound(problem, lines, hats, y)
+        if reached and reached.value > best.value:
+            best = reached
+    return best
 
 
-def _hats(count: int, every: int) -> scipy.sparse.csr_array:
-    """Return the hat functions over `count` intervals with a node at every so many of them, shape (count, nodes)."""
-    k = np.arange(count)
-    left, share = k // every, (k % every) / every
-    entries = (np.concatenate([1 - share, share]), (np.tile(k, 2), np.concatenate([left, left + 1])))
-    return scipy.sparse.csr_array(entries, shape=(count, (count - 1) // every + 2))
+def _bound(problem: Problem, lines: Lines, hats: scipy.sparse.csr_array, y: Array) -> Bound | None:
+    found = problem.lagrangian(lines, _spread(hats, y), 0.0)
+    return Bound(found.bound, y, found.gain) if found else None
+
+
+def _hats(count: int, step: float) -> scipy.sparse.csr_array:
+    """Return what the hat functions of unit density sum up to in each of `count` intervals, shape (count, nodes)."""
+    place = step / SPACING * (np.arange(count) + 0.5)
+    left = place.astype(int)
+    entries = (
+        step * np.concatenate([left + 1 - place, place - left]),
+        (np.tile(np.arange(count), 2), np.append(left, left + 1)),
+    )
+    return scipy.sparse.csr_array(entries, shape=(count, math.ceil(count * step / SPACING - 1e-9) + 1))
 
 
 def _spread(hats: scipy.sparse.csr_array, y: Array) -> Array:
@@ -77,7 +88,7 @@ def _objective(problem: Problem, lines: Lines, hats: scipy.sparse.csr_array, bar
 
 def _constant(problem: Problem, lines: Lines, hats: scipy.sparse.csr_array, size: float) -> Array:
     """Return the best of some multipliers that do not change with time: they bound the energy of the whole record."""
-    share = size / problem.intervals
+    share = size / (problem.intervals * problem.transcription.step)
     nodes = hats.shape[1]
     found = []
     for level in np.geomspace(1e-4, 1e-1, 10):
@@ -85,7 +96,8 @@ def _constant(problem: Problem, lines: Lines, hats: scipy.sparse.csr_array, size
         value = problem.lagrangian(lines, _spread(hats, y), 0.0)
         if value:
             found.append((value.bound, level, y))
-    return max(found, key=lambda entry: entry[:2])[2]
+    highest: Array = max(found, key=lambda entry: entry[:2])[2]
+    return highest
 
 
 def _ascended(objective: Objective, y: Array) -> Array:
@@ -129,4 +141,5 @@ def _direction(slope: Array, pairs: deque[tuple[Array, Array]]) -> Array:
         q *= 0.1 / np.max(np.abs(q))
     for (step, bend), factor in zip(pairs, reversed(kept), strict=True):
         q += step * (factor - (bend @ q) / (step @ bend))
-    return q * min(1.0, _LONGEST / float(np.max(np.abs(q))))
+    shortened: Array = q * min(1.0, _LONGEST / float(np.max(np.abs(q))))
+    return shortened

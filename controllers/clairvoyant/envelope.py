@@ -31,8 +31,8 @@ class Envelope(NamedTuple):
 def envelope(damper: DamperChoice, max_current: float, temperature: float) -> Envelope:
     """Return the lines of a damper's steady force, at 0 to `max_current` A and a temperature in degC.
 
-    The steady force at a speed is that of a sine test at its peak velocity, either way, where hysteresis is saturated and
-    elastic parts are without force. It holds to TOP m/s.
+    The steady force at a speed is that of a sine test at its peak velocity, either way, where hysteresis is saturated
+    and elastic parts are without force. The lines hold to TOP m/s.
 
     Raises:
         InputError: the damper is not dissipative there, or has no force to choose from.
@@ -41,10 +41,11 @@ def envelope(damper: DamperChoice, max_current: float, temperature: float) -> En
         [[_steady(damper, speed, i, temperature) for i in np.linspace(0, max_current, CURRENTS)] for speed in SPEEDS]
     )
     least, most = forces.min(axis=1), forces.max(axis=1)
-    if (least < 0).any():
+    driving = (least < 0).any(axis=1)
+    if driving.any():
         raise InputError(
-            f"the damper drives instead of damping at {SPEEDS[least.argmin(axis=0)].min():g} m/s (an offset of its force?);"
-            " the bracket is of dissipative dampers"
+            f"the damper drives instead of damping at {SPEEDS[driving][0]:g} m/s (an offset of its force?); the bracket"
+            " is of dissipative dampers"
         )
     c = max(0.0, float(np.polyfit(SPEEDS, least.mean(axis=1), 1)[0]))
     b = max(0.0, float(np.polyfit(SPEEDS, most.mean(axis=1), 1)[0]))

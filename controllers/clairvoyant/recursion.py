@@ -46,8 +46,8 @@ def sweep(
 ) -> float:
     """Fill `gain` (N, n+1) of the minimiser F = gain . (s, 1) and `pivot` (N,), backwards; return the minimum.
 
-    `multipliers` (3, N) are alpha, beta, nu. The cost-to-go follows F = gain . (s, 1) where an interval is FREE, and the
-    damper's line or w = 0 elsewhere. `pull` adds pull (F - force)^2. Minus infinity: L has no minimum.
+    `multipliers` (3, N) are alpha, beta, nu. The cost-to-go follows F = gain . (s, 1) where an interval is FREE, and
+    the damper's line or w = 0 elsewhere. `pull` adds pull (F - force)^2. Minus infinity: L has no minimum.
     """
     n, steps = p.AB.shape[0], len(p.w0)
     P, r, K = np.zeros((n, n)), np.zeros(n), np.zeros(n + 1)
@@ -62,9 +62,10 @@ def sweep(
             return -math.inf
         pivot[k] = M[n, n]
         for i in range(n):
-            gain[k, i] = K[i] = -M[i, n] / M[n, n]
-        gain[k, n] = K[n] = -m[n] / M[n, n]
-        total -= m[n] * m[n] / M[n, n]
+            K[i] = -M[i, n] / M[n, n]
+        K[n] = -m[n] / M[n, n]
+        gain[k] = K
+        total -= float(m[n] * m[n] / M[n, n])
         if modes[k] != FREE:
             _on_line(p, lines, modes[k], k, K)
         for i in range(n):
@@ -112,7 +113,8 @@ def _constraints(p: Quadratic, lines: Lines, multipliers: Array, k: int, M: Arra
         M[i, n] -= 0.5 * both * V[i]
         M[n, i] -= 0.5 * both * V[i]
     m[n] -= 0.5 * both * o
-    return both * c * o * o + f * odd * o + nu * (b * b * o * o - a * a)
+    constant: float = both * c * o * o + f * odd * o + nu * (b * b * o * o - a * a)
+    return constant
 
 
 @jit
@@ -136,8 +138,8 @@ def gradient(p: Quadratic, lines: Lines, gain: Array, pivot: Array, barrier: flo
     """
     c, f, b, a = lines
     n, steps, V = p.AB.shape[0], len(p.w0), p.V
-    s, t, y = np.zeros(n), np.zeros(n), np.zeros(n + 1)
-    S, R, closed, mixed = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n)), np.zeros(n)
+    s, y = np.zeros(n), np.zeros(n + 1)
+    S, R, closed = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
     for k in range(steps):
         K, noise = gain[k], barrier / pivot[k]
         u, o = K[n], p.w0[k]
@@ -197,12 +199,12 @@ def deliver(p: Quadratic, lines: Lines, gain: Array, force: Array, w: Array, sta
     n, steps, V = p.AB.shape[0], len(p.w0), p.V
     y = np.zeros(n + 1)
     for k in range(steps):
-        want, free = gain[k, n], p.w0[k]
+        want, free = float(gain[k, n]), float(p.w0[k])
         for i in range(n):
             states[k, i] = y[i]
             want += gain[k, i] * y[i]
             free += V[i] * y[i]
-        force[k], modes[k] = _closest(lines, want, free, -V[n])
+        force[k], modes[k] = _closest(lines, want, free, -float(V[n]))
         w[k] = free + V[n] * force[k] if modes[k] != STUCK else 0.0
         y[n] = force[k]
         s = p.AB @ y

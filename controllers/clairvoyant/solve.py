@@ -7,11 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from controllers.clairvoyant import Array, Bracket
-from controllers.clairvoyant.bound import lower_bound
+from controllers.clairvoyant.bound import Bound, lower_bound
 from controllers.clairvoyant.envelope import TOP, Envelope, envelope
 from controllers.clairvoyant.feasible import best_run
 from controllers.clairvoyant.problem import Problem, Run
-from controllers.clairvoyant.recursion import Lines
 from controllers.clairvoyant.transcription import Transcription, transcribe
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on
 from seatsim.errors import InputError
@@ -23,25 +22,31 @@ UNKNOWN = (*ON_DAMPER, *ON_SEAT, "factors", "temperature", "push", "plant")
 
 
 def solve(scenario: Scenario, weights: Array, hold: float, tell: Callable[[str], None]) -> Bracket:
-    """Return the bracket, from the largest weight to the smallest: each bound starts from the last one's multipliers."""
+    """Return the bracket, from the middle weight outwards: each bound starts from its neighbour's multipliers."""
     if weights.ndim != 1 or not len(weights) or not (np.isfinite(weights) & (weights > 0)).all():
         raise InputError("the weights of a bracket are one or more numbers above 0, in 1/s^4")
-    problem, band = _posed(scenario, hold)
-    order = np.argsort(-weights)
-    lower, runs, start = np.empty(len(weights)), [], None
-    for place, index in enumerate(order):
-        tell(f"{scenario.title}: weight {place + 1} of {len(order)}")
-        at = Problem(problem, float(weights[index]))
-        run = best_run(at, band.inner)
-        lower[index], start = lower_bound(at, band.outer, run.cost, start)
-        runs.append(run)
-    _check_speed(runs)
-    back = np.argsort(order)
+    transcription, band = _posed(scenario, hold)
+    middle, order = len(weights) // 2, np.argsort(weights)
+    found: dict[int, tuple[Bound, Run]] = {}
+    for place in sorted(range(len(weights)), key=lambda place: abs(place - middle)):
+        tell(f"{scenario.title}: bracket, weight {len(found) + 1} of {len(weights)}")
+        problem = Problem(transcription, float(weights[order[place]]))
+        near = found.get(place - 1 if place > middle else place + 1)
+        found[place] = _ends(problem, band, near[0].logarithms if near else None)
+    ends = [found[place] for place in np.argsort(order)]
+    _check_speed([run for _, run in ends])
     return Bracket(
-        weights, lower,
-        np.array([np.sqrt(runs[k].acceleration) for k in back]), np.array([np.sqrt(runs[k].travel) for k in back]),
-        np.array([runs[k].force for k in back]), problem.step,
+        weights, np.array([bound.value for bound, _ in ends]), np.sqrt([run.acceleration for _, run in ends]),
+        np.sqrt([run.travel for _, run in ends]), np.array([run.force for _, run in ends]), transcription.step,
     )  # fmt: skip
+
+
+def _ends(problem: Problem, band: Envelope, start: Array | None) -> tuple[Bound, Run]:
+    """Return the bound and the better of two runs: that from the weakest damper, and that from the bound's law."""
+    weakest = best_run(problem, band.inner)
+    bound = lower_bound(problem, band.outer, weakest.cost, start)
+    led = best_run(problem, band.inner, bound.gain)
+    return bound, min(weakest, led, key=lambda run: run.cost)
 
 
 def _posed(scenario: Scenario, hold: float) -> tuple[Transcription, Envelope]:
@@ -56,7 +61,9 @@ def _posed(scenario: Scenario, hold: float) -> tuple[Transcription, Envelope]:
     step = scenario.solver.step
     every = round(hold / step)
     if every < 1 or abs(every * step - hold) > 1e-9:
-        raise InputError(f"hold {hold:g} s is not a multiple of solver.step {step:g} s; choose {max(1, every) * step:g} s")
+        raise InputError(
+            f"hold {hold:g} s is not a multiple of solver.step {step:g} s; choose {max(1, every) * step:g} s"
+        )
     floor = scenario.excitation.floor(step, scenario.seed)
     if len(floor.acceleration) <= every:
         raise InputError(f"{scenario.title}: the floor's record is shorter than the time over which a force is held")

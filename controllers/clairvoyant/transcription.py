@@ -68,7 +68,8 @@ def transcribe(plant: Plant, floor: Array, sample: float, every: int, start: tup
     return Transcription(
         every * sample, last[0], last[1],
         ratio * (np.column_stack(last)[0] - np.eye(len(A) + 1)[0]), ratio * np.diff(travel[::every]),
-        _criterion(aw, [rows[0] for rows in readings], total), _criterion(travel, [rows[1] for rows in readings], total),
+        _criterion(aw, [rows[0] for rows in readings], total),
+        _criterion(travel, [rows[1] for rows in readings], total),
     )  # fmt: skip
 
 
