@@ -52,9 +52,16 @@ def run(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None)
 
 
 @app.command()
-def compare(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None) -> None:
+def compare(
+    scenarios: Scenarios,
+    out_folder: Out = None,
+    settings: Settings = None,
+    bracket: Annotated[
+        bool, typer.Option("--bracket", help="Add what the best damper could have done; takes minutes for each floor.")
+    ] = False,
+) -> None:
     """Simulate scenarios and print one table over all of them."""
-    _execute([scenarios], [out_folder], pairs(settings, *SET))
+    _execute([scenarios], [out_folder], pairs(settings, *SET), bracket)
 
 
 @app.command()
@@ -170,7 +177,7 @@ def blind_score(
     out.print(f"written: {path}", markup=False, highlight=False)
 
 
-def _execute(groups: list[list[str]], chosen: list[Path | None], values: dict[str, Any]) -> None:
+def _execute(groups: list[list[str]], chosen: list[Path | None], values: dict[str, Any], bracket: bool = False) -> None:
     """Run every group of files as one result, then print its table and write its files; exit 1 where a run failed."""
     from seatsim.loading import load
     from seatsim.runs import run_many
@@ -194,7 +201,9 @@ def _execute(groups: list[list[str]], chosen: list[Path | None], values: dict[st
         except KeyboardInterrupt:
             interrupted = True
     for group, folder in zip(loaded, folders, strict=True):
-        _present([done[id(scenario)] for scenario in group if id(scenario) in done], folder)
+        _present(
+            [done[id(scenario)] for scenario in group if id(scenario) in done], folder, bracket and not interrupted
+        )
     if interrupted:
         raise KeyboardInterrupt
     if len(done) < len(scenarios):
@@ -206,8 +215,8 @@ def _title(scenarios: list[Scenario]) -> str:
     return names[0] if len(names) == 1 else "comparison"
 
 
-def _present(runs: list[Run], folder: Path) -> None:
-    """Print the table of some runs, what their user is warned of, and the paths of the files written."""
+def _present(runs: list[Run], folder: Path, bracket: bool) -> None:
+    """Print the table of some runs, their brackets where wanted, the warnings, and the paths of the files written."""
     from seatsim.output import write_result
     from seatsim.published import published_tables
     from seatsim.result import Result
@@ -219,4 +228,25 @@ def _present(runs: list[Run], folder: Path) -> None:
         out.print(table)
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
-    wrote(folder, write_result(Result(runs), folder))
+    result = Result(runs, _brackets(runs) if bracket else {})
+    wrote(folder, write_result(result, folder))
+
+
+def _brackets(runs: list[Run]) -> dict[str, Any]:
+    """Work out the brackets and print how far from them each run is; an interrupt keeps what there is."""
+    from seatsim.brackets import brackets
+    from seatsim.tables import distances
+
+    found: dict[str, Any] = {}
+    with told() as tell:
+        try:
+            for rig, answer in brackets(runs, tell):
+                if isinstance(answer, InputError):
+                    complain(f"no bracket: {answer}")
+                else:
+                    found[rig] = answer
+        except KeyboardInterrupt:
+            warn(["interrupted: the brackets that were not finished are left out"])
+    if found:
+        out.print(distances(runs, found))
+    return found

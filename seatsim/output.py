@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from seatsim.brackets import distance
 from seatsim.files import write_json, write_whole
 from seatsim.result import UNITS, Result, Run
 
@@ -32,12 +33,35 @@ def write_result(result: Result, folder: Path) -> list[Path]:
             write_json(folder / "summary.json", {"runs": [_summary(run) for run in result.runs]}),
         ]
         pictures = write_pictures(draw(result), folder)
+        if result.brackets:
+            paths.append(write_json(folder / "brackets.json", {"rigs": _brackets(result)}))
         return [*paths, history.result(), *pictures]
 
 
 def write_pictures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     """Write figures as `NAME.png` and return their paths."""
     return [write_whole(folder / f"{name}.png", partial(figure.savefig, **PICTURE)) for name, figure in figures.items()]
+
+
+def _brackets(result: Result) -> list[dict[str, Any]]:
+    """Return for each rig its bracket, and for each of its runs where that stands."""
+    found = []
+    for rig, bracket in result.brackets.items():
+        runs = [run for run in result.runs if run.scenario.rig == rig]
+        found.append(
+            {
+                **bracket.as_dict(),
+                "runs": [
+                    {
+                        "scenario": run.scenario.name,
+                        "label": dict(run.scenario.label),
+                        **distance(run, bracket)._asdict(),
+                    }
+                    for run in runs
+                ],
+            }
+        )
+    return found
 
 
 def _summary(run: Run) -> dict[str, Any]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -74,9 +74,10 @@ class Run:
 
 @dataclass(frozen=True)
 class Result:
-    """The runs of one or several scenarios."""
+    """The runs of one or several scenarios, and the brackets of their rigs (by `Scenario.rig`) where asked for."""
 
     runs: Sequence[Run]
+    brackets: Mapping[str, Any] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Channel:
         """Return a channel of the first run with its unit."""

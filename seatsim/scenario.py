@@ -86,6 +86,12 @@ class Scenario:
         parts = [str(v) if k == "variant" else f"{k.split('.')[-1]} {v}" for k, v in self.label.items()]
         return f"{self.name} ({', '.join(parts)})" if parts else self.name
 
+    @property
+    def rig(self) -> str:
+        """What is shaken and how, without its control: runs of one rig are alternatives to each other."""
+        damper, drive = (self.damper, self.coil.max_current, self.temperature), (self.excitation, self.seed, self.start)
+        return repr((self.plant, damper, drive, self.effects, self.solver))
+
     @contextmanager
     def placed(self, *keys: str) -> Iterator[None]:
         """Give errors about a section of the scenario their place in its file."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from rich import box
 from rich.markup import escape
 from rich.table import Table
 
+from seatsim.brackets import distance
 from seatsim.result import Run
 
 
@@ -40,8 +41,7 @@ def comparison(runs: Sequence[Run], title: str) -> Table:
     table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     labels = _label_keys(runs)
     for key in labels:
-        heading = "damper\n\\[°C]" if key == "temperature" else key.split(".")[-1].replace("_", "\n")
-        table.add_column(heading, vertical="bottom", no_wrap="." in key or key == "temperature")
+        table.add_column(_heading(key), vertical="bottom", no_wrap="." in key or key == "temperature")
     for column in COLUMNS:
         table.add_column(column.heading, justify="right", vertical="bottom", no_wrap=True)
     best = {column.metric: _best(runs, column.metric) for column in COMPARED}
@@ -50,6 +50,34 @@ def comparison(runs: Sequence[Run], title: str) -> Table:
         cells += [_cell(run, column, best.get(column.metric)) for column in COLUMNS]
         table.add_row(*cells)
     return table
+
+
+def distances(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Table:
+    """Return the table of how far each run with a bracket is from its two ends, at the run's travel."""
+    title = "Distance from the clairvoyant bracket, at each run's travel"
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    chosen = [run for run in runs if run.scenario.rig in brackets]
+    keys = _label_keys(chosen)
+    for key in keys:
+        table.add_column(_heading(key), vertical="bottom", no_wrap="." in key or key == "temperature")
+    for heading in ("Wk RMS", "bound", "best"):
+        table.add_column(f"{heading}\n\\[m/s²]", justify="right", vertical="bottom", no_wrap=True)
+    for heading in ("above\nbound", "above\nbest", "bracket's\nwidth"):
+        table.add_column(f"{heading}\n\\[%]", justify="right", vertical="bottom", no_wrap=True)
+    for run in chosen:
+        d = distance(run, brackets[run.scenario.rig])
+        cells = [_number(value, 3) for value in (d.acceleration, d.bound, d.best)]
+        cells += [_number(1e2 * value, 1) for value in (d.above_bound, d.above_best, d.best / d.bound - 1)]
+        table.add_row(*(escape(_label(run, key)) for key in keys), *cells)
+    return table
+
+
+def _heading(key: str) -> str:
+    return "damper\n\\[°C]" if key == "temperature" else key.rpartition(".")[2].replace("_", "\n")
+
+
+def _number(value: float, decimals: int) -> str:
+    return f"{value:.{decimals}f}" if math.isfinite(value) else "-"
 
 
 def _label_keys(runs: Sequence[Run]) -> list[str]:

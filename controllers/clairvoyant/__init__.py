@@ -57,6 +57,11 @@ class Bracket:
         ratio: Array = np.sqrt(self.reached / self.lower) - 1
         return ratio
 
+    def as_dict(self) -> dict[str, list[float]]:
+        """Return the curves as lists, without the forces."""
+        curves = {name: getattr(self, name) for name in ("weights", "lower", "acceleration", "travel", "width")}
+        return {name: [float(value) for value in curve] for name, curve in curves.items()}
+
     def bound(self, travel: ArrayLike) -> Array:
         """Return the aw in m/s^2 below which no damper comes at an RMS travel in m; the shape of `travel`."""
         x = np.asarray(travel, dtype=np.float64)[..., None]

@@ -11,17 +11,17 @@ from seatsim.dampers.bench import sine_test
 from seatsim.errors import InputError
 from seatsim.scenario import DamperChoice
 
-TOP = 2.0
+TOP = 1.5
 """m/s; speed up to which the lines hold."""
-SPEEDS = np.array([0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.4, TOP])
-CURRENTS = 9
+SPEEDS = np.array([0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.2, TOP])
+CURRENTS, SLOPES = 9, 201
 _STROKE, _FASTEST = 0.02, 2.0  # m and Hz: friction has its full size, and internal flows settle
 
 
 class Envelope(NamedTuple):
     """Lines that hold every force of the damper between them (`outer`), and lines between which it has all (`inner`).
 
-    They are the same for a damper whose steady force is a viscous and a friction part.
+    They are about the same for a damper whose steady force is a viscous and a friction part.
     """
 
     outer: Lines
@@ -47,18 +47,21 @@ def envelope(damper: DamperChoice, max_current: float, temperature: float) -> En
             f"the damper drives instead of damping at {SPEEDS[driving][0]:g} m/s (an offset of its force?); the bracket"
             " is of dissipative dampers"
         )
-    c = max(0.0, float(np.polyfit(SPEEDS, least.mean(axis=1), 1)[0]))
+    speeds = SPEEDS[:, None]
+    c = max(0.0, min(float(np.polyfit(SPEEDS, least.mean(axis=1), 1)[0]), float((least / speeds).min())))
     b = max(0.0, float(np.polyfit(SPEEDS, most.mean(axis=1), 1)[0]))
-    c = min(c, float((least.min(axis=1) / SPEEDS).min()))
-    weakest, strongest = least - c * SPEEDS[:, None], most - b * SPEEDS[:, None]
-    a = max(strongest.max(), float((b * SPEEDS[:, None] - least).max()))
-    found = Envelope(
-        Lines(c, float(weakest.min()), b, float(a)), Lines(c, float(weakest.max()), b, float(strongest.min()))
-    )
-    inner = found.inner
+    weakest, strongest = least - c * speeds, most - b * speeds
+    inner = Lines(c, float(weakest.max()), b, float(strongest.min()))
     if inner.a <= inner.f or inner.a + inner.b * TOP <= inner.f + inner.c * TOP:
         raise InputError("the damper's forces at no and at full current do not leave a straight band between them")
-    return found
+    a, slope = min((_half_width(least, most, slope), slope) for slope in np.linspace(0, b, SLOPES))
+    return Envelope(Lines(c, float(weakest.min()), float(slope), a), inner)
+
+
+def _half_width(least: Array, most: Array, slope: float) -> float:
+    """Return the least `a` with `abs(F - slope w) <= a` for all forces: the bound's third multiplier is of a strip."""
+    middle = slope * SPEEDS[:, None]
+    return float(max((most - middle).max(), (middle - least).max()))
 
 
 def _steady(damper: DamperChoice, speed: float, current: float, temperature: float) -> Array:

@@ -12,6 +12,7 @@ from seatsim.plots.comparison import comparison
 from seatsim.plots.envelope import force_velocity
 from seatsim.plots.histories import time_histories
 from seatsim.plots.loops import damper_loops
+from seatsim.plots.pareto import pareto
 from seatsim.plots.spectra import psd, transmissibility
 from seatsim.result import Result
 
@@ -19,7 +20,7 @@ __all__ = ["draw"]
 
 
 def draw(result: Result) -> dict[str, Figure]:
-    """Return the figures of a result by name, 10 inches wide; `comparison` is there for two runs or more.
+    """Return the figures of a result by name, 10 inches wide; `comparison` and `pareto` are there for two runs or more.
 
     Where there is nothing to show (a floor at rest, a record too short for a spectrum), a figure says so. The
     sine tests of the dampers raise RunError where one cannot be carried to its end.
@@ -33,4 +34,5 @@ def draw(result: Result) -> dict[str, Figure]:
     }
     if len(result.runs) > 1:
         figures["comparison"] = comparison(result.runs)
+        figures["pareto"] = pareto(result.runs, result.brackets)
     return figures

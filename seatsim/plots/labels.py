@@ -53,6 +53,24 @@ def labels(runs: Sequence[Run], longest: int = LONGEST, without: str = "") -> li
     return [clean(_described(run.scenario, several, without), longest) for run in runs]
 
 
+def apart(alike: Sequence[Run], runs: Sequence[Run]) -> tuple[str, list[str]]:
+    """Return what sets some of the runs apart from the others, and what sets each of these apart from the rest."""
+    keys = [key for key in alike[0].scenario.label if len({str(run.scenario.label.get(key)) for run in alike}) == 1]
+    several = len({run.scenario.name for run in runs}) > 1
+    same = len({run.scenario.name for run in alike}) == 1
+    shared = [_part(alike[0].scenario, key, alike[0].scenario.label[key]) for key in keys]
+    own = [
+        [_part(run.scenario, key, value) for key, value in run.scenario.label.items() if key not in keys]
+        for run in alike
+    ]
+    heading = ", ".join([alike[0].scenario.name] * (several and same) + shared)
+    names = [
+        ", ".join([run.scenario.name] * (not same) + parts) or run.scenario.name
+        for run, parts in zip(alike, own, strict=True)
+    ]
+    return clean(heading, LONGEST), [clean(name, LONGEST) for name in names]
+
+
 def title(runs: Sequence[Run]) -> str:
     """Return the name of one run with what sets it apart, or the names of the scenarios of several."""
     if len(runs) == 1:

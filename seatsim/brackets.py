@@ -1,0 +1,52 @@
+"""The brackets of some runs' rigs, from whichever plug-in gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+from seatsim.errors import InputError
+from seatsim.metrics.arrays import ratio
+from seatsim.registry import find
+from seatsim.result import Run
+
+
+class Distance(NamedTuple):
+    """Where a run stands: Wk-weighted RMS acceleration in m/s^2, RMS travel in m; at that travel the bracket's ends.
+
+    `bound` and `best` are in m/s^2, `above_bound` and `above_best` the run's acceleration over them, less 1. NaN where
+    the travel is shorter than that of any run of the bracket.
+    """
+
+    acceleration: float
+    travel: float
+    bound: float
+    best: float
+    above_bound: float
+    above_best: float
+
+
+def distance(run: Run, bracket: Any) -> Distance:
+    """Return how far a run is from the bracket of its rig."""
+    acceleration = run.metrics["driver_acceleration_weighted"].value
+    travel = run.metrics["suspension_displacement_rms"].value
+    bound, best = float(bracket.bound(travel)), float(bracket.best(travel))
+    return Distance(acceleration, travel, bound, best, ratio(acceleration, bound) - 1, ratio(acceleration, best) - 1)
+
+
+def rigs(runs: Sequence[Run]) -> dict[str, Run]:
+    """Return the first run on each rig that has other runs to compare with."""
+    found: dict[str, list[Run]] = {}
+    for run in runs:
+        found.setdefault(run.scenario.rig, []).append(run)
+    return {rig: alike[0] for rig, alike in found.items() if len(alike) > 1}
+
+
+def brackets(runs: Sequence[Run], tell: Callable[[str], None]) -> Iterator[tuple[str, Any]]:
+    """Yield the bracket of each rig with its `Scenario.rig`, or the InputError that says why it has none."""
+    kind: Any = find("bracket", "clairvoyant")
+    for rig, run in rigs(runs).items():
+        try:
+            yield rig, kind.of(run.scenario, tell)
+        except InputError as error:
+            yield rig, error

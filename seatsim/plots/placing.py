@@ -1,0 +1,67 @@
+"""Where the names of points go so that no two overlap, in inches: without drawing any text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+TALL = 0.16
+LETTER = 0.077
+"""Height of a name and width of a letter in inches, at 9.5 points."""
+MARK = 0.07
+"""Half the side of a point in inches."""
+DISTANCES = (0.1, 0.22, 0.36, 0.5, 0.7, 0.9)
+"""Distances of a name from its point in inches; beyond the first a line leads to it."""
+DIRECTIONS = (0, 60, -60, 180, 90, -90, 120, -120, 30, -30, 150, -150)
+"""Degrees, the preferred first."""
+
+
+class Spot(NamedTuple):
+    """Left end of a name, at half its height, from its point; whether a line must lead there."""
+
+    right: float
+    up: float
+    far: bool
+
+
+class Box(NamedTuple):
+    """A rectangle in inches."""
+
+    left: float
+    low: float
+    right: float
+    high: float
+
+    def meets(self, other: Box) -> bool:
+        """Tell whether two rectangles overlap."""
+        return self.left < other.right and other.left < self.right and self.low < other.high and other.low < self.high
+
+
+def placed(points: Sequence[tuple[float, float]], names: Sequence[str], size: tuple[float, float]) -> list[Spot] | None:
+    """Return a spot for the name of each point in a panel of a width and height; None where one finds no room."""
+    taken = [Box(x - MARK, y - MARK, x + MARK, y + MARK) for x, y in points]
+    spots: list[Spot | None] = [None] * len(points)
+    for index in sorted(range(len(points)), key=lambda k: points[k][1]):
+        found = _free(points[index], LETTER * len(names[index]), taken, size)
+        if found is None:
+            return None
+        spots[index], box = found
+        taken.append(box)
+    return [spot for spot in spots if spot]
+
+
+def _free(
+    point: tuple[float, float], wide: float, taken: Sequence[Box], size: tuple[float, float]
+) -> tuple[Spot, Box] | None:
+    x, y = point
+    for distance in DISTANCES:
+        for direction in DIRECTIONS:
+            across, up = math.cos(math.radians(direction)), math.sin(math.radians(direction))
+            left = x + distance * across - (wide if across < -0.1 else 0.5 * wide if across < 0.1 else 0.0)
+            middle = y + (distance + 0.5 * TALL * (distance == DISTANCES[0])) * up
+            box = Box(left, middle - 0.5 * TALL, left + wide, middle + 0.5 * TALL)
+            inside = box.left >= 0 and box.low >= 0 and box.right <= size[0] and box.high <= size[1]
+            if inside and not any(box.meets(other) for other in taken):
+                return Spot(left - x, middle - y, distance > DISTANCES[0]), box
+    return None
