@@ -16,8 +16,8 @@ from seatsim.result import Run
 
 COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
 NOTE = "Over the whole run; the further down and to the left the better."
-BOUND = Entry("no damper comes below", "black", width=1.6)
-BEST = Entry("what an ideal damper could have done", DARK, (0.0, (5.0, 1.5)), 1.6)
+BOUND = Entry("no damper comes below this bound", "black", width=1.6)
+BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
 BAND = "0.88"
 MOST_PANELS = 20
 LONGEST = 40
@@ -55,7 +55,7 @@ def pareto(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Figure:
     grid = Grid((SIDES[columns - 1],) * -(-len(shown) // columns), columns, top=0.35, gap=(0.85, 0.95))
     numbered = not all(_spots(panel, _size(grid, columns)) for panel in shown)
     if numbered:
-        legend = [*legend, *(Entry(f"{k + 1}  {name}", _colour(k)) for k, name in enumerate(names))]
+        legend = [*legend, *(Entry(f"{k + 1}  {name}", _colour(k), "none", mark="o") for k, name in enumerate(names))]
     note = NOTE + (f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else "")
     page = style.page(f"Comfort and travel: {labels.title(runs)}", note, grid, legend)
     panels = [axes for row in page.rows for axes in row]
@@ -132,7 +132,7 @@ def _draw(axes: Axes, panel: Panel, names: list[str], numbered: bool, size: tupl
         axes.plot(point.travel, point.comfort, "o", color=colour, markersize=7, markeredgecolor="white", zorder=4)
         axes.annotate(
             text, (point.travel, point.comfort), (72 * spot.right, 72 * spot.up), textcoords="offset points",
-            fontsize=9.5, va="center", ha="left", color=DARK, zorder=5,
+            fontsize=9.5, va="center", ha="left", color=colour, zorder=5,
             arrowprops={"arrowstyle": "-", "color": "0.6", "linewidth": 0.7} if spot.far else None,
         )  # fmt: skip
     axes.set_title(panel.title, fontsize=10.5, loc="left")

@@ -9,8 +9,8 @@ from typing import NamedTuple
 TALL = 0.16
 LETTER = 0.077
 """Height of a name and width of a letter in inches, at 9.5 points."""
-MARK = 0.07
-"""Half the side of a point in inches."""
+MARK, THIN = 0.07, 0.02
+"""Half the side of a point, and of a line, in inches."""
 DISTANCES = (0.1, 0.22, 0.36, 0.5, 0.7, 0.9)
 """Distances of a name from its point in inches; beyond the first a line leads to it."""
 DIRECTIONS = (0, 60, -60, 180, 90, -90, 120, -120, 30, -30, 150, -150)
@@ -46,8 +46,9 @@ def placed(points: Sequence[tuple[float, float]], names: Sequence[str], size: tu
         found = _free(points[index], LETTER * len(names[index]), taken, size)
         if found is None:
             return None
-        spots[index], box = found
-        taken.append(box)
+        spot, box = found
+        spots[index] = spot
+        taken += [box, *(_leader(points[index], box) if spot.far else [])]
     return [spot for spot in spots if spot]
 
 
@@ -62,6 +63,18 @@ def _free(
             middle = y + (distance + 0.5 * TALL * (distance == DISTANCES[0])) * up
             box = Box(left, middle - 0.5 * TALL, left + wide, middle + 0.5 * TALL)
             inside = box.left >= 0 and box.low >= 0 and box.right <= size[0] and box.high <= size[1]
-            if inside and not any(box.meets(other) for other in taken):
-                return Spot(left - x, middle - y, distance > DISTANCES[0]), box
+            far = distance > DISTANCES[0]
+            needed = [box, *(_leader(point, box) if far else [])]
+            if inside and not any(one.meets(other) for one in needed for other in taken):
+                return Spot(left - x, middle - y, far), box
     return None
+
+
+def _leader(point: tuple[float, float], box: Box) -> list[Box]:
+    """Return small rectangles along the line between a point and the middle of its name, clear of both."""
+    x, y = 0.5 * (box.left + box.right) - point[0], 0.5 * (box.low + box.high) - point[1]
+    shares = [0.1 * tenth for tenth in range(1, 10) if 0.1 * tenth * max(abs(x), abs(y)) > MARK + THIN]
+    dots = [
+        Box(*(point[k % 2] + share * (x, y)[k % 2] + (THIN if k > 1 else -THIN) for k in range(4))) for share in shares
+    ]
+    return [dot for dot in dots if not dot.meets(box)]

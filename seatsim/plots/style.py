@@ -40,6 +40,7 @@ class Entry(NamedTuple):
     dashes: Dashes = "-"
     width: float = 1.4
     alpha: float = 1.0
+    mark: str = ""
 
 
 class Page(NamedTuple):
@@ -118,7 +119,7 @@ def _handle(look: Entry) -> Line2D:
 def _style(look: Entry) -> dict[str, Any]:
     return {
         "color": look.colour, "linestyle": look.dashes, "linewidth": look.width, "alpha": look.alpha,
-        "solid_capstyle": "butt",
+        "solid_capstyle": "butt", "marker": look.mark,
     }  # fmt: skip
 
 

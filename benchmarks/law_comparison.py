@@ -1,0 +1,125 @@
+"""Every law of a scenario against the clairvoyant bracket: `python benchmarks/law_comparison.py SCENARIO --out DIR`.
+
+The variants of SCENARIO (its plant, damper and laws, without its effects) on roads B to F and the floors EM1 to EM9 of
+ISO 7096, with the damper at 20 and 80 degC. A damper without temperature factors gets those that cost it a third of its
+force at 80 degC. Brackets stand in DIR as JSON by road, temperature and settings and are not made again, so that a run
+may be stopped and resumed; the laws are simulated anew. Written are `laws.csv`, a row for each law, road and
+temperature, `brackets.csv`, and both as Markdown in `laws.md`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+import seatsim
+from controllers.clairvoyant import Bracket, clairvoyant
+from seatsim.brackets import distance
+from seatsim.files import write_json, write_text
+from seatsim.result import Run
+from seatsim.runs import run_many
+from seatsim.temperature import TemperatureFactors
+
+SPEEDS = {"B": 25.0, "C": 20.0, "D": 15.0, "E": 8.0, "F": 4.0}
+"""m/s at which each class of road is driven."""
+TEMPERATURES = (20.0, 80.0)
+FADING = {"viscous": -0.0067, "stiffness": -0.0067, "yield_force": -0.0067}
+WEIGHTS = np.array([12.0, 25.0, 50.0, 90.0, 150.0]) ** 2
+
+
+def floors(duration: float) -> dict[str, dict[str, Any]]:
+    """Return the excitation of every floor by name."""
+    roads = {
+        f"road {name}": {"kind": "road", "road_class": name, "speed": speed, "duration": duration}
+        for name, speed in SPEEDS.items()
+    }
+    classes = [f"EM{number}" for number in range(1, 10)]
+    return roads | {name: {"kind": "iso7096", "spectral_class": name, "duration": duration} for name in classes}
+
+
+def scenarios(path: str, excitation: dict[str, Any], temperature: float) -> list[Any]:
+    """Return the variants of a scenario on a floor, without effects, with a damper that fades."""
+    settings = {"excitation": excitation, "temperature": temperature, "effects": []}
+    if seatsim.load(path, settings)[0].damper.factors == TemperatureFactors():
+        settings["damper.temperature_factors"] = FADING
+    return seatsim.load(path, settings)
+
+
+def bracket(scenario: Any, name: str, hold: float, folder: Path) -> Bracket:
+    """Return the bracket of a scenario, from its file where that is there."""
+    settings = hashlib.sha256(f"{scenario.rig} {hold} {WEIGHTS.tolist()}".encode()).hexdigest()[:12]
+    path = folder / f"bracket-{name.replace(' ', '-')}-{settings}.json"
+    if not path.exists():
+        write_json(path, clairvoyant(scenario, WEIGHTS, hold).as_dict())
+    kept = json.loads(path.read_text(encoding="utf-8"))
+    curves = (np.array(kept[key]) for key in ("weights", "lower", "acceleration", "travel"))
+    return Bracket(*curves, np.zeros((len(WEIGHTS), 0)), hold)
+
+
+def rows(found: Bracket, runs: list[Run], floor: str, temperature: float) -> list[dict[str, Any]]:
+    """Return a row for each law: where it stands, and how far from the bracket at its own travel."""
+    place = {"floor": floor, "temperature": temperature}
+    return [place | {"law": run.scenario.label.get("variant", "")} | distance(run, found)._asdict() for run in runs]
+
+
+def markdown(laws: pd.DataFrame, brackets: pd.DataFrame) -> str:
+    """Return the tables: excess over the bound by law and floor, and the brackets."""
+    parts = []
+    for temperature, part in laws.groupby("temperature"):
+        table = 100 * part.pivot(index="law", columns="floor", values="above_bound")[list(part.floor.unique())]
+        table.insert(0, "median", table.median(axis=1))
+        parts.append(f"Excess over the bound at the law's own travel, %, damper at {temperature:g} degC\n")
+        parts.append(_grid(table.sort_values("median").reset_index(), 0))
+    parts += ["The brackets: RMS of least weight and of most, width in %\n", _grid(brackets, 2)]
+    return "\n".join(parts)
+
+
+def _grid(table: pd.DataFrame, decimals: int) -> str:
+    lines = [list(map(str, table.columns)), ["---"] * len(table.columns)]
+    for row in table.itertuples(index=False):
+        lines.append([f"{cell:.{decimals}f}" if isinstance(cell, float) else str(cell) for cell in row])
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+
+
+def main() -> None:
+    """Run the study and write its tables."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenario", nargs="?", default="quickstart")
+    parser.add_argument("--out", type=Path, default=Path("out/law_comparison"))
+    parser.add_argument("--duration", type=float, default=20.0, help="s of every floor")
+    parser.add_argument("--hold", type=float, default=0.005, help="s over which the ideal damper's force is held")
+    parser.add_argument("--only", nargs="*", help="names of floors, such as 'road D' EM1")
+    asked = parser.parse_args()
+    laws, brackets = [], []
+    for floor, excitation in floors(asked.duration).items():
+        for temperature in TEMPERATURES if not asked.only or floor in asked.only else ():
+            variants = scenarios(asked.scenario, excitation, temperature)
+            found = bracket(variants[0], f"{floor} {temperature:g}", asked.hold, asked.out)
+            runs = []
+            for scenario, answer in run_many(variants, lambda _: None):
+                if isinstance(answer, Run):
+                    runs.append(answer)
+                else:
+                    print(f"{scenario.title}: {answer}")
+            laws += rows(found, runs, floor, temperature)
+            ends = {"aw": found.acceleration, "travel_mm": 1e3 * found.travel, "width_percent": 100 * found.width}
+            spans = {f"{end}_{kind}": float(pick(of)) for end, of in ends.items() for kind, pick in _SPAN.items()}
+            brackets.append({"floor": floor, "temperature": temperature, **spans})
+            print(f"{floor}, {temperature:g} degC: width {spans['width_percent_most']:.1f} % at most", flush=True)
+    asked.out.mkdir(parents=True, exist_ok=True)
+    tables = pd.DataFrame(laws), pd.DataFrame(brackets)
+    for name, table in zip(("laws", "brackets"), tables, strict=True):
+        table.to_csv(asked.out / f"{name}.csv", index=False)
+    print(write_text(asked.out / "laws.md", markdown(*tables)))
+
+
+_SPAN = {"least": np.min, "most": np.max}
+
+if __name__ == "__main__":
+    main()
