@@ -11,6 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from seatsim.brackets import distance
+from seatsim.metrics.arrays import ratio
 from seatsim.result import Run
 
 
@@ -67,7 +68,7 @@ def distances(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Table:
     for run in chosen:
         d = distance(run, brackets[run.scenario.rig])
         cells = [_number(value, 3) for value in (d.acceleration, d.bound, d.best)]
-        cells += [_number(1e2 * value, 1) for value in (d.above_bound, d.above_best, d.best / d.bound - 1)]
+        cells += [_number(1e2 * value, 1) for value in (d.above_bound, d.above_best, ratio(d.best, d.bound) - 1)]
         table.add_row(*(escape(_label(run, key)) for key in keys), *cells)
     return table
 

@@ -129,7 +129,7 @@ def _draw(axes: Axes, panel: Panel, names: list[str], numbered: bool, size: tupl
     spots = _spots(named, size) or [Spot(0.1, 0.1, False)] * len(texts)
     for point, text, spot in zip(panel.points, texts, spots, strict=True):
         colour = _colour(names.index(point.name))
-        axes.plot(point.travel, point.comfort, "o", color=colour, markersize=7, markeredgecolor="white", zorder=4)
+        axes.scatter(point.travel, point.comfort, s=49, color=colour, edgecolors="white", zorder=4)
         axes.annotate(
             text, (point.travel, point.comfort), (72 * spot.right, 72 * spot.up), textcoords="offset points",
             fontsize=9.5, va="center", ha="left", color=colour, zorder=5,

@@ -34,7 +34,7 @@ def figures(request, made_up):
 
 def test_the_figures_are_there(figures, request):
     several = request.node.callspec.params["figures"] in ("variants", "files", "sweep", "many")
-    assert set(figures) == (ALWAYS | {"comparison"} if several else ALWAYS)
+    assert set(figures) == (ALWAYS | {"comparison", "pareto"} if several else ALWAYS)
 
 
 def test_every_axis_that_is_numbered_has_a_unit(figures):
