@@ -1,8 +1,8 @@
 """The Lagrangian of the held force, minimised by Riccati recursion; compiled.
 
-    L = T J + sum over k of  -(alpha + beta) (F w - c w^2) + (alpha - beta) f w + nu ((F - b w)^2 - a^2)
+    L = J + sum over k of  -(alpha + beta) (F w - c w^2) + (alpha - beta) f w + nu ((F - b w)^2 - a^2)
 
-alpha, beta and nu are never negative, and for every force the damper can deliver no term but T J is above zero.
+alpha, beta and nu are never negative, and for every force the damper can deliver the sum is not above zero: L <= J.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ The run is that of the seat without damper, shaken by the floor, plus the respon
 
     s[k+1] = A s[k] + B F[k],   s = (x, v, xc, vc, eight filter states) of the response, s[0] = 0
     w[k]   = velocity . (s[k], F[k]) + w0[k],   mean velocity of the damper over the interval
-    T J    = T J0 + sum over k of (s, F)' Q (s, F) + 2 q[k]' (s, F)
+    J      = J0 + sum over k of (s, F)' Q (s, F) + 2 q[k]' (s, F)
 
 J = mean(aw^2) + mu mean(x^2) over all samples of the record, aw the Wk-weighted acceleration of the driver.
 """

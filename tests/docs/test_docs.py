@@ -38,7 +38,18 @@ def test_every_command_and_option_has_an_example():
         assert f"seatsim {command.callback.__name__} " in examples
     for command in ("make", "score"):
         assert f"seatsim blind {command} " in examples
-    for option in ("--out", "--set", "--without", "--cases", "--seed", "--sealed", "--kinds", "--key", *BENCH):
+    for option in (
+        "--out",
+        "--set",
+        "--without",
+        "--cases",
+        "--seed",
+        "--sealed",
+        "--kinds",
+        "--key",
+        "--bracket",
+        *BENCH,
+    ):
         assert option in examples
 
 
