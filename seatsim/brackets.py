@@ -34,19 +34,11 @@ def distance(run: Run, bracket: Any) -> Distance:
     return Distance(acceleration, travel, bound, best, ratio(acceleration, bound) - 1, ratio(acceleration, best) - 1)
 
 
-def rigs(runs: Sequence[Run]) -> dict[str, Run]:
-    """Return the first run on each rig that has other runs to compare with."""
-    found: dict[str, list[Run]] = {}
-    for run in runs:
-        found.setdefault(run.scenario.rig, []).append(run)
-    return {rig: alike[0] for rig, alike in found.items() if len(alike) > 1}
-
-
 def brackets(runs: Sequence[Run], tell: Callable[[str], None]) -> Iterator[tuple[str, Any]]:
     """Yield the bracket of each rig with its `Scenario.rig`, or the InputError that says why it has none."""
     kind: Any = find("bracket", "clairvoyant")
-    for rig, run in rigs(runs).items():
+    for rig, scenario in {run.scenario.rig: run.scenario for run in runs}.items():
         try:
-            yield rig, kind.of(run.scenario, tell)
+            yield rig, kind.of(scenario, tell)
         except InputError as error:
             yield rig, error

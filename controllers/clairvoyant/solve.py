@@ -67,6 +67,8 @@ def _posed(scenario: Scenario, hold: float) -> tuple[Transcription, Envelope]:
     floor = scenario.excitation.floor(step, scenario.seed)
     if len(floor.acceleration) <= every:
         raise InputError(f"{scenario.title}: the floor's record is shorter than the time over which a force is held")
+    if not floor.acceleration.any() and not any(scenario.start):
+        raise InputError(f"{scenario.title}: nothing moves, so there is nothing to bracket")
     with scenario.placed("damper"):
         band = envelope(scenario.damper, scenario.coil.max_current, float(scenario.temperature))
     return transcribe(scenario.plant, floor.acceleration, step, every, scenario.start), band

@@ -34,7 +34,7 @@ class Criterion(NamedTuple):
 
 
 class Transcription(NamedTuple):
-    """The matrices of the module's equations for N intervals of `step` seconds, and the record's number of samples."""
+    """The matrices of the module's equations for N intervals of `step` seconds."""
 
     step: float
     A: Array
@@ -55,9 +55,8 @@ def transcribe(plant: Plant, floor: Array, sample: float, every: int, start: tup
     count = (len(floor) - 1) // every
     used = count * every + 1
     time = sample * np.arange(used)
-    outputs = np.vstack([s.C1, s.C2[1]])
-    response = scipy.signal.lsim((s.A, s.B1, outputs, np.zeros((3, 1))), floor[:used], time, [*start, 0.0, 0.0])[1]
-    travel, acceleration, _ = np.ascontiguousarray(response.T)
+    response = scipy.signal.lsim((s.A, s.B1, s.C1, np.zeros((2, 1))), floor[:used], time, [*start, 0.0, 0.0])[1]
+    travel, acceleration = np.ascontiguousarray(response.T)
     A, B, C = _weighted(s)
     held = [_held(A, B, (j + 1) * sample) for j in range(every)]
     last = held[-1]

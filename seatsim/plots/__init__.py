@@ -34,5 +34,6 @@ def draw(result: Result) -> dict[str, Figure]:
     }
     if len(result.runs) > 1:
         figures["comparison"] = comparison(result.runs)
+    if len(result.runs) > 1 or result.brackets:
         figures["pareto"] = pareto(result.runs, result.brackets)
     return figures

@@ -43,17 +43,17 @@ class Panel(NamedTuple):
 
 
 def pareto(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Figure:
-    """Return weighted acceleration over travel, with the brackets by `Scenario.rig`; one panel where rigs have one run.
+    """Return weighted acceleration over travel, a panel for each rig, with the brackets by `Scenario.rig`.
 
-    Points are named in the panel where there is room; else they are numbered.
+    Without brackets, rigs of one run share a panel. Points are named where there is room, else they are numbered.
     """
-    found = _panels(runs, brackets)
+    found = _panels(runs, brackets) or [Panel("", [], None)]
     shown = found[:MOST_PANELS]
     names = list(dict.fromkeys(point.name for panel in shown for point in panel.points))
     columns = min(2, len(shown))
     legend = [BOUND, BEST] if any(panel.bracket for panel in shown) else []
     grid = Grid((SIDES[columns - 1],) * -(-len(shown) // columns), columns, top=0.35, gap=(0.85, 0.95))
-    numbered = not all(_spots(panel, _size(grid, columns)) for panel in shown)
+    numbered = any(_spots(panel, _size(grid, columns)) is None for panel in shown)
     if numbered:
         legend = [*legend, *(Entry(f"{k + 1}  {name}", _colour(k), "none", mark="o") for k, name in enumerate(names))]
     note = NOTE + (f" {len(shown)} of {len(found)} rigs are shown." if len(shown) < len(found) else "")
@@ -71,7 +71,7 @@ def _panels(runs: Sequence[Run], brackets: Mapping[str, Any]) -> list[Panel]:
     for run in runs:
         if all(np.isfinite(run.metrics[name].value) if name in run.metrics else False for name in (COMFORT, TRAVEL)):
             groups.setdefault(run.scenario.rig, []).append(run)
-    if len(groups) > 1 and any(len(group) < 2 for group in groups.values()):
+    if not brackets and len(groups) > 1 and any(len(group) < 2 for group in groups.values()):
         alone = [run for group in groups.values() for run in group]
         return [Panel("", _points(alone, labels.labels(alone, LONGEST)), None)]
     found = []
@@ -110,7 +110,7 @@ def _padded(values: Sequence[float]) -> tuple[float, float]:
 
 
 def _spots(panel: Panel, size: tuple[float, float]) -> list[Spot] | None:
-    across, up = _limits(panel)
+    across, up = _limits(panel) if panel.points else ((0.0, 1.0), (0.0, 1.0))
     inches = [
         (size[0] * (p.travel - across[0]) / (across[1] - across[0]), size[1] * (p.comfort - up[0]) / (up[1] - up[0]))
         for p in panel.points
@@ -119,6 +119,8 @@ def _spots(panel: Panel, size: tuple[float, float]) -> list[Spot] | None:
 
 
 def _draw(axes: Axes, panel: Panel, names: list[str], numbered: bool, size: tuple[float, float]) -> None:
+    if not panel.points:
+        return style.say(axes, "no run with a weighted acceleration: that needs 200 samples a second")
     across, up = _limits(panel)
     axes.set_xlim(across)
     axes.set_ylim(up)

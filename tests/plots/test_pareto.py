@@ -78,5 +78,16 @@ def test_bracket_is_drawn_where_there_is_one(runs):
     assert [text.get_text() for text in figure.legends[0].get_texts()][:2] == [BOUND.label, BEST.label]
 
 
+def test_a_rig_of_one_run_has_a_panel_where_there_are_brackets(runs):
+    both = runs(["soft"], (20.0, 80.0))
+    assert len(pareto(both, {both[0].scenario.rig: Fake()}).axes) == 2
+
+
+def test_without_weighted_accelerations_it_says_so(runs):
+    bare = [dataclasses.replace(run, metrics={}) for run in runs(["soft", "hard"])]
+    [axes] = pareto(bare, {}).axes
+    assert "200 samples" in axes.texts[0].get_text()
+
+
 def test_a_name_without_room_is_told():
     assert placed([(0.5, 0.5)], ["a name longer than its panel"], (1.0, 1.0)) is None
