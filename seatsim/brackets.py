@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from seatsim.errors import InputError
@@ -32,6 +32,18 @@ def distance(run: Run, bracket: Any) -> Distance:
     travel = run.metrics["suspension_displacement_rms"].value
     bound, best = float(bracket.bound(travel)), float(bracket.best(travel))
     return Distance(acceleration, travel, bound, best, ratio(acceleration, bound) - 1, ratio(acceleration, best) - 1)
+
+
+def beaten(runs: Sequence[Run], found: Mapping[str, Any]) -> list[str]:
+    """Return a sentence for each run below the bound of its rig: the bracket's damper has no memory."""
+    below = [
+        run for run in runs if run.scenario.rig in found and distance(run, found[run.scenario.rig]).above_bound < 0
+    ]
+    return [
+        f"{run.scenario.title} is below its bound, which holds for dampers without memory: in so short strokes the"
+        " damper hardly yields"
+        for run in below
+    ]
 
 
 def brackets(runs: Sequence[Run], tell: Callable[[str], None]) -> Iterator[tuple[str, Any]]:

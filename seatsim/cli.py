@@ -234,7 +234,7 @@ def _present(runs: list[Run], folder: Path, bracket: bool) -> None:
 
 def _brackets(runs: list[Run]) -> dict[str, Any]:
     """Work out the brackets and print how far from them each run is; an interrupt keeps what there is."""
-    from seatsim.brackets import brackets
+    from seatsim.brackets import beaten, brackets
     from seatsim.tables import distances
 
     found: dict[str, Any] = {}
@@ -249,4 +249,5 @@ def _brackets(runs: list[Run]) -> dict[str, Any]:
             warn(["interrupted: the brackets that were not finished are left out"])
     if found:
         out.print(distances(runs, found))
+    warn(beaten(runs, found))
     return found

@@ -55,7 +55,9 @@ def _posed(scenario: Scenario, hold: float) -> tuple[Transcription, Envelope]:
     for effect in scenario.effects:
         if acts_on(type(effect), UNKNOWN):
             name = name_of("effect", type(effect))
-            raise InputError(f"{scenario.title}: the bracket is of the seat without effects; leave out '{name}'")
+            raise InputError(
+                f"{scenario.name}: the bracket is of the seat without effects; leave out '{name}' (--set effects=[])"
+            )
     if not isinstance(scenario.temperature, float | int):
         raise InputError(f"{scenario.title}: the bracket needs a damper of one temperature; state it as a number")
     step = scenario.solver.step

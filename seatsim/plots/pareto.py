@@ -16,7 +16,7 @@ from seatsim.result import Run
 
 COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
 NOTE = "Over the whole run; the further down and to the left the better."
-BOUND = Entry("no damper comes below this bound", "black", width=1.6)
+BOUND = Entry("no damper without memory comes below", "black", width=1.6)
 BEST = Entry("best run found of an ideal damper", DARK, (0.0, (5.0, 1.5)), 1.6)
 BAND = "0.88"
 MOST_PANELS = 20

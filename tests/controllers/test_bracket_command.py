@@ -1,5 +1,6 @@
 """`compare --bracket`: the table of distances, the files, and what has no bracket."""
 
+import dataclasses
 import json
 import sys
 
@@ -25,6 +26,14 @@ class Made:
         tell("at work")
         weights, travel = np.array([400.0, 3600.0]), np.array([0.012, 0.001])
         return Bracket(weights, np.array([0.08, 0.15]), np.array([0.2, 0.4]), travel, np.zeros((2, 0)), 0.005)
+
+
+class Beaten:
+    """A kind whose bound is too high."""
+
+    @staticmethod
+    def of(scenario, tell):
+        return dataclasses.replace(Made.of(scenario, tell), lower=np.array([9.0, 0.15]))
 
 
 class Refused:
@@ -71,6 +80,11 @@ def test_distances_are_printed_and_written(compared):
     assert [run["label"]["variant"] for run in rig["runs"]] == ["soft", "hard"]
     assert [run["best"] is None for run in rig["runs"]] == [False, True]
     assert (folder / "pareto.png").exists()
+
+
+def test_a_run_below_the_bound_is_told(compared):
+    said, _ = compared(Beaten)
+    assert "seat (soft) is below its bound, which holds for dampers without memory" in said.err
 
 
 @pytest.mark.parametrize(("kind", "reason"), [(Refused, "no bracket: the seat is bent"), (Interrupted, "interrupted")])
