@@ -12,6 +12,7 @@ import hashlib
 import os
 import sys
 import sysconfig
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from importlib.util import resolve_name
@@ -27,11 +28,14 @@ from seatsim.jit import ARITHMETIC
 
 _OUTSIDE = ("numba", "numpy", "scipy", "llvmlite", "pydantic", "control", "cvxpy")
 _STANDARD = Path(sysconfig.get_path("stdlib"))
+_ONE_AT_A_TIME = threading.Lock()
+"""Runs on threads share numba's setting of the cache folder, and Python 3.11 cannot parse on two of them at once."""
 
 
 def compiled(function: Callable[..., Any], plugged: Iterable[type]) -> Callable[..., Any]:
     """Return the compiled `function`, cached on disk under its sources and those of the `plugged` classes."""
-    return _compiled(function, frozenset(plugged))
+    with _ONE_AT_A_TIME:
+        return _compiled(function, frozenset(plugged))
 
 
 @cache
