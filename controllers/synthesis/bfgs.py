@@ -1,6 +1,7 @@
 """BFGS with a weak Wolfe line search, which also works on functions with kinks.
 
-Values and the gradient of whatever side of a kink it stands on are all that the search needs.
+Values and the gradient of whatever side of a kink it stands on are all that the search needs, and where a step is
+rejected not even these: `function(x, ceiling)` may answer with any value above `ceiling` where it exceeds that.
 Source: Lewis & Overton 2013, Math. Program. 141:135.
 """
 
@@ -14,7 +15,7 @@ import numpy as np
 
 from controllers.synthesis.plant import Array
 
-Function = Callable[[Array], tuple[float, Array]]
+Function = Callable[[Array, float], tuple[float, Array]]
 
 _ARMIJO, _CURVATURE = 1e-4, 0.5
 _LINE_STEPS = 40
@@ -42,7 +43,7 @@ def minimise(
     Ends where the value is at most `enough`, `patience` steps together gain less than `progress`, no step
     descends, or `time.monotonic()` passes `deadline`.
     """
-    here = Point(start, *function(start))
+    here = Point(start, *function(start, np.inf))
     inverse = np.eye(len(start))
     history = [here.value]
     fresh = True
@@ -71,8 +72,9 @@ def _line_search(function: Function, here: Point, direction: Array) -> Point | N
     low, high, step = 0.0, np.inf, 1.0
     lowest: Point | None = None
     for _ in range(_LINE_STEPS):
-        trial = Point(here.x + step * direction, *function(here.x + step * direction))
-        if not trial.value < here.value + _ARMIJO * step * slope:
+        x, ceiling = here.x + step * direction, here.value + _ARMIJO * step * slope
+        trial = Point(x, *function(x, ceiling))
+        if not trial.value < ceiling:
             high = step
         else:
             lowest, low = trial, step

@@ -1,7 +1,7 @@
 """Multi-start descent on the exact H-infinity norm, in scaled coordinates.
 
 From every start: BFGS on the spectral abscissa until the loop is stable, then BFGS on log gamma, coarsely. The best
-few are then lowered to the end, by BFGS and polish in turn.
+few are then lowered to the end, by BFGS and polish in turn; where starts disagree, gains about the best one follow.
 Source: Apkarian & Noll 2006, IEEE Trans. Autom. Control 51:71; Burke, Henrion, Lewis & Overton 2006 (HIFOO).
 """
 
@@ -10,6 +10,8 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 from typing import NamedTuple
+
+import numpy as np
 
 from controllers.synthesis.bfgs import minimise
 from controllers.synthesis.norm import hinf_norm
@@ -24,6 +26,11 @@ _COARSE, _FINE = 1e-3, 1e-6
 _REFINED = 6
 _SAME = 2e-3
 _TURNS = 8
+# A candidate that at its present pace would not reach the best one in this many turns is given up.
+_HOPE = 10.0
+# Relative spread of the gains about the best one; rounds go on until this many in a row gain nothing.
+_ABOUT = (0.1, 0.5, 2.0, 10.0)
+_FRUITLESS = 2
 
 
 class Candidate(NamedTuple):
@@ -77,8 +84,26 @@ def explore(objective: Objective, starts: Iterable[Array], deadline: float) -> D
 
 def refine(objective: Objective, candidates: list[Candidate], deadline: float) -> Candidate:
     """Lower the best few candidates to the end and return the best; of those in one valley, only one."""
-    chosen = _distinct(candidates)[:_REFINED]
-    return min((_lower(objective, candidate, deadline) for candidate in chosen), key=_gamma)
+    first, *others = _distinct(candidates)[:_REFINED]
+    best = _lower(objective, first, np.inf, deadline)
+    for candidate in others:
+        best = min(best, _lower(objective, candidate, best.gamma, deadline), key=_gamma)
+    return best
+
+
+def improve(objective: Objective, best: Candidate, seed: int, deadline: float) -> Candidate:
+    """Descend from gains scattered about the best one, until rounds in a row gain nothing."""
+    random = np.random.default_rng(seed)
+    fruitless = 0
+    while fruitless < _FRUITLESS and time.monotonic() < deadline and best.gamma > 0:
+        size = float(np.abs(best.entries).max())
+        step = random.standard_normal((len(_ABOUT), objective.size)) * np.array(_ABOUT)[:, None]
+        scattered = best.entries + step * np.maximum(np.abs(best.entries), 0.01 * size)
+        found = explore(objective, map(objective.gain, scattered), deadline)
+        lower = min(best, refine(objective, [best, *found.candidates], deadline), key=_gamma)
+        fruitless = 0 if lower.gamma < best.gamma * (1 - _COARSE) else fruitless + 1
+        best = lower
+    return best
 
 
 def _distinct(candidates: list[Candidate]) -> list[Candidate]:
@@ -90,14 +115,15 @@ def _distinct(candidates: list[Candidate]) -> list[Candidate]:
     return kept
 
 
-def _lower(objective: Objective, candidate: Candidate, deadline: float) -> Candidate:
-    """BFGS and polish in turn, until both together gain nothing."""
+def _lower(objective: Objective, candidate: Candidate, target: float, deadline: float) -> Candidate:
+    """BFGS and polish in turn, until both together gain nothing or too little to come below `target`."""
     for _ in range(_TURNS):
         point = minimise(objective.log_norm, objective.angles(candidate.entries), deadline, progress=_FINE)
         entries = polish(objective, objective.entries(point.x), deadline)
         lower = Candidate(hinf_norm(objective.loop(entries)).value, entries)
-        settled = lower.gamma >= candidate.gamma * (1 - _FINE)
+        gained = candidate.gamma - lower.gamma
         candidate = min(candidate, lower, key=_gamma)
-        if settled or time.monotonic() > deadline:
+        hopeless = candidate.gamma - target > _HOPE * gained
+        if gained <= _FINE * candidate.gamma or hopeless or time.monotonic() > deadline:
             break
     return candidate

@@ -57,11 +57,13 @@ class Objective:
         values: Array = self.limits * np.arcsin(np.clip(entries / self.limits, -_INSIDE, _INSIDE))
         return values
 
-    def abscissa(self, theta: Array) -> tuple[float, Array]:
+    def abscissa(self, theta: Array, ceiling: float = np.inf) -> tuple[float, Array]:
         """Return the spectral abscissa and its gradient by theta."""
         loop = self.loop(self.entries(theta))
         values, left, right = cast(Any, scipy.linalg.eig(loop.A, left=True, right=True))
         place = int(values.real.argmax())
+        if values.real[place] > ceiling:
+            return float(values.real[place]), np.zeros(self.size)
         row, column = left[:, place].conj() @ self.plant.B2, self.plant.C2 @ right[:, place]
         overlap = left[:, place].conj() @ right[:, place]
         # A defective eigenvalue has an infinite slope; a large finite one leads the search away just as well.
@@ -70,14 +72,19 @@ class Objective:
         slope = np.real(np.outer(row, column) / overlap)
         return float(values.real[place]), self._by_theta(slope, theta)
 
-    def log_norm(self, theta: Array) -> tuple[float, Array]:
-        """Return the logarithm of the H-infinity norm and its gradient by theta; infinity where not stable."""
+    def log_norm(self, theta: Array, ceiling: float = np.inf) -> tuple[float, Array]:
+        """Return the logarithm of the H-infinity norm and its gradient by theta; infinity where not stable.
+
+        Above `ceiling` the value may be too small, but stays above, and there is no gradient.
+        """
         loop = self.loop(self.entries(theta))
         if loop.abscissa >= -STABILITY_MARGIN:
             return np.inf, np.zeros(self.size)
-        peak = hinf_norm(loop, tolerance=1e-9)
+        peak = hinf_norm(loop, tolerance=1e-9, enough=np.exp(ceiling))
         if peak.value < 1e-300:
             return -np.inf, np.zeros(self.size)
+        if np.log(peak.value) > ceiling:
+            return float(np.log(peak.value)), np.zeros(self.size)
         values, slopes = self.singular_values(loop, peak.frequency, 1)
         return float(np.log(peak.value)), self._by_theta(slopes[0, 0] / values[0, 0], theta)
 

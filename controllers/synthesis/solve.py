@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from controllers.synthesis.bound import lower_bound
 from controllers.synthesis.certify import certify
-from controllers.synthesis.descent import Descent, explore, refine
+from controllers.synthesis.descent import Descent, explore, improve, refine
 from controllers.synthesis.design import Design
 from controllers.synthesis.modes import require_stabilisable
 from controllers.synthesis.norm import Peak, grid_norm, hinf_norm
@@ -22,8 +22,9 @@ from controllers.synthesis.starts import convex_start, starting_gains
 from seatsim.errors import InputError, SynthesisError
 
 _FIRST_STARTS, _MORE_STARTS = 6, 24
-# Shares of the time budget: starts are explored until the first, refined until the second; the rest is for proofs.
-_EXPLORED, _REFINED = 0.4, 0.8
+# Shares of the time budget: starts are explored until the first, the best refined until the second, and improved upon
+# until the third; the rest is for proofs.
+_EXPLORED, _REFINED, _IMPROVED = 0.35, 0.65, 0.85
 _ROUNDING = 1e-10
 
 
@@ -89,8 +90,10 @@ def synthesise(
     found = _explore(objective, scaled.plant, seed, begin + _EXPLORED * time_budget)
     if not found.candidates:
         raise SynthesisError(_not_stabilised(found, scaled.rate, max_gain, time_budget))
-    best = objective.gain(refine(objective, found.candidates, begin + _REFINED * time_budget).entries)
-    gain = np.clip(scaled.physical_gain(best), -max_gain, max_gain)
+    best = refine(objective, found.candidates, begin + _REFINED * time_budget)
+    if not found.agrees:
+        best = improve(objective, best, seed, begin + _IMPROVED * time_budget)
+    gain = np.clip(scaled.physical_gain(objective.gain(best.entries)), -max_gain, max_gain)
     loop = plant.close(gain)
     peak = verified_norm(loop)
     certificate = certify(loop, peak.value)
