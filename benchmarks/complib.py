@@ -2,7 +2,7 @@
 
 DIR holds one JSON file a problem (A, B1, B, C1, C, D11, D12, D21) and `best_known.csv`. Every result is a line of FILE,
 appended when it is found, and is not made again, so that a run may be stopped and resumed; small problems come first.
-Designs with their certificates stand in FILE's folder `designs`. `--only` takes some problems, `--budget` is in seconds.
+Designs with their certificates stand in FILE's folder `designs`. `--only` takes some problems, `--budget` is in s.
 Values below NEGLIGIBLE of the norm without control's scale count as zero, as do the best known ones.
 """
 

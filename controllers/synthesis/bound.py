@@ -32,7 +32,7 @@ def lower_bound(plant: GeneralisedPlant, stabilising: Array, certificate: Certif
     if certificate is not None and time.monotonic() < deadline:
         from controllers.synthesis.lmi import full_order_bound
 
-        bound = max(bound, full_order_bound(plant, certificate.matrix, certificate.gamma, deadline))
+        bound = max(bound, full_order_bound(plant, certificate.factor, certificate.gamma, deadline))
     return bound
 
 

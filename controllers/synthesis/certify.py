@@ -2,7 +2,7 @@
 
     P > 0,   M(P) = [A'P + PA, PB, C'; B'P, -gamma I, D'; C, D, -gamma I] < 0
 
-proves ||T|| < gamma and stability; whoever has P need only look at eigenvalues. P comes from the equation
+proves ||T|| < gamma and stability; whoever has P need only look at signs. P comes from the equation
 
     A'P + PA + C'C / gamma + e I + (PB + C'D / gamma) (gamma I - D'D / gamma)^-1 (PB + C'D / gamma)' = 0
 
@@ -16,81 +16,108 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
+from controllers.synthesis.exact import Exact, close_exactly
 from controllers.synthesis.norm import balanced, hinf_norm
-from controllers.synthesis.plant import Array, Loop
+from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
 
-_DELTAS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
+_DELTAS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 5e-2)
+_RECENTRED = 3
+# Rounding of the eigenvalues of a symmetric matrix of order n, in units of n eps times its norm.
+_ROUNDING = 4
 
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
     """Proof that the closed loop is stable with H-infinity norm below `gamma`.
 
-    `matrix` is P (n, n) in the user's states, `gamma` is (1 + delta) times the design's, and `largest_eigenvalue`,
-    negative, is that of M(P) as `largest_lmi_eigenvalue` defines it.
+    P = factor' factor without rounding, `factor` (n, n), in the user's states; `gamma` is (1 + delta) times the
+    design's, and `largest_eigenvalue`, negative, is that of M(P) as `largest_lmi_eigenvalue` defines it.
     """
 
-    matrix: Array
+    factor: Array
     gamma: float
     delta: float
     largest_eigenvalue: float
 
+    @property
+    def matrix(self) -> Array:
+        """P (n, n), rounded."""
+        return self.factor.T @ self.factor
 
-def certify(loop: Loop, gamma: float) -> Certificate | None:
-    """Return the certificate with the smallest delta of 1e-7 ... 1e-2 that double precision can verify, else None."""
+
+def certify(plant: GeneralisedPlant, gain: Array, gamma: float) -> Certificate | None:
+    """Return the certificate with the smallest delta of 1e-7 ... 0.05 that exact products verify, else None.
+
+    `gain` (nu, ny) closes the loop, whose norm is `gamma`.
+    """
     for delta in _DELTAS if gamma > 0 else ():
         level = gamma * (1 + delta)
-        matrix = _bounded_real_matrix(loop, level, delta)
-        if matrix is None:
+        factor = _bounded_real_factor(plant, gain, level, delta)
+        if factor is None:
             continue
-        largest = largest_lmi_eigenvalue(loop, matrix, level)
+        largest = largest_lmi_eigenvalue(plant, gain, factor, level)
         if largest < 0:
-            return Certificate(matrix, level, delta, largest)
+            return Certificate(factor, level, delta, largest)
     return None
 
 
-def largest_lmi_eigenvalue(loop: Loop, matrix: Array, gamma: float) -> float:
-    """Return the largest eigenvalue of M(P) in scaled coordinates: gamma = 1, states with P = I, time with ||A|| = 1.
+def largest_lmi_eigenvalue(plant: GeneralisedPlant, gain: Array, factor: Array, gamma: float) -> float:
+    """Return the largest eigenvalue of M(P), P = factor' factor, in scaled coordinates, where negative proves P.
 
-    Its sign is that of the LMI in raw units. An allowance for rounding, 10 eps times the condition of the change of
-    coordinates, is added. Infinity where P is not positive definite.
+    In these gamma = 1, P is about I and ||A|| = 1. M(P) is formed without rounding, moved by a congruence, rounded once
+    to doubles, and the rounding of its eigenvalues is added. Infinity where `factor` is singular.
     """
     try:
-        loop = recentre(loop, matrix)
+        W = np.linalg.inv(factor)
     except np.linalg.LinAlgError:
         return np.inf
-    diagonal = np.sqrt(np.diag(matrix))
-    allowance = 10 * np.finfo(float).eps * np.sqrt(np.linalg.cond(matrix / np.outer(diagonal, diagonal)))
-    rate = float(np.linalg.norm(loop.A, 2))
-    A, B, C, D = loop.A / rate, loop.B / np.sqrt(gamma * rate), loop.C / np.sqrt(gamma * rate), loop.D / gamma
-    M = np.block([[A + A.T, B, C.T], [B.T, -np.eye(B.shape[1]), D.T], [C, D, -np.eye(len(C))]])
+    if not np.isfinite(W).all():
+        return np.inf
+    A, B, C, D = close_exactly(plant, gain)
+    T, back = Exact.of(factor), Exact.of(W)
+    identity = (T @ back).rounded()
+    moved = T @ A @ back
+    flow = ((T @ back).T @ moved).rounded()
+    drive, seen = ((T @ back).T @ (T @ B)).rounded(), (C @ back).rounded()
+    rate = float(np.linalg.norm(flow, 2))
+    flow, drive, seen = flow / rate, drive / np.sqrt(gamma * rate), seen / np.sqrt(gamma * rate)
+    M = np.block(
+        [
+            [flow + flow.T, drive, seen.T],
+            [drive.T, -np.eye(drive.shape[1]), D.rounded().T / gamma],
+            [seen, D.rounded() / gamma, -np.eye(len(seen))],
+        ]
+    )
+    if not np.isfinite(M).all() or np.linalg.norm(identity - np.eye(len(A.whole)), 2) > 0.5:
+        return np.inf
+    allowance = _ROUNDING * len(M) * np.finfo(float).eps * float(np.linalg.norm(M, 2))
     return float(np.linalg.eigvalsh(M)[-1] + allowance)
 
 
-def recentre(loop: Loop, matrix: Array) -> Loop:
-    """Return the loop in the states L'x, P = L L', in which P becomes the identity."""
-    L = np.linalg.cholesky(matrix)
+def recentre(plant: GeneralisedPlant, gain: Array, factor: Array) -> Loop:
+    """Return the closed loop in the states `factor` x, in which P becomes the identity, free of the loop's rounding."""
+    A, B, C, D = close_exactly(plant, gain)
+    T, back = Exact.of(factor), Exact.of(np.linalg.inv(factor))
+    # The inverse of factor is back (I + E)^-1, with E = factor back - I as small as rounding.
+    E = (T @ back - Exact.of(np.eye(len(factor)))).rounded()
+    correction = np.linalg.inv(np.eye(len(factor)) + E)
     return Loop(
-        scipy.linalg.solve_triangular(L, (L.T @ loop.A).T, lower=True).T,
-        L.T @ loop.B,
-        scipy.linalg.solve_triangular(L, loop.C.T, lower=True).T,
-        loop.D,
+        (T @ A @ back).rounded() @ correction, (T @ B).rounded(), (C @ back).rounded() @ correction, D.rounded()
     )
 
 
-def _bounded_real_matrix(loop: Loop, level: float, delta: float) -> Array | None:
-    """Solve the Riccati equation in balanced states, then once more in those where its solution is the identity."""
-    states = balanced(loop)[1]
-    matrix = np.diag(states**-2.0)
-    try:
-        for _ in range(2):
-            L = np.linalg.cholesky(matrix)
-            P = _riccati(recentre(loop, matrix), level, delta)
-            matrix = L @ P @ L.T
-            matrix = (matrix + matrix.T) / 2
-    except (np.linalg.LinAlgError, ValueError):
-        return None
-    return matrix
+def _bounded_real_factor(plant: GeneralisedPlant, gain: Array, level: float, delta: float) -> Array | None:
+    """Solve the Riccati equation in balanced states, then again in those where its solution is the identity."""
+    factor = np.diag(1 / balanced(plant.close(gain))[1])
+    answer = None
+    for _ in range(_RECENTRED):
+        try:
+            P = _riccati(recentre(plant, gain, factor), level, delta)
+            factor = np.linalg.qr(np.linalg.cholesky(P).T @ factor, mode="r")
+        except (np.linalg.LinAlgError, ValueError):
+            break
+        answer = factor
+    return answer
 
 
 def _riccati(loop: Loop, level: float, delta: float) -> Array:
@@ -102,4 +129,4 @@ def _riccati(loop: Loop, level: float, delta: float) -> Array:
     P: Array = scipy.linalg.solve_continuous_are(
         loop.A, B, C.T @ C + slack * np.eye(n), D.T @ D - np.eye(nw), s=C.T @ D
     )
-    return P
+    return (P + P.T) / 2

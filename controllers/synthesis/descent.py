@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 
 from controllers.synthesis.bfgs import minimise
-from controllers.synthesis.norm import hinf_norm
 from controllers.synthesis.objective import STABILITY_MARGIN, Objective
 from controllers.synthesis.plant import Array
 from controllers.synthesis.polish import polish
@@ -76,7 +75,7 @@ def explore(objective: Objective, starts: Iterable[Array], deadline: float) -> D
         if point.value < -STABILITY_MARGIN:
             lowest = minimise(objective.log_norm, point.x, deadline, progress=_COARSE)
             entries = objective.entries(lowest.x)
-            candidates.append(Candidate(hinf_norm(objective.loop(entries)).value, entries))
+            candidates.append(Candidate(objective.norm(entries), entries))
         if time.monotonic() > deadline:
             break
     return Descent(sorted(candidates, key=_gamma), abscissa, tried)
@@ -120,7 +119,7 @@ def _lower(objective: Objective, candidate: Candidate, target: float, deadline: 
     for _ in range(_TURNS):
         point = minimise(objective.log_norm, objective.angles(candidate.entries), deadline, progress=_FINE)
         entries = polish(objective, objective.entries(point.x), deadline)
-        lower = Candidate(hinf_norm(objective.loop(entries)).value, entries)
+        lower = Candidate(objective.norm(entries), entries)
         gained = candidate.gamma - lower.gamma
         candidate = min(candidate, lower, key=_gamma)
         hopeless = candidate.gamma - target > _HOPE * gained

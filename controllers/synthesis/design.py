@@ -12,28 +12,71 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from controllers.synthesis.certify import Certificate
-from controllers.synthesis.plant import Array
+from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant
 from seatsim.errors import InputError
 from seatsim.files import write_whole
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
-    """A static output feedback `u = gain @ y` and what is known of its loop.
+class ClosedLoop:
+    """What is known of one plant with the design's gain.
 
-    `gain` (nu, ny) is in the user's units, every entry at most `max_gain` in magnitude. `gamma` is the H-infinity norm
-    of the closed loop from w to z, on which two independent computations agree, attained at `peak_frequency` in rad/s
-    (0 to infinity). `lower_bound` is what no linear controller of any order can go below. `certificate` proves gamma
-    by the bounded-real lemma; None where double precision cannot (gains near infinity). `poles` are in rad/s.
+    `gamma` is the H-infinity norm from w to z, attained at `peak_frequency` in rad/s (0 to infinity); `norms_agree`
+    says whether bisection and frequency grid find the same to 1e-6. `certificate` proves it by the bounded-real lemma;
+    None where double precision cannot. `disk_margin` is the balanced disk margin a at the control: the loop stays
+    stable while every control is multiplied by its own factor of (2 - a) / (2 + a) ... (2 + a) / (2 - a), or turned by
+    a phase of up to 2 atan(a / 2). `poles` are in rad/s.
+
+    Source of the margin: Seiler, Packard & Gahinet 2020, IEEE Control Syst. 40(5):78.
+    """
+
+    plant: GeneralisedPlant
+    gamma: float
+    peak_frequency: float
+    norms_agree: bool
+    certificate: Certificate | None
+    disk_margin: float
+    poles: NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A static output feedback `u = gain @ y` and what is known of its loops, one a plant.
+
+    `gain` (nu, ny) is in the user's units, every entry at most `max_gain` in magnitude. `lower_bound` is what no linear
+    controller of any order can go below. `gamma`, `certificate`, `peak_frequency`, `poles` and `plant` are those of
+    the worst loop.
     """
 
     gain: Array
-    gamma: float
     max_gain: float
     lower_bound: float
-    certificate: Certificate | None
-    peak_frequency: float
-    poles: NDArray[np.complex128]
+    loops: tuple[ClosedLoop, ...]
+
+    @property
+    def worst(self) -> ClosedLoop:
+        """The loop with the largest norm."""
+        return max(self.loops, key=lambda loop: loop.gamma)
+
+    @property
+    def gamma(self) -> float:
+        """Largest H-infinity norm of the loops."""
+        return self.worst.gamma
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """Certificate of the worst loop."""
+        return self.worst.certificate
+
+    @property
+    def peak_frequency(self) -> float:
+        """Frequency in rad/s at which the worst loop's norm stands."""
+        return self.worst.peak_frequency
+
+    @property
+    def poles(self) -> NDArray[np.complex128]:
+        """Poles of the worst loop in rad/s."""
+        return self.worst.poles
 
     def save(self, path: str | Path) -> None:
         """Write the design as YAML; the file appears whole or not at all."""
@@ -54,7 +97,7 @@ class Design:
             return _from_plain(plain)
         except KeyError as error:
             raise InputError(f"{path}: the design lacks the key {error}") from error
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, InputError) as error:
             raise InputError(f"{path}: not a design: {error}") from error
 
 
@@ -66,34 +109,54 @@ def _yaml() -> YAML:
 
 
 def _to_plain(design: Design) -> dict[str, Any]:
-    proof = design.certificate
     return {
         "gain": design.gain.tolist(),
         "gamma": design.gamma,
         "max_gain": design.max_gain,
         "lower_bound": design.lower_bound,
-        "certificate": proof and {**vars(proof), "matrix": proof.matrix.tolist()},
-        "peak_frequency": design.peak_frequency,
-        "poles": [[float(pole.real), float(pole.imag)] for pole in design.poles],
+        "loops": [_plain_loop(loop) for loop in design.loops],
+    }
+
+
+def _plain_loop(loop: ClosedLoop) -> dict[str, Any]:
+    proof, free = loop.certificate, loop.plant.structure
+    return {
+        "gamma": loop.gamma,
+        "peak_frequency": loop.peak_frequency,
+        "norms_agree": loop.norms_agree,
+        "disk_margin": loop.disk_margin,
+        "poles": [[float(pole.real), float(pole.imag)] for pole in loop.poles],
+        "certificate": proof and {**vars(proof), "factor": proof.factor.tolist()},
+        "plant": {name: getattr(loop.plant, name).tolist() for name in MATRICES}
+        | {"structure": None if free is None else free.astype(int).tolist()},
     }
 
 
 def _from_plain(plain: Any) -> Design:
-    poles = np.array(plain["poles"], dtype=float)
     return Design(
         gain=np.array(plain["gain"], dtype=float),
-        gamma=float(plain["gamma"]),
         max_gain=float(plain["max_gain"]),
         lower_bound=float(plain["lower_bound"]),
-        certificate=plain["certificate"] and _proof(plain["certificate"]),
+        loops=tuple(_loop(loop) for loop in plain["loops"]),
+    )
+
+
+def _loop(plain: Any) -> ClosedLoop:
+    poles = np.array(plain["poles"], dtype=float)
+    return ClosedLoop(
+        plant=GeneralisedPlant(*(plain["plant"][name] for name in MATRICES), plain["plant"]["structure"]),
+        gamma=float(plain["gamma"]),
         peak_frequency=float(plain["peak_frequency"]),
+        norms_agree=bool(plain["norms_agree"]),
+        certificate=plain["certificate"] and _proof(plain["certificate"]),
+        disk_margin=float(plain["disk_margin"]),
         poles=poles[:, 0] + 1j * poles[:, 1],
     )
 
 
 def _proof(plain: Any) -> Certificate:
     return Certificate(
-        matrix=np.array(plain["matrix"], dtype=float),
+        factor=np.array(plain["factor"], dtype=float),
         gamma=float(plain["gamma"]),
         delta=float(plain["delta"]),
         largest_eigenvalue=float(plain["largest_eigenvalue"]),

@@ -24,18 +24,18 @@ _RELAXED = 2.0
 _STRICT = 1e-7
 
 
-def full_order_bound(plant: GeneralisedPlant, lyapunov: Array, gamma: float, deadline: float) -> float:
+def full_order_bound(plant: GeneralisedPlant, factor: Array, gamma: float, deadline: float) -> float:
     """Return the best gamma that any linear controller reaches (order n suffices); 0 where the solver fails.
 
         minimise g over R, S:  [R I; I S] >= 0,
         NR' [A R + R A', R C1', B1; C1 R, -g I, D11; B1', D11', -g I] NR <= 0,   NR = kernel of [B2' D12' 0],
         NS' [A'S + S A, S B1, C1'; B1'S, -g I, D11'; C1, D11, -g I] NS <= 0,     NS = kernel of [C2 D21 0].
 
-    `lyapunov` (n, n) certifies some static gain at `gamma`, so that in its coordinates R = S = I is feasible at
+    `factor` (n, n), with factor' factor the Lyapunov matrix, certifies a static gain at `gamma`, so that in its states R = S = I is feasible at
     g = 1. R and S often run to 1e5: solved again with R = r R~ r', S = s S~ s' until the value settles.
     Source: Gahinet & Apkarian 1994, Int. J. Robust Nonlinear Control 4:421, theorem 4.3.
     """
-    p = _recentred(plant, lyapunov, gamma)
+    p = _recentred(plant, factor, gamma)
     one = np.eye(p.order)
     r, s, value = one, one, 0.0
     for _ in range(_PASSES):
@@ -136,12 +136,12 @@ def _projected(plant: GeneralisedPlant, X: Any, g: Any) -> Any:
     return (product + product.T) / 2
 
 
-def _recentred(plant: GeneralisedPlant, lyapunov: Array, gamma: float) -> GeneralisedPlant:
-    """Return the plant in states L'x (lyapunov = L L'), in time such that ||A|| = 1, with w and z such that gamma = 1.
+def _recentred(plant: GeneralisedPlant, factor: Array, gamma: float) -> GeneralisedPlant:
+    """Return the plant in the states `factor` x, in time such that ||A|| = 1, with w and z such that gamma = 1.
 
     Columns of B2 and rows of C2 have unit length; gains are not kept track of.
     """
-    p = _moved(plant, np.linalg.inv(np.linalg.cholesky(lyapunov)).T)
+    p = _moved(plant, np.linalg.inv(factor))
     rate = np.linalg.norm(p.A, 2)
     state, size = np.sqrt(rate), np.sqrt(gamma)
     controls, measured = _lengths(p.B2) / state, _lengths(p.C2.T)[:, None] / state

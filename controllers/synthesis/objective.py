@@ -9,13 +9,14 @@ Source: Apkarian & Noll 2006, IEEE Trans. Autom. Control 51:71; Burke, Henrion, 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, cast
 
 import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike
 
-from controllers.synthesis.norm import hinf_norm, response
+from controllers.synthesis.norm import Peak, hinf_norm, response
 from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
 
 # In scaled time: loops this close to the edge of stability count as unstable.
@@ -25,17 +26,26 @@ _INSIDE = 0.999
 
 
 class Objective:
-    """Abscissa and norm as functions of the free gains, a vector of length `size`, in scaled coordinates.
+    """Abscissa and norm, the worst of one or several plants, by the free gains, in scaled coordinates.
 
-    `limits` (nu, ny) bounds the magnitude of every gain. The search runs over angles theta with gain =
-    limit sin(theta / limit): nearly the identity for small gains, and a limit is an ordinary stationary point.
+    The free gains, a vector of length `size`, lie between `low` and `high` (nu, ny). The search runs over angles theta
+    with gain = centre + reach sin(theta / reach): nearly the identity for small gains, and a limit is an ordinary
+    stationary point.
     """
 
-    def __init__(self, plant: GeneralisedPlant, limits: Array) -> None:
-        self.plant = plant
-        self.free = plant.free
-        self.limits: Array = limits[self.free]
-        self.size = len(self.limits)
+    def __init__(self, plants: Sequence[GeneralisedPlant], low: Array, high: Array) -> None:
+        self.plants = list(plants)
+        self.free = plants[0].free
+        self._limits = low, high
+        self.low: Array = low[self.free]
+        self.high: Array = high[self.free]
+        self._centre: Array = (self.low + self.high) / 2
+        self._reach: Array = (self.high - self.low) / 2
+        self.size = len(self.low)
+
+    def on(self, plants: Sequence[GeneralisedPlant]) -> Objective:
+        """Return the same objective on other plants."""
+        return Objective(plants, *self._limits)
 
     def gain(self, entries: Array) -> Array:
         """Return the gain matrix with these free entries."""
@@ -43,61 +53,81 @@ class Objective:
         K[self.free] = entries
         return K
 
-    def loop(self, entries: Array) -> Loop:
-        """Return the closed loop with these free entries."""
-        return self.plant.close(self.gain(entries))
+    def loops(self, entries: Array) -> list[Loop]:
+        """Return the closed loop of every plant with these free entries."""
+        gain = self.gain(entries)
+        return [plant.close(gain) for plant in self.plants]
 
     def entries(self, theta: Array) -> Array:
         """Return the free entries of the gain at angles theta."""
-        values: Array = self.limits * np.sin(theta / self.limits)
+        values: Array = self._centre + self._reach * np.sin(theta / self._reach)
         return values
 
     def angles(self, entries: Array) -> Array:
         """Return the angles of free entries; beyond the limits, of the nearest entries within."""
-        values: Array = self.limits * np.arcsin(np.clip(entries / self.limits, -_INSIDE, _INSIDE))
+        sines = np.clip((entries - self._centre) / self._reach, -_INSIDE, _INSIDE)
+        values: Array = self._reach * np.arcsin(sines)
         return values
 
     def abscissa(self, theta: Array, ceiling: float = np.inf) -> tuple[float, Array]:
-        """Return the spectral abscissa and its gradient by theta."""
-        loop = self.loop(self.entries(theta))
-        values, left, right = cast(Any, scipy.linalg.eig(loop.A, left=True, right=True))
-        place = int(values.real.argmax())
-        if values.real[place] > ceiling:
-            return float(values.real[place]), np.zeros(self.size)
-        row, column = left[:, place].conj() @ self.plant.B2, self.plant.C2 @ right[:, place]
-        overlap = left[:, place].conj() @ right[:, place]
-        # A defective eigenvalue has an infinite slope; a large finite one leads the search away just as well.
-        if abs(overlap) < 1e-12:
-            overlap = 1e-12
-        slope = np.real(np.outer(row, column) / overlap)
-        return float(values.real[place]), self._by_theta(slope, theta)
+        """Return the largest spectral abscissa and its gradient by theta; above `ceiling` there is no gradient."""
+        loops = self.loops(self.entries(theta))
+        worst = max(range(len(loops)), key=lambda i: loops[i].abscissa) if len(loops) > 1 else 0
+        value, slope = _abscissa(self.plants[worst], loops[worst], ceiling)
+        return value, self._by_theta(slope, theta)
+
+    def norm(self, entries: Array) -> float:
+        """Return the H-infinity norm with these free entries; infinity where not stable enough."""
+        loops = self.loops(entries)
+        if any(loop.abscissa >= -STABILITY_MARGIN for loop in loops):
+            return np.inf
+        return max(hinf_norm(loop).value for loop in loops)
 
     def log_norm(self, theta: Array, ceiling: float = np.inf) -> tuple[float, Array]:
         """Return the logarithm of the H-infinity norm and its gradient by theta; infinity where not stable.
 
         Above `ceiling` the value may be too small, but stays above, and there is no gradient.
         """
-        loop = self.loop(self.entries(theta))
-        if loop.abscissa >= -STABILITY_MARGIN:
-            return np.inf, np.zeros(self.size)
-        peak = hinf_norm(loop, tolerance=1e-9, enough=np.exp(ceiling))
-        if peak.value < 1e-300:
-            return -np.inf, np.zeros(self.size)
-        if np.log(peak.value) > ceiling:
-            return float(np.log(peak.value)), np.zeros(self.size)
-        values, slopes = self.singular_values(loop, peak.frequency, 1)
-        return float(np.log(peak.value)), self._by_theta(slopes[0, 0] / values[0, 0], theta)
-
-    def singular_values(self, loop: Loop, frequencies: ArrayLike, count: int) -> tuple[Array, Array]:
-        """Return the `count` largest singular values of T, (m, count), and their gradients by K, (m, count, nu, ny)."""
-        plant = self.plant
-        U, values, Vh = np.linalg.svd(response(loop, frequencies), full_matrices=False)
-        from_control = response(Loop(loop.A, plant.B2, loop.C, plant.D12), frequencies)
-        to_measured = response(Loop(loop.A, loop.B, plant.C2, plant.D21), frequencies)
-        p = np.einsum("mzk,mzu->mku", U[:, :, :count].conj(), from_control)
-        q = np.einsum("myw,mkw->mky", to_measured, Vh[:, :count].conj())
-        return values[:, :count], np.real(p[..., :, None] * q[..., None, :])
+        nothing = np.zeros(self.size)
+        highest, worst, enough = Peak(0.0, 0.0), 0, np.exp(ceiling)
+        loops = self.loops(self.entries(theta))
+        if any(loop.abscissa >= -STABILITY_MARGIN for loop in loops):
+            return np.inf, nothing
+        for i, loop in enumerate(loops):
+            peak = hinf_norm(loop, tolerance=1e-9, enough=enough)
+            if peak.value > enough:
+                return max(float(np.log(peak.value)), np.nextafter(ceiling, np.inf)), nothing
+            if peak.value > highest.value:
+                highest, worst = peak, i
+        if highest.value < 1e-300:
+            return -np.inf, nothing
+        values, slopes = singular_values(self.plants[worst], loops[worst], highest.frequency, 1)
+        return float(np.log(highest.value)), self._by_theta(slopes[0, 0] / values[0, 0], theta)
 
     def _by_theta(self, slope: Array, theta: Array) -> Array:
-        answer: Array = slope[self.free] * np.cos(theta / self.limits)
+        answer: Array = slope[self.free] * np.cos(theta / self._reach)
         return answer
+
+
+def singular_values(plant: GeneralisedPlant, loop: Loop, frequencies: ArrayLike, count: int) -> tuple[Array, Array]:
+    """Return the `count` largest singular values of T, (m, count), and their gradients by K, (m, count, nu, ny)."""
+    U, values, Vh = np.linalg.svd(response(loop, frequencies), full_matrices=False)
+    from_control = response(Loop(loop.A, plant.B2, loop.C, plant.D12), frequencies)
+    to_measured = response(Loop(loop.A, loop.B, plant.C2, plant.D21), frequencies)
+    p = np.einsum("mzk,mzu->mku", U[:, :, :count].conj(), from_control)
+    q = np.einsum("myw,mkw->mky", to_measured, Vh[:, :count].conj())
+    return values[:, :count], np.real(p[..., :, None] * q[..., None, :])
+
+
+def _abscissa(plant: GeneralisedPlant, loop: Loop, ceiling: float) -> tuple[float, Array]:
+    """Spectral abscissa and its gradient by K."""
+    values, left, right = cast(Any, scipy.linalg.eig(loop.A, left=True, right=True))
+    place = int(values.real.argmax())
+    if values.real[place] > ceiling:
+        return float(values.real[place]), np.zeros(plant.free.shape)
+    row, column = left[:, place].conj() @ plant.B2, plant.C2 @ right[:, place]
+    overlap = left[:, place].conj() @ right[:, place]
+    # A defective eigenvalue has an infinite slope; a large finite one leads the search away just as well.
+    if abs(overlap) < 1e-12:
+        overlap = 1e-12
+    return float(values.real[place]), np.real(np.outer(row, column) / overlap)

@@ -17,8 +17,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from controllers.synthesis.norm import hinf_norm, largest_gains, local_peaks
-from controllers.synthesis.objective import STABILITY_MARGIN, Objective
-from controllers.synthesis.plant import Array
+from controllers.synthesis.objective import Objective, singular_values
+from controllers.synthesis.plant import Array, Loop
 
 _ROUNDS = 40
 _ACTIVE = 0.9
@@ -30,20 +30,20 @@ _PROGRESS = 1e-7
 
 def polish(objective: Objective, entries: Array, deadline: float) -> Array:
     """Return free entries whose norm is no higher than at `entries`; unstable ones come back as they are."""
-    level = _norm(objective, entries)
+    level = objective.norm(entries)
     if not 0 < level < np.inf:
         return entries
-    frequencies = _peaks(objective, entries)
+    frequencies = _peaks(objective, entries, level)
     trust = _TRUST
     for _ in range(_ROUNDS):
         if time.monotonic() > deadline or level == 0:
             break
         trial, promised = _solve(objective, entries, frequencies, level, trust)
-        reached = _norm(objective, trial)
+        reached = objective.norm(trial)
         if promised > level * (1 - _PROGRESS):
             break
         if np.isfinite(reached):
-            frequencies = _renewed(objective, trial, frequencies)
+            frequencies = _renewed(objective, trial, frequencies, reached)
         agreement = (level - reached) / (level - promised)
         trust = trust / 4 if agreement < _POOR else min(2 * trust, _WIDEST) if agreement > _GOOD else trust
         if reached < level:
@@ -51,38 +51,44 @@ def polish(objective: Objective, entries: Array, deadline: float) -> Array:
     return entries
 
 
-def _norm(objective: Objective, entries: Array) -> float:
-    loop = objective.loop(entries)
-    return np.inf if loop.abscissa >= -STABILITY_MARGIN else hinf_norm(loop).value
+def _peaks(objective: Objective, entries: Array, level: float) -> list[Array]:
+    """Frequencies of the active peaks of every plant; none of a plant that stays well below `level`."""
+    found = []
+    for loop in objective.loops(entries):
+        highest = hinf_norm(loop)
+        peaks = [highest, *local_peaks(loop, _ACTIVE)] if highest.value >= _ACTIVE * level else []
+        found.append(np.unique([peak.frequency for peak in peaks]))
+    return found
 
 
-def _peaks(objective: Objective, entries: Array) -> Array:
-    loop = objective.loop(entries)
-    return np.unique([peak.frequency for peak in [hinf_norm(loop), *local_peaks(loop, _ACTIVE)]])
-
-
-def _renewed(objective: Objective, entries: Array, old: Array) -> Array:
+def _renewed(objective: Objective, entries: Array, old: list[Array], level: float) -> list[Array]:
     """Frequencies of the peaks now, and those old ones that are still nearly as high and not about the same."""
-    values = largest_gains(objective.loop(entries), old)
-    new = _peaks(objective, entries)
+    new = _peaks(objective, entries, level)
+    loops = objective.loops(entries)
+    return [np.concatenate([n, _still_high(loop, o, n, level)]) for loop, o, n in zip(loops, old, new, strict=True)]
+
+
+def _still_high(loop: Loop, old: Array, new: Array, level: float) -> Array:
+    if not len(old):
+        return old
     apart = ~np.isclose(old[:, None], new, rtol=1e-5, atol=1e-9).any(axis=1)
-    return np.concatenate([new, old[apart & (values >= _ACTIVE * values.max())]])
+    return old[apart & (largest_gains(loop, old) >= _ACTIVE * level)]
 
 
-def _solve(objective: Objective, entries: Array, frequencies: Array, level: float, trust: float) -> tuple[Array, float]:
+def _solve(
+    objective: Objective, entries: Array, frequencies: list[Array], level: float, trust: float
+) -> tuple[Array, float]:
     """Lower the highest peak at fixed frequencies; return entries and that peak. Variables: steps, t / level - 1."""
     largest = np.abs(entries).max()
     unit = np.maximum(np.abs(entries), 0.1 * largest) if largest > 0 else np.ones(len(entries))
-    low = np.maximum((-objective.limits - entries) / unit, -trust)
-    high = np.minimum((objective.limits - entries) / unit, trust)
-    count = min(2, *objective.plant.D11.shape)
+    low = np.maximum((objective.low - entries) / unit, -trust)
+    high = np.minimum((objective.high - entries) / unit, trust)
 
     @lru_cache(maxsize=1)
     def room(point: bytes) -> tuple[Array, Array]:
         x = np.frombuffer(point)
-        values, slopes = objective.singular_values(objective.loop(entries + unit * x[:-1]), frequencies, count)
-        by_step = slopes[..., objective.free].reshape(values.size, -1) * unit / level
-        return 1 + x[-1] - values.ravel() / level, np.hstack([-by_step, np.ones((values.size, 1))])
+        values, slopes = _values(objective, entries + unit * x[:-1], frequencies)
+        return 1 + x[-1] - values / level, np.hstack([-slopes * unit / level, np.ones((values.size, 1))])
 
     try:
         found: Any = minimize(  # type: ignore[call-overload]
@@ -98,5 +104,16 @@ def _solve(objective: Objective, entries: Array, frequencies: Array, level: floa
         # A trial loop has a pole at one of the frequencies: nothing to gain this way.
         return entries, level
     step = np.clip(found.x[:-1], low, high)
-    values, _ = objective.singular_values(objective.loop(entries + unit * step), frequencies, 1)
+    values, _ = _values(objective, entries + unit * step, frequencies)
     return entries + unit * step, float(values.max())
+
+
+def _values(objective: Objective, entries: Array, frequencies: list[Array]) -> tuple[Array, Array]:
+    """The two largest singular values at the frequencies of every plant, and their slopes by the entries."""
+    values, slopes = [], []
+    for plant, loop, omega in zip(objective.plants, objective.loops(entries), frequencies, strict=True):
+        if len(omega):
+            v, s = singular_values(plant, loop, omega, min(2, *plant.D11.shape))
+            values.append(v.ravel())
+            slopes.append(s[..., objective.free].reshape(v.size, -1))
+    return np.concatenate(values), np.concatenate(slopes)

@@ -34,9 +34,12 @@ class Scaled(NamedTuple):
         return gain / (self.controls[:, None] * self.measured)
 
 
-def scale(plant: GeneralisedPlant) -> Scaled:
-    """Balance states against each other, B1 against C1, time against the poles; unit columns in B2, unit rows in C2."""
-    rate = _power_of_two(_mean_rate(plant.A))
+def scale(plant: GeneralisedPlant, like: Scaled | None = None) -> Scaled:
+    """Balance states against each other, B1 against C1, time against the poles; unit columns in B2, unit rows in C2.
+
+    Units of control, measurement and time are those of `like` where it is given.
+    """
+    rate = like.rate if like else _power_of_two(_mean_rate(plant.A))
     states = np.ones(plant.order)
     for _ in range(_SWEEPS):
         step = _balancing_step(plant, states, rate)
@@ -44,7 +47,7 @@ def scale(plant: GeneralisedPlant) -> Scaled:
         if np.all(step == 1.0):
             break
     states = states * _power_of_two(np.sqrt(_size(plant.B1 / states[:, None] / rate) / _size(plant.C1 * states)))
-    controls, measured = _input_output(plant, states, rate)
+    controls, measured = (like.controls, like.measured) if like else _input_output(plant, states, rate)
     moved = GeneralisedPlant(
         plant.A * states / states[:, None] / rate,
         plant.B1 / states[:, None] / rate,

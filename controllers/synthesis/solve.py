@@ -1,40 +1,45 @@
-"""From a plant to a verified, certified design: scale, check, search, verify, certify, bound."""
+"""From plants to a verified, certified design: scale, check, search, verify, certify, bound."""
 
 from __future__ import annotations
 
 import time
-from itertools import chain, islice
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from controllers.synthesis.bound import lower_bound
-from controllers.synthesis.certify import certify
-from controllers.synthesis.descent import Descent, explore, improve, refine
+from controllers.synthesis.bound import lower_bound, pointwise_bound
 from controllers.synthesis.design import Design
-from controllers.synthesis.modes import require_stabilisable
-from controllers.synthesis.norm import Peak, grid_norm, hinf_norm
-from controllers.synthesis.objective import Objective
-from controllers.synthesis.plant import MATRICES, GeneralisedPlant, Loop, StateSpace
-from controllers.synthesis.scaling import scale
-from controllers.synthesis.starts import convex_start, starting_gains
-from seatsim.errors import InputError, SynthesisError
-
-_FIRST_STARTS, _MORE_STARTS = 6, 24
-# Shares of the time budget: starts are explored until the first, the best refined until the second, and improved upon
-# until the third; the rest is for proofs.
-_EXPLORED, _REFINED, _IMPROVED = 0.35, 0.65, 0.85
-_ROUNDING = 1e-10
+from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant, StateSpace
+from controllers.synthesis.search import Clock, Told, search
+from controllers.synthesis.verify import verify
+from seatsim.errors import InputError
 
 
 @overload
 def synthesise(
-    A: GeneralisedPlant, /, *, max_gain: float = ..., time_budget: float = ..., seed: int = ...
+    A: GeneralisedPlant | Sequence[GeneralisedPlant],
+    /,
+    *,
+    max_gain: float = ...,
+    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
+    time_budget: float = ...,
+    seed: int = ...,
+    told: Told = ...,
 ) -> Design: ...
 @overload
 def synthesise(
-    A: StateSpace, /, *, split: tuple[int, int], max_gain: float = ..., time_budget: float = ..., seed: int = ...
+    A: StateSpace,
+    /,
+    *,
+    split: tuple[int, int],
+    max_gain: float = ...,
+    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
+    time_budget: float = ...,
+    seed: int = ...,
+    told: Told = ...,
 ) -> Design: ...
 @overload
 def synthesise(
@@ -48,8 +53,10 @@ def synthesise(
     D21: ArrayLike,
     *,
     max_gain: float = ...,
+    bounds: tuple[ArrayLike, ArrayLike] | None = ...,
     time_budget: float = ...,
     seed: int = ...,
+    told: Told = ...,
 ) -> Design: ...
 
 
@@ -65,67 +72,68 @@ def synthesise(
     *,
     split: tuple[int, int] | None = None,
     max_gain: float = 1e6,
+    bounds: tuple[ArrayLike, ArrayLike] | None = None,
     time_budget: float = 60.0,
     seed: int = 0,
+    told: Told = lambda text: None,
 ) -> Design:
     """Find the static output feedback `u = gain @ y` with the smallest H-infinity norm from w to z.
 
     The plant is given by its eight matrices (shapes: `GeneralisedPlant`), as a `GeneralisedPlant` (which may also keep
-    gains at zero), or as a `control.StateSpace` with inputs [w; u], outputs [z; y] and `split = (nw, nz)`.
+    gains at zero), or as a `control.StateSpace` with inputs [w; u], outputs [z; y] and `split = (nw, nz)`. Of several
+    plants (a sequence) with the same controls and measurements, the one gain minimises the worst norm.
     `max_gain` bounds every |gain_ij| in the user's units: many infima lie at infinite gain, so quote gamma with it.
+    `bounds = (low, high)`, each one number or (nu, ny), bounds the entries further.
     `time_budget` in s: the search stops there, a computation under way may take a few seconds more. The same seed
-    gives the same design, unless time runs out. The problem is not convex: the answer is the best of several starts,
-    a local optimum with a certificate of its own gamma.
+    gives the same design, unless time runs out. `told` is called with a line on what the search does.
+    The problem is not convex: the answer is the best of several starts, a local optimum with a certificate of its own
+    gamma.
 
     Raises:
         InputError: a matrix, the split or an option is wrong.
-        SynthesisError: no gain can stabilise the plant, or none was found.
+        SynthesisError: no gain can stabilise the plants, or none was found.
     """
     begin = time.monotonic()
-    plant = _as_plant((A, B1, B2, C1, C2, D11, D12, D21), split)
+    plants = _as_plants((A, B1, B2, C1, C2, D11, D12, D21), split)
     _check_options(max_gain, time_budget)
-    scaled = scale(plant)
-    require_stabilisable(scaled)
-    objective = Objective(scaled.plant, scaled.scaled_gain(np.full(plant.free.shape, float(max_gain))))
-    found = _explore(objective, scaled.plant, seed, begin + _EXPLORED * time_budget)
-    if not found.candidates:
-        raise SynthesisError(_not_stabilised(found, scaled.rate, max_gain, time_budget))
-    best = refine(objective, found.candidates, begin + _REFINED * time_budget)
-    if not found.agrees:
-        best = improve(objective, best, seed, begin + _IMPROVED * time_budget)
-    gain = np.clip(scaled.physical_gain(objective.gain(best.entries)), -max_gain, max_gain)
-    loop = plant.close(gain)
-    peak = verified_norm(loop)
-    certificate = certify(loop, peak.value)
-    return Design(
-        gain=gain,
-        gamma=peak.value,
-        max_gain=float(max_gain),
-        lower_bound=min(lower_bound(plant, gain, certificate, begin + time_budget), peak.value),
-        certificate=certificate,
-        peak_frequency=peak.frequency,
-        poles=loop.poles,
-    )
+    gain = search(plants, _limits(plants[0], max_gain, bounds), seed, Clock(begin, time_budget), told)
+    loops = tuple(verify(plant, gain) for plant in plants)
+    design = Design(gain, float(max_gain), 0.0, loops)
+    told("the bound of any controller")
+    return replace(design, lower_bound=min(_least(design, begin + time_budget), design.gamma))
 
 
-def verified_norm(loop: Loop) -> Peak:
-    """Return the H-infinity norm on which bisection and frequency grid agree; where the grid finds more, it leads."""
-    norm, grid = hinf_norm(loop), grid_norm(loop)
-    return norm if norm.value >= grid.value * (1 - _ROUNDING) else hinf_norm(loop, guesses=[grid.frequency])
+def _least(design: Design, deadline: float) -> float:
+    """The largest bound from any plant: from frequencies for all, from the LMI for the worst."""
+    worst = design.worst
+    bounds = [pointwise_bound(loop.plant, design.gain) for loop in design.loops]
+    return max(*bounds, lower_bound(worst.plant, design.gain, worst.certificate, deadline))
 
 
-def _as_plant(parts: tuple[Any, ...], split: tuple[int, int] | None) -> GeneralisedPlant:
+def _as_plants(parts: tuple[Any, ...], split: tuple[int, int] | None) -> list[GeneralisedPlant]:
     first, rest = parts[0], parts[1:]
     if isinstance(first, GeneralisedPlant):
-        return first
+        return [first]
+    if isinstance(first, Sequence) and first and all(isinstance(plant, GeneralisedPlant) for plant in first):
+        _check_alike(first)
+        return list(first)
     if hasattr(first, "dt"):
         if split is None:
             raise InputError("a state space needs its split: split=(disturbance inputs, performance outputs)")
-        return GeneralisedPlant.from_state_space(first, *split)
+        return [GeneralisedPlant.from_state_space(first, *split)]
     missing = [name for name, part in zip(MATRICES[1:], rest, strict=True) if part is None]
     if missing:
         raise InputError(f"the plant lacks {', '.join(missing)}; give all of {', '.join(MATRICES)}, or a plant object")
-    return GeneralisedPlant(*parts)
+    return [GeneralisedPlant(*parts)]
+
+
+def _check_alike(plants: Sequence[GeneralisedPlant]) -> None:
+    for i, plant in enumerate(plants):
+        if not np.array_equal(plant.free, plants[0].free):
+            raise InputError(
+                f"plant {i} has {plant.control_count} controls, {plant.measured_count} measurements and its own "
+                f"structure; one gain for all wants those of plant 0: {plants[0].free.astype(int).tolist()}"
+            )
 
 
 def _check_options(max_gain: float, time_budget: float) -> None:
@@ -134,20 +142,16 @@ def _check_options(max_gain: float, time_budget: float) -> None:
             raise InputError(f"{name} is {value}; a finite number above 0 is wanted")
 
 
-def _explore(objective: Objective, plant: GeneralisedPlant, seed: int, deadline: float) -> Descent:
-    """Descend from a few starts where all lead to the same value, from many where they do not."""
-    starts = starting_gains(plant, seed)
-    found = explore(objective, islice(starts, _FIRST_STARTS), deadline)
-    if found.agrees:
-        return found
-    size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
-    gamma = found.candidates[0].gamma if found.candidates else size
-    convex = convex_start(plant, max(gamma, 1e-9 * size), deadline)
-    return found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline))
-
-
-def _not_stabilised(found: Descent, rate: float, max_gain: float, budget: float) -> str:
-    return (
-        f"no stabilising gain with |gain| <= {max_gain:g} was found from {found.starts} starts in at most "
-        f"{budget:g} s; the least spectral abscissa reached is {found.abscissa * rate:.3g} 1/s"
-    )
+def _limits(
+    plant: GeneralisedPlant, max_gain: float, bounds: tuple[ArrayLike, ArrayLike] | None
+) -> tuple[Array, Array]:
+    """Least and largest gain, (nu, ny) each."""
+    wanted = (-max_gain, max_gain) if bounds is None else bounds
+    try:
+        low, high = (np.broadcast_to(np.asarray(side, dtype=float), plant.free.shape) for side in wanted)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"bounds must be (low, high), each a number or {plant.free.shape}: {error}") from error
+    low, high = np.maximum(low, -max_gain), np.minimum(high, max_gain)
+    if not np.all(low[plant.free] < high[plant.free]):
+        raise InputError(f"bounds leave an entry no room within max_gain {max_gain:g}: low {low}, high {high}")
+    return low, high

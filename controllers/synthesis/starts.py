@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import cycle
 
 import numpy as np
@@ -14,15 +14,14 @@ from controllers.synthesis.plant import Array, GeneralisedPlant
 _SPREADS = (1.0, 100.0, 10.0, 1000.0)
 
 
-def starting_gains(plant: GeneralisedPlant, seed: int) -> Iterator[Array]:
+def starting_gains(plants: Sequence[GeneralisedPlant], seed: int) -> Iterator[Array]:
     """Yield gains (nu, ny) in scaled coordinates without end, the same ones for the same seed."""
-    yield np.zeros(plant.free.shape)
-    projected = projected_state_feedback(plant)
-    if projected is not None:
-        yield projected
+    free = plants[0].free
+    yield np.zeros(free.shape)
+    yield from (gain for gain in map(projected_state_feedback, plants) if gain is not None)
     random = np.random.default_rng(seed)
     for spread in cycle(_SPREADS):
-        yield spread * random.standard_normal(plant.free.shape) * plant.free
+        yield spread * random.standard_normal(free.shape) * free
 
 
 def convex_start(plant: GeneralisedPlant, gamma: float, deadline: float) -> Iterator[Array]:

@@ -1,0 +1,104 @@
+"""The search for one gain on one or several plants, on as few of them at a time as decide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import chain, islice
+from typing import NamedTuple
+
+import numpy as np
+
+from controllers.synthesis.descent import Candidate, Descent, explore, improve, refine
+from controllers.synthesis.modes import require_stabilisable
+from controllers.synthesis.objective import Objective
+from controllers.synthesis.plant import Array, GeneralisedPlant
+from controllers.synthesis.scaling import scale
+from controllers.synthesis.starts import convex_start, starting_gains
+from seatsim.errors import SynthesisError
+
+_FIRST_STARTS, _MORE_STARTS = 6, 24
+# Shares of the time budget: starts are explored until the first, the best refined until the second, and improved upon
+# until the third; the rest is for proofs.
+_EXPLORED, _REFINED, _IMPROVED = 0.35, 0.65, 0.85
+# A plant left out of the search counts as covered where its norm is no higher than this times the searched ones'.
+_COVERED = 1 + 1e-7
+
+Told = Callable[[str], object]
+
+
+class Clock(NamedTuple):
+    """When the search began, by `time.monotonic()`, and how many seconds it has."""
+
+    begin: float
+    budget: float
+
+    def after(self, share: float) -> float:
+        """Return the time at which a share of the budget is spent."""
+        return self.begin + share * self.budget
+
+
+def search(
+    plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], seed: int, clock: Clock, told: Told
+) -> Array:
+    """Return the best gain (nu, ny) found, between the two `limits` (nu, ny).
+
+    The first and the last plant are searched together; then whichever is worst with the gain found joins them, until
+    none is worse.
+
+    Raises:
+        SynthesisError: no gain can stabilise one of the plants, or none was found for all.
+    """
+    first = scale(plants[0])
+    scaled = [first, *(scale(plant, like=first) for plant in plants[1:])]
+    for each in scaled:
+        require_stabilisable(each)
+    low, high = (first.scaled_gain(limit) for limit in limits)
+    everything = Objective([each.plant for each in scaled], low, high)
+    chosen = sorted({0, len(scaled) - 1})
+    best: Candidate | None = None
+    while True:
+        objective = everything.on([scaled[i].plant for i in chosen])
+        told(f"plants {', '.join(map(str, chosen))} of {len(plants)}" if len(plants) > 1 else "searching")
+        found = _explore(objective, best, seed, clock.after(_EXPLORED))
+        if not found.candidates:
+            raise SynthesisError(_not_stabilised(found, first.rate, float(np.abs(limits).max()), clock.budget))
+        best = _lowest(objective, found, seed, clock, told)
+        norms = [everything.on([each.plant]).norm(best.entries) for each in scaled]
+        worst = int(np.argmax(norms))
+        if norms[worst] <= best.gamma * _COVERED or worst in chosen:
+            gain = first.physical_gain(everything.gain(best.entries))
+            return np.clip(gain, *limits) * everything.free
+        chosen.append(worst)
+
+
+def _lowest(objective: Objective, found: Descent, seed: int, clock: Clock, told: Told) -> Candidate:
+    """Refine the candidates, and improve upon the best where starts disagree."""
+    told(f"{found.starts} starts, {len(found.candidates)} stabilised, gamma {found.candidates[0].gamma:.6g}")
+    best = refine(objective, found.candidates, clock.after(_REFINED))
+    if not found.agrees:
+        told(f"gamma {best.gamma:.6g}, looking about it")
+        best = improve(objective, best, seed, clock.after(_IMPROVED))
+    told(f"gamma {best.gamma:.6g}")
+    return best
+
+
+def _explore(objective: Objective, known: Candidate | None, seed: int, deadline: float) -> Descent:
+    """Descend from a few starts where all lead to the same value, from many where they do not."""
+    starts = starting_gains(objective.plants, seed)
+    if known is not None:
+        starts = chain([objective.gain(known.entries)], starts)
+    found = explore(objective, islice(starts, _FIRST_STARTS), deadline)
+    if found.agrees:
+        return found
+    plant = objective.plants[0]
+    size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
+    gamma = found.candidates[0].gamma if found.candidates else size
+    convex = convex_start(plant, max(gamma, 1e-9 * size), deadline)
+    return found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline))
+
+
+def _not_stabilised(found: Descent, rate: float, max_gain: float, budget: float) -> str:
+    return (
+        f"no stabilising gain with |gain| <= {max_gain:g} was found from {found.starts} starts in at most "
+        f"{budget:g} s; the least spectral abscissa reached is {found.abscissa * rate:.3g} 1/s"
+    )

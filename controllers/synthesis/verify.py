@@ -1,0 +1,36 @@
+"""What is true of a gain on a plant, whatever search it came from: norm twice, certificate, margin, poles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from controllers.synthesis.certify import certify
+from controllers.synthesis.design import ClosedLoop
+from controllers.synthesis.norm import Peak, grid_norm, hinf_norm
+from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
+
+_ROUNDING = 1e-10
+_AGREEMENT = 1e-6
+
+
+def verify(plant: GeneralisedPlant, gain: Array) -> ClosedLoop:
+    """Return what is known of a plant under a stabilising gain (nu, ny)."""
+    loop = plant.close(gain)
+    peak, agree = verified_norm(loop)
+    return ClosedLoop(
+        plant, peak.value, peak.frequency, agree, certify(plant, gain, peak.value), disk_margin(plant, gain), loop.poles
+    )
+
+
+def verified_norm(loop: Loop) -> tuple[Peak, bool]:
+    """Return the larger H-infinity norm of bisection and frequency grid, and whether the two agree to 1e-6."""
+    norm, grid = hinf_norm(loop), grid_norm(loop)
+    if norm.value < grid.value * (1 - _ROUNDING):
+        norm = hinf_norm(loop, guesses=[grid.frequency])
+    return norm, norm.value - grid.value <= _AGREEMENT * norm.value
+
+
+def disk_margin(plant: GeneralisedPlant, gain: Array) -> float:
+    """Return the balanced disk margin at the control, 2 / ||2 S - I||, with S = (I - K G)^-1; at most 2."""
+    A = plant.A + plant.B2 @ gain @ plant.C2
+    return 2 / hinf_norm(Loop(A, plant.B2, 2 * gain @ plant.C2, np.eye(plant.control_count))).value
