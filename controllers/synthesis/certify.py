@@ -68,7 +68,7 @@ def largest_lmi_eigenvalue(plant: GeneralisedPlant, gain: Array, factor: Array, 
     to doubles, and the rounding of its eigenvalues is added. Infinity where `factor` is singular.
     """
     try:
-        W = np.linalg.inv(factor)
+        W: Array = np.linalg.inv(factor)
     except np.linalg.LinAlgError:
         return np.inf
     if not np.isfinite(W).all():
@@ -97,13 +97,13 @@ def largest_lmi_eigenvalue(plant: GeneralisedPlant, gain: Array, factor: Array, 
 def recentre(plant: GeneralisedPlant, gain: Array, factor: Array) -> Loop:
     """Return the closed loop in the states `factor` x, in which P becomes the identity, free of the loop's rounding."""
     A, B, C, D = close_exactly(plant, gain)
-    T, back = Exact.of(factor), Exact.of(np.linalg.inv(factor))
+    inverse: Array = np.linalg.inv(factor)
+    T, back = Exact.of(factor), Exact.of(inverse)
     # The inverse of factor is back (I + E)^-1, with E = factor back - I as small as rounding.
     E = (T @ back - Exact.of(np.eye(len(factor)))).rounded()
     correction = np.linalg.inv(np.eye(len(factor)) + E)
-    return Loop(
-        (T @ A @ back).rounded() @ correction, (T @ B).rounded(), (C @ back).rounded() @ correction, D.rounded()
-    )
+    flow, seen = (T @ A @ back).rounded() @ correction, (C @ back).rounded() @ correction
+    return Loop(flow, (T @ B).rounded(), seen, D.rounded())
 
 
 def _bounded_real_factor(plant: GeneralisedPlant, gain: Array, level: float, delta: float) -> Array | None:
@@ -113,7 +113,7 @@ def _bounded_real_factor(plant: GeneralisedPlant, gain: Array, level: float, del
     for _ in range(_RECENTRED):
         try:
             P = _riccati(recentre(plant, gain, factor), level, delta)
-            factor = np.linalg.qr(np.linalg.cholesky(P).T @ factor, mode="r")
+            factor = np.asarray(np.linalg.qr(np.linalg.cholesky(P).T @ factor, mode="r"))
         except (np.linalg.LinAlgError, ValueError):
             break
         answer = factor

@@ -143,8 +143,9 @@ def _from_plain(plain: Any) -> Design:
 
 def _loop(plain: Any) -> ClosedLoop:
     poles = np.array(plain["poles"], dtype=float)
+    matrices = {name: plain["plant"][name] for name in (*MATRICES, "structure")}
     return ClosedLoop(
-        plant=GeneralisedPlant(*(plain["plant"][name] for name in MATRICES), plain["plant"]["structure"]),
+        plant=GeneralisedPlant(**matrices),
         gamma=float(plain["gamma"]),
         peak_frequency=float(plain["peak_frequency"]),
         norms_agree=bool(plain["norms_agree"]),

@@ -1,4 +1,4 @@
-"""Matrices without rounding: every double is a whole number over a power of two, and so are sums and products of them."""
+"""Matrices without rounding: doubles are whole numbers over powers of two, and so are their sums and products."""
 
 from __future__ import annotations
 

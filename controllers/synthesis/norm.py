@@ -108,7 +108,7 @@ def _hamiltonian(loop: Loop) -> NDArray[np.complex128]:
 
 
 def _pencil(loop: Loop) -> NDArray[np.complex128]:
-    """The same eigenvalues as those of a pencil in states, costates, w and z.
+    """Eigenvalues of the Hamiltonian matrix as those of a pencil in states, costates, w and z.
 
     No inverse of I - D'D is formed, which is nearly singular where the norm is attained at infinity. An orthogonal
     complement takes w and z out again.

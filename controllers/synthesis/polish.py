@@ -109,7 +109,7 @@ def _solve(
 
 
 def _values(objective: Objective, entries: Array, frequencies: list[Array]) -> tuple[Array, Array]:
-    """The two largest singular values at the frequencies of every plant, and their slopes by the entries."""
+    """Two largest singular values at the frequencies of every plant, and their slopes by the entries."""
     values, slopes = [], []
     for plant, loop, omega in zip(objective.plants, objective.loops(entries), frequencies, strict=True):
         if len(omega):

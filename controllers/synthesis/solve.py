@@ -104,7 +104,7 @@ def synthesise(
 
 
 def _least(design: Design, deadline: float) -> float:
-    """The largest bound from any plant: from frequencies for all, from the LMI for the worst."""
+    """Largest bound from any plant: from frequencies for all, from the LMI for the worst."""
     worst = design.worst
     bounds = [pointwise_bound(loop.plant, design.gain) for loop in design.loops]
     return max(*bounds, lower_bound(worst.plant, design.gain, worst.certificate, deadline))
