@@ -68,7 +68,7 @@ def largest_lmi_eigenvalue(plant: GeneralisedPlant, gain: Array, factor: Array, 
     to doubles, and the rounding of its eigenvalues is added. Infinity where `factor` is singular.
     """
     try:
-        W: Array = np.linalg.inv(factor)
+        W = np.asarray(np.linalg.inv(factor), dtype=float)
     except np.linalg.LinAlgError:
         return np.inf
     if not np.isfinite(W).all():
@@ -97,7 +97,7 @@ def largest_lmi_eigenvalue(plant: GeneralisedPlant, gain: Array, factor: Array, 
 def recentre(plant: GeneralisedPlant, gain: Array, factor: Array) -> Loop:
     """Return the closed loop in the states `factor` x, in which P becomes the identity, free of the loop's rounding."""
     A, B, C, D = close_exactly(plant, gain)
-    inverse: Array = np.linalg.inv(factor)
+    inverse = np.asarray(np.linalg.inv(factor), dtype=float)
     T, back = Exact.of(factor), Exact.of(inverse)
     # The inverse of factor is back (I + E)^-1, with E = factor back - I as small as rounding.
     E = (T @ back - Exact.of(np.eye(len(factor)))).rounded()

@@ -99,7 +99,7 @@ def improve(objective: Objective, best: Candidate, seed: int, deadline: float) -
         step = random.standard_normal((len(_ABOUT), objective.size)) * np.array(_ABOUT)[:, None]
         scattered = best.entries + step * np.maximum(np.abs(best.entries), 0.01 * size)
         found = explore(objective, map(objective.gain, scattered), deadline)
-        lower = min(best, refine(objective, [best, *found.candidates], deadline), key=_gamma)
+        lower = refine(objective, sorted([best, *found.candidates], key=_gamma), deadline)
         fruitless = 0 if lower.gamma < best.gamma * (1 - _COARSE) else fruitless + 1
         best = lower
     return best

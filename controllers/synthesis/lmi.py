@@ -32,7 +32,8 @@ def full_order_bound(plant: GeneralisedPlant, factor: Array, gamma: float, deadl
         NS' [A'S + S A, S B1, C1'; B1'S, -g I, D11'; C1, D11, -g I] NS <= 0,     NS = kernel of [C2 D21 0].
 
     `factor` (n, n), with factor' factor the Lyapunov matrix, certifies a static gain at `gamma`, so that in its states
-    R = S = I is feasible at g = 1. R and S often run to 1e5: solved again with R = r R~ r', S = s S~ s' until the value settles.
+    R = S = I is feasible at g = 1. R and S often run to 1e5: solved again with R = r R~ r', S = s S~ s' until the
+    value settles.
     Source: Gahinet & Apkarian 1994, Int. J. Robust Nonlinear Control 4:421, theorem 4.3.
     """
     p = _recentred(plant, factor, gamma)
