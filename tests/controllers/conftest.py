@@ -1,7 +1,9 @@
 """Plants for the tests of the synthesis."""
 
+import importlib.util
 import json
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -46,6 +48,16 @@ def random_plant():
         return GeneralisedPlant(*(random.standard_normal(shape) for shape in shapes), structure)
 
     return build
+
+
+@pytest.fixture(scope="session")
+def exact_certificates():
+    """Load the script that verifies designs in rational arithmetic."""
+    path = Path(__file__).parents[2] / "benchmarks" / "exact_certificates.py"
+    spec = importlib.util.spec_from_file_location("exact_certificates", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 @pytest.fixture

@@ -1,25 +1,32 @@
 """The bounded-real certificate and the lower bounds."""
 
+from dataclasses import replace
+from fractions import Fraction
+
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 
 from controllers import synthesise
 from controllers.synthesis.bound import pointwise_bound
 from controllers.synthesis.certify import certify, largest_lmi_eigenvalue
+from controllers.synthesis.exact import Exact
 from controllers.synthesis.norm import hinf_norm
-from controllers.synthesis.plant import GeneralisedPlant, Loop
+from controllers.synthesis.plant import GeneralisedPlant
 
 
-def stable(plant, seed):
-    loop = plant.close(np.zeros(plant.free.shape))
-    return Loop(loop.A - (loop.abscissa + 0.3) * np.eye(plant.order), loop.B, loop.C, loop.D)
+def stable(plant, gain):
+    shift = (plant.close(gain).abscissa + 0.3) * np.eye(plant.order)
+    return replace(plant, A=plant.A - shift)
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_proves_the_norm_and_nothing_below(random_plant, seed):
-    loop = stable(random_plant(seed), seed)
+    gain = np.random.default_rng(seed).standard_normal((2, 2))
+    plant = stable(random_plant(seed), gain)
+    loop = plant.close(gain)
     gamma = hinf_norm(loop).value
-    proof = certify(loop, gamma)
+    proof = certify(plant, gain, gamma)
     assert proof.delta <= 1e-5
     assert proof.gamma == pytest.approx(gamma * (1 + proof.delta))
     P = proof.matrix
@@ -31,14 +38,39 @@ def test_proves_the_norm_and_nothing_below(random_plant, seed):
         ]
     )
     assert np.linalg.eigvalsh(P)[0] > 0 > np.linalg.eigvalsh(M)[-1]
-    assert certify(loop, gamma * 0.98) is None
-    assert largest_lmi_eigenvalue(loop, P, gamma * 0.99) > 0
-    assert largest_lmi_eigenvalue(loop, -P, gamma) == np.inf
+    assert certify(plant, gain, gamma * 0.93) is None
+    assert largest_lmi_eigenvalue(plant, gain, proof.factor, gamma * 0.99) > 0
+    assert largest_lmi_eigenvalue(plant, gain, 0 * proof.factor, gamma) == np.inf
 
 
 def test_unstable_loop_has_no_certificate():
     one = np.eye(1)
-    assert certify(Loop(one, one, one, 0 * one), 5.0) is None
+    assert certify(GeneralisedPlant(one, one, one, one, one, 0 * one, 0 * one, 0 * one), 0 * one, 5.0) is None
+
+
+def test_certificate_survives_gains_that_cancel():
+    # Two large gains nearly cancel in A + B2 K C2; in doubles the closed loop's slow pole would be lost.
+    B2, C2 = np.array([[1.0, -1.0]]), np.ones((1, 1))
+    plant = GeneralisedPlant([[-1.0]], [[1.0]], B2, [[1.0]], C2, [[0.0]], np.zeros((1, 2)), [[0.0]])
+    proof = certify(plant, np.array([[1e16], [1e16]]), 1.0)
+    assert proof.delta <= 1e-6
+
+
+@pytest.mark.parametrize("e1", [10.0, 50.0])
+def test_rational_arithmetic_confirms_and_refutes(designed, exact_certificates, tmp_path, e1):
+    designed(e1).save(tmp_path / "design.yaml")
+    plain = YAML(typ="safe").load(tmp_path / "design.yaml")
+    loop = plain["loops"][0]
+    assert exact_certificates.proven(plain["gain"], loop)
+    loop["certificate"]["gamma"] = loop["gamma"] * (1 - 1e-6)
+    assert not exact_certificates.proven(plain["gain"], loop)
+
+
+def test_exact_matrices_do_not_round():
+    one = Exact.of(np.array([[1e-200, 1e200], [3.0, -0.1]]))
+    square = (one @ one - one @ one + one).rounded()
+    np.testing.assert_array_equal(square, [[1e-200, 1e200], [3.0, -0.1]])
+    assert (one @ one).rounded()[1, 1] == float(3 * Fraction(1e200) + Fraction(0.1) ** 2)
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -14,7 +14,7 @@ from controllers.synthesis.starts import projected_state_feedback, starting_gain
 
 
 def objective_of(plant, limit=50.0):
-    return Objective(plant, np.full(plant.free.shape, limit))
+    return Objective([plant], np.full(plant.free.shape, -limit), np.full(plant.free.shape, limit))
 
 
 def slopes(function, theta, step=1e-6):
@@ -57,7 +57,7 @@ def test_scaling_keeps_the_norm_and_maps_the_gain(seat):
 
 def test_starts_are_seeded_and_respect_the_structure(random_plant):
     plant = random_plant(0, structure=[[1, 0], [1, 1]])
-    first, second = (list(islice(starting_gains(plant, 5), 7)) for _ in range(2))
+    first, second = (list(islice(starting_gains([plant], 5), 7)) for _ in range(2))
     np.testing.assert_array_equal(first, second)
     assert not np.any(np.array(first)[:, 0, 1])
 

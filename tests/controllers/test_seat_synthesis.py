@@ -1,13 +1,13 @@
 """The seat problem: known optima, certificate, structure, what the gain can and cannot change."""
 
-import time
-
 import numpy as np
 import pytest
 
 from controllers import synthesise
 from controllers.synthesis.certify import largest_lmi_eigenvalue
 from controllers.synthesis.norm import grid_norm, hinf_norm
+from controllers.synthesis.verify import verify
+from seatsim.errors import InputError
 
 OPTIMA = {10.0: (1.0681900, [-1937.2, 2013.9]), 30.0: (1.1359585, [967.0, 2339.1]), 50.0: (1.1848133, [3268.6, 2613.3])}
 # From the Riccati equations in 60 digits, with control and noise weights of 1e-7; e1 = 10 from the LMI.
@@ -28,7 +28,8 @@ def test_reaches_the_optimum_and_proves_it(seat, designed, e1):
     proof = design.certificate
     assert proof.delta <= 1e-6 and proof.gamma == pytest.approx(design.gamma * (1 + proof.delta), rel=1e-12)
     assert proof.largest_eigenvalue < 0
-    assert largest_lmi_eigenvalue(loop, proof.matrix, proof.gamma) == proof.largest_eigenvalue
+    assert largest_lmi_eigenvalue(seat(e1), design.gain, proof.factor, proof.gamma) == proof.largest_eigenvalue
+    assert design.worst.norms_agree
     assert design.lower_bound == pytest.approx(FULL_ORDER[e1], rel=1e-5)
 
 
@@ -38,11 +39,8 @@ def test_norms_of_stated_gains(seat, e1):
     np.testing.assert_allclose(norms, STATED[e1], atol=5e-4)
 
 
-def test_takes_seconds_once_imported_and_the_same_seed_gives_the_same_design(seat, designed):
-    first = designed(10.0)
-    begin = time.monotonic()
-    second = synthesise(seat(10.0))
-    assert time.monotonic() - begin < 5
+def test_the_same_seed_gives_the_same_design(seat, designed):
+    first, second = designed(10.0), synthesise(seat(10.0))
     np.testing.assert_array_equal(first.gain, second.gain)
     assert first.gamma == second.gamma
 
@@ -80,3 +78,50 @@ def test_matrices_plant_and_state_space_agree(seat, designed):
         synthesise(system, split=(1, 2)),
     ]
     assert len({design.gain.tobytes() for design in designs}) == 1
+
+
+def test_bounds_of_single_entries(seat):
+    design = synthesise(seat(50.0), bounds=([0.0, 500.0], [2000.0, 1e4]))
+    assert design.gain[0, 0] == pytest.approx(2000.0, rel=1e-6) and design.gain[0, 0] <= 2000.0
+    scan = [hinf_norm(seat(50.0).close([[2000.0, k2]])).value for k2 in np.arange(1500.0, 3500.0, 10.0)]
+    assert design.gamma == pytest.approx(min(scan), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("bounds", "words"),
+    [(([0.0, 1.0], [0.0, 2.0]), "no room"), ((1.0, 2.0, 3.0), "low, high"), (("a", 1.0), "low, high")],
+)
+def test_wrong_bounds(seat, bounds, words):
+    with pytest.raises(InputError, match=words):
+        synthesise(seat(30.0), bounds=bounds)
+
+
+def test_one_gain_for_drivers_of_50_to_120_kg(seat):
+    plants = [seat(50.0, m=m) for m in np.linspace(50.0, 120.0, 15)]
+    design = synthesise(plants)
+    assert design.gamma == pytest.approx(1.24271, rel=1e-5)
+    np.testing.assert_allclose(design.gain, [[4887.9, 3213.3]], rtol=1e-3)
+    norms = [hinf_norm(plant.close(design.gain)).value for plant in plants]
+    np.testing.assert_allclose([loop.gamma for loop in design.loops], norms, rtol=1e-9)
+    assert design.worst is design.loops[-1]
+    assert all(loop.certificate.delta <= 1e-4 for loop in design.loops)
+    assert 1.0 < design.lower_bound <= design.gamma
+
+
+def test_a_plant_between_the_extremes_may_decide(seat):
+    # The middle seat has a cushion that none of the others has.
+    plants = [seat(50.0, m=60.0), seat(50.0, kc=20000.0, cc=300.0), seat(50.0, m=100.0)]
+    design = synthesise(plants)
+    alone = synthesise([plants[1], plants[0], plants[2]])
+    assert design.gamma == pytest.approx(alone.gamma, rel=1e-5)
+    assert design.worst is design.loops[1]
+
+
+def test_plants_must_be_alike(seat):
+    with pytest.raises(InputError, match="plant 1 has 1 controls"):
+        synthesise([seat(50.0), seat(50.0, structure=[[0, 1]])])
+
+
+def test_disk_margin_of_a_known_loop(seat):
+    # K = 0 can be multiplied by anything.
+    assert verify(seat(30.0), np.zeros((1, 2))).disk_margin == pytest.approx(2.0)
