@@ -71,8 +71,9 @@ def synthesise(scenario: OneScenario, out_folder: Out = None, settings: Settings
     from seatsim.synthesis import design_for, report
 
     chosen = single(scenario, pairs(settings, *SET))
-    design = design_for(chosen)
-    out.print(report(design))
+    with told() as tell:
+        design = design_for(chosen, tell)
+    out.print(report(design, chosen))
     folder = out_folder or Path("out") / chosen.name
     design.save(folder / "design.yaml")
     out.print(f"written: {folder / 'design.yaml'}", markup=False, highlight=False)

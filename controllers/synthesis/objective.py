@@ -78,10 +78,7 @@ class Objective:
 
     def norm(self, entries: Array) -> float:
         """Return the H-infinity norm with these free entries; infinity where not stable enough."""
-        loops = self.loops(entries)
-        if any(loop.abscissa >= -STABILITY_MARGIN for loop in loops):
-            return np.inf
-        return max(hinf_norm(loop).value for loop in loops)
+        return max(hinf_norm(loop, margin=STABILITY_MARGIN).value for loop in self.loops(entries))
 
     def log_norm(self, theta: Array, ceiling: float = np.inf) -> tuple[float, Array]:
         """Return the logarithm of the H-infinity norm and its gradient by theta; infinity where not stable.
@@ -91,11 +88,9 @@ class Objective:
         nothing = np.zeros(self.size)
         highest, worst, enough = Peak(0.0, 0.0), 0, np.exp(ceiling)
         loops = self.loops(self.entries(theta))
-        if any(loop.abscissa >= -STABILITY_MARGIN for loop in loops):
-            return np.inf, nothing
         for i, loop in enumerate(loops):
-            peak = hinf_norm(loop, tolerance=1e-9, enough=enough)
-            if peak.value > enough:
+            peak = hinf_norm(loop, tolerance=1e-9, enough=enough, margin=STABILITY_MARGIN)
+            if peak.value > enough or peak.value == np.inf:
                 return max(float(np.log(peak.value)), np.nextafter(ceiling, np.inf)), nothing
             if peak.value > highest.value:
                 highest, worst = peak, i

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, least_squares
 
 from controllers import synthesise
-from controllers.static_output_feedback import Weights, generalised
+from controllers.seat_plant import Weights, generalised
 from seatsim.dampers.asymmetric import Yu2019
 from seatsim.dampers.bench import SineTest, sine_test
 from seatsim.dampers.hysteresis_division import Yu2017

@@ -62,18 +62,47 @@ WEIGHTINGS: Mapping[str, Weighting] = {
 """Wk: vertical, on the seat and under the feet. Wd: fore-and-aft and lateral, on the seat."""
 
 
+class Section(NamedTuple):
+    """A factor of a weighting, `(b0 + b1 s + b2 s^2) / (a0 + a1 s + a2 s^2)` with s in rad/s."""
+
+    numerator: tuple[float, float, float]
+    denominator: tuple[float, float, float]
+
+
+def sections(weighting: str = "Wk") -> tuple[Section, ...]:
+    """Return the factors Hh, Hl, Ht and (Wk only) Hs, for filters with states.
+
+    Raises:
+        InputError: no weighting has this name.
+    """
+    c = _constants(weighting)
+    high_pass = Section((0.0, 0.0, (2 * math.pi * c.f1) ** -2), _coefficients(c.f1, math.sqrt(0.5)))
+    low_pass = Section((1.0, 0.0, 0.0), _coefficients(c.f2, math.sqrt(0.5)))
+    transition = Section((1.0, 1 / (2 * math.pi * c.f3), 0.0), _coefficients(c.f4, c.Q4))
+    if c.step is None:
+        return high_pass, low_pass, transition
+    rise = (c.step.f5 / c.step.f6) ** 2
+    b0, b1, b2 = _coefficients(c.step.f5, c.step.Q5)
+    return (
+        high_pass,
+        low_pass,
+        transition,
+        Section((rise * b0, rise * b1, rise * b2), _coefficients(c.step.f6, c.step.Q6)),
+    )
+
+
+def _coefficients(corner: float, quality: float) -> tuple[float, float, float]:
+    omega = 2 * math.pi * corner
+    return 1.0, 1 / (quality * omega), omega**-2
+
+
 def response(frequency: ArrayLike, weighting: str = "Wk") -> ComplexArray:
     """Return H(2j pi f), dimensionless, at each `frequency` in Hz; same shape as `frequency`.
 
     Raises:
         InputError: no weighting has this name.
     """
-    if weighting not in WEIGHTINGS:
-        permitted = ", ".join(WEIGHTINGS)
-        raise InputError(
-            f"no weighting is called '{weighting}'{nearest(weighting, WEIGHTINGS)}; permitted: {permitted}"
-        )
-    c = WEIGHTINGS[weighting]
+    c = _constants(weighting)
     jf = np.asarray(frequency, dtype=np.complex128) * 1j
     high_pass = jf**2 / (jf**2 + math.sqrt(2) * c.f1 * jf + c.f1**2)
     low_pass = 1 / _quadratic(jf, c.f2, math.sqrt(0.5))
@@ -81,6 +110,15 @@ def response(frequency: ArrayLike, weighting: str = "Wk") -> ComplexArray:
     step = _upward_step(jf, c.step) if c.step else 1.0
     h: ComplexArray = high_pass * low_pass * transition * step
     return h
+
+
+def _constants(weighting: str) -> Weighting:
+    if weighting not in WEIGHTINGS:
+        permitted = ", ".join(WEIGHTINGS)
+        raise InputError(
+            f"no weighting is called '{weighting}'{nearest(weighting, WEIGHTINGS)}; permitted: {permitted}"
+        )
+    return WEIGHTINGS[weighting]
 
 
 def _upward_step(jf: ComplexArray, step: Step) -> ComplexArray:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from controllers import synthesise
-from controllers.static_output_feedback import Weights, generalised
+from controllers.seat_plant import Weights, generalised
 from seatsim.loading import load
 
 ROOT = Path(__file__).resolve().parents[2]

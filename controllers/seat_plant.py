@@ -1,0 +1,131 @@
+"""The seat as a generalised plant for synthesis: weights, lag of the actuator, and what may vary."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from seatsim.fields import param
+from seatsim.metrics.weighting import sections
+from seatsim.plant import Plant, state_space
+
+if TYPE_CHECKING:
+    from controllers.synthesis import GeneralisedPlant
+
+Array = NDArray[np.float64]
+
+
+class Weights(NamedTuple):
+    """Weights of the performance output `z = (travel x, acceleration H zc'')` (Yu et al. 2019, eq 17).
+
+    H is 1 or the frequency weighting of ISO 2631-1.
+    """
+
+    travel: Annotated[float, param("1/s^2", "weight e1 of the suspension displacement", low=0, high=1e6)] = 22.6
+    acceleration: Annotated[float, param("-", "weight e2 of the driver's acceleration", low=0, high=1e6)] = 1.0
+    weighting: Annotated[
+        Literal["none", "Wk"], Field(description="frequency weighting of the driver's acceleration")
+    ] = "none"
+
+
+class Lag(NamedTuple):
+    """What the design knows of the way from the wanted force to the damper's: `exp(-delay s) rate / (s + rate)`.
+
+    A controller that holds its command for a sample time T delays by about T/2: add it to the transport delay.
+    """
+
+    rate: Annotated[float, param("1/s", "rate of the coil", above=0, high=1e5)] = 130.0
+    delay: Annotated[float, param("s", "transport delay and half the sample time", low=0, high=0.1)] = 0.0
+
+
+class System(NamedTuple):
+    """A linear system `x' = A x + B u`, `y = C x + D u`."""
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+
+
+def generalised(
+    plant: Plant,
+    weights: Weights,
+    lag: Lag | None = None,
+    displacement_gain: bool = True,
+    force_factor: float = 1.0,
+) -> GeneralisedPlant:
+    """Return the exact seat plant for synthesis: disturbance z0'', control Fd, output (x, v), z as in `Weights`.
+
+    With `lag` the control is the wanted force, and the delay is a Pade approximation of order 2, whose phase is right
+    to 0.1 degrees up to `delay omega = 1`. The damper delivers `force_factor` of what is wanted, at every temperature.
+    """
+    from controllers.synthesis import GeneralisedPlant
+
+    s = state_space(plant)
+    both = np.hstack([s.B1, s.B2])
+    seat = System(s.A, both, np.vstack([s.C1, s.C2]), np.zeros((4, 2)))
+    if lag is not None:
+        seat = series(parallel(unity(1), actuator(lag)), seat)
+    scale = np.diag([weights.travel, weights.acceleration, 1.0, 1.0])
+    if weights.weighting != "none":
+        seat = series(seat, parallel(unity(1), weighted(weights.weighting), unity(2)))
+    A, B, C = seat.A, seat.B * [1.0, force_factor], scale @ seat.C
+    return GeneralisedPlant(
+        A,
+        B[:, :1],
+        B[:, 1:],
+        C[:2],
+        C[2:],
+        np.zeros((2, 1)),
+        np.zeros((2, 1)),
+        np.zeros((2, 1)),
+        None if displacement_gain else np.array([[False, True]]),
+    )
+
+
+def actuator(lag: Lag) -> System:
+    """Return the lag from the wanted force to the damper's."""
+    coil = System(*(np.array([[value]]) for value in (-lag.rate, lag.rate, 1.0, 0.0)))
+    if lag.delay == 0:
+        return coil
+    d = lag.delay
+    return series(_section((1.0, -d / 2, d * d / 12), (1.0, d / 2, d * d / 12)), coil)
+
+
+def weighted(weighting: str) -> System:
+    """Return a frequency weighting of ISO 2631-1 as a system."""
+    first, *others = (_section(*section) for section in sections(weighting))
+    for other in others:
+        first = series(first, other)
+    return first
+
+
+def unity(size: int) -> System:
+    """Return what passes `size` signals on as they are."""
+    return System(np.zeros((0, 0)), np.zeros((0, size)), np.zeros((size, 0)), np.eye(size))
+
+
+def series(first: System, second: System) -> System:
+    """Return `first` followed by `second`."""
+    n, m = len(first.A), len(second.A)
+    A = np.block([[first.A, np.zeros((n, m))], [second.B @ first.C, second.A]])
+    B = np.vstack([first.B, second.B @ first.D])
+    return System(A, B, np.hstack([second.D @ first.C, second.C]), second.D @ first.D)
+
+
+def parallel(*systems: System) -> System:
+    """Return systems side by side, each with its own inputs and outputs."""
+    from scipy.linalg import block_diag
+
+    return System(*(np.asarray(block_diag(*parts), dtype=float) for parts in zip(*systems, strict=True)))
+
+
+def _section(numerator: tuple[float, float, float], denominator: tuple[float, float, float]) -> System:
+    """Return the system of `(b0 + b1 s + b2 s^2) / (a0 + a1 s + a2 s^2)`."""
+    b0, b1, b2 = (b / denominator[2] for b in numerator)
+    a0, a1, _ = (a / denominator[2] for a in denominator)
+    A, B = np.array([[0.0, 1.0], [-a0, -a1]]), np.array([[0.0], [1.0]])
+    return System(A, B, np.array([[b0 - b2 * a0, b1 - b2 * a1]]), np.array([[b2]]))

@@ -1,0 +1,84 @@
+"""The seat's generalised plant with weights, lag and variations, and the law that uses it."""
+
+import numpy as np
+import pytest
+
+from controllers.seat_plant import Lag, System, Weights, actuator, generalised, weighted
+from controllers.static_output_feedback import StaticOutputFeedback
+from controllers.synthesis.norm import response
+from controllers.synthesis.plant import Loop
+from seatsim.coil import Coil
+from seatsim.errors import InputError
+from seatsim.metrics import weighting
+from seatsim.plant import Plant, state_space
+
+SEAT = Plant(20.0, 80.0, 4600.0, 200.0, 60000.0, 1500.0)
+OMEGA = np.geomspace(0.5, 300.0, 40)
+
+
+def gains(system, omega=OMEGA):
+    return response(Loop(*system), omega)
+
+
+@pytest.mark.parametrize("name", ["Wk", "Wd"])
+def test_weighting_with_states_is_that_of_the_standard(name):
+    np.testing.assert_allclose(gains(weighted(name))[:, 0, 0], weighting.response(OMEGA / (2 * np.pi), name), rtol=1e-9)
+
+
+def test_unknown_weighting():
+    with pytest.raises(InputError, match="Wk"):
+        weighting.sections("Wm")
+
+
+def test_actuator_lags_as_coil_and_delay():
+    lag = Lag(rate=130.0, delay=0.004)
+    omega = np.geomspace(1.0, 1.0 / lag.delay, 20)
+    exact = np.exp(-1j * omega * lag.delay) * lag.rate / (1j * omega + lag.rate)
+    np.testing.assert_allclose(gains(actuator(lag), omega)[:, 0, 0], exact, atol=2e-3)
+    assert len(actuator(Lag(delay=0.0)).A) == 1
+
+
+def test_without_extras_it_is_the_exact_seat():
+    plant, s = generalised(SEAT, Weights(travel=30.0)), state_space(SEAT)
+    np.testing.assert_array_equal(plant.A, s.A)
+    np.testing.assert_array_equal(plant.B2, s.B2)
+    np.testing.assert_array_equal(plant.C1, [[30.0], [1.0]] * s.C1)
+
+
+def test_every_path_with_lag_and_weighting():
+    bare = generalised(SEAT, Weights(travel=10.0, acceleration=2.0))
+    lag = Lag(rate=100.0, delay=0.002)
+    full = generalised(SEAT, Weights(10.0, 2.0, "Wk"), lag, force_factor=0.7)
+
+    def paths(plant):
+        B, C = np.hstack([plant.B1, plant.B2]), np.vstack([plant.C1, plant.C2])
+        return gains(System(plant.A, B, C, np.zeros((4, 2))))
+
+    H = weighting.response(OMEGA / (2 * np.pi), "Wk")
+    rows, columns = np.ones((len(OMEGA), 4, 1), complex), np.ones((len(OMEGA), 1, 2), complex)
+    rows[:, 1, 0], columns[:, 0, 1] = H, 0.7 * gains(actuator(lag))[:, 0, 0]
+    np.testing.assert_allclose(paths(full), rows * paths(bare) * columns, rtol=1e-8, atol=1e-14)
+
+
+def test_law_designs_for_the_worst_of_drivers_and_factors():
+    law = StaticOutputFeedback(weights=Weights(50.0), masses=(50.0, 120.0), force_factors=(0.67, 1.0))
+    design = law.synthesis(SEAT)
+    assert len(design.loops) == 4
+    single = StaticOutputFeedback(weights=Weights(50.0)).synthesis(SEAT._replace(driver_mass=120.0))
+    assert design.gamma > single.gamma
+    assert all(loop.gamma <= design.gamma and loop.poles.real.max() < 0 for loop in design.loops)
+
+
+def test_displacement_gain_may_be_left_out():
+    lag = Lag(delay=0.0025)
+    law = StaticOutputFeedback(weights=Weights(30.0), displacement_gain=False, lag=lag)
+    compiled = law.prepared(SEAT)
+    assert compiled.k1 == 0 and compiled.k2 > 500
+
+
+def test_checks_tell_of_margins_and_the_sampled_loop():
+    law = StaticOutputFeedback(gain=(0.0, 2000.0))
+    fine = law.checks(SEAT, Coil(), 0.005, np.array([[0.0, 2000.0]]))
+    assert "gain any" in fine["margins"] and fine["sampled loop"].startswith("stable at 5 ms")
+    wild = law.checks(SEAT, Coil(delay=0.01), 0.005, np.array([[0.0, 2e5]]))
+    assert wild["sampled loop"].startswith("UNSTABLE")
