@@ -12,6 +12,7 @@ from controllers.synthesis.plant import Array, GeneralisedPlant
 
 # Spread of the random gains in scaled coordinates: shallow basins lie at any of these.
 _SPREADS = (1.0, 100.0, 10.0, 1000.0)
+_DECADES = (-1.5, 1.5)
 
 
 def starting_gains(plants: Sequence[GeneralisedPlant], seed: int) -> Iterator[Array]:
@@ -22,6 +23,8 @@ def starting_gains(plants: Sequence[GeneralisedPlant], seed: int) -> Iterator[Ar
     random = np.random.default_rng(seed)
     for spread in cycle(_SPREADS):
         yield spread * random.standard_normal(free.shape) * free
+        # Entries over decades of their own: some valleys join large gains with small ones.
+        yield random.choice([-1.0, 1.0], free.shape) * 10 ** random.uniform(*_DECADES, free.shape) * free
 
 
 def convex_start(plant: GeneralisedPlant, gamma: float, deadline: float) -> Iterator[Array]:
