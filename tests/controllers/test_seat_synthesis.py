@@ -6,8 +6,10 @@ import pytest
 from controllers import synthesise
 from controllers.synthesis.certify import largest_lmi_eigenvalue
 from controllers.synthesis.norm import grid_norm, hinf_norm
+from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.verify import verify
 from seatsim.errors import InputError
+from seatsim.plant import Plant, state_space
 
 OPTIMA = {10.0: (1.0681900, [-1937.2, 2013.9]), 30.0: (1.1359585, [967.0, 2339.1]), 50.0: (1.1848133, [3268.6, 2613.3])}
 # From the Riccati equations in 60 digits, with control and noise weights of 1e-7; e1 = 10 from the LMI.
@@ -111,10 +113,10 @@ def test_one_gain_for_drivers_of_50_to_120_kg(seat):
 def test_a_plant_between_the_extremes_may_decide(seat):
     # The middle seat has a cushion that none of the others has.
     plants = [seat(50.0, m=60.0), seat(50.0, kc=20000.0, cc=300.0), seat(50.0, m=100.0)]
-    design = synthesise(plants)
-    alone = synthesise([plants[1], plants[0], plants[2]])
-    assert design.gamma == pytest.approx(alone.gamma, rel=1e-5)
+    design = synthesise(plants, time_budget=5.0)
     assert design.loops[1].gamma == pytest.approx(design.gamma, rel=1e-6)
+    ends = synthesise([plants[0], plants[2]], time_budget=5.0)
+    assert hinf_norm(plants[1].close(ends.gain)).value > design.gamma > ends.gamma
 
 
 def test_plants_must_be_alike(seat):
@@ -125,3 +127,26 @@ def test_plants_must_be_alike(seat):
 def test_disk_margin_of_a_known_loop(seat):
     # K = 0 can be multiplied by anything.
     assert verify(seat(30.0), np.zeros((1, 2))).disk_margin == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("e1", OPTIMA)
+def test_no_gain_on_a_grid_is_better(seat, designed, e1):
+    k1, k2 = np.linspace(-4000.0, 20000.0, 25), np.linspace(0.0, 8000.0, 21)
+    norms = [hinf_norm(seat(e1).close([[a, b]])).value for a in k1 for b in k2]
+    assert designed(e1).gamma <= min(norms)
+
+
+def test_published_gain_is_near_the_optimum_at_the_weight_that_fits_it(seat, designed):
+    published = hinf_norm(seat(22.6).close([[2.0, 2147.6]])).value
+    assert 1.0 < published / designed(22.6).gamma < 1.001
+
+
+def test_the_printed_design_problem_has_no_solution():
+    # Eq 15 with z0'' and zs'' as outside disturbances: the infimum is that of any controller, at infinite gain.
+    s = state_space(Plant(20.0, 80.0, 4600.0, 200.0, 60000.0, 1500.0), "yu2019")
+    plant = GeneralisedPlant(
+        s.A, s.B1, s.B2, s.C1 * [[10.0], [1.0]], s.C2, np.zeros((2, 2)), np.zeros((2, 1)), np.zeros((2, 2))
+    )
+    small, large = (synthesise(plant, max_gain=limit, time_budget=4.0) for limit in (1e3, 1e4))
+    assert np.abs(small.gain).max() > 0.99e3 and np.abs(large.gain).max() > 0.99e4
+    assert small.gamma > large.gamma > large.lower_bound == pytest.approx(1.82311, abs=1e-5)
