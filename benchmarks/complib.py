@@ -3,7 +3,7 @@
 DIR holds one JSON file a problem (A, B1, B, C1, C, D11, D12, D21) and `best_known.csv`. Every result is a line of FILE,
 appended when it is found, and is not made again, so that a run may be stopped and resumed; small problems come first.
 Designs with their certificates stand in FILE's folder `designs`. `--only` takes some problems, `--budget` is in s.
-Values below NEGLIGIBLE of the norm without control's scale count as zero, as do the best known ones.
+Values of gamma below NEGLIGIBLE, best known ones too, count as that.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from controllers.synthesis.norm import grid_norm
 from seatsim.errors import SynthesisError
 
 NEGLIGIBLE = 1e-6
-"""Gamma below which a problem counts as solved: AC1, UWV and NN10 have an infimum of zero."""
+"""AC1, UWV and NN10 have an infimum of zero."""
 Found = dict[str, Any]
 
 
