@@ -24,6 +24,7 @@ _DELTAS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 5e-2)
 _RECENTRED = 3
 # Rounding of the eigenvalues of a symmetric matrix of order n, in units of n eps times its norm.
 _ROUNDING = 4
+_REGULAR = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,20 +76,20 @@ def largest_lmi_eigenvalue(plant: GeneralisedPlant, gain: Array, factor: Array, 
         return np.inf
     A, B, C, D = close_exactly(plant, gain)
     T, back = Exact.of(factor), Exact.of(W)
-    identity = (T @ back).rounded()
-    moved = T @ A @ back
-    flow = ((T @ back).T @ moved).rounded()
-    drive, seen = ((T @ back).T @ (T @ B)).rounded(), (C @ back).rounded()
+    one = T @ back
+    flow, drive, seen = (one.T @ T @ A @ back).rounded(), (one.T @ T @ B).rounded(), (C @ back).rounded()
     rate = float(np.linalg.norm(flow, 2))
     flow, drive, seen = flow / rate, drive / np.sqrt(gamma * rate), seen / np.sqrt(gamma * rate)
+    through = D.rounded() / gamma
     M = np.block(
         [
             [flow + flow.T, drive, seen.T],
-            [drive.T, -np.eye(drive.shape[1]), D.rounded().T / gamma],
-            [seen, D.rounded() / gamma, -np.eye(len(seen))],
+            [drive.T, -np.eye(drive.shape[1]), through.T],
+            [seen, through, -np.eye(len(seen))],
         ]
     )
-    if not np.isfinite(M).all() or np.linalg.norm(identity - np.eye(len(A.whole)), 2) > 0.5:
+    # P > 0 where factor is regular, which its product with about its inverse shows.
+    if not np.isfinite(M).all() or np.linalg.norm(one.rounded() - np.eye(plant.order), 2) > _REGULAR:
         return np.inf
     allowance = _ROUNDING * len(M) * np.finfo(float).eps * float(np.linalg.norm(M, 2))
     return float(np.linalg.eigvalsh(M)[-1] + allowance)
