@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from itertools import chain, islice
 from typing import NamedTuple
@@ -20,6 +21,8 @@ _FIRST_STARTS, _MORE_STARTS = 6, 24
 # Shares of the time budget: starts are explored until the first, the best refined until the second, and improved upon
 # until the third; the rest is for proofs.
 _EXPLORED, _REFINED, _IMPROVED = 0.35, 0.65, 0.85
+# Share of the time left that a search of some of the plants may take: others may have to join them.
+_SUBSET = 0.4
 # A plant left out of the search counts as covered where its norm is no higher than this times the searched ones'.
 _COVERED = 1 + 1e-7
 
@@ -35,6 +38,11 @@ class Clock(NamedTuple):
     def after(self, share: float) -> float:
         """Return the time at which a share of the budget is spent."""
         return self.begin + share * self.budget
+
+    def part(self, share: float) -> Clock:
+        """Return a clock that begins now, with a share of the time that is left."""
+        now = time.monotonic()
+        return Clock(now, share * max(self.begin + self.budget - now, 0.0))
 
 
 def search(
@@ -59,10 +67,11 @@ def search(
     while True:
         objective = everything.on([scaled[i].plant for i in chosen])
         told(f"plants {', '.join(map(str, chosen))} of {len(plants)}" if len(plants) > 1 else "searching")
-        found = _explore(objective, best, seed, clock.after(_EXPLORED))
+        part = clock.part(1.0 if len(chosen) == len(scaled) else _SUBSET)
+        found = _explore(objective, best, seed, part.after(_EXPLORED))
         if not found.candidates:
             raise SynthesisError(_not_stabilised(found, first.rate, float(np.abs(limits).max()), clock.budget))
-        best = _lowest(objective, found, seed, clock, told)
+        best = _lowest(objective, found, seed, part, told)
         norms = [everything.on([each.plant]).norm(best.entries) for each in scaled]
         worst = int(np.argmax(norms))
         if norms[worst] <= best.gamma * _COVERED or worst in chosen:
