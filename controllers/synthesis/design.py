@@ -114,8 +114,14 @@ def _to_plain(design: Design) -> dict[str, Any]:
         "gamma": design.gamma,
         "max_gain": design.max_gain,
         "lower_bound": design.lower_bound,
+        "certificate": _worst_proof(design.certificate),
         "loops": [_plain_loop(loop) for loop in design.loops],
     }
+
+
+def _worst_proof(proof: Certificate | None) -> dict[str, Any] | None:
+    """Return the worst loop's proof as one reads it: P, rounded; that which `load` reads stands with the loop."""
+    return proof and {"gamma": proof.gamma, "delta": proof.delta, "matrix": proof.matrix.tolist()}
 
 
 def _plain_loop(loop: ClosedLoop) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 
 from controllers import Design
 from seatsim.errors import InputError
@@ -24,6 +25,9 @@ def test_round_trip_is_exact(design, tmp_path):
         np.testing.assert_array_equal(getattr(again, name), getattr(design, name))
     for name in ("gamma", "max_gain", "lower_bound", "peak_frequency"):
         assert getattr(again, name) == getattr(design, name)
+    plain = YAML(typ="safe").load(tmp_path / "design.yaml")
+    assert {"gain", "gamma", "lower_bound", "certificate"} <= set(plain)
+    np.testing.assert_allclose(plain["certificate"]["matrix"], design.certificate.matrix)
     for name in ("norms_agree", "disk_margin"):
         assert getattr(again.worst, name) == getattr(design.worst, name)
     np.testing.assert_array_equal(again.worst.plant.A, design.worst.plant.A)

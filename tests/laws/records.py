@@ -4,7 +4,11 @@ from seatsim import registry, simulation
 from seatsim.coil import Coil
 from seatsim.plant import Plant
 
-REQUIRED = {"constant": {"current": 0.5}, "static_output_feedback": {"gain": (2.0, 2147.6)}}
+REQUIRED = {
+    "constant": {"current": 0.5},
+    "static_output_feedback": {"gain": (2.0, 2147.6)},
+    "scheduled_output_feedback": {"temperatures": (20.0, 80.0), "gains": ((2.0, 2147.6), (2.0, 2800.0))},
+}
 SEAT, COIL = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0), Coil(130.0, 1.0)
 LAWS = [name for name in registry.names("law") if name != "replay"]
 
