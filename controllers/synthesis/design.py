@@ -121,7 +121,7 @@ def _to_plain(design: Design) -> dict[str, Any]:
 
 def _worst_proof(proof: Certificate | None) -> dict[str, Any] | None:
     """Return the worst loop's proof as one reads it: P, rounded; that which `load` reads stands with the loop."""
-    return proof and {"gamma": proof.gamma, "delta": proof.delta, "matrix": proof.matrix.tolist()}
+    return None if proof is None else {"gamma": proof.gamma, "delta": proof.delta, "matrix": proof.matrix.tolist()}
 
 
 def _plain_loop(loop: ClosedLoop) -> dict[str, Any]:

@@ -105,7 +105,7 @@ def _channels(cls: Any, problem: Problem) -> list[str]:
 def _candidate(name: str, cls: Any, form: Form, place: dict[str, Any]) -> Candidate:
     off = {field: 0.0 for field in cls._fields if field not in place} | dict(card_of(cls).off)
     fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.held) | place
-    ranges = [_range(cls, field, value, k > 0) for k, (field, value) in enumerate(form.free.items())]
+    ranges = [form.within.get(f, _range(cls, f, value, k > 0)) for k, (f, value) in enumerate(form.free.items())]
     low, high = zip(*ranges, strict=True)
     return Candidate(name, cls, fixed, tuple(form.free), tuple(form.free.values()), low, high)
 

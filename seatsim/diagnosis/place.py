@@ -17,6 +17,8 @@ DECISIVE = 0.1
 """Share of what the best block explains by which another must fall short to be told from it."""
 TWICE = 0.02
 """Doubt by which a coil, whose current and force err at will, must be better than its sensor alone."""
+ON_FRAME = ("damper", "suspension", "floor")
+"""Blocks whose unknown input is a force on the frame."""
 SLIGHT = 0.02
 """Share of the gap by which effects that do not explain it must help an unknown input, not to be given up for it."""
 
@@ -73,8 +75,9 @@ def _rest(engine: Engine, state: State) -> Rest:
     rows = sum(values.size for values in state.whitened.values())
     before, best = state.cost / rows - 1.0, min(suspect.doubt for suspect in found.values())
     width = DECISIVE * max(before - best, 1e-6)
+    frame = min((suspect.doubt for block, suspect in found.items() if block in ON_FRAME), default=math.inf)
     for block, doubt in (("coil", TWICE), ("driver", width)):
-        if block in found:
+        if block in found and (block != "driver" or frame < found[block].doubt + doubt):
             found[block] = found[block]._replace(doubt=found[block].doubt + doubt)
     best = min(suspect.doubt for suspect in found.values())
     weights = {block: math.exp(-(suspect.doubt - best) / width) for block, suspect in found.items()}

@@ -43,10 +43,14 @@ ON_SEAT = ("suspension_force", "linkage_friction", "cushion_force", "inner_mass"
 
 
 class Form(NamedTuple):
-    """Where a fit to a recording starts: the values of the parameters it frees, and of others that it holds."""
+    """Where a fit to a recording starts: the values of the parameters it frees, and of others that it holds.
+
+    `within` bounds a free parameter more closely than its field does, where beyond it would be another effect.
+    """
 
     free: Values
     held: Values = MappingProxyType({})
+    within: Mapping[str, tuple[float, float]] = MappingProxyType({})
 
 
 class EffectCard(NamedTuple):

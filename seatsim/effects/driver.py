@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.effects.base import effect
+from seatsim.effects.base import Form, effect
 from seatsim.effects.laws import State
 from seatsim.fields import param
 from seatsim.kernel.rig import Motion
@@ -28,13 +28,13 @@ class Mass(NamedTuple):
     source="one sprung mass within the body; resonance of 4-6 Hz as in ISO 5982",
     initial=(0.0, 0.0),
     off={"frequency": 5.0, "damping": 0.3},
-    forms=({"share": 0.2, "frequency": 5.0, "damping": 0.3},),
+    forms=(Form({"share": 0.2, "frequency": 5.0, "damping": 0.3}, within={"frequency": (3.0, 8.0)}),),
 )
 class Biodynamics(NamedTuple):
     """A body with an inner resonance: the `share` of the driver's mass hangs on a spring and dashpot within it.
 
     `xi'' = -(2 pi frequency)^2 xi - 2 damping (2 pi frequency) xi' - zc''`, xi relative to the pelvis; the pelvis
-    carries the force of the inner mass and is lighter by it.
+    carries the force of the inner mass and is lighter by it. In a recording the resonance is sought from 3 to 8 Hz.
     """
 
     share: Annotated[float, param("-", "share of the mass that is sprung", low=0, high=0.95)]
