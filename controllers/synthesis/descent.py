@@ -21,7 +21,7 @@ from controllers.synthesis.polish import polish
 # A loop this stable (in scaled time) is ready for the descent on its norm.
 _STABLE_ENOUGH = -1e-2
 _STABILISING_PATIENCE = 60
-_COARSE, _FINE = 1e-3, 1e-6
+_COARSE, _FINE = 1e-4, 1e-6
 _REFINED = 6
 _SAME = 2e-3
 _TURNS = 8

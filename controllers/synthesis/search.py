@@ -20,7 +20,7 @@ from seatsim.errors import SynthesisError
 _FIRST_STARTS, _MORE_STARTS = 6, 24
 # Shares of the time budget: starts are explored until the first, the best refined until the second, and improved upon
 # until the third; the rest is for proofs.
-_EXPLORED, _REFINED, _IMPROVED = 0.35, 0.65, 0.85
+_EXPLORED, _REFINED, _IMPROVED = 0.3, 0.5, 0.93
 # Share of the time left that a search of some of the plants may take: others may have to join them.
 _SUBSET = 0.4
 # A plant left out of the search counts as covered where its norm is no higher than this times the searched ones'.
