@@ -28,7 +28,7 @@ class EstimateFeedback(NamedTuple):
 
     def update(self, y: Measurement, state: State) -> State:
         """Return the prediction for the next sample."""
-        return predicted(self.estimator, y.damper_force, corrected(self.estimator, y, state))
+        return predicted(self.estimator, y, state)
 
 
 @law("lqg", initial=REST, source="textbook linear-quadratic-Gaussian control; solved by python-control and scipy")
@@ -57,7 +57,7 @@ class SwitchedFeedback(NamedTuple):
 
     def update(self, y: Measurement, state: State) -> State:
         """Return the prediction for the next sample."""
-        return predicted(self.estimator, y.damper_force, corrected(self.estimator, y, state))
+        return predicted(self.estimator, y, state)
 
 
 @law("clipped_optimal", initial=REST, source="Dyke, Spencer, Sain and Carlson 1996, Smart Mater. Struct. 5:565")

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
+from controllers.linear import held
 from seatsim.control import Measurement
 from seatsim.fields import param
 from seatsim.jit import jit
@@ -42,21 +43,20 @@ class Estimator(NamedTuple):
 def estimator(plant: Plant, noise: Noise, sample_time: float) -> Estimator:
     """Return the steady filter of the sampled seat, from the discrete Riccati equation."""
     s = state_space(plant)
-    flow, push, spread = sampled(s, sample_time, noise.floor)
-    spread = spread + noise.force**2 * push @ push.T
+    flow, push = held(s.A, s.B2, sample_time)
+    spread = _spread(s, sample_time, noise.floor) + noise.force**2 * push @ push.T
     reading = np.diag([noise.displacement**2, noise.acceleration**2])
     p = solve_discrete_are(flow.T, s.C1.T, spread, reading)
     correction = np.linalg.solve(s.C1 @ p @ s.C1.T + reading, s.C1 @ p).astype(np.float64)
     return Estimator(_rows(flow), _rows(push.T)[0], _rows(s.C1), _rows(correction))
 
 
-def sampled(s: StateSpace, time: float, density: float) -> tuple[Array, Array, Array]:
-    """Return flow (4, 4), effect of a held damper force (4, 1) and covariance (4, 4) of a sample (Van Loan 1978)."""
+def _spread(s: StateSpace, time: float, density: float) -> Array:
+    """Return the covariance (4, 4) that a floor of white noise adds to the state over a sample (Van Loan 1978)."""
     n = len(s.A)
-    held = expm(np.block([[s.A, s.B2], [np.zeros((1, n + 1))]]) * time)
     both = expm(np.block([[-s.A, density * s.B1 @ s.B1.T], [np.zeros((n, n)), s.A.T]]) * time)
-    flow = both[n:, n:].T
-    return flow, held[:n, n:], flow @ both[:n, n:]
+    spread: Array = both[n:, n:].T @ both[:n, n:]
+    return spread
 
 
 def _rows(matrix: Array) -> Rows:
@@ -84,11 +84,12 @@ def corrected(e: Estimator, y: Measurement, x: State) -> State:
 
 
 @jit
-def predicted(e: Estimator, force: float, x: State) -> State:
-    """Return the prediction for the next sample, for a damper force in N held until then."""
+def predicted(e: Estimator, y: Measurement, x: State) -> State:
+    """Return the prediction for the next sample from that for this one; the damper force read is held until then."""
+    now, force = corrected(e, y, x), y.damper_force
     return (
-        dot(e.flow[0], x) + e.push[0] * force,
-        dot(e.flow[1], x) + e.push[1] * force,
-        dot(e.flow[2], x) + e.push[2] * force,
-        dot(e.flow[3], x) + e.push[3] * force,
+        dot(e.flow[0], now) + e.push[0] * force,
+        dot(e.flow[1], now) + e.push[1] * force,
+        dot(e.flow[2], now) + e.push[2] * force,
+        dot(e.flow[3], now) + e.push[3] * force,
     )

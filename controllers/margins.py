@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import expm
 
+from controllers.linear import held
+from controllers.sampled_loop import SampledLoop, seat_with_coil
 from seatsim.coil import Coil
 from seatsim.plant import Plant, state_space
 
@@ -54,21 +55,7 @@ def sampled_radius(plant: Plant, gain: Array, coil: Coil, sample_time: float, de
 
     The exact zero-order hold of plant and coil over `sample_time`, with `delay_samples` whole samples of delay.
     """
-    s = state_space(plant)
-    n = len(s.A)
-    k = np.atleast_2d(gain) @ s.C2
-    flow = np.zeros((n + 2, n + 2))
-    flow[:n, :n], flow[:n, n : n + 1] = s.A, s.B2
-    flow[n, n], flow[n, n + 1] = -coil.rate, coil.rate
-    step = expm(flow * sample_time)
-    order = n + 1 + delay_samples
-    loop = np.zeros((order, order))
-    loop[: n + 1, : n + 1] = step[: n + 1, : n + 1]
-    held = step[: n + 1, n + 1]
-    if delay_samples == 0:
-        loop[: n + 1, :n] += np.outer(held, k[0])
-    else:
-        loop[: n + 1, n + 1] = held
-        loop[n + 1 : -1, n + 2 :] = np.eye(delay_samples - 1)
-        loop[-1, :n] = k[0]
-    return float(np.max(np.abs(np.linalg.eigvals(loop))))
+    A, B = seat_with_coil(plant, coil)
+    flow, push = held(A, B, sample_time)
+    C = np.atleast_2d(gain) @ np.eye(2, len(A))
+    return SampledLoop(flow, push[:, 0], C[0], sample_time).radius(delay_samples)

@@ -49,7 +49,7 @@ class PlannedForce(NamedTuple):
 
     def update(self, y: Measurement, state: State) -> State:
         """Return the prediction for the next sample."""
-        return predicted(self.estimator, y.damper_force, corrected(self.estimator, y, state))
+        return predicted(self.estimator, y, state)
 
     def notes(self) -> tuple[str, ...]:
         """Return what the run's user is told of the time that the programmes took, and let the planner go."""

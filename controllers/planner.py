@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_are
 
-from controllers.kalman import sampled
+from controllers.linear import held
 from controllers.quadratic import QuadraticWeights
 from seatsim.fields import param
 from seatsim.plant import Plant, state_space
@@ -60,7 +60,7 @@ class Planner:
         from scipy.sparse import csc_matrix, eye
 
         s = state_space(plant)
-        flow, push, _ = sampled(s, sample_time, 0.0)
+        flow, push = held(s.A, s.B2, sample_time)
         z = s.C1 * [[weights.travel], [weights.acceleration]]
         effort = weights.force**2
         to_go = solve_discrete_are(flow, push, z.T @ z, np.array([[effort]]))

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from controllers.linear import held
 from seatsim.coil import Coil
 from seatsim.control import Measurement
 from seatsim.errors import InputError
@@ -77,6 +77,13 @@ class SampledLoop(NamedTuple):
         return min(found)
 
 
+def seat_with_coil(plant: Plant, coil: Coil) -> tuple[Array, Array]:
+    """Return (A, B), shapes (5, 5) and (5, 1), from the wanted force to (x, v, xc, vc, damper force)."""
+    s = state_space(plant)
+    A = np.block([[s.A, s.B2], [np.zeros((1, 4)), np.array([[-coil.rate]])]])
+    return A, coil.rate * np.eye(5)[:, 4:]
+
+
 def sampled_loop(
     law: Any,
     initial: tuple[float, ...],
@@ -118,33 +125,30 @@ def _period(
     """Return the function that carries (z, command) over one sample and says what the law wants at its beginning."""
     if not hasattr(law, "wanted_force"):
         raise InputError(f"{type(law).__name__} wants a current; only a law that wants a force has a linear loop")
-    s = state_space(plant)
-    flow = np.zeros((6, 6))
-    flow[:4, :4], flow[:4, 4:5] = s.A, s.B2
-    flow[4, 4], flow[4, 5] = -coil.rate, coil.rate
-    held = expm(flow * step)[:5]
+    A, B = seat_with_coil(plant, coil)
+    flow, push = held(A, B, step)
     instruments = sensors.instruments(step, every * step) if sensors else None
 
     def one(z: Array, command: float) -> tuple[Array, float]:
         seat, told, own = z[:5], tuple(z[5 : len(z) - memory]), tuple(z[len(z) - memory :])
-        y = _true(s.A, s.B2, seat)
+        y = _true(A, seat)
         if instruments:
             y, told = instruments.read(y, QUIET, 0, told)
         answer = law.wanted_force(y, own)
         own = law.update(y, own) if memory else own
         for _ in range(every):
-            seat = held @ np.append(seat, command)
+            seat = flow @ seat + push[:, 0] * command
             if instruments:
-                told = instruments.passed(0.0, seat[0], tuple(s.A @ seat[:4] + s.B2[:, 0] * seat[4]), told)
+                told = instruments.passed(0.0, seat[0], tuple(A @ seat), told)
         return np.concatenate([seat, told, own]), answer
 
     return one
 
 
-def _true(a: Array, b2: Array, seat: Array) -> Measurement:
+def _true(A: Array, seat: Array) -> Measurement:
     """Return the true measurement over a floor at rest, from (x, v, xc, vc, damper force)."""
     x, v, _, vc, force = seat
-    rates = a @ seat[:4] + b2[:, 0] * force
+    rates = A @ seat
     return Measurement(0.0, x, v, v, v + vc, 0.0, rates[1], rates[1] + rates[3], force, 0.0, 20.0, math.nan)
 
 

@@ -5,17 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
+from controllers.linear import System, parallel, section, series, unity, weighted
 from seatsim.fields import param
-from seatsim.metrics.weighting import sections
 from seatsim.plant import Plant, state_space
 
 if TYPE_CHECKING:
     from controllers.synthesis import GeneralisedPlant
-
-Array = NDArray[np.float64]
 
 
 class Weights(NamedTuple):
@@ -39,15 +36,6 @@ class Lag(NamedTuple):
 
     rate: Annotated[float, param("1/s", "rate of the coil", above=0, high=1e5)] = 130.0
     delay: Annotated[float, param("s", "transport delay and half the sample time", low=0, high=0.1)] = 0.0
-
-
-class System(NamedTuple):
-    """A linear system `x' = A x + B u`, `y = C x + D u`."""
-
-    A: Array
-    B: Array
-    C: Array
-    D: Array
 
 
 def generalised(
@@ -92,40 +80,4 @@ def actuator(lag: Lag) -> System:
     if lag.delay == 0:
         return coil
     d = lag.delay
-    return series(_section((1.0, -d / 2, d * d / 12), (1.0, d / 2, d * d / 12)), coil)
-
-
-def weighted(weighting: str) -> System:
-    """Return a frequency weighting of ISO 2631-1 as a system."""
-    first, *others = (_section(*section) for section in sections(weighting))
-    for other in others:
-        first = series(first, other)
-    return first
-
-
-def unity(size: int) -> System:
-    """Return what passes `size` signals on as they are."""
-    return System(np.zeros((0, 0)), np.zeros((0, size)), np.zeros((size, 0)), np.eye(size))
-
-
-def series(first: System, second: System) -> System:
-    """Return `first` followed by `second`."""
-    n, m = len(first.A), len(second.A)
-    A = np.block([[first.A, np.zeros((n, m))], [second.B @ first.C, second.A]])
-    B = np.vstack([first.B, second.B @ first.D])
-    return System(A, B, np.hstack([second.D @ first.C, second.C]), second.D @ first.D)
-
-
-def parallel(*systems: System) -> System:
-    """Return systems side by side, each with its own inputs and outputs."""
-    from scipy.linalg import block_diag
-
-    return System(*(np.asarray(block_diag(*parts), dtype=float) for parts in zip(*systems, strict=True)))
-
-
-def _section(numerator: tuple[float, float, float], denominator: tuple[float, float, float]) -> System:
-    """Return the system of `(b0 + b1 s + b2 s^2) / (a0 + a1 s + a2 s^2)`."""
-    b0, b1, b2 = (b / denominator[2] for b in numerator)
-    a0, a1, _ = (a / denominator[2] for a in denominator)
-    A, B = np.array([[0.0, 1.0], [-a0, -a1]]), np.array([[0.0], [1.0]])
-    return System(A, B, np.array([[b0 - b2 * a0, b1 - b2 * a1]]), np.array([[b2]]))
+    return series(section((1.0, -d / 2, d * d / 12), (1.0, d / 2, d * d / 12)), coil)

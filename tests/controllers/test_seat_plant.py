@@ -1,14 +1,13 @@
 """The seat's generalised plant with weights, lag and variations, and the law that uses it."""
 
 import numpy as np
-import pytest
 
-from controllers.seat_plant import Lag, System, Weights, actuator, generalised, weighted
+from controllers.linear import System
+from controllers.seat_plant import Lag, Weights, actuator, generalised
 from controllers.static_output_feedback import StaticOutputFeedback
 from controllers.synthesis.norm import hinf_norm, response
 from controllers.synthesis.plant import Loop
 from seatsim.coil import Coil
-from seatsim.errors import InputError
 from seatsim.metrics import weighting
 from seatsim.plant import Plant, state_space
 
@@ -18,16 +17,6 @@ OMEGA = np.geomspace(0.5, 300.0, 40)
 
 def gains(system, omega=OMEGA):
     return response(Loop(*system), omega)
-
-
-@pytest.mark.parametrize("name", ["Wk", "Wd"])
-def test_weighting_with_states_is_that_of_the_standard(name):
-    np.testing.assert_allclose(gains(weighted(name))[:, 0, 0], weighting.response(OMEGA / (2 * np.pi), name), rtol=1e-9)
-
-
-def test_unknown_weighting():
-    with pytest.raises(InputError, match="Wk"):
-        weighting.sections("Wm")
 
 
 def test_actuator_lags_as_coil_and_delay():

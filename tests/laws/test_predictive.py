@@ -6,7 +6,7 @@ from scipy.linalg import solve_discrete_are
 from scipy.optimize import lsq_linear
 
 import seatsim
-from controllers.kalman import sampled
+from controllers.linear import held
 from controllers.planner import Envelope, Planner
 from controllers.quadratic import QuadraticWeights
 from seatsim.plant import state_space
@@ -23,7 +23,7 @@ def planner(**envelope):
 
 def regulator():
     s, w = state_space(SEAT), QuadraticWeights()
-    flow, push, _ = sampled(s, SAMPLE_TIME, 0.0)
+    flow, push = held(s.A, s.B2, SAMPLE_TIME)
     z = s.C1 * [[w.travel], [w.acceleration]]
     p = solve_discrete_are(flow, push, z.T @ z, [[w.force**2]])
     gain = -np.linalg.solve(push.T @ p @ push + w.force**2, push.T @ p @ flow)[0]

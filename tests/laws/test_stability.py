@@ -1,5 +1,7 @@
 """Every law that is linear at small motion: Hurwitz, stable as sampled, on sensors, with delay to spare."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.linalg import expm, solve_continuous_are
@@ -109,5 +111,12 @@ def test_the_filter_is_the_limit_of_the_kalman_recursion():
         gain = p @ seen.T @ np.linalg.inv(seen @ p @ seen.T + reading)
         p = flow @ (p - gain @ seen @ p) @ flow.T + spread
     np.testing.assert_allclose(np.array(e.correction).T, gain, rtol=1e-3, atol=1e-6)
-    np.testing.assert_allclose(predicted(e, 3.0, (1.0, 2.0, 3.0, 4.0)), flow @ [1, 2, 3, 4] + 3.0 * push)
-    assert dot(e.seen[0], (1.0, 2.0, 3.0, 4.0)) == 1.0
+
+
+def test_a_prediction_is_corrected_and_carried_on():
+    e, x = estimator(SEAT, Noise(), SAMPLE_TIME), (1.0, 2.0, 3.0, 4.0)
+    flow, push, seen, correction = (np.array(part) for part in e)
+    y = SimpleNamespace(displacement=1.5, driver_acceleration=-700.0, damper_force=3.0)
+    now = x + ([1.5, -700.0] - seen @ x) @ correction
+    np.testing.assert_allclose(predicted(e, y, x), flow @ now + 3.0 * push, rtol=1e-12)
+    assert dot(e.seen[0], x) == 1.0

@@ -1,0 +1,74 @@
+"""Linear systems: put together, frequency weightings, and what they do under an input that is held."""
+
+from __future__ import annotations
+
+import math
+from functools import reduce
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag, expm
+
+from seatsim.metrics.weighting import sections
+
+Array = NDArray[np.float64]
+Coefficients = tuple[float, float, float]
+
+
+class System(NamedTuple):
+    """A linear system `x' = A x + B u`, `y = C x + D u`; shapes (n, n), (n, m), (p, n), (p, m)."""
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+
+
+def unity(size: int) -> System:
+    """Return what passes `size` signals on as they are."""
+    return System(np.zeros((0, 0)), np.zeros((0, size)), np.zeros((size, 0)), np.eye(size))
+
+
+def series(first: System, second: System) -> System:
+    """Return `first` followed by `second`; the states of `first` come first."""
+    n, m = len(first.A), len(second.A)
+    A = np.block([[first.A, np.zeros((n, m))], [second.B @ first.C, second.A]])
+    B = np.vstack([first.B, second.B @ first.D])
+    return System(A, B, np.hstack([second.D @ first.C, second.C]), second.D @ first.D)
+
+
+def parallel(*systems: System) -> System:
+    """Return systems side by side, each with its own inputs and outputs."""
+    return System(*(np.asarray(block_diag(*parts), dtype=float) for parts in zip(*systems, strict=True)))
+
+
+def section(numerator: Coefficients, denominator: Coefficients) -> System:
+    """Return the system of `(b0 + b1 s + b2 s^2) / (a0 + a1 s + a2 s^2)`, with s in rad/s.
+
+    With u = s / w and w^2 = a0 / a2 it is `(n0 + n1 u + n2 u^2) / (1 + u / Q + u^2)`, whose two states are of one size.
+    """
+    b, a = np.array(numerator) / denominator[0], np.array(denominator) / denominator[0]
+    w = 1.0 / math.sqrt(a[2])
+    n, loss = b * [1.0, w, w * w], a[1] * w
+    A, B = w * np.array([[0.0, 1.0], [-1.0, -loss]]), np.array([[0.0], [w]])
+    return System(A, B, np.array([[n[0] - n[2], n[1] - n[2] * loss]]), np.array([[n[2]]]))
+
+
+def weighted(weighting: str) -> System:
+    """Return a frequency weighting of ISO 2631-1 as a system: two states a factor, in the order of its equation.
+
+    Raises:
+        InputError: no weighting has this name.
+    """
+    return reduce(series, (section(*factor) for factor in sections(weighting)))
+
+
+def held(A: Array, B: Array, time: float) -> tuple[Array, Array]:
+    """Return the exact (F, G) of `x <- F x + G u` over `time` seconds of `x' = A x + B u` with u held.
+
+    Shapes: A, F (n, n), B, G (n, m).
+    """
+    n, m = B.shape
+    step = expm(np.block([[A, B], [np.zeros((m, n + m))]]) * time)
+    return step[:n, :n], step[:n, n:]
