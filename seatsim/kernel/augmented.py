@@ -112,14 +112,25 @@ def _pull(damper: Any, effects: Effects, x: float, v: float, i: float, heat: Hea
     i_y = yield_current(effects, outer, i)
     rest = Heat(felt.viscous, felt.stiffness, 0.0)
     base: float = force(damper, x, v, i, rest, inner)
-    if math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
-        part = _yield(damper, x, v, i_y, felt, rest, inner)
+    if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
+        part = _shaped(damper, effects, x, v, i_y, felt, inner, outer)
+    elif i_y == i:
+        part = force(damper, x, v, i, felt, inner) - base
     else:
-        parts = _split(damper, x, v, i_y, felt, inner)
-        late = _split(damper, x, yield_speed(effects, outer, v), i_y, felt, inner).shape
-        part = parts.middle + parts.size * yield_shape(effects, outer, math.nan, parts.shape, late)
+        part = _yield(damper, x, v, i_y, felt, rest, inner)
     total: float = base + yield_force(effects, outer, part)
     return total
+
+
+@jit
+def _shaped(
+    damper: Any, effects: Effects, x: float, v: float, i: float, heat: Heat, inner: Tuple, outer: Tuple
+) -> float:
+    """Return the yield part in N where it has a shape of its own."""
+    parts = _split(damper, x, v, i, heat, inner)
+    late = _split(damper, x, yield_speed(effects, outer, v), i, heat, inner).shape
+    part: float = parts.middle + parts.size * yield_shape(effects, outer, math.nan, parts.shape, late)
+    return part
 
 
 class YieldPart(NamedTuple):

@@ -97,11 +97,9 @@ def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, la
     """Simulate from rest and fill `out`, shape (N, len(CHANNELS)); return the number of samples reached (N if all)."""
     rig, coil, law, belief, timing = setup.rig, setup.coil, setup.law, setup.belief, setup.timing
     step, samples = timing.step, len(out)
-    prescribed = len(inputs.prescribed) > 0
-    delay_steps = math.floor(coil.delay / step + 1e-9)
-    split = coil.delay - delay_steps * step
-    if split < 1e-9 * step:
-        split = 0.0
+    late = math.floor(coil.delay / step + 1e-9)
+    split = coil.delay - late * step
+    split = split if split >= 1e-9 * step else 0.0
     kept = (1.0 - relaxed(coil, 0.0, 1.0, 0.5 * step), relaxed(coil, 1.0, 0.0, 0.5 * step))
     current = inputs.start_current
     temperature = inputs.temperature[0]
@@ -109,9 +107,8 @@ def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, la
     mechanical = (inputs.start_displacement, inputs.start_velocity, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     shake = Shake(inputs.floor_acceleration[0], _at(inputs.push, 0), _at(inputs.lift, 0))
     now = start(rig, mechanical + rig_state, shake, current, factors, step)
-    command, wanted, served = 0.0, math.nan, math.nan
+    command, wanted, served, sensed = 0.0, math.nan, math.nan, inputs.sensed
     grid = np.empty(CELLS + 1)
-    sensed = inputs.sensed
 
     for k in range(samples):
         floor = inputs.floor_acceleration[k]
@@ -124,17 +121,7 @@ def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, la
         _record(out, k, now, floor, wanted, served, current, command, temperature)
         if k == samples - 1:
             break
-        after = out[k - delay_steps, 11] if k >= delay_steps else inputs.start_current
-        before = out[k - delay_steps - 1, 11] if k >= delay_steps + 1 else inputs.start_current
-        after, before = min(after, coil.max_current), min(before, coil.max_current)
-        if prescribed:
-            after = inputs.prescribed[k + 1]
-        rise = inputs.floor_acceleration[k + 1] - floor
-        push, lift = _at(inputs.push, k), _at(inputs.lift, k)
-        rises = _at(inputs.push, k + 1) - push, _at(inputs.lift, k + 1) - lift
-        drive = Drive(
-            step, floor, rise, current, before, after, split, prescribed, kept, push, rises[0], lift, rises[1]
-        )
+        drive = _drive(setup, inputs, out, k, current, late, split, kept)
         x, v, work = now.state[0], now.state[1], now.state[5]
         now, next_current, good = advance(rig, coil, drive, factors, now, timing.tolerance)
         if not good:
@@ -165,6 +152,24 @@ def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, la
 def _at(values: Array, k: int) -> float:
     """Return sample `k` of an input, 0 where it is absent."""
     return values[k] if len(values) > 0 else 0.0
+
+
+@jit
+def _drive(
+    setup: Setup, inputs: Inputs, out: Array, k: int, current: float, late: int, split: float, kept: tuple[float, float]
+) -> Drive:
+    """Return what acts on the rig from sample `k` to the next, its commands delayed by `late` steps and `split`."""
+    first, most, prescribed = inputs.start_current, setup.coil.max_current, len(inputs.prescribed) > 0
+    before = min(out[k - late - 1, 11] if k > late else first, most)
+    after = min(out[k - late, 11] if k >= late else first, most)
+    if prescribed:
+        after = inputs.prescribed[k + 1]
+    floor, push, lift = inputs.floor_acceleration[k], _at(inputs.push, k), _at(inputs.lift, k)
+    rise = inputs.floor_acceleration[k + 1] - floor
+    rises = _at(inputs.push, k + 1) - push, _at(inputs.lift, k + 1) - lift
+    return Drive(
+        setup.timing.step, floor, rise, current, before, after, split, prescribed, kept, push, rises[0], lift, rises[1]
+    )
 
 
 @jit
