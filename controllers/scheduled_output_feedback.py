@@ -7,8 +7,8 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from controllers.seat_plant import Lag, Weights, generalised
-from controllers.static_output_feedback import Factor, Gain
+from controllers.seat_plant import Lag, Weights
+from controllers.static_output_feedback import Factor, Gain, OutputFeedback, StaticOutputFeedback
 from seatsim.control import Measurement, law
 from seatsim.errors import InputError
 from seatsim.fields import param
@@ -78,10 +78,6 @@ class ScheduledOutputFeedback(NamedTuple):
         if count != len(self.temperatures):
             raise InputError(f"{name} has {count} entries; one for each of the {len(self.temperatures)} temperatures")
 
-    def _synthesised(self, plant: Plant) -> list[tuple[float, float]]:
-        from controllers.synthesis import synthesise
-
-        weights = self.weights or Weights()
-        plants = [generalised(plant, weights, self.lag, self.displacement_gain, f) for f in self.force_factors or ()]
-        designs = [synthesise(each) for each in plants]
-        return [(float(design.gain[0, 0]), float(design.gain[0, 1])) for design in designs]
+    def _synthesised(self, plant: Plant) -> tuple[OutputFeedback, ...]:
+        one = StaticOutputFeedback(weights=self.weights, displacement_gain=self.displacement_gain, lag=self.lag)
+        return tuple(one._replace(force_factors=(f,)).prepared(plant) for f in self.force_factors or ())

@@ -33,9 +33,8 @@ class Lag(NamedTuple):
     new: float
 
 
-def lag(frequency: float, time: float) -> Lag:
-    """Return the step over `time` seconds of a lag with its corner at `frequency` in Hz."""
-    rate = 2.0 * math.pi * frequency
+def lag(rate: float, time: float) -> Lag:
+    """Return the step over `time` seconds of a lag with a `rate` in 1/s."""
     mean = -math.expm1(-rate * time) / (rate * time)
     return Lag(rate, math.exp(-rate * time), mean - math.exp(-rate * time), 1.0 - mean)
 
@@ -113,9 +112,9 @@ class Sensors(NamedTuple):
     def instruments(self, step: float, period: float) -> Instruments:
         """Return the compiled form for a loop of `step` and a law of `period` seconds between samples."""
         return Instruments(
-            lag(self.bandwidth, step),
-            lag(self.derivative_bandwidth, period),
-            lag(self.corner, period),
+            lag(math.tau * self.bandwidth, step),
+            lag(math.tau * self.derivative_bandwidth, period),
+            lag(math.tau * self.corner, period),
             0.0 if self.floor_accelerometer else math.nan,
         )
 

@@ -39,10 +39,8 @@ COMPARED = COLUMNS[:-1]
 
 def comparison(runs: Sequence[Run], title: str) -> Table:
     """Return the table of runs: what sets them apart, then comfort, travel and effort; best comfort and travel bold."""
-    table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     labels = _label_keys(runs)
-    for key in labels:
-        table.add_column(_heading(key), vertical="bottom", no_wrap="." in key or key == "temperature")
+    table = _headed(title, labels)
     for column in COLUMNS:
         table.add_column(column.heading, justify="right", vertical="bottom", no_wrap=True)
     best = {column.metric: _best(runs, column.metric) for column in COMPARED}
@@ -55,12 +53,9 @@ def comparison(runs: Sequence[Run], title: str) -> Table:
 
 def distances(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Table:
     """Return the table of how far each run with a bracket is from its two ends, at the run's travel."""
-    title = "Distance from the clairvoyant bracket, at each run's travel"
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     chosen = [run for run in runs if run.scenario.rig in brackets]
     keys = _label_keys(chosen)
-    for key in keys:
-        table.add_column(_heading(key), vertical="bottom", no_wrap="." in key or key == "temperature")
+    table = _headed("Distance from the clairvoyant bracket, at each run's travel", keys)
     for heading in ("Wk RMS", "bound", "best"):
         table.add_column(f"{heading}\n\\[m/s²]", justify="right", vertical="bottom", no_wrap=True)
     for heading in ("above\nbound", "above\nbest", "bracket's\nwidth"):
@@ -73,8 +68,13 @@ def distances(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Table:
     return table
 
 
-def _heading(key: str) -> str:
-    return "damper\n\\[°C]" if key == "temperature" else key.rpartition(".")[2].replace("_", "\n")
+def _headed(title: str, keys: Sequence[str]) -> Table:
+    """Return a table without rows, whose first columns are the labels of the runs."""
+    table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for key in keys:
+        heading = "damper\n\\[°C]" if key == "temperature" else key.rpartition(".")[2].replace("_", "\n")
+        table.add_column(heading, vertical="bottom", no_wrap="." in key or key == "temperature")
+    return table
 
 
 def _number(value: float, decimals: int) -> str:

@@ -10,6 +10,7 @@ from scipy.signal import lfilter, lfilter_zi
 
 from seatsim.effects.base import Form, effect
 from seatsim.fields import param
+from seatsim.sensors import lag
 
 Channel = Literal[
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "displacement",
@@ -73,10 +74,8 @@ class Lag(NamedTuple):
         """Return what the sensor says, shape (N,): the truth taken as linear between samples."""
         if channel != self.channel or self.time <= 1e-6:
             return values
-        ratio = step / self.time
-        kept = np.exp(-ratio)
-        mean = (1.0 - kept) / ratio
-        numerator, denominator = [1.0 - mean, mean - kept], [1.0, -kept]
+        one = lag(1.0 / self.time, step)
+        numerator, denominator = [one.new, one.old], [1.0, -one.keep]
         return lfilter(numerator, denominator, values, zi=lfilter_zi(numerator, denominator) * values[0])[0]
 
     def truth(self, channel: str, step: float, values: Any) -> Any:
