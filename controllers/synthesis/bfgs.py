@@ -32,19 +32,20 @@ class Point(NamedTuple):
 def minimise(
     function: Function,
     start: Array,
+    unit: Array,
     deadline: float,
     enough: float = -np.inf,
     patience: int = 20,
     progress: float = 1e-6,
     iterations: int = 1000,
 ) -> Point:
-    """Descend from `start`, where `function` must be finite.
+    """Descend from `start`, where `function` must be finite; the first steps are steepest in x / unit.
 
     Ends where the value is at most `enough`, `patience` steps together gain less than `progress`, no step
     descends, or `time.monotonic()` passes `deadline`.
     """
     here = Point(start, *function(start, np.inf))
-    inverse = np.eye(len(start))
+    inverse = first = np.diag(unit**2)
     history = [here.value]
     fresh = True
     for _ in range(iterations):
@@ -54,7 +55,7 @@ def minimise(
         if following is None:
             if fresh:
                 break
-            inverse, fresh = np.eye(len(start)), True
+            inverse, fresh = first, True
             continue
         inverse = _update(inverse, here, following, fresh)
         here, fresh = following, False
@@ -91,7 +92,7 @@ def _update(inverse: Array, here: Point, following: Point, fresh: bool) -> Array
     if not curvature > 1e-14 * float(np.linalg.norm(s) * np.linalg.norm(y)):
         return inverse
     if fresh:
-        inverse = np.eye(len(s)) * curvature / float(y @ y)
+        inverse = inverse * curvature / float(y @ inverse @ y)
     Hy = inverse @ y
     along = (1 + float(y @ Hy) / curvature) * np.outer(s, s)
     answer: Array = inverse + (along - np.outer(Hy, s) - np.outer(s, Hy)) / curvature

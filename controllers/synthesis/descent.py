@@ -17,6 +17,7 @@ from controllers.synthesis.bfgs import minimise
 from controllers.synthesis.objective import STABILITY_MARGIN, Objective
 from controllers.synthesis.plant import Array
 from controllers.synthesis.polish import polish
+from controllers.synthesis.starts import Start
 
 # A loop this stable (in scaled time) is ready for the descent on its norm.
 _STABLE_ENOUGH = -1e-2
@@ -64,16 +65,16 @@ class Descent(NamedTuple):
         return Descent(candidates, min(self.abscissa, more.abscissa), self.starts + more.starts)
 
 
-def explore(objective: Objective, starts: Iterable[Array], deadline: float) -> Descent:
+def explore(objective: Objective, starts: Iterable[Start], deadline: float) -> Descent:
     """Descend coarsely from every start until the deadline."""
     candidates: list[Candidate] = []
     abscissa, tried = float("inf"), 0
     for start in starts:
-        theta = objective.angles(start[objective.free])
-        point = minimise(objective.abscissa, theta, deadline, _STABLE_ENOUGH, _STABILISING_PATIENCE, 1e-4)
+        theta, unit = objective.angles(start.gain[objective.free]), start.unit[objective.free]
+        point = minimise(objective.abscissa, theta, unit, deadline, _STABLE_ENOUGH, _STABILISING_PATIENCE, 1e-4)
         abscissa, tried = min(abscissa, point.value), tried + 1
         if point.value < -STABILITY_MARGIN:
-            lowest = minimise(objective.log_norm, point.x, deadline, progress=_COARSE)
+            lowest = minimise(objective.log_norm, point.x, unit, deadline, progress=_COARSE)
             entries = objective.entries(lowest.x)
             candidates.append(Candidate(objective.norm(entries), entries))
         if time.monotonic() > deadline:
@@ -95,10 +96,10 @@ def improve(objective: Objective, best: Candidate, seed: int, deadline: float) -
     random = np.random.default_rng(seed)
     fruitless = 0
     while fruitless < _FRUITLESS and time.monotonic() < deadline and best.gamma > 0:
-        size = float(np.abs(best.entries).max())
+        sizes = objective.sizes(best.entries)
         step = random.standard_normal((len(_ABOUT), objective.size)) * np.array(_ABOUT)[:, None]
-        scattered = best.entries + step * np.maximum(np.abs(best.entries), 0.01 * size)
-        found = explore(objective, map(objective.gain, scattered), deadline)
+        scattered = [Start(objective.gain(entries), objective.gain(sizes)) for entries in best.entries + step * sizes]
+        found = explore(objective, scattered, deadline)
         lower = refine(objective, sorted([best, *found.candidates], key=_gamma), deadline)
         fruitless = 0 if lower.gamma < best.gamma * (1 - _COARSE) else fruitless + 1
         best = lower
@@ -117,7 +118,8 @@ def _distinct(candidates: list[Candidate]) -> list[Candidate]:
 def _lower(objective: Objective, candidate: Candidate, target: float, deadline: float) -> Candidate:
     """BFGS and polish in turn, until both together gain nothing or too little to come below `target`."""
     for _ in range(_TURNS):
-        point = minimise(objective.log_norm, objective.angles(candidate.entries), deadline, progress=_FINE)
+        unit = objective.sizes(candidate.entries)
+        point = minimise(objective.log_norm, objective.angles(candidate.entries), unit, deadline, progress=_FINE)
         entries = polish(objective, objective.entries(point.x), deadline)
         lower = Candidate(objective.norm(entries), entries)
         gained = candidate.gamma - lower.gamma

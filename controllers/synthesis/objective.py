@@ -23,6 +23,7 @@ from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
 STABILITY_MARGIN = 1e-7
 # At the limit itself the angle has no slope, and a search could not leave.
 _INSIDE = 0.999
+_LEAST = 0.01
 
 
 class Objective:
@@ -30,13 +31,14 @@ class Objective:
 
     The free gains, a vector of length `size`, lie between `low` and `high` (nu, ny). The search runs over angles theta
     with gain = centre + reach sin(theta / reach): nearly the identity for small gains, and a limit is an ordinary
-    stationary point.
+    stationary point. `unit` (nu, ny) is one of the user's units in scaled coordinates.
     """
 
-    def __init__(self, plants: Sequence[GeneralisedPlant], low: Array, high: Array) -> None:
+    def __init__(self, plants: Sequence[GeneralisedPlant], low: Array, high: Array, unit: Array) -> None:
         self.plants = list(plants)
         self.free = plants[0].free
-        self._limits = low, high
+        self._limits = low, high, unit
+        self.unit: Array = unit[self.free]
         self.low: Array = low[self.free]
         self.high: Array = high[self.free]
         self._centre: Array = (self.low + self.high) / 2
@@ -52,6 +54,12 @@ class Objective:
         K = np.zeros(self.free.shape)
         K[self.free] = entries
         return K
+
+    def sizes(self, entries: Array) -> Array:
+        """Return the natural sizes of changes of some entries: their own, none far below the largest's in `unit`."""
+        largest = float(np.max(np.abs(entries) / self.unit))
+        answer: Array = np.maximum(np.abs(entries), _LEAST * largest * self.unit) if largest > 0 else self.unit
+        return answer
 
     def loops(self, entries: Array) -> list[Loop]:
         """Return the closed loop of every plant with these free entries."""

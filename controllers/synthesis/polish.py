@@ -79,8 +79,7 @@ def _solve(
     objective: Objective, entries: Array, frequencies: list[Array], level: float, trust: float
 ) -> tuple[Array, float]:
     """Lower the highest peak at fixed frequencies; return entries and that peak. Variables: steps, t / level - 1."""
-    largest = np.abs(entries).max()
-    unit = np.maximum(np.abs(entries), 0.1 * largest) if largest > 0 else np.ones(len(entries))
+    unit = objective.sizes(entries)
     low = np.maximum((objective.low - entries) / unit, -trust)
     high = np.minimum((objective.high - entries) / unit, trust)
 

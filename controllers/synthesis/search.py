@@ -14,12 +14,12 @@ from controllers.synthesis.modes import require_stabilisable
 from controllers.synthesis.objective import Objective
 from controllers.synthesis.plant import Array, GeneralisedPlant
 from controllers.synthesis.scaling import scale
-from controllers.synthesis.starts import convex_start, starting_gains
+from controllers.synthesis.starts import Start, convex_start, starting_gains
 from seatsim.errors import SynthesisError
 
 _FIRST_STARTS, _MORE_STARTS = 6, 24
-# Shares of the time budget: starts are explored until the first, the best refined until the second, and improved upon
-# until the third; the rest is for proofs.
+# Shares of the time budget: starts are explored until the first (until the second where none is stable), the best
+# refined until the second, and improved upon until the third; the rest is for proofs.
 _EXPLORED, _REFINED, _IMPROVED = 0.3, 0.5, 0.93
 # Share of the time left that a search of some of the plants may take: others may have to join them.
 _SUBSET = 0.4
@@ -61,14 +61,15 @@ def search(
     for each in scaled:
         require_stabilisable(each)
     low, high = (first.scaled_gain(limit) for limit in limits)
-    everything = Objective([each.plant for each in scaled], low, high)
+    unit = first.scaled_gain(np.ones(low.shape))
+    everything = Objective([each.plant for each in scaled], low, high, unit)
     chosen = sorted({0, len(scaled) - 1})
     best: Candidate | None = None
     while True:
         objective = everything.on([scaled[i].plant for i in chosen])
         told(f"plants {', '.join(map(str, chosen))} of {len(plants)}" if len(plants) > 1 else "searching")
         part = clock.part(1.0 if len(chosen) == len(scaled) else _SUBSET)
-        found = _explore(objective, best, seed, part.after(_EXPLORED))
+        found = _explore(objective, best, seed, part)
         if not found.candidates:
             raise SynthesisError(_not_stabilised(found, first.rate, float(np.abs(limits).max()), clock.budget))
         best = _lowest(objective, found, seed, part, told)
@@ -91,19 +92,23 @@ def _lowest(objective: Objective, found: Descent, seed: int, clock: Clock, told:
     return best
 
 
-def _explore(objective: Objective, known: Candidate | None, seed: int, deadline: float) -> Descent:
-    """Descend from a few starts where all lead to the same value, from many where they do not."""
-    starts = starting_gains(objective.plants, seed)
+def _explore(objective: Objective, known: Candidate | None, seed: int, clock: Clock) -> Descent:
+    """Descend from a few starts where all lead to the same value, from many where not, and on until one is stable."""
+    deadline = clock.after(_EXPLORED)
+    starts = starting_gains(objective.plants, objective.gain(objective.unit), seed)
     if known is not None:
-        starts = chain([objective.gain(known.entries)], starts)
+        starts = chain([Start(objective.gain(known.entries), objective.gain(objective.sizes(known.entries)))], starts)
     found = explore(objective, islice(starts, _FIRST_STARTS), deadline)
     if found.agrees:
         return found
     plant = objective.plants[0]
     size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
     gamma = found.candidates[0].gamma if found.candidates else size
-    convex = convex_start(plant, max(gamma, 1e-9 * size), deadline)
-    return found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline))
+    convex = convex_start(plant, max(gamma, 1e-9 * size), objective.gain(objective.unit), deadline)
+    found = found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline))
+    while not found.candidates and time.monotonic() < clock.after(_REFINED):
+        found = found.with_more(explore(objective, islice(starts, _FIRST_STARTS), clock.after(_REFINED)))
+    return found
 
 
 def _not_stabilised(found: Descent, rate: float, max_gain: float, budget: float) -> str:

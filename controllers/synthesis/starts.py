@@ -1,39 +1,56 @@
-"""Where the search sets out from: no gain, projected state feedback, random gains over decades, the single-step LMI."""
+"""Where the search sets out from: no gain, projected state feedback, random gains over decades, the single-step LMI.
+
+Random gains are drawn in the user's units and in scaled ones in turn: states and signals in units of a like size make
+for short valleys, and no rule tells whose units do.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import cycle
+from itertools import count
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg
 
 from controllers.synthesis.plant import Array, GeneralisedPlant
 
-# Spread of the random gains in scaled coordinates: shallow basins lie at any of these.
-_SPREADS = (1.0, 100.0, 10.0, 1000.0)
+# Spread of the random gains: shallow basins lie at any of these.
+_SPREADS = (1.0, 10.0, 0.1, 100.0)
+_SCALED_SPREADS = (1.0, 100.0, 10.0, 1000.0)
 _DECADES = (-1.5, 1.5)
 
 
-def starting_gains(plants: Sequence[GeneralisedPlant], seed: int) -> Iterator[Array]:
-    """Yield gains (nu, ny) in scaled coordinates without end, the same ones for the same seed."""
+class Start(NamedTuple):
+    """A gain and the sizes of the first changes from it, (nu, ny) each, in scaled coordinates."""
+
+    gain: Array
+    unit: Array
+
+
+def starting_gains(plants: Sequence[GeneralisedPlant], unit: Array, seed: int) -> Iterator[Start]:
+    """Yield starts without end, the same ones for the same seed; `unit` is the user's, in scaled coordinates."""
     free = plants[0].free
-    yield np.zeros(free.shape)
-    yield from (gain for gain in map(projected_state_feedback, plants) if gain is not None)
+    ones = np.ones(free.shape)
+    yield Start(np.zeros(free.shape), unit)
+    yield from (Start(gain, ones) for gain in map(projected_state_feedback, plants) if gain is not None)
     random = np.random.default_rng(seed)
-    for spread in cycle(_SPREADS):
-        yield spread * random.standard_normal(free.shape) * free
+    for k in count():
+        for own, spreads in ((unit, _SPREADS), (ones, _SCALED_SPREADS)):
+            size = spreads[k % len(spreads)] * own
+            yield Start(size * random.standard_normal(free.shape) * free, size)
         # Entries over decades of their own: some valleys join large gains with small ones.
-        yield random.choice([-1.0, 1.0], free.shape) * 10 ** random.uniform(*_DECADES, free.shape) * free
+        size = (ones, unit)[k % 2] * 10 ** random.uniform(*_DECADES, free.shape)
+        yield Start(random.choice([-1.0, 1.0], free.shape) * size * free, size)
 
 
-def convex_start(plant: GeneralisedPlant, gamma: float, deadline: float) -> Iterator[Array]:
+def convex_start(plant: GeneralisedPlant, gamma: float, unit: Array, deadline: float) -> Iterator[Start]:
     """Yield the gain of the single-step LMI, or nothing where it has none; `gamma` is the norm's order of magnitude."""
     from controllers.synthesis.lmi import single_step_gain
 
     gain = single_step_gain(plant, gamma, deadline)
     if gain is not None:
-        yield gain
+        yield Start(gain, unit)
 
 
 def projected_state_feedback(plant: GeneralisedPlant) -> Array | None:

@@ -21,7 +21,7 @@ from seatsim.diagnosis.experiment import experiment
 from seatsim.diagnosis.findings import OUTSIDE, Diagnosis, Estimate, Share
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.isolability import isolable, losses
-from seatsim.diagnosis.latent import FORETOLD, Latent, latent, rms
+from seatsim.diagnosis.latent import Latent, latent, rms
 from seatsim.diagnosis.place import places, unexplained
 from seatsim.diagnosis.problem import Problem, problem
 from seatsim.diagnosis.search import Search, search
@@ -79,7 +79,7 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     if first.judgement.verdict != "unknown" or posed.bench or OUTSIDE in without or first.rest is None:
         return first
     merged = () if "damper_force" in posed.channels else ("damper",)
-    if first.where[0].block not in ("suspension", *merged) or first.rest.shares["everything"] > FORETOLD:
+    if first.where[0].block not in ("suspension", *merged) or not first.rest.from_outside:
         return first
     told("counting an unmeasured force as noise")
     second = _searched(Engine(posed, whitening(posed, first.rest.course)), offered, effects, told)

@@ -1,7 +1,8 @@
 """What an unexplained force depends on: regression of its course on what the simulated rig does.
 
 The regressors come from the simulation that the measured floor drives, not from measured motion, which the unexplained
-force itself has moved. A force that they cannot foretell on a run left out comes from outside the rig.
+force itself has moved. A force that they cannot foretell on a run left out, and that is as strong in every run, comes
+from outside the rig: a rattle, too, is hard to foretell, but its strength follows the motion.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ RIDGE = 1e-3
 """Ridge, relative to the regressors' power."""
 FORETOLD = 0.12
 """Share of the variance on left-out runs from which a force belongs to the rig."""
+STEADY = 1.4
+"""Ratio of its RMS in two runs up to which a force may come from outside."""
 
 
 class Latent(NamedTuple):
@@ -36,6 +39,12 @@ class Latent(NamedTuple):
     unit: str
     course: dict[str, Array]
     shares: dict[str, float]
+
+    @property
+    def from_outside(self) -> bool:
+        """Whether a force is none that the rig makes."""
+        strengths = [float(np.std(course)) for course in self.course.values()]
+        return self.shares["everything"] <= FORETOLD and max(strengths) <= STEADY * min(strengths)
 
 
 def latent(problem: Problem, point: Point, block: str, suspect: Suspect) -> Latent:

@@ -14,7 +14,8 @@ from controllers.synthesis.starts import projected_state_feedback, starting_gain
 
 
 def objective_of(plant, limit=50.0):
-    return Objective([plant], np.full(plant.free.shape, -limit), np.full(plant.free.shape, limit))
+    limits = np.full(plant.free.shape, limit)
+    return Objective([plant], -limits, limits, np.ones_like(limits))
 
 
 def slopes(function, theta, step=1e-6):
@@ -57,9 +58,17 @@ def test_scaling_keeps_the_norm_and_maps_the_gain(seat):
 
 def test_starts_are_seeded_and_respect_the_structure(random_plant):
     plant = random_plant(0, structure=[[1, 0], [1, 1]])
-    first, second = (list(islice(starting_gains([plant], 5), 7)) for _ in range(2))
+    unit = np.full((2, 2), 8.0)
+    first, second = (list(islice(starting_gains([plant], unit, 5), 7)) for _ in range(2))
     np.testing.assert_array_equal(first, second)
-    assert not np.any(np.array(first)[:, 0, 1])
+    assert not np.any(np.array(first)[:, 0, 0, 1])
+
+
+def test_sizes_of_changes_are_the_entries_own(random_plant):
+    limits, unit = np.full((2, 2), 9.0), np.array([[1.0, 50.0], [1.0, 1.0]])
+    objective = Objective([random_plant(0, structure=[[1, 1], [0, 0]])], -limits, limits, unit)
+    np.testing.assert_allclose(objective.sizes(np.array([4.0, 0.0])), [4.0, 2.0])
+    np.testing.assert_allclose(objective.sizes(np.zeros(2)), [1.0, 50.0])
 
 
 def test_projected_state_feedback_stabilises_where_the_state_is_measured(random_plant):
