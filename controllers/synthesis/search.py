@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice
 from typing import NamedTuple
 
@@ -25,6 +25,8 @@ _EXPLORED, _REFINED, _IMPROVED = 0.3, 0.5, 0.93
 _SUBSET = 0.4
 # A plant left out of the search counts as covered where its norm is no higher than this times the searched ones'.
 _COVERED = 1 + 1e-7
+# Further starts go on while they lower the norm by more than this factor.
+_GAINED = 1 - 1e-4
 
 Told = Callable[[str], object]
 
@@ -69,10 +71,11 @@ def search(
         objective = everything.on([scaled[i].plant for i in chosen])
         told(f"plants {', '.join(map(str, chosen))} of {len(plants)}" if len(plants) > 1 else "searching")
         part = clock.part(1.0 if len(chosen) == len(scaled) else _SUBSET)
-        found = _explore(objective, best, seed, part)
+        starts = _starts(objective, best, seed)
+        found = _explore(objective, starts, part)
         if not found.candidates:
             raise SynthesisError(_not_stabilised(found, first.rate, float(np.abs(limits).max()), clock.budget))
-        best = _lowest(objective, found, seed, part, told)
+        best = _lowest(objective, found, starts, seed, part, told)
         norms = [everything.on([each.plant]).norm(best.entries) for each in scaled]
         worst = int(np.argmax(norms))
         if norms[worst] <= best.gamma * _COVERED or worst in chosen:
@@ -81,23 +84,16 @@ def search(
         chosen.append(worst)
 
 
-def _lowest(objective: Objective, found: Descent, seed: int, clock: Clock, told: Told) -> Candidate:
-    """Refine the candidates, and improve upon the best where starts disagree."""
-    told(f"{found.starts} starts, {len(found.candidates)} stabilised, gamma {found.candidates[0].gamma:.6g}")
-    best = refine(objective, found.candidates, clock.after(_REFINED))
-    if not found.agrees:
-        told(f"gamma {best.gamma:.6g}, looking about it")
-        best = improve(objective, best, seed, clock.after(_IMPROVED))
-    told(f"gamma {best.gamma:.6g}")
-    return best
+def _starts(objective: Objective, known: Candidate | None, seed: int) -> Iterator[Start]:
+    starts = starting_gains(objective.plants, objective.gain(objective.unit), seed)
+    if known is None:
+        return starts
+    return chain([Start(objective.gain(known.entries), objective.gain(objective.sizes(known.entries)))], starts)
 
 
-def _explore(objective: Objective, known: Candidate | None, seed: int, clock: Clock) -> Descent:
+def _explore(objective: Objective, starts: Iterator[Start], clock: Clock) -> Descent:
     """Descend from a few starts where all lead to the same value, from many where not, and on until one is stable."""
     deadline = clock.after(_EXPLORED)
-    starts = starting_gains(objective.plants, objective.gain(objective.unit), seed)
-    if known is not None:
-        starts = chain([Start(objective.gain(known.entries), objective.gain(objective.sizes(known.entries)))], starts)
     found = explore(objective, islice(starts, _FIRST_STARTS), deadline)
     if found.agrees:
         return found
@@ -109,6 +105,25 @@ def _explore(objective: Objective, known: Candidate | None, seed: int, clock: Cl
     while not found.candidates and time.monotonic() < clock.after(_REFINED):
         found = found.with_more(explore(objective, islice(starts, _FIRST_STARTS), clock.after(_REFINED)))
     return found
+
+
+def _lowest(
+    objective: Objective, found: Descent, starts: Iterator[Start], seed: int, clock: Clock, told: Told
+) -> Candidate:
+    """Refine the candidates; where starts disagree, improve upon the best, and go on while further starts gain."""
+    told(f"{found.starts} starts, {len(found.candidates)} stabilised, gamma {found.candidates[0].gamma:.6g}")
+    best = refine(objective, found.candidates, clock.after(_REFINED))
+    deadline = clock.after(_IMPROVED)
+    gained = not found.agrees
+    while gained and time.monotonic() < deadline:
+        told(f"gamma {best.gamma:.6g}, looking about it")
+        best = improve(objective, best, seed, deadline)
+        told(f"gamma {best.gamma:.6g}, further starts")
+        more = explore(objective, islice(starts, _FIRST_STARTS), deadline)
+        lower = refine(objective, sorted([best, *more.candidates], key=lambda candidate: candidate.gamma), deadline)
+        gained, best = lower.gamma < best.gamma * _GAINED, lower
+    told(f"gamma {best.gamma:.6g}")
+    return best
 
 
 def _not_stabilised(found: Descent, rate: float, max_gain: float, budget: float) -> str:

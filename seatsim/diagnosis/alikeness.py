@@ -41,7 +41,7 @@ def alikeness(engine: Engine, state: State, names: Sequence[str]) -> tuple[list[
     """
     if not engine.slopes:
         engine.refresh(state)
-    base = without(state.point, names)
+    base = state.point.without(*names)
     ends = {name: _ends(engine, state.point, base, name) for name in dict.fromkeys(names)}
     known = [name for name, found in ends.items() if found]
     points = [point for name in known for point in ends[name]]
@@ -114,23 +114,12 @@ def _ends(engine: Engine, point: Point, base: Point, name: str) -> list[Point]:
     """Return the base with one effect, as the point has it or as a candidate starts, once for each of its channels."""
     for term, values in zip(point.terms, point.values, strict=True):
         if term.effect == name:
-            return [added(base, term, values)]
+            return [base.plus(term, values)]
     first: dict[str, Candidate] = {}
     for candidate in candidates(engine.problem):
         if candidate.effect == name:
             first.setdefault(str(candidate.fixed.get("channel")), candidate)
-    return [added(base, candidate, np.array(candidate.start)) for candidate in first.values()]
-
-
-def added(base: Point, term: Candidate, values: Array) -> Point:
-    """Return the base with an effect more."""
-    return Point(base.u, (*base.terms, term), (*base.values, values))
-
-
-def without(point: Point, names: Sequence[str]) -> Point:
-    """Return the point without the effects of these names."""
-    kept = [k for k, term in enumerate(point.terms) if term.effect not in names]
-    return Point(point.u, tuple(point.terms[k] for k in kept), tuple(point.values[k] for k in kept))
+    return [base.plus(candidate, np.array(candidate.start)) for candidate in first.values()]
 
 
 class Side(NamedTuple):
@@ -180,8 +169,8 @@ def nudged(point: Point, first: int, last: int) -> list[tuple[Point, float]]:
 
 def with_member(engine: Engine, state: State, name: str, group: Sequence[str]) -> State:
     """Return the state with one member of the group instead of the others, its term last, fitted to the recording."""
-    point, base = state.point, without(state.point, group)
+    point, base = state.point, state.point.without(*group)
     own = [(t, v) for t, v in zip(point.terms, point.values, strict=True) if t.effect == name]
     starts = own or [(c, np.array(c.start)) for c in candidates(engine.problem) if c.effect == name]
-    states = sorted(engine.states([added(base, *start) for start in starts]), key=lambda found: found.cost)
+    states = sorted(engine.states([base.plus(*start) for start in starts]), key=lambda found: found.cost)
     return min((engine.fitted(start) for start in states[:FORMS]), key=lambda found: found.cost)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from seatsim.augmentation import readings
 from seatsim.bench_replay import replay_bench
-from seatsim.diagnosis.alikeness import Side, beside, discrimination, nudged, resemblance, stacked, with_member, without
+from seatsim.diagnosis.alikeness import Side, beside, discrimination, nudged, resemblance, stacked, with_member
 from seatsim.diagnosis.augmented import content
 from seatsim.diagnosis.fit import Engine, Point, State
 from seatsim.diagnosis.nuisance import varied
@@ -91,7 +91,7 @@ def experiment(engine: Engine, state: State, group: Sequence[str]) -> dict[str, 
     if not engine.slopes:
         engine.refresh(state)
     members = [with_member(engine, state, name, group) for name in group]
-    base = engine.states([without(state.point, group)])[0]
+    base = engine.states([state.point.without(*group)])[0]
     views = [stacked(base.whitened, engine) - stacked(member.whitened, engine) for member in members]
     now = resemblance(np.array(views), beside(engine.slopes, engine))
     wrong = _sensors(members, group)

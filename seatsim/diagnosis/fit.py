@@ -63,6 +63,15 @@ class Point:
         high = [np.asarray(t.high) / t.scale for t in self.terms]
         return np.concatenate([-ones, *low]), np.concatenate([ones, *high])
 
+    def plus(self, term: Candidate, values: Array) -> Point:
+        """Return the point with an effect more."""
+        return Point(self.u, (*self.terms, term), (*self.values, values))
+
+    def without(self, *names: str) -> Point:
+        """Return the point without the effects of these names."""
+        kept = [k for k, term in enumerate(self.terms) if term.effect not in names]
+        return Point(self.u, tuple(self.terms[k] for k in kept), tuple(self.values[k] for k in kept))
+
     def moved(self, vector: Array) -> Point:
         """Return the point at another vector."""
         low, high = self.limits

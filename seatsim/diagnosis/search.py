@@ -37,6 +37,8 @@ RIVALS = 3
 """Effects that are tried in the place of each one."""
 AROUND = (0.6, 1.0, 1.6)
 """Shares of that factor that are tried."""
+PRUNED = 0.45
+"""Share of the excess of the next smaller set below which a largest set may hold a better smaller one."""
 WORTHWHILE = 0.85
 """A larger set is looked for while the last enlargement lowered the excess to below this share."""
 
@@ -82,6 +84,9 @@ def search(engine: Engine, candidates: Sequence[Candidate], told: Callable[[str]
         found.sets.append(sets)
         if not _gains(found):
             break
+    if len(found.sets) > LARGEST and found.excess(found.sets[-1][0]) < PRUNED * found.excess(found.sets[-2][0]):
+        told("pruning")
+        found.sets[-2] = _best_forms([*found.sets[-2], *_pruned(engine, found.sets[-1][0])])
     return found
 
 
@@ -92,7 +97,7 @@ def _gains(found: Search) -> bool:
 
 def _traces(engine: Engine, calibrated: State, candidates: Sequence[Candidate]) -> list[Trace]:
     """Return what each candidate, as it starts, changes in the calibrated scenario."""
-    starts = engine.states([_with(calibrated.point, c, np.array(c.start)) for c in candidates])
+    starts = engine.states([calibrated.point.plus(c, np.array(c.start)) for c in candidates])
     return [
         (candidate, {run: base - start.whitened[run] for run, base in calibrated.whitened.items()})
         for candidate, start in zip(candidates, starts, strict=True) if np.isfinite(start.cost)
@@ -115,15 +120,20 @@ def _exchanged(engine: Engine, best: State, singles: Sequence[State]) -> list[St
     point = best.point
     alone = {state.point.terms[0].effect: state for state in singles}
     starts = []
-    for k, term in enumerate(point.terms):
-        others = [j for j in range(len(point.terms)) if j != k]
-        kept = Point(point.u, tuple(point.terms[j] for j in others), tuple(point.values[j] for j in others))
+    for term in point.terms:
+        kept = point.without(term.effect)
         taken = {term.effect for term in point.terms}
         rivals = [state for name, state in alone.items() if name not in taken and term.effect in alone]
         near = [state for state in rivals if state.cost < RIVAL * alone[term.effect].cost]
-        starts += [_with(kept, state.point.terms[0], state.point.values[0]) for state in near[:RIVALS]]
+        starts += [kept.plus(state.point.terms[0], state.point.values[0]) for state in near[:RIVALS]]
     begun = [engine.fitted(state, BEGUN) for state in engine.states(starts)]
     return [engine.fitted(state) if state.cost < RIVAL * best.cost else state for state in begun]
+
+
+def _pruned(engine: Engine, best: State) -> list[State]:
+    """Return fits of a set without each of its effects but the last, which smaller sets have been tried without."""
+    starts = [best.point.without(term.effect) for term in best.point.terms[:-1]]
+    return [engine.fitted(state) for state in engine.states(starts)]
 
 
 def _best_forms(states: Sequence[State]) -> list[State]:
@@ -173,8 +183,4 @@ def _stretched(point: Point, candidate: Candidate, factor: float) -> Point:
         factor = 1.0 / max(factor, 1.0 / STRETCH)
     if abs(factor) > 1e-3:
         values[0] = np.clip(values[0] * factor, candidate.low[0], candidate.high[0])
-    return _with(point, candidate, values)
-
-
-def _with(point: Point, candidate: Candidate, values: Array) -> Point:
-    return Point(point.u, (*point.terms, candidate), (*point.values, values))
+    return point.plus(candidate, values)

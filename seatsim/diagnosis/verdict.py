@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.fit import Engine, Point, State
+from seatsim.diagnosis.fit import Engine, State
 from seatsim.diagnosis.search import Search
 
 Array = NDArray[np.float64]
@@ -26,6 +26,8 @@ ENLARGE = 0.45
 """Share of the excess that a further effect must leave at most."""
 EXPLAINED = 0.2
 """Share of the calibrated excess that a known set leaves at most."""
+UNTOUCHED = 0.5
+"""Share of the excess of a channel with a material gap that a known set leaves at most."""
 ALIKE = 1.2
 """Factor on the excess within which two sets explain a recording equally well."""
 ALIKE_FLOOR = 0.02
@@ -54,7 +56,8 @@ def judged(engine: Engine, found: Search, effects: list[str]) -> Judgement:
     share = found.excess(chosen) / before
     rivals = _groups(found, chosen)
     small = _rest(engine, chosen) < MATERIAL and not any(len(group) > 2 for group in rivals)
-    explained = bool(chosen.point.terms) and (share < EXPLAINED or small)
+    everywhere = all(left < UNTOUCHED for left in _left(engine, found.calibrated, chosen))
+    explained = bool(chosen.point.terms) and ((share < EXPLAINED and everywhere) or small)
     unknown = 1.0 / (1.0 + math.exp(-(math.log(max(share, 1e-4)) - math.log(EXPLAINED)) / 0.4))
     unknown = min(max(unknown, 0.02), 0.45) if explained else max(unknown, 0.55)
     groups = rivals if explained else []
@@ -67,7 +70,7 @@ def _chosen(engine: Engine, found: Search) -> State:
     chosen = found.calibrated
     for sets in found.sets[1:]:
         better = next((state for state in sets[:3] if _material(engine, state)), None)
-        if better is None or found.excess(better) > ENLARGE * found.excess(chosen):
+        if better is None or not _enlarges(engine, found, chosen, better):
             if chosen.point.terms or better is None:
                 break
             if found.excess(better) > 0.9 * found.excess(chosen):
@@ -78,21 +81,38 @@ def _chosen(engine: Engine, found: Search) -> State:
     return chosen
 
 
+def _enlarges(engine: Engine, found: Search, chosen: State, better: State) -> bool:
+    """Whether a larger set leaves so much less, in all or in a channel with a material gap, that its effects are real.
+
+    What a form of an effect leaves in one channel must not hide another effect that acts on the others.
+    """
+    if found.excess(better) <= ENLARGE * found.excess(chosen):
+        return True
+    return bool(chosen.point.terms) and any(left <= ENLARGE for left in _left(engine, chosen, better))
+
+
+def _left(engine: Engine, before: State, after: State) -> list[float]:
+    """Return the share of the excess that is left of every channel with a material gap before."""
+    gaps, excess, rest = _rests(engine, before), _by_channel(before), _by_channel(after)
+    channels = np.flatnonzero((gaps > MATERIAL) & (excess > NOTHING))
+    return [float(rest[k] / excess[k]) for k in channels]
+
+
+def _by_channel(state: State) -> Array:
+    """Return the whitened excess of every channel."""
+    return np.asarray(np.mean([np.mean(values**2, axis=1) for values in state.whitened.values()], axis=0) - 1.0)
+
+
 def movements(engine: Engine, state: State) -> list[Array]:
     """Return by how much each effect of a set moves each channel, in the channel's standard deviations."""
     point, problem = state.point, engine.problem
-    without = [_without(point, index) for index in range(len(point.terms))]
+    without = [point.without(term.effect) for term in point.terms]
     others = problem.residuals([(other.u, other.effects) for other in without])
     moves = []
     for other in others:
         change = np.concatenate([other[run] - state.residual[run] for run in problem.runs], axis=1)
         moves.append(np.sqrt(np.mean(change**2, axis=1)) / problem.spread)
     return moves
-
-
-def _without(point: Point, index: int) -> Point:
-    kept = [k for k in range(len(point.terms)) if k != index]
-    return Point(point.u, tuple(point.terms[k] for k in kept), tuple(point.values[k] for k in kept))
 
 
 def _material(engine: Engine, state: State) -> bool:
@@ -103,10 +123,15 @@ def _material(engine: Engine, state: State) -> bool:
 
 def _rest(engine: Engine, state: State) -> float:
     """Return the largest gap of a channel beyond its noise, in the channel's standard deviations."""
+    return float(np.max(_rests(engine, state)))
+
+
+def _rests(engine: Engine, state: State) -> Array:
+    """Return the gap of every channel beyond its noise, in the channel's standard deviations."""
     problem = engine.problem
     residual = np.concatenate([state.residual[run] for run in problem.runs], axis=1)
     power = np.mean(residual**2, axis=1) - problem.noise**2
-    return float(np.max(np.sqrt(np.maximum(power, 0.0)) / problem.spread))
+    return np.asarray(np.sqrt(np.maximum(power, 0.0)) / problem.spread)
 
 
 def _groups(found: Search, chosen: State) -> list[list[str]]:

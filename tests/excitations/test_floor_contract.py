@@ -95,7 +95,7 @@ def test_too_coarse_a_step_is_refused_with_the_permitted_one(made):
         made.floor(0.5, 3)
 
 
-@pytest.mark.parametrize("cls", {m[0] for m in MAPPINGS}, ids=lambda c: c.__name__)
+@pytest.mark.parametrize("cls", dict.fromkeys(m[0] for m in MAPPINGS), ids=lambda c: c.__name__)
 def test_every_key_is_described_and_registered(cls):
     assert all(card.meaning for card in describe(cls))
     assert name_of("excitation", cls) in {"road", "iso7096", "sine", "stepped_sine", "chirp", "bumps"}
