@@ -84,7 +84,7 @@ def explore(objective: Objective, starts: Iterable[Start], deadline: float) -> D
 
 def refine(objective: Objective, candidates: list[Candidate], deadline: float) -> Candidate:
     """Lower the best few candidates to the end and return the best; of those in one valley, only one."""
-    first, *others = _distinct(candidates)[:_REFINED]
+    first, *others = _distinct(sorted(candidates, key=_gamma))[:_REFINED]
     best = _lower(objective, first, np.inf, deadline)
     for candidate in others:
         best = min(best, _lower(objective, candidate, best.gamma, deadline), key=_gamma)
@@ -100,7 +100,7 @@ def improve(objective: Objective, best: Candidate, seed: int, deadline: float) -
         step = random.standard_normal((len(_ABOUT), objective.size)) * np.array(_ABOUT)[:, None]
         scattered = [Start(objective.gain(entries), objective.gain(sizes)) for entries in best.entries + step * sizes]
         found = explore(objective, scattered, deadline)
-        lower = refine(objective, sorted([best, *found.candidates], key=_gamma), deadline)
+        lower = refine(objective, [best, *found.candidates], deadline)
         fruitless = 0 if lower.gamma < best.gamma * (1 - _COARSE) else fruitless + 1
         best = lower
     return best

@@ -120,7 +120,7 @@ def _lowest(
         best = improve(objective, best, seed, deadline)
         told(f"gamma {best.gamma:.6g}, further starts")
         more = explore(objective, islice(starts, _FIRST_STARTS), deadline)
-        lower = refine(objective, sorted([best, *more.candidates], key=lambda candidate: candidate.gamma), deadline)
+        lower = refine(objective, [best, *more.candidates], deadline)
         gained, best = lower.gamma < best.gamma * _GAINED, lower
     told(f"gamma {best.gamma:.6g}")
     return best

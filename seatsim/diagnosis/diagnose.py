@@ -18,7 +18,7 @@ from seatsim.diagnosis.coverage import coverage
 from seatsim.diagnosis.evidence import causes, collected
 from seatsim.diagnosis.examination import examine, refuse
 from seatsim.diagnosis.experiment import experiment
-from seatsim.diagnosis.findings import OUTSIDE, Diagnosis, Estimate, Share
+from seatsim.diagnosis.findings import OUTSIDE, WANDER, Cause, Diagnosis, Estimate, Share
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.isolability import isolable, losses
 from seatsim.diagnosis.latent import Latent, latent, rms
@@ -28,21 +28,21 @@ from seatsim.diagnosis.search import Search, search
 from seatsim.diagnosis.sentences import answer
 from seatsim.diagnosis.suspects import unrepeated
 from seatsim.diagnosis.verdict import Judgement, judged
-from seatsim.diagnosis.whitening import whitening
+from seatsim.diagnosis.whitening import Whitening, whitening
 from seatsim.recording import Recording, load_recording
 from seatsim.registry import names
 from seatsim.replay import single
 
 
 class Solution(NamedTuple):
-    """A search with its judgement; `unmeasured` is the course of a force from outside, where one is at work."""
+    """A search with its judgement; `random` is the effect at work, if any, whose course is that of the rest."""
 
     engine: Engine
     found: Search
     judgement: Judgement
     where: list[Share]
     rest: Latent | None
-    unmeasured: bool
+    random: str = ""
 
 
 def diagnose(
@@ -76,16 +76,33 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     if shaken is not None:
         engine = Engine(posed, whitening(posed, shaken))
     first = _searched(engine, offered, effects, told)
-    if first.judgement.verdict != "unknown" or posed.bench or OUTSIDE in without or first.rest is None:
+    random = _random(posed, first)
+    if first.rest is None or not random or random in without:
         return first
-    merged = () if "damper_force" in posed.channels else ("damper",)
-    if first.where[0].block not in ("suspension", *merged) or not first.rest.from_outside:
-        return first
-    told("counting an unmeasured force as noise")
-    second = _searched(Engine(posed, whitening(posed, first.rest.course)), offered, effects, told)
+    told(f"counting {random} as noise")
+    noisy = Engine(posed, _counted(posed, random, first.rest))
+    second = _searched(noisy, [each for each in offered if each.effect != random], effects, told)
     if second.judgement.verdict == "unknown":
         return first
-    return second._replace(rest=first.rest._replace(block="floor"), unmeasured=True)
+    return second._replace(rest=first.rest._replace(block=random.partition(".")[0]), random=random)
+
+
+def _random(posed: Problem, first: Solution) -> str:
+    """Return the effect with a random course that the rest may be; an empty word for none."""
+    if first.rest is None:
+        return ""
+    merged = () if "damper_force" in posed.channels else ("damper",)
+    if first.where[0].block in ("suspension", *merged) and first.rest.from_outside:
+        return OUTSIDE
+    return WANDER if first.rest.wanders(posed.recording.header.sample_rate) else ""
+
+
+def _counted(posed: Problem, random: str, rest: Latent) -> Whitening:
+    """Return weights in which a course counts as noise."""
+    if random == OUTSIDE:
+        return whitening(posed, rest.course)
+    row = np.array([[name == rest.channel] for name in posed.channels], dtype=float)
+    return whitening(posed, errors={run: row * course for run, course in rest.course.items()})
 
 
 def _searched(
@@ -94,15 +111,15 @@ def _searched(
     found = search(engine, offered, told)
     judgement = judged(engine, found, effects)
     if judgement.verdict == "none":
-        return Solution(engine, found, judgement, [], None, False)
+        return Solution(engine, found, judgement, [], None)
     if judgement.verdict != "unknown":
-        return Solution(engine, found, judgement, places(engine, judgement.chosen, None), None, False)
+        return Solution(engine, found, judgement, places(engine, judgement.chosen, None), None)
     if engine.problem.bench:
-        return Solution(engine, found, judgement, [Share("damper", 1.0)], None, False)
+        return Solution(engine, found, judgement, [Share("damper", 1.0)], None)
     told("asking which block could hold the rest")
     held, state = unexplained(engine, found, judgement.chosen)
     rest = latent(engine.problem, state.point, held.block, held.suspects[held.block])
-    return Solution(engine, found, judgement, places(engine, state, held), rest, False)
+    return Solution(engine, found, judgement, places(engine, state, held), rest)
 
 
 def _stated(recording: Recording, solution: Solution, notes: list[str], told: Callable[[str], None]) -> Diagnosis:
@@ -118,11 +135,9 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     scenarios = [scenario_at(posed, nominal, point) for point in points]
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
     found = gaps(posed, scenarios, [run], spread)
-    judgement, where = _with_outside(solution)
+    judgement, where = _with_random(solution)
     listed = causes(engine, solution.found, judgement, calibrated, augmented, nominal, run)
-    if solution.unmeasured and solution.rest is not None:
-        strength: dict[str, Estimate | str] = {"rms": Estimate(rms(solution.rest), 0.0, "N")}
-        listed = [c._replace(parameters=strength) if c.effect == OUTSIDE else c for c in listed]
+    listed = [_with_strength(cause, solution) for cause in listed]
     group = judgement.groups[0] if judgement.groups else []
     asked = experiment(engine, chosen, group) if group and not posed.bench else None
     scenario = asked.pop("scenario", None) if asked else None
@@ -143,16 +158,26 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
 
 def _selected(solution: Solution) -> list[str]:
     chosen = [term.effect for term in solution.judgement.chosen.point.terms]
-    return [OUTSIDE, *chosen] if solution.unmeasured else chosen
+    return [solution.random, *chosen] if solution.random else chosen
 
 
-def _with_outside(solution: Solution) -> tuple[Judgement, list[Share]]:
-    """Return judgement and places with the force from outside among the causes, where there is one."""
+def _with_strength(cause: Cause, solution: Solution) -> Cause:
+    """Return a cause with its channel and RMS where its course is random."""
+    rest = solution.rest
+    if rest is None or cause.effect != solution.random:
+        return cause
+    place: dict[str, Estimate | str] = {"channel": rest.channel} if rest.channel else {}
+    return cause._replace(parameters=place | {"rms": Estimate(rms(rest), 0.0, rest.unit)})
+
+
+def _with_random(solution: Solution) -> tuple[Judgement, list[Share]]:
+    """Return judgement and places with the effect whose course is random among the causes, where there is one."""
     judgement, where = solution.judgement, solution.where
-    if not solution.unmeasured:
+    if not solution.random:
         return judgement, where
-    probabilities = judgement.probabilities | {OUTSIDE: 0.9}
+    probabilities = judgement.probabilities | {solution.random: 0.9}
     verdict = "ambiguous" if judgement.groups else "known"
     judgement = dataclasses.replace(judgement, verdict=verdict, probabilities=probabilities, none=0.01, unknown=0.1)
-    floor = 1.0 if not where else 0.6
-    return judgement, [Share("floor", floor), *(Share(s.block, s.share * (1.0 - floor)) for s in where if floor < 1.0)]
+    block, own = solution.random.partition(".")[0], 0.6 if where else 1.0
+    others = [Share(s.block, s.share * (1.0 - own)) for s in where if s.block != block]
+    return judgement, [Share(block, 1.0 - sum(share for _, share in others)), *others]

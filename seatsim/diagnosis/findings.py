@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-OUTSIDE = "floor.unmeasured_input"
-"""The effect whose course no fit can foretell: it is found by what is left, and cannot be simulated."""
+OUTSIDE, WANDER = "floor.unmeasured_input", "sensor.bias"
+"""Effects whose course may be random: found by what is left, and not simulated."""
 
 
 class Estimate(NamedTuple):

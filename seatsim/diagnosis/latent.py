@@ -15,7 +15,7 @@ from scipy.signal import decimate
 
 from seatsim.diagnosis.fit import Point
 from seatsim.diagnosis.problem import Problem
-from seatsim.diagnosis.suspects import Suspect
+from seatsim.diagnosis.suspects import ERROR, Suspect
 
 Array = NDArray[np.float64]
 
@@ -29,6 +29,8 @@ FORETOLD = 0.12
 """Share of the variance on left-out runs from which a force belongs to the rig."""
 STEADY = 1.4
 """Ratio of its RMS in two runs up to which a force may come from outside."""
+SLOW, MOSTLY = 0.5, 0.9
+"""Hz below which a wandering zero has this share of its power, at least."""
 
 
 class Latent(NamedTuple):
@@ -41,10 +43,24 @@ class Latent(NamedTuple):
     shares: dict[str, float]
 
     @property
+    def channel(self) -> str:
+        """The channel whose error it is; empty for a force, an acceleration or a current."""
+        return self.quantity.removeprefix(ERROR) if self.quantity.startswith(ERROR) else ""
+
+    @property
     def from_outside(self) -> bool:
         """Whether a force is none that the rig makes."""
         strengths = [float(np.std(course)) for course in self.course.values()]
         return self.shares["everything"] <= FORETOLD and max(strengths) <= STEADY * min(strengths)
+
+    def wanders(self, rate: float) -> bool:
+        """Whether it is the error of a sensor whose zero wanders; `rate` is that of the courses in Hz."""
+        slow = power = 0.0
+        for course in self.course.values():
+            spectrum = np.abs(np.fft.rfft(course)) ** 2
+            slow += float(np.sum(spectrum[: int(SLOW * len(course) / rate) + 1]))
+            power += float(np.sum(spectrum))
+        return self.block == "sensor" and slow > MOSTLY * power
 
 
 def latent(problem: Problem, point: Point, block: str, suspect: Suspect) -> Latent:

@@ -46,6 +46,10 @@ REGAINED = 1.2
 """Factor on a force that repeats show, for what its filter takes."""
 
 
+ERROR = "error of "
+"""How the name of a sensor's unknown input begins."""
+
+
 class Input(NamedTuple):
     """Shares of an unknown course that act on frame and driver (N), on the floor (m/s^2) and on the load cell (N)."""
 
@@ -97,7 +101,7 @@ def suspects(engine: Engine, state: State) -> dict[str, Suspect]:
 
 def _nature(problem: Problem, name: str) -> tuple[str, str]:
     if name in problem.channels:
-        return f"error of {name}", problem.recording.channels[name].unit
+        return f"{ERROR}{name}", problem.recording.channels[name].unit
     return {"coil": ("current", "A"), "floor": ("acceleration", "m/s^2")}.get(name, ("force", "N"))
 
 

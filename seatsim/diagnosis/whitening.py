@@ -45,10 +45,13 @@ class Whitening:
         return np.concatenate([spectrum.real, spectrum.imag], axis=1)
 
 
-def whitening(problem: Problem, pushes: Mapping[str, Array] | None = None) -> Whitening:
+def whitening(
+    problem: Problem, pushes: Mapping[str, Array] | None = None, errors: Mapping[str, Array] | None = None
+) -> Whitening:
     """Return the weights for a recording.
 
-    `pushes` are courses of a random force on the frame in N by run, shape (samples,), whose power counts as noise.
+    `pushes` are courses of a random force on the frame in N by run, shape (samples,), whose power counts as noise;
+    `errors` those of the channels, shape (channels, samples).
     """
     rate = problem.recording.header.sample_rate
     repeated = _unrepeatable(problem)
@@ -59,6 +62,8 @@ def whitening(problem: Problem, pushes: Mapping[str, Array] | None = None) -> Wh
         frequency = np.fft.rfftfreq(samples, 1.0 / rate)
         bins[run] = int(np.searchsorted(frequency, min(HIGHEST, 0.5 * rate)))
         power = problem.noise[:, None] ** 2 * samples + _carried(problem, run, (pushes or {}).get(run))
+        if errors is not None:
+            power = power + smoothed(np.abs(np.fft.rfft(errors[run], axis=1)) ** 2)
         if repeated is not None:
             power = np.maximum(
                 power, np.array([np.interp(frequency, repeated[0], row) for row in repeated[1]]) * samples
