@@ -1,0 +1,74 @@
+"""Causes whose course is random: a force from outside, a zero that wanders; and what only looks like them."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.signal import butter, sosfiltfilt
+
+from seatsim.diagnosis.diagnose import solved
+from seatsim.diagnosis.latent import Latent
+from seatsim.diagnosis.problem import Drive, problem
+from seatsim.recording import load_recording
+from seatsim.simulation import Forces
+
+RATE = 500.0
+
+
+def coloured(samples, low, high, seed, rate=RATE):
+    """Random course of unit RMS between two frequencies in Hz."""
+    noise = np.random.default_rng(seed).standard_normal(samples)
+    course = sosfiltfilt(butter(2, [low, high], "bandpass", fs=rate, output="sos"), noise)
+    return course / np.std(course)
+
+
+def left(courses, block="suspension", quantity="force"):
+    shares = {"velocity": 0.02, "everything": 0.03}
+    return Latent(block, quantity, "N", dict(enumerate(courses)), shares)
+
+
+def test_a_force_from_outside_is_as_strong_in_every_run():
+    course = coloured(5000, 1.0, 20.0, 1)
+    assert left([8.0 * course, 9.0 * course]).from_outside
+    assert not left([8.0 * course, 14.0 * course]).from_outside
+
+
+def test_a_zero_wanders_slowly():
+    slow, fast = coloured(12000, 0.02, 0.2, 2), coloured(12000, 2.0, 20.0, 3)
+    error = left([slow, slow + 0.1 * fast], "sensor", "error of frame_acceleration")
+    assert error.wanders(RATE) and error.channel == "frame_acceleration"
+    assert not left([fast], "sensor", "error of frame_acceleration").wanders(RATE)
+    assert not left([slow]).wanders(RATE) and left([slow]).channel == ""
+
+
+@pytest.fixture(scope="module")
+def posed(sound):
+    return problem(load_recording(sound))
+
+
+def noisy(posed, true):
+    return true + posed.noise[:, None] * np.random.default_rng(7).standard_normal(true.shape)
+
+
+def test_a_wandering_zero_is_named_with_its_channel(posed):
+    k, measured = posed.channels.index("frame_acceleration"), {}
+    rate = posed.recording.header.sample_rate
+    for seed, run in enumerate(posed.runs):
+        true = posed.simulated(run, posed.rest, ())
+        true[k] += 0.3 * posed.spread[k] * coloured(true.shape[1], 0.05, 0.2, seed, rate)
+        measured[run] = noisy(posed, true)
+    solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
+    assert solution.random == "sensor.bias"
+    assert solution.rest.channel == "frame_acceleration"
+
+
+def test_a_random_force_is_named_unless_it_is_withheld(posed):
+    measured = {}
+    for seed, run in enumerate(posed.runs):
+        floor = posed.floors[run]
+        push = 15.0 * coloured(len(floor.acceleration), 1.0, 15.0, seed, 1.0 / floor.step)
+        true = posed.simulated(run, posed.rest, (), Drive(None, Forces(push)))
+        measured[run] = noisy(posed, true)
+    shaken = dataclasses.replace(posed, measured=measured)
+    assert solved(shaken, (), lambda _: None).random == "floor.unmeasured_input"
+    assert solved(shaken, ("floor.unmeasured_input",), lambda _: None).judgement.verdict == "unknown"
