@@ -15,7 +15,7 @@ from seatsim.diagnosis.verdict import movements
 
 DECISIVE = 0.1
 """Share of what the best block explains by which another must fall short to be told from it."""
-TWICE = 0.02
+TWICE = 0.05
 """Doubt by which a coil, whose current and force err at will, must be better than its sensor alone."""
 ON_FRAME = ("damper", "suspension", "floor")
 """Blocks whose unknown input is a force on the frame."""

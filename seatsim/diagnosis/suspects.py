@@ -34,9 +34,9 @@ SIZE = 0.1
 """Size of the random inputs, as a share of the fluctuation of the floor's motion and of the force it means."""
 REACH = 10.0
 """Factor from it to the largest plausible input."""
-CORNER = 2.0
-"""Hz above which the spectrum of the inputs falls."""
-ROUNDS = 6
+CORNER, WIDE = 2.0, 40.0
+"""Hz above which the spectrum of plausible inputs falls, and that of the small ones that probe the channels."""
+ROUNDS = 20
 """Most corrections of an input."""
 SETTLED = 0.02
 """Corrections end where one lowers what is left by less than this share."""
@@ -121,42 +121,61 @@ def _answers(engine: Engine, state: State, run: str) -> dict[str, Answer]:
 
 
 def _driven(engine: Engine, state: State, run: str, where: Input) -> Answer:
-    """Return the answer to an input that matches the channels as well as it can."""
+    """Return the answer to an input that matches the channels as well as it can.
+
+    What a small input makes of the channels is taken anew about each course: a strong one changes how the damper slips.
+    """
     problem, bins = engine.problem, engine.white.bins[run]
     samples = problem.measured[run].shape[1]
-    signature, plausible = _signature(engine, state, run, where)
-    size = np.sum(np.abs(signature) ** 2, axis=0)
-    gain = signature.conj() / (size + 2.0 / plausible)
-    course, left = np.zeros(samples // 2 + 1, dtype=complex), state.whitened[run]
+    course, answer = np.zeros(samples), problem.measured[run] - state.residual[run]
+    left = state.whitened[run]
     for _ in range(ROUNDS):
         before = float(np.sum(left**2))
-        step = np.zeros(len(course), dtype=complex)
-        step[:bins] = np.sum(gain * _spectra(left), axis=0)
-        for fraction in SHORTER:
-            tried = _simulated(problem, state.point, run, where, np.fft.irfft(course + fraction * step, samples))
-            rest = engine.white(problem.measured[run] - tried, run)
-            if np.sum(rest**2) < before:
-                course, left = course + fraction * step, rest
-                break
+        signature, plausible = _signature(engine, state, run, where, (course, answer))
+        size = np.sum(np.abs(signature) ** 2, axis=0)
+        step = np.zeros(samples // 2 + 1, dtype=complex)
+        step[:bins] = np.sum(signature.conj() * _spectra(left), axis=0) / (size + 2.0 / plausible)
+        tried = [course + fraction * np.fft.irfft(step, samples) for fraction in SHORTER]
+        course, answer, left = _better(engine, state, run, where, tried, (course, answer, left))
         if np.sum(left**2) > (1.0 - SETTLED) * before:
             break
-    power = _power(course[:bins])
-    course[:bins] *= _share_above_noise(size * power)
-    return Answer(left, [(signature, power)], np.fft.irfft(course, samples))
+    spectrum = np.fft.rfft(course)
+    power = _power(spectrum[:bins])
+    spectrum[:bins] *= _share_above_noise(size * power)
+    return Answer(left, [(signature, power)], np.fft.irfft(spectrum, samples))
 
 
-def _signature(engine: Engine, state: State, run: str, where: Input) -> tuple[Spectra, Array]:
-    """Return what a unit input makes of the whitened channels, (channels, frequencies), and its plausible power."""
+def _better(
+    engine: Engine, state: State, run: str, where: Input, courses: list[Array], best: tuple[Array, Array, Array]
+) -> tuple[Array, Array, Array]:
+    """Return the course that leaves the least, with its channels and what it leaves; `best` is such a triple so far."""
+    measured = engine.problem.measured[run]
+    for course in courses:
+        answer = _simulated(engine.problem, state.point, run, where, course)
+        left = engine.white(measured - answer, run)
+        if np.sum(left**2) < np.sum(best[2] ** 2):
+            best = course, answer, left
+    return best
+
+
+def _signature(
+    engine: Engine, state: State, run: str, where: Input, about: tuple[Array, Array]
+) -> tuple[Spectra, Array]:
+    """Return what a unit input makes of the whitened channels, (channels, frequencies), and its plausible power.
+
+    `about` is the course that it is added to, with the channels that this one gives.
+    """
     problem, bins = engine.problem, engine.white.bins[run]
     floor, plant = problem.floors[run], problem.scenario.plant
     assert floor is not None
     assert plant is not None
+    course, answer = about
     scale = SIZE * float(np.std(floor.acceleration)) * (1.0 if where.ground else plant.driver_mass)
-    test = scale * _red(problem.measured[run].shape[1], problem.recording.header.sample_rate)
-    still = problem.measured[run] - state.residual[run]
-    cause = np.fft.rfft(test)
-    change = np.fft.rfft(_simulated(problem, state.point, run, where, test) - still)
-    return engine.white.weights[run] * _response(change, cause)[:, :bins], REACH**2 * _power(cause[:bins])
+    samples, rate = problem.measured[run].shape[1], problem.recording.header.sample_rate
+    test, likely = (scale * _red(samples, rate, corner) for corner in (WIDE, CORNER))
+    change = np.fft.rfft(_simulated(problem, state.point, run, where, course + test) - answer)
+    signature = engine.white.weights[run] * _response(change, np.fft.rfft(test))[:, :bins]
+    return signature, REACH**2 * _power(np.fft.rfft(likely)[:bins])
 
 
 def unrepeated(engine: Engine, state: State) -> dict[str, Array] | None:
@@ -169,7 +188,8 @@ def unrepeated(engine: Engine, state: State) -> dict[str, Array] | None:
         first = problem.measured.get(entry.repeat_of or "", np.zeros(0))
         second = problem.measured[run]
         if first.shape == second.shape:
-            signature, plausible = _signature(engine, state, run, INPUTS["suspension"])
+            still = np.zeros(second.shape[1]), second - state.residual[run]
+            signature, plausible = _signature(engine, state, run, INPUTS["suspension"], still)
             left = _spectra(engine.white((first - second) / np.sqrt(2.0), run))
             size = np.sum(np.abs(signature) ** 2, axis=0)
             course = np.sum(signature.conj() * left, axis=0) / (size + 2.0 / plausible)
@@ -211,11 +231,11 @@ def _simulated(problem: Problem, point: Point, run: str, where: Input, course: A
     return answer
 
 
-def _red(samples: int, rate: float) -> Array:
-    """Return random numbers of unit size whose spectrum falls above CORNER."""
+def _red(samples: int, rate: float, corner: float) -> Array:
+    """Return random numbers of unit size whose spectrum falls above a corner in Hz."""
     frequency = np.fft.rfftfreq(samples, 1.0 / rate)
     white = np.random.default_rng(1).standard_normal(samples)
-    course = np.fft.irfft(np.fft.rfft(white) / (1.0 + frequency / CORNER), samples)
+    course = np.fft.irfft(np.fft.rfft(white) / (1.0 + frequency / corner), samples)
     return np.asarray(course / np.std(course))
 
 
