@@ -68,11 +68,11 @@ def bounds(record: type, name: str) -> tuple[float, float]:
     info = _field_info(_hints(record)[name])
     for mark in info.metadata if info else ():
         if isinstance(mark, Ge):
-            limits["low"] = float(mark.ge)  # type: ignore[arg-type]
+            limits["low"] = float(mark.ge)  # type: ignore[arg-type]  # only comparable by type
         elif isinstance(mark, Gt):
-            limits["low"] = float(mark.gt) + SLIGHTLY  # type: ignore[arg-type]
+            limits["low"] = float(mark.gt) + SLIGHTLY  # type: ignore[arg-type]  # only comparable by type
         elif isinstance(mark, Le):
-            limits["high"] = float(mark.le)  # type: ignore[arg-type]
+            limits["high"] = float(mark.le)  # type: ignore[arg-type]  # only comparable by type
     return limits["low"], limits["high"]
 
 

@@ -104,7 +104,7 @@ class Design:
 def _yaml() -> YAML:
     yaml = YAML(typ="safe")
     yaml.default_flow_style, yaml.width = None, 1000
-    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
+    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]  # typed as None
     return yaml
 
 

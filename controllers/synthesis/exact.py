@@ -40,7 +40,7 @@ class Exact:
         return self + Exact(-other.whole, other.bits)
 
     @property
-    def T(self) -> Exact:  # noqa: N802
+    def T(self) -> Exact:  # noqa: N802 - as in NumPy
         """The transposed matrix."""
         return Exact(self.whole.T, self.bits)
 

@@ -23,6 +23,7 @@ from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
 STABILITY_MARGIN = 1e-7
 # At the limit itself the angle has no slope, and a search could not leave.
 _INSIDE = 0.999
+# The smallest natural size of an entry, as a share of the largest, in units.
 _LEAST = 0.01
 
 

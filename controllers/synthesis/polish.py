@@ -90,7 +90,7 @@ def _solve(
         return 1 + x[-1] - values / level, np.hstack([-slopes * unit / level, np.ones((values.size, 1))])
 
     try:
-        found: Any = minimize(  # type: ignore[call-overload]
+        found: Any = minimize(  # type: ignore[call-overload]  # a dict of constraints
             lambda x: x[-1],
             np.zeros(len(entries) + 1),
             jac=lambda x: np.eye(len(x))[-1],

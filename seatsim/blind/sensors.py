@@ -50,7 +50,7 @@ def skewed(motion: Motion, fault: Fault, run: int) -> tuple[Array, Array]:
     return motion.command[rows], np.interp(at, fine, motion.fine_current)
 
 
-def faulty(u: Array, other: Array, fault: Fault, run: int) -> Array:  # noqa: PLR0911
+def faulty(u: Array, other: Array, fault: Fault, run: int) -> Array:  # noqa: PLR0911 - one return per fault
     """Return a channel read through a fault."""
     size = fault.size
     time = np.arange(u.size) / RATE

@@ -18,17 +18,18 @@ from seatsim.diagnosis.coverage import coverage
 from seatsim.diagnosis.evidence import causes, collected
 from seatsim.diagnosis.examination import examine, refuse
 from seatsim.diagnosis.experiment import experiment
-from seatsim.diagnosis.findings import OUTSIDE, WANDER, Cause, Diagnosis, Estimate, Share
+from seatsim.diagnosis.findings import Diagnosis, Share
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.isolability import isolable, losses
-from seatsim.diagnosis.latent import Latent, latent, rms
+from seatsim.diagnosis.latent import Latent, latent
 from seatsim.diagnosis.place import places, unexplained
 from seatsim.diagnosis.problem import Problem, problem
+from seatsim.diagnosis.random_cause import counted, joined, random_cause, with_strength
 from seatsim.diagnosis.search import Search, search
 from seatsim.diagnosis.sentences import answer
-from seatsim.diagnosis.suspects import unrepeated
+from seatsim.diagnosis.unknown_input import unrepeated
 from seatsim.diagnosis.verdict import Judgement, judged
-from seatsim.diagnosis.whitening import Whitening, whitening
+from seatsim.diagnosis.whitening import whitening
 from seatsim.recording import Recording, load_recording
 from seatsim.registry import names
 from seatsim.replay import single
@@ -76,33 +77,17 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     if shaken is not None:
         engine = Engine(posed, whitening(posed, shaken))
     first = _searched(engine, offered, effects, told)
-    random = _random(posed, first)
+    random = random_cause(posed, first.rest) if first.rest else ""
     if first.rest is None or not random or random in without:
         return first
     told(f"counting {random} as noise")
-    noisy = Engine(posed, _counted(posed, random, first.rest))
+    noisy = Engine(posed, counted(posed, random, first.rest))
     second = _searched(noisy, [each for each in offered if each.effect != random], effects, told)
     if second.judgement.verdict == "unknown":
         return first
-    return second._replace(rest=first.rest._replace(block=random.partition(".")[0]), random=random)
-
-
-def _random(posed: Problem, first: Solution) -> str:
-    """Return the effect with a random course that the rest may be; an empty word for none."""
-    if first.rest is None:
-        return ""
-    merged = () if "damper_force" in posed.channels else ("damper",)
-    if first.where[0].block in ("suspension", *merged) and first.rest.from_outside:
-        return OUTSIDE
-    return WANDER if first.rest.wanders(posed.recording.header.sample_rate) else ""
-
-
-def _counted(posed: Problem, random: str, rest: Latent) -> Whitening:
-    """Return weights in which a course counts as noise."""
-    if random == OUTSIDE:
-        return whitening(posed, rest.course)
-    row = np.array([[name == rest.channel] for name in posed.channels], dtype=float)
-    return whitening(posed, errors={run: row * course for run, course in rest.course.items()})
+    judgement, where = joined(second.judgement, second.where, random)
+    rest = first.rest._replace(block=random.partition(".")[0])
+    return second._replace(judgement=judgement, where=where, rest=rest, random=random)
 
 
 def _searched(
@@ -135,18 +120,18 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     scenarios = [scenario_at(posed, nominal, point) for point in points]
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
     found = gaps(posed, scenarios, [run], spread)
-    judgement, where = _with_random(solution)
     listed = causes(engine, solution.found, judgement, calibrated, augmented, nominal, run)
-    listed = [_with_strength(cause, solution) for cause in listed]
+    if solution.rest is not None:
+        listed = [with_strength(c, solution.rest) if c.effect == solution.random else c for c in listed]
     group = judgement.groups[0] if judgement.groups else []
     asked = experiment(engine, chosen, group) if group and not posed.bench else None
     scenario = asked.pop("scenario", None) if asked else None
     relevant = [cause.effect for cause in listed[:10] if cause.probability > 0.003]
-    chosen_names = _selected(solution)
-    selected = [name for name in judgement.probabilities if name in chosen_names]
+    at_work = {solution.random, *(term.effect for term in chosen.point.terms)}
     diagnosis = Diagnosis(
-        name=recording.folder.name, verdict=judgement.verdict, sentence="", where=where, causes=listed,
-        probability_none=judgement.none, probability_unknown=judgement.unknown, selected=selected,
+        name=recording.folder.name, verdict=judgement.verdict, sentence="", where=solution.where, causes=listed,
+        probability_none=judgement.none, probability_unknown=judgement.unknown,
+        selected=[name for name in judgement.probabilities if name in at_work], random=solution.random,
         indistinguishable=judgement.groups, experiment=asked, held_out=[run],
         isolable=isolable(recording.header.rig, recording.channels), gap=found,
         notes=[*notes, *losses(recording.header.rig, recording.channels), *coverage(recording).missing],
@@ -154,30 +139,3 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
         evidence=collected(posed, points, run, solution.rest, alikeness(engine, chosen, relevant)),
     )  # fmt: skip
     return dataclasses.replace(diagnosis, sentence=answer(diagnosis))
-
-
-def _selected(solution: Solution) -> list[str]:
-    chosen = [term.effect for term in solution.judgement.chosen.point.terms]
-    return [solution.random, *chosen] if solution.random else chosen
-
-
-def _with_strength(cause: Cause, solution: Solution) -> Cause:
-    """Return a cause with its channel and RMS where its course is random."""
-    rest = solution.rest
-    if rest is None or cause.effect != solution.random:
-        return cause
-    place: dict[str, Estimate | str] = {"channel": rest.channel} if rest.channel else {}
-    return cause._replace(parameters=place | {"rms": Estimate(rms(rest), 0.0, rest.unit)})
-
-
-def _with_random(solution: Solution) -> tuple[Judgement, list[Share]]:
-    """Return judgement and places with the effect whose course is random among the causes, where there is one."""
-    judgement, where = solution.judgement, solution.where
-    if not solution.random:
-        return judgement, where
-    probabilities = judgement.probabilities | {solution.random: 0.9}
-    verdict = "ambiguous" if judgement.groups else "known"
-    judgement = dataclasses.replace(judgement, verdict=verdict, probabilities=probabilities, none=0.01, unknown=0.1)
-    block, own = solution.random.partition(".")[0], 0.6 if where else 1.0
-    others = [Share(s.block, s.share * (1.0 - own)) for s in where if s.block != block]
-    return judgement, [Share(block, 1.0 - sum(share for _, share in others)), *others]

@@ -10,9 +10,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-OUTSIDE, WANDER = "floor.unmeasured_input", "sensor.bias"
-"""Effects whose course may be random: found by what is left, and not simulated."""
-
 
 class Estimate(NamedTuple):
     """A fitted parameter with its standard deviation and unit."""
@@ -88,7 +85,8 @@ class Diagnosis:
     """Where the gap between a recording and its nominal simulation lies, which effect causes it, how far it shrinks.
 
     `sentence` is the answer in one sentence, `notes` are sentences on the data, what the channels forbid, and what to
-    mind; `augmented` is the content of `augmented.yaml`, `experiment_scenario` that of a proposed experiment.
+    mind; `random` is the selected effect whose course is random, else empty; `augmented` is the content of
+    `augmented.yaml`, `experiment_scenario` that of a proposed experiment.
     """
 
     name: str
@@ -99,6 +97,7 @@ class Diagnosis:
     probability_none: float
     probability_unknown: float
     selected: list[str]
+    random: str
     indistinguishable: list[list[str]]
     experiment: dict[str, Any] | None
     held_out: list[str]

@@ -15,7 +15,7 @@ from scipy.signal import decimate
 
 from seatsim.diagnosis.fit import Point
 from seatsim.diagnosis.problem import Problem
-from seatsim.diagnosis.suspects import ERROR, Suspect
+from seatsim.diagnosis.suspects import Suspect
 
 Array = NDArray[np.float64]
 
@@ -34,18 +34,17 @@ SLOW, MOSTLY = 0.5, 0.9
 
 
 class Latent(NamedTuple):
-    """An unexplained course by run, and the shares of its variance that families of regressors foretell."""
+    """An unexplained course by run, and the shares of its variance that families of regressors foretell.
+
+    `channel` is the one whose error it is; empty for a force, an acceleration or a current.
+    """
 
     block: str
     quantity: str
     unit: str
     course: dict[str, Array]
     shares: dict[str, float]
-
-    @property
-    def channel(self) -> str:
-        """The channel whose error it is; empty for a force, an acceleration or a current."""
-        return self.quantity.removeprefix(ERROR) if self.quantity.startswith(ERROR) else ""
+    channel: str = ""
 
     @property
     def from_outside(self) -> bool:
@@ -71,7 +70,7 @@ def latent(problem: Problem, point: Point, block: str, suspect: Suspect) -> Late
     shares = {family: _foretold({run: f[family] for run, f in features.items()}, target) for family in families}
     everything = {run: np.concatenate(list(f.values())) for run, f in features.items()}
     shares["everything"] = max(_foretold(everything, target), *shares.values())
-    return Latent(block, suspect.quantity, suspect.unit, suspect.course, shares)
+    return Latent(block, suspect.quantity, suspect.unit, suspect.course, shares, suspect.channel)
 
 
 def _thinned(problem: Problem, values: Array) -> Array:

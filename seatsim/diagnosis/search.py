@@ -37,8 +37,8 @@ RIVALS = 3
 """Effects that are tried in the place of each one."""
 AROUND = (0.6, 1.0, 1.6)
 """Shares of that factor that are tried."""
-PRUNED = 0.45
-"""Share of the excess of the next smaller set below which a largest set may hold a better smaller one."""
+ENLARGE = 0.45
+"""Share of the excess that a further effect must leave at most."""
 WORTHWHILE = 0.85
 """A larger set is looked for while the last enlargement lowered the excess to below this share."""
 
@@ -84,7 +84,7 @@ def search(engine: Engine, candidates: Sequence[Candidate], told: Callable[[str]
         found.sets.append(sets)
         if not _gains(found):
             break
-    if len(found.sets) > LARGEST and found.excess(found.sets[-1][0]) < PRUNED * found.excess(found.sets[-2][0]):
+    if len(found.sets) > LARGEST and found.excess(found.sets[-1][0]) < ENLARGE * found.excess(found.sets[-2][0]):
         told("pruning")
         found.sets[-2] = _best_forms([*found.sets[-2], *_pruned(engine, found.sets[-1][0])])
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from seatsim.diagnosis.findings import OUTSIDE, WANDER, Cause, Diagnosis, Estimate
+from seatsim.diagnosis.findings import Cause, Diagnosis, Estimate
 from seatsim.registry import find
 
 
@@ -25,7 +25,7 @@ def answer(diagnosis: Diagnosis) -> str:
     credit = 1.0 - gap.after["overall"] / gap.calibrated["overall"]
     sentence = f"{named}: it takes {credit:.0%} off the gap that refitted parameters leave ({size} to"
     sentence += f" {gap.after['overall']:.3f}, noise {gap.floor['overall']:.3f})"
-    if any("rms" in cause.parameters for cause in diagnosis.causes if cause.effect in (OUTSIDE, WANDER)):
+    if diagnosis.random:
         sentence += "; its random course cannot be foretold, so that its share of the gap stays"
     for group in diagnosis.indistinguishable:
         sentence += f"; these data cannot tell it from {_listed(group[1:])}"

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.fit import Engine, State
-from seatsim.diagnosis.search import Search
+from seatsim.diagnosis.search import ENLARGE, Search
 
 Array = NDArray[np.float64]
 
@@ -22,8 +22,6 @@ NOTHING = 0.15
 MATERIAL = 0.04
 """Movement of a channel, in its standard deviations, from which an effect is material; the contract's 5 % with a margin
 for the fit's error."""
-ENLARGE = 0.45
-"""Share of the excess that a further effect must leave at most."""
 EXPLAINED = 0.2
 """Share of the calibrated excess that a known set leaves at most."""
 UNTOUCHED = 0.5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,8 +23,8 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*.*")) if path.is_file()}
 
 
-def made(base: Path, name: str, seed: int | None, kinds: object = ("none", "one")) -> tuple[Path, Path, str]:
-    key = make(2, seed, base / name, base / f"{name}.sealed", kinds=kinds, processes=1)  # type: ignore[arg-type]
+def made(base: Path, name: str, seed: int | None, kinds: Any = ("none", "one")) -> tuple[Path, Path, str]:
+    key = make(2, seed, base / name, base / f"{name}.sealed", kinds=kinds, processes=1)
     return base / name, base / f"{name}.sealed", key
 
 

@@ -22,9 +22,9 @@ def coloured(samples, low, high, seed, rate=RATE):
     return course / np.std(course)
 
 
-def left(courses, block="suspension", quantity="force"):
+def left(courses, block="suspension"):
     shares = {"velocity": 0.02, "everything": 0.03}
-    return Latent(block, quantity, "N", dict(enumerate(courses)), shares)
+    return Latent(block, "force", "N", dict(enumerate(courses)), shares)
 
 
 def test_a_force_from_outside_is_as_strong_in_every_run():
@@ -35,10 +35,9 @@ def test_a_force_from_outside_is_as_strong_in_every_run():
 
 def test_a_zero_wanders_slowly():
     slow, fast = coloured(12000, 0.02, 0.2, 2), coloured(12000, 2.0, 20.0, 3)
-    error = left([slow, slow + 0.1 * fast], "sensor", "error of frame_acceleration")
-    assert error.wanders(RATE) and error.channel == "frame_acceleration"
-    assert not left([fast], "sensor", "error of frame_acceleration").wanders(RATE)
-    assert not left([slow]).wanders(RATE) and left([slow]).channel == ""
+    assert left([slow, slow + 0.1 * fast], "sensor").wanders(RATE)
+    assert not left([fast], "sensor").wanders(RATE)
+    assert not left([slow]).wanders(RATE)
 
 
 @pytest.fixture(scope="module")

@@ -121,7 +121,7 @@ def known(channels=tuple(SEAT), bench=False, runs=("run-c",)):
         sentence="the yield force remembers past current (damper.remanence, 0.08 A): it explains 87 % of the gap",
         where=[Share("damper", 0.93), Share("coil", 0.04), Share("sensor", 0.03)],
         causes=ranked({"damper.remanence": 0.97}), probability_none=0.0, probability_unknown=0.02,
-        selected=["damper.remanence"], indistinguishable=[], experiment=None, held_out=list(runs),
+        selected=["damper.remanence"], random="", indistinguishable=[], experiment=None, held_out=list(runs),
         isolable=[["damper"], ["coil"], ["suspension", "floor"], ["cushion"], ["driver", "sensor"]],
         gap=gaps_of(found), notes=["no run is warmer than 35 degC: thermal fade cannot be judged"],
         augmented={}, experiment_scenario=None,

@@ -7,7 +7,8 @@ import pytest
 
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.problem import Drive, problem
-from seatsim.diagnosis.suspects import INPUTS, suspects, unrepeated
+from seatsim.diagnosis.suspects import suspects
+from seatsim.diagnosis.unknown_input import INPUTS, unrepeated
 from seatsim.diagnosis.whitening import whitening
 from seatsim.recording import load_recording
 from seatsim.simulation import Forces

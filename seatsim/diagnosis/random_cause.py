@@ -1,0 +1,49 @@
+"""Effects whose course is random: found in what no other effect explains, never simulated, counted as noise."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from seatsim.diagnosis.findings import Cause, Estimate, Share
+from seatsim.diagnosis.latent import Latent, rms
+from seatsim.diagnosis.problem import Problem
+from seatsim.diagnosis.verdict import Judgement
+from seatsim.diagnosis.whitening import Whitening, whitening
+
+OUTSIDE, WANDER = "floor.unmeasured_input", "sensor.bias"
+OWN = 0.6
+"""Share of the gap that it is said to make beside other effects."""
+
+
+def random_cause(problem: Problem, rest: Latent) -> str:
+    """Return the effect that an unexplained rest may be; an empty word for none."""
+    merged = () if "damper_force" in problem.channels else ("damper",)
+    if rest.block in ("suspension", *merged) and rest.from_outside:
+        return OUTSIDE
+    return WANDER if rest.wanders(problem.recording.header.sample_rate) else ""
+
+
+def counted(problem: Problem, effect: str, rest: Latent) -> Whitening:
+    """Return weights in which the course counts as noise."""
+    if effect == OUTSIDE:
+        return whitening(problem, rest.course)
+    row = np.array([[name == rest.channel] for name in problem.channels], dtype=float)
+    return whitening(problem, errors={run: row * course for run, course in rest.course.items()})
+
+
+def joined(judgement: Judgement, where: list[Share], effect: str) -> tuple[Judgement, list[Share]]:
+    """Return judgement and places of what was found beside it, with the effect itself among them."""
+    probabilities = judgement.probabilities | {effect: 0.9}
+    verdict = "ambiguous" if judgement.groups else "known"
+    judgement = dataclasses.replace(judgement, verdict=verdict, probabilities=probabilities, none=0.01, unknown=0.1)
+    block, own = effect.partition(".")[0], OWN if where else 1.0
+    others = [Share(s.block, s.share * (1.0 - own)) for s in where if s.block != block]
+    return judgement, [Share(block, 1.0 - sum(share for _, share in others)), *others]
+
+
+def with_strength(cause: Cause, rest: Latent) -> Cause:
+    """Return the cause with the RMS of its course, and the channel that errs."""
+    place: dict[str, Estimate | str] = {"channel": rest.channel} if rest.channel else {}
+    return cause._replace(parameters=place | {"rms": Estimate(rms(rest), 0.0, rest.unit)})
