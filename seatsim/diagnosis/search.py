@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,14 @@ RIVALS = 3
 """Effects that are tried in the place of each one."""
 AROUND = (0.6, 1.0, 1.6)
 """Shares of that factor that are tried."""
+WEAKER = (1.08, 1.16, 1.27)
+"""Factors that are tried on a limit that acts too much, and their inverses on one that acts too little."""
+NOTHING = 0.15
+"""Excess below which nothing is left to explain."""
+SEEN = 1e-3
+"""Factor on a start from which its trace is in the data at all."""
+PROMISING = 0.9
+"""Share of the excess so far that a further effect may leave, as a linear model foresees it, for it to be tried."""
 ENLARGE = 0.45
 """Share of the excess that a further effect must leave at most."""
 WORTHWHILE = 0.85
@@ -74,7 +83,7 @@ def search(engine: Engine, candidates: Sequence[Candidate], told: Callable[[str]
     found = Search(nominal, [[calibrated]], rows)
     for size in range(1, LARGEST + 1):
         told(f"fitting sets of {size}")
-        sets = _extended(engine, found.sets[-1][:BEAM], traces, SHORTLIST if size == 1 else SECONDS)
+        sets = _extended(engine, found, traces, SHORTLIST if size == 1 else SECONDS)
         if not sets:
             break
         if size > 1:
@@ -92,7 +101,7 @@ def search(engine: Engine, candidates: Sequence[Candidate], told: Callable[[str]
 
 def _gains(found: Search) -> bool:
     last, before = found.excess(found.sets[-1][0]), found.excess(found.sets[-2][0])
-    return last > 0.02 and last < WORTHWHILE * before
+    return last > NOTHING and last < WORTHWHILE * before
 
 
 def _traces(engine: Engine, calibrated: State, candidates: Sequence[Candidate]) -> list[Trace]:
@@ -104,13 +113,14 @@ def _traces(engine: Engine, calibrated: State, candidates: Sequence[Candidate]) 
     ]  # fmt: skip
 
 
-def _extended(engine: Engine, bases: Sequence[State], traces: Sequence[Trace], count: int) -> list[State]:
-    """Return the fitted enlargements of some sets by one effect, best first, one form of each set of effects."""
-    begun = []
+def _extended(engine: Engine, found: Search, traces: Sequence[Trace], count: int) -> list[State]:
+    """Return the fitted enlargements of the best sets by one effect, best first, one form of each set of effects."""
+    bases, begun = found.sets[-1][:BEAM], []
     for base in bases:
         taken = {term.effect for term in base.point.terms}
         offered = [trace for trace in traces if trace[0].effect not in taken]
-        begun += [engine.fitted(start, BEGUN) for start in _screened(engine, base, offered, count)]
+        bound = found.rows * (1.0 + PROMISING * found.excess(bases[0])) if taken else np.inf
+        begun += [engine.fitted(start, BEGUN) for start in _screened(engine, base, offered, bound, count)]
     ranked = _best_forms(begun)
     return _best_forms([engine.fitted(state) for state in ranked[:FINALISTS]] + ranked[FINALISTS:])
 
@@ -144,20 +154,17 @@ def _best_forms(states: Sequence[State]) -> list[State]:
     return list(best.values())
 
 
-def _screened(engine: Engine, base: State, offered: Sequence[Trace], count: int) -> list[State]:
-    """Return starts with those candidates added to a base from which a linear model foresees the lowest costs."""
+def _screened(engine: Engine, base: State, offered: Sequence[Trace], bound: float, count: int) -> list[State]:
+    """Return starts with candidates added to a base from which a linear model foresees low costs, below a bound."""
     own = engine.jacobian(base)
     foreseen = list(POOL.map(lambda trace: _foreseen(engine, base, trace, own), offered))
     order: dict[tuple[Any, ...], int] = {}
     for k in sorted(range(len(offered)), key=lambda k: foreseen[k][0]):
-        order.setdefault(offered[k][0].form, k)
-    shortlist = list(order.values())[:count]
-    points = [
-        _stretched(base.point, offered[k][0], factor)
-        for k in shortlist for factor in (1.0, *(foreseen[k][1] * share for share in AROUND))
-    ]  # fmt: skip
-    states, each = engine.states(points), 1 + len(AROUND)
-    return [min(states[n : n + each], key=lambda state: state.cost) for n in range(0, len(states), each)]
+        if foreseen[k][0] < bound:
+            order.setdefault(offered[k][0].form, k)
+    starts = [_around(base.point, offered[k][0], foreseen[k][1]) for k in list(order.values())[:count]]
+    states = iter(engine.states([point for points in starts for point in points]))
+    return [min(islice(states, len(points)), key=lambda state: state.cost) for points in starts]
 
 
 def _foreseen(engine: Engine, base: State, trace: Trace, own: dict[str, Array]) -> tuple[float, float]:
@@ -176,11 +183,12 @@ def _foreseen(engine: Engine, base: State, trace: Trace, own: dict[str, Array]) 
     return base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step), float(step[-1])
 
 
-def _stretched(point: Point, candidate: Candidate, factor: float) -> Point:
-    """Return the point with a candidate that changes it by a factor more, its first parameter within its bounds."""
-    values = np.array(candidate.start)
+def _around(point: Point, candidate: Candidate, factor: float) -> list[Point]:
+    """Return the point with a candidate at its start and where it changes the rig by about a factor more."""
     if candidate.wanes:
-        factor = 1.0 / max(factor, 1.0 / STRETCH)
-    if abs(factor) > 1e-3:
-        values[0] = np.clip(values[0] * factor, candidate.low[0], candidate.high[0])
-    return point.plus(candidate, values)
+        factors = WEAKER if factor < 1.0 else tuple(1.0 / weaker for weaker in WEAKER)
+    else:
+        factors = tuple(factor * share for share in AROUND if abs(factor) > SEEN)
+    starts = np.tile(candidate.start, (1 + len(factors), 1))
+    starts[1:, 0] = np.clip(starts[1:, 0] * factors, candidate.low[0], candidate.high[0])
+    return [point.plus(candidate, values) for values in starts]

@@ -13,12 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.fit import Engine, State
-from seatsim.diagnosis.search import ENLARGE, Search
+from seatsim.diagnosis.search import ENLARGE, NOTHING, Search
 
 Array = NDArray[np.float64]
 
-NOTHING = 0.15
-"""Whitened excess below which nothing is left to explain."""
 MATERIAL = 0.04
 """Movement of a channel, in its standard deviations, from which an effect is material; the contract's 5 % with a margin
 for the fit's error."""
