@@ -15,8 +15,6 @@ from seatsim.diagnosis.verdict import movements
 
 DECISIVE = 0.1
 """Share of what the best block explains by which another must fall short to be told from it."""
-TWICE = 0.05
-"""Doubt by which a coil, whose current and force err at will, must be better than its sensor alone."""
 ON_FRAME = ("damper", "suspension", "floor")
 """Blocks whose unknown input is a force on the frame."""
 SLIGHT = 0.02
@@ -75,10 +73,9 @@ def _rest(engine: Engine, state: State) -> Rest:
     rows = sum(values.size for values in state.whitened.values())
     before, best = state.cost / rows - 1.0, min(suspect.doubt for suspect in found.values())
     width = DECISIVE * max(before - best, 1e-6)
-    frame = min((suspect.doubt for block, suspect in found.items() if block in ON_FRAME), default=math.inf)
-    for block, doubt in (("coil", TWICE), ("driver", width)):
-        if block in found and (block != "driver" or frame < found[block].doubt + doubt):
-            found[block] = found[block]._replace(doubt=found[block].doubt + doubt)
+    driver = found["driver"].doubt + width
+    if min(found[block].doubt for block in ON_FRAME) < driver:
+        found["driver"] = found["driver"]._replace(doubt=driver)
     best = min(suspect.doubt for suspect in found.values())
     weights = {block: math.exp(-(suspect.doubt - best) / width) for block, suspect in found.items()}
     ranked = sorted(weights.items(), key=lambda item: -item[1])

@@ -85,11 +85,15 @@ class Problem:
         """Nuisance parameters at their nominal values."""
         return np.zeros(len(self.parameters))
 
-    def simulated(self, run: str, u: Array, effects: Sequence[Any], drive: Drive | None = None) -> Array:
-        """Return the compared channels of a run, shape (channels, samples), as `measured` has them."""
+    def augmented(self, u: Array, effects: Sequence[Any]) -> Scenario:
+        """Return the nominal scenario with other parameters and with effects."""
         chosen = [*self.scenario.effects, *effects]
         carrier = [] if any(isinstance(effect, CARRIER) for effect in chosen) else [off(CARRIER)]
-        scenario = dataclasses.replace(varied(self.scenario, self.parameters, u), effects=(*chosen, *carrier))
+        return dataclasses.replace(varied(self.scenario, self.parameters, u), effects=(*chosen, *carrier))
+
+    def simulated(self, run: str, u: Array, effects: Sequence[Any], drive: Drive | None = None) -> Array:
+        """Return the compared channels of a run, shape (channels, samples), as `measured` has them."""
+        scenario = self.augmented(u, effects)
         if self.bench:
             answer = replay_bench(scenario, self.recording, run)
         else:

@@ -1,8 +1,8 @@
 """Which single block could hold what is left: an unknown input in each block in turn, and the evidence for it.
 
-Beside the inputs of `unknown_input` there is the error of one sensor; a coil errs in current and force. With r the
-whitened residuals that the input leaves, h what a unit of it makes of the channels, p its own power and S the
-sensitivities to the nuisance parameters u, minus twice the log evidence is
+Beside the inputs of `unknown_input` there is the error of one sensor. With r the whitened residuals without the input,
+h what a unit of it makes of the channels about the course found, p the power of that course and S the sensitivities to
+the nuisance parameters u, minus twice the log evidence is
 
     min over u of  sum over f  (r - S u)* (I + h h* p / 2)^-1 (r - S u) + 2 log(1 + |h|^2 p / 2)  + prior(u).
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.fit import Engine, State, solved
 from seatsim.diagnosis.problem import POOL
-from seatsim.diagnosis.unknown_input import INPUTS, Answer, driven, power, spectra
+from seatsim.diagnosis.unknown_input import INPUTS, Answer, driven, driven_by_log, power, spectra, unit_error
 
 Array = NDArray[np.float64]
 
@@ -60,12 +60,13 @@ def _answers(engine: Engine, state: State, run: str) -> dict[str, Answer]:
     errors = spectra(left) / weights
     found = {}
     for k, name in enumerate(engine.problem.channels):
-        unit = np.asarray(np.eye(len(weights))[:, k : k + 1] * weights, dtype=complex)
-        found[name] = Answer(left, [(unit, power(errors[k]))], state.residual[run][k])
-    found |= {block: driven(engine, state, run, where) for block, where in INPUTS.items()}
-    if "coil_current" in found:
-        sensed, forced = found["coil_current"], found["damper"]
-        found["coil"] = Answer(forced.left, [*sensed.ways, *forced.ways], sensed.course)
+        found[name] = Answer(left, unit_error(weights, k), power(errors[k]), state.residual[run][k])
+    merged = "damper_force" not in engine.problem.channels
+    for block, where in INPUTS.items():
+        same = merged and block == "suspension"
+        found[block] = found["damper"] if same else driven(engine, state, run, where)
+    if "coil_current" in engine.problem.channels:
+        found["coil"] = driven_by_log(engine, state, run)
     return found
 
 
@@ -77,10 +78,10 @@ def _doubt(engine: Engine, state: State, answers: dict[str, Answer]) -> float:
         shape = answer.left.shape
         whole = spectra(np.concatenate([answer.left[None], engine.slopes[run].reshape(-1, *shape)]))
         rest = whole
-        for signature, p in answer.ways:
-            size = np.sum(np.abs(signature) ** 2, axis=0)
-            rest = rest - signature * np.sum(signature.conj() * rest, axis=1, keepdims=True) / (size + 2.0 / p)
-            cost += float(np.sum(2.0 * np.log1p(0.5 * size * p)))
+        size = np.sum(np.abs(answer.way) ** 2, axis=0)
+        along = np.sum(answer.way.conj() * rest, axis=1, keepdims=True) / (size + 2.0 / answer.power)
+        rest = rest - answer.way * along
+        cost += float(np.sum(2.0 * np.log1p(0.5 * size * answer.power)))
         gram = (whole.reshape(count + 1, -1) @ rest.reshape(count + 1, -1).conj().T).real
         matrix, right, cost = matrix + gram[1:, 1:], right + gram[1:, 0], cost + gram[0, 0]
         rows += answer.left.size

@@ -6,20 +6,25 @@ channels and h what a unit input makes of them, the simulation is driven by the 
 zero, as long as it helps:
 
     q(f) += h* r / (|h|^2 + 2 / p(f)),      p(f) the plausible power of an input.
+
+A coil's is the current by which its log differs from the simulation: what a current does to a force follows the motion,
+so that there is no h to correct it by.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.augmentation import readings
 from seatsim.diagnosis.fit import Engine, Point, State
 from seatsim.diagnosis.problem import Drive, Problem
-from seatsim.diagnosis.whitening import smoothed
+from seatsim.diagnosis.whitening import Whitening, smoothed
 from seatsim.errors import RunError
-from seatsim.simulation import Forces
+from seatsim.simulation import Forces, simulate
 
 Array = NDArray[np.float64]
 Spectra = NDArray[np.complex128]
@@ -32,21 +37,22 @@ CORNER, WIDE = 2.0, 40.0
 """Hz above which the spectrum of plausible inputs falls, and that of the small ones that probe the channels."""
 ROUNDS = 20
 """Most corrections of an input."""
-SETTLED = 0.02
-"""Corrections end where one lowers what is left by less than this share."""
-SHORTER = (1.0, 0.4, 0.15)
+SETTLED, FRUITLESS = 0.02, 2
+"""Corrections end where this many in a row lower what is left by less than that share, or where only noise is left."""
+SHORTER = (1.0, 0.4, 0.15, 0.05)
 """Fractions of a correction that are tried in turn."""
 REGAINED = 1.2
 """Factor on a force that repeats show, for what its filter takes."""
 
 
 class Input(NamedTuple):
-    """Shares of an unknown course that act on frame and driver (N), on the floor (m/s^2) and on the load cell (N)."""
+    """Shares of an unknown course that act on frame, driver, load cell (N), floor (m/s^2) and as a current (A)."""
 
     push: float = 0.0
     lift: float = 0.0
     ground: float = 0.0
     cell: float = 0.0
+    current: float = 0.0
 
 
 INPUTS = {
@@ -55,45 +61,133 @@ INPUTS = {
 }  # fmt: skip
 
 
-class Probe(NamedTuple):
-    """A small random input of a run, its spectrum, and the power of plausible inputs by frequency."""
-
-    course: Array
-    spectrum: Spectra
-    plausible: Array
-
-
 class Answer(NamedTuple):
-    """What an input leaves of a run, whitened, its ways into the channels (signature, power), and its course."""
+    """What a block's input has to explain in a run, whitened, what a unit of it explains, its power, and its course.
+
+    Where the simulation is driven, `left` is what that leaves, and what the course explains by the last `way`.
+    """
 
     left: Array
-    ways: list[tuple[Spectra, Array]]
+    way: Spectra
+    power: Array
     course: Array
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A run of a rig that an input is added to; `current` is that of its coil without it, every step."""
+
+    problem: Problem
+    white: Whitening
+    point: Point
+    run: str
+    where: Input
+    current: Array
+
+    @property
+    def samples(self) -> int:
+        """How many samples a course has."""
+        return int(self.problem.measured[self.run].shape[1])
+
+    def channels(self, course: Array) -> Array:
+        """Return the channels with a course, shape (channels, samples)."""
+        problem, where, floor = self.problem, self.where, self.problem.floors[self.run]
+        assert floor is not None
+        rows = np.arange(len(floor.acceleration)) / problem.parts
+        full = np.interp(rows, problem.skip + np.arange(self.samples), course, left=0.0, right=0.0)
+        floor = floor._replace(acceleration=floor.acceleration + where.ground * full)
+        if where.current:
+            floor = floor._replace(command=None, coil_current=np.maximum(self.current + where.current * full, 0.0))
+        drive = Drive(floor, Forces(where.push * full, where.lift * full))
+        try:
+            answer = problem.simulated(self.run, self.point.u, self.point.effects, drive)
+        except RunError:
+            return np.full(problem.measured[self.run].shape, 1e6 * problem.spread[:, None])
+        if where.cell and "damper_force" in problem.channels:
+            answer[problem.channels.index("damper_force")] += where.cell * course
+        return answer
+
+    def random(self, corner: float, seed: int) -> Array:
+        """Return a small random course whose spectrum falls above a corner in Hz."""
+        floor, plant = self.problem.floors[self.run], self.problem.scenario.plant
+        assert floor is not None
+        assert plant is not None
+        scale = SIZE * float(np.std(floor.acceleration)) * (1.0 if self.where.ground else plant.driver_mass)
+        return scale * _red(self.samples, self.problem.recording.header.sample_rate, corner, seed)
+
+    def plausible(self) -> Array:
+        """Return the power of plausible courses, shape (frequencies,)."""
+        return REACH**2 * power(np.fft.rfft(self.random(CORNER, 1))[: self.white.bins[self.run]])
+
+    def signature(self, about: tuple[Array, Array], seed: int = 1) -> Spectra:
+        """Return what a unit input makes of the whitened channels, shape (channels, frequencies).
+
+        `about` is the course that a small random one is added to, with the channels that it gives.
+        """
+        course, answer = about
+        probe = self.random(WIDE, seed)
+        response = _response(np.fft.rfft(self.channels(course + probe) - answer), np.fft.rfft(probe))
+        return np.asarray(self.white.weights[self.run] * response[:, : self.white.bins[self.run]])
+
+    def left(self, answer: Array) -> Array:
+        """Return what channels leave of the measured ones, whitened."""
+        return self.white(self.problem.measured[self.run] - answer, self.run)
+
+    def better(self, courses: list[Array], best: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        """Return the first course that leaves less than the best so far; with its channels and what it leaves."""
+        for course in courses:
+            answer = self.channels(course)
+            left = self.left(answer)
+            if np.sum(left**2) < np.sum(best[2] ** 2):
+                return course, answer, left
+        return best
 
 
 def driven(engine: Engine, state: State, run: str, where: Input) -> Answer:
     """Return the answer to an input that matches the channels as well as it can.
 
-    What a small input makes of the channels is taken anew about each course: a strong one changes how the damper slips.
+    What a small input makes of the channels is taken anew about each course, with another random one each time: a
+    strong course changes how the damper slips, and what one probe misleads the next may mend.
     """
-    problem, bins, probe = engine.problem, engine.white.bins[run], _probe(engine, run, where)
-    samples = len(probe.course)
-    course, answer = np.zeros(samples), problem.measured[run] - state.residual[run]
-    left = state.whitened[run]
-    for _ in range(ROUNDS):
+    rig = _driven(engine, state, run, where)
+    plausible, bins = rig.plausible(), engine.white.bins[run]
+    course, fruitless = np.zeros(rig.samples), 0
+    answer = rig.channels(course)
+    left = rig.left(answer)
+    for seed in range(1, ROUNDS + 1):
         before = float(np.sum(left**2))
-        signature = _signature(engine, state, run, where, probe, (course, answer))
+        signature = rig.signature((course, answer), seed)
         size = np.sum(np.abs(signature) ** 2, axis=0)
-        step = np.zeros(samples // 2 + 1, dtype=complex)
-        step[:bins] = np.sum(signature.conj() * spectra(left), axis=0) / (size + 2.0 / probe.plausible)
-        tried = [course + fraction * np.fft.irfft(step, samples) for fraction in SHORTER]
-        course, answer, left = _better(engine, state, run, where, tried, (course, answer, left))
-        if np.sum(left**2) > (1.0 - SETTLED) * before:
+        step = np.zeros(rig.samples // 2 + 1, dtype=complex)
+        step[:bins] = np.sum(signature.conj() * spectra(left), axis=0) / (size + 2.0 / plausible)
+        tried = [course + fraction * np.fft.irfft(step, rig.samples) for fraction in SHORTER]
+        course, answer, left = rig.better(tried, (course, answer, left))
+        fruitless = fruitless + 1 if np.sum(left**2) > (1.0 - SETTLED) * before else 0
+        if fruitless == FRUITLESS or np.sum(left**2) < left.size:
             break
     spectrum = np.fft.rfft(course)
-    used = power(spectrum[:bins])
+    used, explained = power(spectrum[:bins]), signature * spectrum[:bins]
     spectrum[:bins] *= _share_above_noise(size * used)
-    return Answer(left, [(signature, used)], np.fft.irfft(spectrum, samples))
+    whole = left + np.concatenate([explained.real, explained.imag], axis=1)
+    return Answer(whole, signature, used, np.fft.irfft(spectrum, rig.samples))
+
+
+def driven_by_log(engine: Engine, state: State, run: str) -> Answer:
+    """Return the answer to the current that was logged, in place of the one that the simulated coil has."""
+    k, samples = engine.problem.channels.index("coil_current"), engine.problem.measured[run].shape[1]
+    weights, bins = engine.white.weights[run], engine.white.bins[run]
+    error, spectrum = spectra(state.whitened[run])[k], np.zeros(samples // 2 + 1, dtype=complex)
+    spectrum[:bins] = error / weights[k] * _share_above_noise(power(error))
+    course = np.fft.irfft(spectrum, samples)
+    rig = _driven(engine, state, run, Input(current=1.0))
+    left = rig.left(rig.channels(course))
+    left[k] = state.whitened[run][k]
+    return Answer(left, unit_error(weights, k), power(error / weights[k]), course)
+
+
+def unit_error(weights: Array, k: int) -> Spectra:
+    """Return what a unit error of channel `k` makes of the whitened channels, shape (channels, frequencies)."""
+    return np.asarray(np.eye(len(weights))[:, k : k + 1] * weights, dtype=complex)
 
 
 def unrepeated(engine: Engine, state: State) -> dict[str, Array] | None:
@@ -101,20 +195,30 @@ def unrepeated(engine: Engine, state: State) -> dict[str, Array] | None:
 
     The difference of two repeats holds twice the power of what does not repeat.
     """
-    problem, where = engine.problem, INPUTS["suspension"]
+    problem = engine.problem
     for run, entry in problem.recording.runs.items():
         first = problem.measured.get(entry.repeat_of or "", np.zeros(0))
         second = problem.measured[run]
         if first.shape == second.shape:
-            probe, still = _probe(engine, run, where), (np.zeros(second.shape[1]), second - state.residual[run])
-            signature = _signature(engine, state, run, where, probe, still)
+            rig = _driven(engine, state, run, INPUTS["suspension"])
+            signature = rig.signature((np.zeros(rig.samples), second - state.residual[run]))
             left = spectra(engine.white((first - second) / np.sqrt(2.0), run))
             size = np.sum(np.abs(signature) ** 2, axis=0)
-            course = np.sum(signature.conj() * left, axis=0) / (size + 2.0 / probe.plausible)
+            course = np.sum(signature.conj() * left, axis=0) / (size + 2.0 / rig.plausible())
             course *= REGAINED * _share_above_noise(size * power(course))
-            force = np.fft.irfft(course, first.shape[1])
+            force = np.fft.irfft(course, rig.samples)
             return {name: np.resize(force, values.shape[1]) for name, values in problem.measured.items()}
     return None
+
+
+def _driven(engine: Engine, state: State, run: str, where: Input) -> Driven:
+    problem, point = engine.problem, state.point
+    current = np.zeros(0)
+    if where.current:
+        scenario = problem.augmented(point.u, point.effects)
+        flowing = simulate(scenario, problem.floors[run])["coil_current"]
+        current = readings(scenario.effects, scenario.solver.step, {"coil_current": flowing})["coil_current"]
+    return Driven(problem, engine.white, point, run, where, current)
 
 
 def spectra(whitened: Array) -> Spectra:
@@ -128,64 +232,10 @@ def power(spectrum: Spectra) -> Array:
     return np.asarray(smoothed(np.abs(spectrum[None]) ** 2)[0] + 1e-30)
 
 
-def _probe(engine: Engine, run: str, where: Input) -> Probe:
-    problem = engine.problem
-    floor, plant = problem.floors[run], problem.scenario.plant
-    assert floor is not None
-    assert plant is not None
-    scale = SIZE * float(np.std(floor.acceleration)) * (1.0 if where.ground else plant.driver_mass)
-    samples, rate = problem.measured[run].shape[1], problem.recording.header.sample_rate
-    small, likely = (scale * _red(samples, rate, corner) for corner in (WIDE, CORNER))
-    return Probe(small, np.fft.rfft(small), REACH**2 * power(np.fft.rfft(likely)[: engine.white.bins[run]]))
-
-
-def _signature(
-    engine: Engine, state: State, run: str, where: Input, probe: Probe, about: tuple[Array, Array]
-) -> Spectra:
-    """Return what a unit input makes of the whitened channels, shape (channels, frequencies).
-
-    `about` is the course that the probe is added to, with the channels that this one gives.
-    """
-    course, answer = about
-    change = _simulated(engine.problem, state.point, run, where, course + probe.course) - answer
-    response = _response(np.fft.rfft(change), probe.spectrum)
-    return np.asarray(engine.white.weights[run] * response[:, : engine.white.bins[run]])
-
-
-def _better(
-    engine: Engine, state: State, run: str, where: Input, courses: list[Array], best: tuple[Array, Array, Array]
-) -> tuple[Array, Array, Array]:
-    """Return the course that leaves the least, with its channels and what it leaves; `best` is such a triple so far."""
-    measured = engine.problem.measured[run]
-    for course in courses:
-        answer = _simulated(engine.problem, state.point, run, where, course)
-        left = engine.white(measured - answer, run)
-        if np.sum(left**2) < np.sum(best[2] ** 2):
-            best = course, answer, left
-    return best
-
-
-def _simulated(problem: Problem, point: Point, run: str, where: Input, course: Array) -> Array:
-    """Return the channels of a run with a course on its places, shape (channels, samples)."""
-    floor = problem.floors[run]
-    assert floor is not None
-    rows = np.arange(len(floor.acceleration)) / problem.parts
-    full = np.interp(rows, problem.skip + np.arange(len(course)), course, left=0.0, right=0.0)
-    base = floor._replace(acceleration=floor.acceleration + where.ground * full)
-    try:
-        drive = Drive(base, Forces(where.push * full, where.lift * full))
-        answer = problem.simulated(run, point.u, point.effects, drive)
-    except RunError:
-        return np.full(problem.measured[run].shape, 1e6 * problem.spread[:, None])
-    if where.cell and "damper_force" in problem.channels:
-        answer[problem.channels.index("damper_force")] += where.cell * course
-    return answer
-
-
-def _red(samples: int, rate: float, corner: float) -> Array:
+def _red(samples: int, rate: float, corner: float, seed: int) -> Array:
     """Return random numbers of unit size whose spectrum falls above a corner in Hz."""
     frequency = np.fft.rfftfreq(samples, 1.0 / rate)
-    white = np.random.default_rng(1).standard_normal(samples)
+    white = np.random.default_rng(seed).standard_normal(samples)
     course = np.fft.irfft(np.fft.rfft(white) / (1.0 + frequency / corner), samples)
     return np.asarray(course / np.std(course))
 

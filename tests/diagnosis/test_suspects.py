@@ -11,7 +11,7 @@ from seatsim.diagnosis.suspects import suspects
 from seatsim.diagnosis.unknown_input import INPUTS, unrepeated
 from seatsim.diagnosis.whitening import whitening
 from seatsim.recording import load_recording
-from seatsim.simulation import Forces
+from seatsim.simulation import Forces, simulate
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +50,34 @@ def likeliest(posed):
 @pytest.mark.parametrize("block", ["damper", "suspension", "cushion", "driver"])
 def test_a_force_in_a_block_is_placed_there(posed, block):
     assert likeliest(with_input(posed, block))[0] == block
+
+
+def test_a_current_that_the_command_does_not_foretell_is_the_coils(posed):
+    rng, measured = np.random.default_rng(3), {}
+    for run in posed.runs:
+        floor = posed.floors[run]
+        flowing = simulate(posed.augmented(posed.rest, ()), floor)["coil_current"]
+        without_small = np.where(flowing > 0.3, flowing - 0.2, 0.0)
+        true = posed.simulated(run, posed.rest, (), Drive(floor._replace(command=None, coil_current=without_small)))
+        measured[run] = true + posed.noise[:, None] * rng.standard_normal(true.shape)
+    assert likeliest(dataclasses.replace(posed, measured=measured))[0] == "coil"
+
+
+def test_a_wrong_log_of_the_current_is_the_sensors(posed):
+    measured, k = {run: values.copy() for run, values in posed.measured.items()}, posed.channels.index("coil_current")
+    for values in measured.values():
+        values[k] = np.where(values[k] > 0.3, values[k] - 0.2, 0.0)
+    best, found = likeliest(dataclasses.replace(posed, measured=measured))
+    assert best == "sensor" and found[best].channel == "coil_current"
+
+
+def test_without_a_load_cell_damper_and_suspension_are_one(posed):
+    kept = [k for k, name in enumerate(posed.channels) if name != "damper_force"]
+    channels = tuple(posed.channels[k] for k in kept)
+    shaken = with_input(posed, "suspension")
+    measured = {run: values[kept] for run, values in shaken.measured.items()}
+    best, found = likeliest(dataclasses.replace(shaken, channels=channels, measured=measured))
+    assert best == "damper" and found["suspension"].doubt == found["damper"].doubt
 
 
 def test_an_error_of_one_channel_is_the_sensors(posed):
