@@ -129,7 +129,7 @@ def bic(case: Path) -> dict[str, Any]:
 
 def selected(engine: Engine) -> tuple[State, float]:
     """Return the set from which BIC falls no more, and its chi^2 / N."""
-    with patch.object(searching, "WORTHWHILE", np.inf):
+    with patch.multiple(searching, WORTHWHILE=np.inf, PROMISING=1e9, NOTHING=-1.0):
         found = searching.search(engine, candidates(engine.problem), lambda _: None)
     best = [sets[0] for sets in found.sets]
     worth = [
