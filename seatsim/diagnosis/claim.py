@@ -76,14 +76,13 @@ def scenario_at(problem: Problem, nominal: Scenario, point: Point) -> Scenario:
 def gaps(problem: Problem, scenarios: Sequence[Scenario], runs: Sequence[str], spread: float) -> Gaps:
     """Return the gaps of the nominal, the calibrated and the augmented scenario on some runs.
 
-    `spread` is the standard deviation of the shrink from run to run.
+    `spread` is the standard deviation of the shrink from run to run; a scenario left as it is shrinks no gap anywhere.
     """
     before, calibrated, after = (gap(scenario, problem.recording, runs) for scenario in scenarios)
     shrink = 1.0 - after.overall / before.overall
-    return Gaps(
-        _stated(before), _stated(calibrated), _stated(after), before.floor, shrink,
-        _interval(problem, (scenarios[0], scenarios[2]), runs, shrink, spread),
-    )  # fmt: skip
+    changed = (scenarios[0], scenarios[2])
+    interval = _interval(problem, changed, runs, shrink, spread) if shrink else (0.0, 0.0)
+    return Gaps(_stated(before), _stated(calibrated), _stated(after), before.floor, shrink, interval)
 
 
 def _stated(found: Any) -> dict[str, Any]:

@@ -28,7 +28,7 @@ from seatsim.diagnosis.random_cause import counted, joined, random_cause, with_s
 from seatsim.diagnosis.search import Search, search
 from seatsim.diagnosis.sentences import answer
 from seatsim.diagnosis.unknown_input import unrepeated
-from seatsim.diagnosis.verdict import Judgement, judged
+from seatsim.diagnosis.verdict import Judgement, given_up, judged
 from seatsim.diagnosis.whitening import whitening
 from seatsim.recording import Recording, load_recording
 from seatsim.registry import names
@@ -104,6 +104,8 @@ def _searched(
     told("asking which block could hold the rest")
     held, state = unexplained(engine, found, judgement.chosen)
     rest = latent(engine.problem, state.point, held.block, held.suspects[held.block])
+    if state is not judgement.chosen:
+        judgement = given_up(judgement, state)
     return Solution(engine, found, judgement, places(engine, state, held), rest)
 
 
@@ -115,6 +117,8 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     shrink = shrinks(posed, solution.found.nominal, chosen)
     run = held_out(engine, chosen, shrink)
     calibrated, augmented = trained(engine, chosen, run)
+    if judgement.verdict == "unknown" and not chosen.point.terms:
+        augmented = solution.found.nominal
     nominal = single(recording.nominal)
     points = (Point(posed.rest), calibrated.point, augmented.point)
     scenarios = [scenario_at(posed, nominal, point) for point in points]

@@ -85,6 +85,9 @@ class Played(Recording):
 def experiment(engine: Engine, state: State, group: Sequence[str]) -> dict[str, Any]:
     """Return the cheapest experiment that tells the members of a group apart, or that none on the menu does.
 
+    Sensors are told from the rest by calibrating them. Where no trial makes all members unlike (ALIKE), the one that
+    makes them least alike is taken.
+
     `kind` is `excitation` (then with a `scenario`, ready to be written, where the rig is a seat), `intervention` or
     `none`; `alikeness_now` and `alikeness_then` are those of the worst pair.
     """
@@ -94,24 +97,35 @@ def experiment(engine: Engine, state: State, group: Sequence[str]) -> dict[str, 
     base = engine.states([state.point.without(*group)])[0]
     views = [stacked(base.whitened, engine) - stacked(member.whitened, engine) for member in members]
     now = resemblance(np.array(views), beside(engine.slopes, engine))
-    wrong = _sensors(members, group)
+    wrong, first = _sensors(members), ""
     if wrong:
-        reason = f"calibrating {' and '.join(wrong)} tells a wrong sensor from a change of the rig"
-        return _answer("intervention", "calibrate_sensor", reason, now, 0.0)
-    seen: list[tuple[float, float, Trial]] = []
+        first = f"calibrating {' and '.join(wrong)} tells a wrong sensor from a change of the rig"
+        members = [member for member in members if member.point.terms[-1].block != "sensor"]
+        if len(members) <= 1:
+            return _answer("intervention", "calibrate_sensor", first, now, 0.0)
+        first += "; beside that, "
+    seen = _judged_menu(engine, state, base, members)
+    apart, then, trial = min(seen, key=lambda found: (found[0] <= APART, found[1]))
+    if apart <= APART:
+        apart, then, trial = max(seen, key=lambda found: found[0])
+        reason = f"none on the menu separates them: the best, {trial.name}, does so by {apart:.1f} times the noise only"
+        return _answer("none", "none on the menu", first + reason, now, then)
+    reason = f"{trial.text}: they then differ by {apart:.0f} times the noise, alikeness {then:.2f} instead of {now:.2f}"
+    answer = _answer("excitation" if trial.scenario else "intervention", trial.name, first + reason, now, then)
+    return answer | _scenario(engine.problem, trial)
+
+
+def _judged_menu(
+    engine: Engine, state: State, base: State, members: Sequence[State]
+) -> list[tuple[float, float, Trial]]:
+    """Return discrimination and alikeness of the worst pair in each trial, as far as the first that tells all apart."""
+    seen = []
     for trial in menu(engine.problem):
         apart, then = _judged(engine, state, base, members, trial)
         seen.append((apart, then, trial))
         if apart > APART and then < ALIKE:
-            seen = seen[-1:]
             break
-    apart, then, trial = max(seen, key=lambda found: found[0])
-    if apart <= APART:
-        reason = f"none on the menu separates them: the best, {trial.name}, does so by {apart:.1f} times the noise only"
-        return _answer("none", "none on the menu", reason, now, then)
-    reason = f"{trial.text}: they then differ by {apart:.0f} times the noise, alikeness {then:.2f} instead of {now:.2f}"
-    answer = _answer("excitation" if trial.scenario else "intervention", trial.name, reason, now, then)
-    return answer | _scenario(engine.problem, trial)
+    return seen
 
 
 def _answer(kind: str, name: str, reason: str, now: float, then: float) -> dict[str, Any]:
@@ -127,11 +141,11 @@ def _scenario(problem: Problem, trial: Trial) -> dict[str, Any]:
     return {"scenario": {k: v for k, v in values.items() if k not in ("start", "sweep", "variants", "published")}}
 
 
-def _sensors(members: Sequence[State], group: Sequence[str]) -> list[str]:
-    """Return the channels whose calibration leaves one member of a group, none where that is not so."""
+def _sensors(members: Sequence[State]) -> list[str]:
+    """Return the channels whose calibration tells members of a group from the others; none where two have the same."""
     terms = [member.point.terms[-1] for member in members]
     named = [str(t.fixed.get("channel", "the clock")).replace("_", " ") for t in terms if t.block == "sensor"]
-    return named if named and len(set(named)) == len(named) and len(group) - len(named) <= 1 else []
+    return named if len(set(named)) == len(named) else []
 
 
 def menu(problem: Problem) -> Iterator[Trial]:

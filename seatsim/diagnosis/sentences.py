@@ -16,11 +16,11 @@ def answer(diagnosis: Diagnosis) -> str:
             f" {gap.calibrated['overall']:.3f} refitted, noise {gap.floor['overall']:.3f} (in standard deviations)."
         )
     if diagnosis.verdict == "unknown":
-        beside = f" beside {_listed(diagnosis.selected)}" if diagnosis.selected else ""
-        return (
-            f"Something in the {diagnosis.where[0].block} that no effect of the library explains makes the gap{beside}:"
-            f" {gap.after['overall']:.3f} of {size} remain."
-        )
+        if diagnosis.selected:
+            rest = f" beside {_listed(diagnosis.selected)}: {gap.after['overall']:.3f} of {size} remain."
+        else:
+            rest = f": {size} nominal, noise {gap.floor['overall']:.3f} (in standard deviations)."
+        return f"Something in the {diagnosis.where[0].block} that no effect of the library explains makes the gap{rest}"
     named = "; ".join(_cause(diagnosis, name) for name in diagnosis.selected)
     credit = 1.0 - gap.after["overall"] / gap.calibrated["overall"]
     sentence = f"{named}: it takes {credit:.0%} off the gap that refitted parameters leave ({size} to"

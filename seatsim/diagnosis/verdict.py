@@ -6,8 +6,8 @@ whitened excess, which is 0 where only noise is left, and for material sizes in 
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,7 @@ ALIKE_FLOOR = 0.02
 """Excess added to it."""
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Judgement:
     """The verdict with the chosen set, sets that explain as well, and probabilities by effect, of none and unknown."""
 
@@ -59,6 +59,12 @@ def judged(engine: Engine, found: Search, effects: list[str]) -> Judgement:
     groups = rivals if explained else []
     verdict = ("ambiguous" if groups else "known") if explained else "unknown"
     return Judgement(verdict, chosen, groups, _probabilities(chosen, groups, effects, unknown), 0.01, unknown)
+
+
+def given_up(judgement: Judgement, calibrated: State) -> Judgement:
+    """Return the judgement where what is unexplained explains what the effects chosen did, too."""
+    probabilities = _probabilities(calibrated, [], list(judgement.probabilities), judgement.unknown)
+    return dataclasses.replace(judgement, chosen=calibrated, probabilities=probabilities)
 
 
 def _chosen(engine: Engine, found: Search) -> State:

@@ -91,7 +91,9 @@ class Lag(NamedTuple):
     forms=(
         {"shift": 0.004}, {"shift": -0.004},
         Form({"shift": 0.003}, {"hold": 1.0}), Form({"shift": -0.003}, {"hold": 1.0}),
+        Form({"shift": 0.001}, {"hold": 1.0}), Form({"shift": -0.001}, {"hold": 1.0}),
         Form({"shift": 0.003, "drift": 1e-5}, {"hold": 1.0}), Form({"shift": -0.003, "drift": 1e-5}, {"hold": 1.0}),
+        Form({"shift": 0.003, "drift": -5e-5}, {"hold": 1.0}), Form({"shift": -0.003, "drift": 5e-5}, {"hold": 1.0}),
     ),
 )  # fmt: skip
 class ClockSkew(NamedTuple):

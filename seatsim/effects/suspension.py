@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.effects.base import effect
+from seatsim.effects.base import Form, effect
 from seatsim.effects.laws import State, buffer, dahl_rate
 from seatsim.fields import param
 from seatsim.kernel.rig import Motion
@@ -69,13 +69,18 @@ class ProgressiveSpring(NamedTuple):
     "suspension.end_stop",
     source="unilateral spring with Hunt-Crossley damping, k d (1 + c d')",
     off={"low": -1.0, "high": 1.0, "power": 1.0},
-    forms=({"low": -0.012, "high": 0.012, "stiffness": 10000.0, "damping": 0.5},),
+    forms=(
+        Form(
+            {"low": -0.012, "high": 0.012, "stiffness": 10000.0, "damping": 0.5},
+            within={"stiffness": (5000.0, 1e6)},
+        ),
+    ),
 )
 class EndStop(NamedTuple):
     """Buffers at the ends of the travel.
 
     `f = stiffness d (d / 10 mm)^(power - 1) (1 + damping d')`, never pulling, where d is the depth beyond `low` or
-    `high`; power 1 is a linear buffer.
+    `high`; power 1 is a linear buffer. A diagnosis takes one that is softer than a seat's spring for a helper spring.
     """
 
     low: Annotated[float, param("m", "travel at which the lower buffer is touched", low=-1, high=0)]
