@@ -31,7 +31,7 @@ from seatsim.simulation import simulate
 
 Array = NDArray[np.float64]
 
-APART = 10.0
+APART = 30.0
 """Least discrimination, in noise units, of an experiment that is proposed."""
 ALIKE = 0.9
 """Alikeness below which the cheapest experiment is taken."""
@@ -170,14 +170,14 @@ def _interventions(problem: Problem, floor: Floor) -> Iterator[Trial]:
     rest, time = np.zeros(len(floor.acceleration)), floor.time
     steps = 0.9 * problem.scenario.coil.max_current * (np.floor(time / 0.25) % 2.0)
     still = Floor(floor.step, rest, rest, rest, steps)
+    if "coil_current" not in problem.channels:
+        yield Trial("coil_current", "repeat a run and log the current of the coil", floor, ("coil_current",))
     yield Trial("zero_current", "repeat a run without current", floor._replace(command=rest, coil_current=rest))
     ramp = 20.0 + 40.0 * time / time[-1]
     yield Trial("warm_up", "repeat a run while the damper warms from 20 to 60 degC", floor._replace(temperature=ramp))
     if not problem.bench:
         yield Trial("locked_seat", "lock the seat and switch the current every 0.25 s", still)
         yield Trial("added_mass", "repeat a run with 20 kg more on the driver's place", floor, mass=20.0)
-    if "coil_current" not in problem.channels:
-        yield Trial("coil_current", "repeat a run and log the current of the coil", floor, ("coil_current",))
     if "damper_force" not in problem.channels:
         yield Trial("load_cell", "repeat a run with a load cell at the damper", floor, ("damper_force",))
 

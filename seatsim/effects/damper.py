@@ -78,16 +78,18 @@ class Asymmetry(NamedTuple):
     "damper.seal_friction",
     source="Coulomb's law; with presliding Dahl 1968",
     initial=(0.0,),
-    forms=({"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3}),
+    forms=({"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0}),
 )
 class SealFriction(NamedTuple):
     """Rate-independent friction inside the damper, at every current, seen by the load cell.
 
-    `F + force z` with `z' = v (1 - z sgn v) / presliding`; without presliding set-valued, `F + force sgn(v)`.
+    `F + force z / (1 + lubrication |v|)` with `z' = v (1 - z sgn v) / presliding`; without presliding set-valued,
+    `F + force sgn(v)`. Without a load cell it is `suspension.friction`.
     """
 
     force: Annotated[float, param("N", "friction of seals and bearings", low=0, high=1e4)]
     presliding: Annotated[float, param("m", "travel over which friction builds up; 0: none", low=0, high=0.02)] = 0.0
+    lubrication: Annotated[float, param("s/m", "fall of friction with speed (Stribeck)", low=0, high=200)] = 0.0
 
     def stiction(self, z: State) -> float:
         """Return the limit of the set-valued friction in N."""
@@ -95,7 +97,7 @@ class SealFriction(NamedTuple):
 
     def added_force(self, x: float, v: float, z: State) -> float:
         """Return the friction in N that builds up over a travel."""
-        return self.force * z[0] if self.presliding > 0.0 else 0.0
+        return self.force * z[0] / (1.0 + self.lubrication * abs(v)) if self.presliding > 0.0 else 0.0
 
     def rates(self, x: float, v: float, u: float, i: float, pull: float, target: float, z: State) -> State:
         """Return z'."""

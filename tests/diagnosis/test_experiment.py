@@ -82,6 +82,22 @@ def test_a_calibration_tells_a_wrong_sensor_from_another_driver(rubbing):
     assert (found["kind"], found["name"]) == ("intervention", "calibrate_sensor") and "calibrating" in found["reason"]
 
 
+def test_frictions_have_the_same_forms_so_that_none_is_preferred_where_no_load_cell_tells_them(rubbing):
+    forms = [
+        [(c.free, c.start, c.low, c.high) for c in candidates(rubbing[0].problem) if c.effect == name]
+        for name in FRICTIONS
+    ]
+    assert forms[0] == forms[1]
+
+
+def test_beside_a_calibration_what_remains_is_told_apart_too(rubbing):
+    found = experiment(*rubbing, ["sensor.gain", *FRICTIONS])
+    assert (found["kind"], found["name"]) == ("intervention", "load_cell")
+    assert (
+        found["reason"].startswith("calibrating ") and "; beside that, repeat a run with a load cell" in found["reason"]
+    )
+
+
 def test_a_proposed_excitation_is_a_scenario_that_runs(sound, tmp_path):
     rig = recorded(sound, tmp_path, GasSpring(preload=10.0, stiffness=600.0), ["damper_force"])
     found = experiment(*fitted(rig, "damper.gas_spring"), ["damper.gas_spring", "suspension.progressive_spring"])
