@@ -229,7 +229,7 @@ def _judged(engine: Engine, state: State, base: State, members: Sequence[State],
     rows = np.array([(weights * course).ravel() for course in courses])
     ends = np.cumsum([2 + number] + [len(found) for found in moves])
     slopes = [
-        (rows[ends[k] : ends[k + 1]] - rows[1 + k]) / np.array([[nudge] for _, nudge in found])
+        (rows[ends[k] : ends[k + 1]] - rows[1 + k]) / np.array([nudge for _, nudge in found])[:, None]
         for k, found in enumerate(moves)
     ]
     new = Side(rows[2 : 2 + number], slopes[0], slopes[1:])
