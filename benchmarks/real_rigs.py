@@ -217,24 +217,19 @@ def evidence_table(found: Sequence[Found]) -> Table:
     return table
 
 
-def diagnosis_table(folders: Mapping[str, Path], known: Mapping[str, str]) -> Table | str:
-    """Return what the diagnosis says beside what is known, or a sentence where there is no diagnosis."""
-    try:
-        from seatsim import diagnose
-    except ImportError:
-        return "seatsim.diagnose does not exist yet: no verdicts"
+def diagnosis_table(folders: Mapping[str, Path], known: Mapping[str, str]) -> Table:
+    """Return what the diagnosis says beside what is known."""
     table = _table("diagnosis", "rig", "verdict", "selected", "where", "shrink", "s", "known to show")
     for name, folder in folders.items():
         start = time.perf_counter()
         try:
-            answer = diagnose(folder)
+            found = seatsim.diagnose(folder)
         except seatsim.SeatsimError as error:
             table.add_row(name, "error", str(error), "", "", "", known[name])
             continue
-        found = answer if isinstance(answer, Mapping) else answer.as_dict()
-        where = ", ".join(f"{entry['block']} {entry['share']:.2f}" for entry in found["where"])
-        seconds, shrink = f"{time.perf_counter() - start:.0f}", f"{found['gap']['shrink']:.2f}"
-        table.add_row(name, found["verdict"], ", ".join(found["selected"]), where, shrink, seconds, known[name])
+        where = ", ".join(f"{share.block} {share.share:.2f}" for share in found.where)
+        seconds, shrink = f"{time.perf_counter() - start:.0f}", f"{found.gap.shrink:.2f}"
+        table.add_row(name, found.verdict, ", ".join(found.selected), where, shrink, seconds, known[name])
     return table
 
 

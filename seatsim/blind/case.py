@@ -17,6 +17,8 @@ from seatsim.blind.truth import Changes, Context, Push
 
 SECONDS = 24.0
 UNSEEN_SECONDS = 14.0
+STEPPED = 0.4
+"""Share of the rigs whose current is stepped in every run, not controlled in some."""
 COMPARED = ("frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 CHANNELS = (
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
@@ -103,8 +105,11 @@ def _plans(rng: Generator, warm: bool, repeat: bool) -> tuple[RunPlan, ...]:
     )  # fmt: skip
     top = rng.uniform(0.8, 1.0)
     first = RunPlan("run-a", roads.road(rng, SECONDS, rms), schedule, roads.steps(rng, rows, top), hot[0])
-    second = RunPlan("run-b", roads.road(rng, SECONDS, rms), skyhook, off, hot[1])
-    third = RunPlan("run-c", roads.bumps(rng, SECONDS, rng.uniform(6.0, 8.5)), feedback, off, hot[2])
+    laws = [(skyhook, off), (feedback, off)]
+    if rng.random() < STEPPED:
+        laws = [(schedule, roads.steps(rng, rows, top)) for _ in laws]
+    second = RunPlan("run-b", roads.road(rng, SECONDS, rms), *laws[0], hot[1])
+    third = RunPlan("run-c", roads.bumps(rng, SECONDS, rng.uniform(6.0, 8.5)), *laws[1], hot[2])
     again = (dataclasses.replace(first, name="run-d", repeat_of="run-a"),) if repeat else ()
     last = RunPlan(
         "run-u", roads.sweep(rng, UNSEEN_SECONDS, 0.9 * rms), schedule, roads.steps(rng, unseen, top), hot[3]

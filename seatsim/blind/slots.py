@@ -20,7 +20,8 @@ EXTRAS = (
     "tau_thermo", "gas_force", "gas_length", "gas_exponent", "gas_form", "gas_rate", "asym_visc_up", "asym_visc_down",
     "asym_yield_up", "asym_yield_down", "asym_speed", "pre_share", "pre_length", "pre_tau", "sat_froehlich",
     "sat_langevin",
-    "rem_relay", "rem_width", "rem_decay", "rem_gain", "rem_tau", "play_gap", "play_air", "mount_k",
+    "rem_relay", "rem_width", "rem_decay", "rem_gain", "rem_tau", "play_gap", "play_air", "play_turn",
+    "mount_k",
     "seal_force", "seal_stribeck", "seal_speed", "seal_length", "seal_pressure",
     # damper, outside
     "cav_force", "cav_fill", "orifice", "thin_power", "thin_speed", "mag_stiffness", "inertance", "bypass",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from numpy.random import Generator
 
 from seatsim.blind.truth import Build, Changes, Context, Draw, Shape, Truth, slots
@@ -110,6 +112,14 @@ def _air(s: float, q: Shape, _: Context) -> Changes:
     return slots(play_air=0.0004 * s, mount_k=q["stiffness"])
 
 
+def _gap_shape(rng: Generator, _: Context) -> Shape:
+    return {"gap": math.exp(rng.uniform(math.log(1e-4), math.log(1.5e-3)))}
+
+
+def _turn(s: float, q: Shape, _: Context) -> Changes:
+    return slots(play_gap=q["gap"] * s, play_turn=1.0)
+
+
 def _seal_shape(rng: Generator, _: Context) -> Shape:
     return {
         "stribeck": rng.uniform(1.05, 1.4), "speed": rng.uniform(0.005, 0.03), "length": rng.uniform(5e-5, 2e-4),
@@ -160,6 +170,7 @@ TRUTHS = (
     _damper("remanence-decay", "remanence", _magnet_shape, _magnet, (0.05, 6.0)),
     _damper("play-contact", "free_play", _mount_shape, _play, (0.005, 6.0)),
     _damper("play-air", "free_play", _mount_shape, _air, (0.005, 6.0)),
+    _damper("play-turn", "free_play", _gap_shape, _turn, (0.8, 1.2)),
     _damper("seal-lugre", "seal_friction", _seal_shape, _seal_lugre, (0.05, 6.0)),
     _damper("seal-pressure", "seal_friction", _seal_shape, _seal_pressure, (0.05, 6.0)),
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from seatsim.diagnosis.coverage import coverage
 from seatsim.diagnosis.evidence import causes, collected
 from seatsim.diagnosis.examination import examine, refuse
 from seatsim.diagnosis.experiment import experiment
-from seatsim.diagnosis.findings import Diagnosis, Share
+from seatsim.diagnosis.findings import Array, Diagnosis, Share
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.isolability import isolable, losses
 from seatsim.diagnosis.latent import Latent, latent
@@ -29,10 +29,13 @@ from seatsim.diagnosis.search import Search, search
 from seatsim.diagnosis.sentences import answer
 from seatsim.diagnosis.unknown_input import unrepeated
 from seatsim.diagnosis.verdict import Judgement, given_up, judged
-from seatsim.diagnosis.whitening import whitening
+from seatsim.diagnosis.whitening import broadband, whitening
 from seatsim.recording import Recording, load_recording
 from seatsim.registry import names
 from seatsim.replay import single
+
+CHATTER = 0.5
+"""Share of what the best set leaves from which broadband noise is counted as such."""
 
 
 class Solution(NamedTuple):
@@ -41,8 +44,8 @@ class Solution(NamedTuple):
     engine: Engine
     found: Search
     judgement: Judgement
-    where: list[Share]
-    rest: Latent | None
+    where: Sequence[Share] = ()
+    rest: Latent | None = None
     random: str = ""
 
 
@@ -77,6 +80,9 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     if shaken is not None:
         engine = Engine(posed, whitening(posed, shaken))
     first = _searched(engine, offered, effects, told)
+    if first.judgement.verdict == "unknown":
+        first = _past_chatter(first, shaken, offered, effects, told)
+    first = _placed(first, told)
     random = random_cause(posed, first.rest) if first.rest else ""
     if first.rest is None or not random or random in without:
         return first
@@ -85,28 +91,48 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     second = _searched(noisy, [each for each in offered if each.effect != random], effects, told)
     if second.judgement.verdict == "unknown":
         return first
-    judgement, where = joined(second.judgement, second.where, random)
+    judgement, where = joined(second.judgement, _placed(second, told).where, random)
     rest = first.rest._replace(block=random.partition(".")[0])
     return second._replace(judgement=judgement, where=where, rest=rest, random=random)
+
+
+def _past_chatter(
+    first: Solution, shaken: Mapping[str, Array] | None, offered: Sequence[Candidate], effects: list[str],
+    told: Callable[[str], None],
+) -> Solution:  # fmt: skip
+    """Search again where most of what the best set leaves is broadband, and return what explains the gap beside it."""
+    posed, best = first.engine.problem, first.found.sets[-1][0]
+    errors, weights = broadband(posed, best.residual), first.engine.white.weights
+    chatter = sum(float(np.sum(power * weights[run] ** 2)) for run, power in errors.items())
+    if chatter < CHATTER * first.found.excess(best) * first.found.rows:
+        return first
+    told("counting chatter as noise")
+    second = _searched(Engine(posed, whitening(posed, shaken, errors)), offered, effects, told)
+    return second if second.judgement.verdict in ("known", "ambiguous") else first
 
 
 def _searched(
     engine: Engine, offered: Sequence[Candidate], effects: list[str], told: Callable[[str], None]
 ) -> Solution:
     found = search(engine, offered, told)
-    judgement = judged(engine, found, effects)
+    return Solution(engine, found, judged(engine, found, effects))
+
+
+def _placed(solution: Solution, told: Callable[[str], None]) -> Solution:
+    """Return the solution with the blocks that the gap lies in, and the course of what is unexplained."""
+    engine, found, judgement = solution.engine, solution.found, solution.judgement
     if judgement.verdict == "none":
-        return Solution(engine, found, judgement, [], None)
+        return solution
     if judgement.verdict != "unknown":
-        return Solution(engine, found, judgement, places(engine, judgement.chosen, None), None)
+        return solution._replace(where=places(engine, judgement.chosen, None))
     if engine.problem.bench:
-        return Solution(engine, found, judgement, [Share("damper", 1.0)], None)
+        return solution._replace(where=[Share("damper", 1.0)])
     told("asking which block could hold the rest")
     held, state = unexplained(engine, found, judgement.chosen)
     rest = latent(engine.problem, state.point, held.block, held.suspects[held.block])
     if state is not judgement.chosen:
         judgement = given_up(judgement, state)
-    return Solution(engine, found, judgement, places(engine, state, held), rest)
+    return solution._replace(judgement=judgement, where=places(engine, state, held), rest=rest)
 
 
 def _stated(recording: Recording, solution: Solution, notes: list[str], told: Callable[[str], None]) -> Diagnosis:
@@ -133,7 +159,7 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     relevant = [cause.effect for cause in listed[:10] if cause.probability > 0.003]
     at_work = {solution.random, *(term.effect for term in chosen.point.terms)}
     diagnosis = Diagnosis(
-        name=recording.folder.name, verdict=judgement.verdict, sentence="", where=solution.where, causes=listed,
+        name=recording.folder.name, verdict=judgement.verdict, sentence="", where=list(solution.where), causes=listed,
         probability_none=judgement.none, probability_unknown=judgement.unknown,
         selected=[name for name in judgement.probabilities if name in at_work], random=solution.random,
         indistinguishable=judgement.groups, experiment=asked, held_out=[run],

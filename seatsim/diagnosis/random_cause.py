@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 
 from seatsim.diagnosis.findings import Cause, Estimate, Share
 from seatsim.diagnosis.latent import Latent, rms
 from seatsim.diagnosis.problem import Problem
+from seatsim.diagnosis.unknown_input import power
 from seatsim.diagnosis.verdict import Judgement
 from seatsim.diagnosis.whitening import Whitening, whitening
 
@@ -30,10 +32,10 @@ def counted(problem: Problem, effect: str, rest: Latent) -> Whitening:
     if effect == OUTSIDE:
         return whitening(problem, rest.course)
     row = np.array([[name == rest.channel] for name in problem.channels], dtype=float)
-    return whitening(problem, errors={run: row * course for run, course in rest.course.items()})
+    return whitening(problem, errors={run: row * power(np.fft.rfft(course)) for run, course in rest.course.items()})
 
 
-def joined(judgement: Judgement, where: list[Share], effect: str) -> tuple[Judgement, list[Share]]:
+def joined(judgement: Judgement, where: Sequence[Share], effect: str) -> tuple[Judgement, list[Share]]:
     """Return judgement and places of what was found beside it, with the effect itself among them."""
     probabilities = judgement.probabilities | {effect: 0.9}
     verdict = "ambiguous" if judgement.groups else "known"

@@ -20,7 +20,7 @@ def answer(diagnosis: Diagnosis) -> str:
             rest = f" beside {_listed(diagnosis.selected)}: {gap.after['overall']:.3f} of {size} remain."
         else:
             rest = f": {size} nominal, noise {gap.floor['overall']:.3f} (in standard deviations)."
-        return f"Something in the {diagnosis.where[0].block} that no effect of the library explains makes the gap{rest}"
+        return f"Something in the {_unexplained(diagnosis)} that no effect of the library explains makes the gap{rest}"
     named = "; ".join(_cause(diagnosis, name) for name in diagnosis.selected)
     credit = 1.0 - gap.after["overall"] / gap.calibrated["overall"]
     sentence = f"{named}: it takes {credit:.0%} off the gap that refitted parameters leave ({size} to"
@@ -30,6 +30,13 @@ def answer(diagnosis: Diagnosis) -> str:
     for group in diagnosis.indistinguishable:
         sentence += f"; these data cannot tell it from {_listed(group[1:])}"
     return sentence + "."
+
+
+def _unexplained(diagnosis: Diagnosis) -> str:
+    """Return the block of what is unexplained, with the blocks that these channels cannot tell from it."""
+    first = diagnosis.where[0].block
+    together = next((group for group in diagnosis.isolable if first in group), [first])
+    return " or the ".join([first, *(block for block in together if block != first)])
 
 
 def _cause(diagnosis: Diagnosis, name: str) -> str:

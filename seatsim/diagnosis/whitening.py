@@ -51,7 +51,7 @@ def whitening(
     """Return the weights for a recording.
 
     `pushes` are courses of a random force on the frame in N by run, shape (samples,), whose power counts as noise;
-    `errors` those of the channels, shape (channels, samples).
+    `errors` are power spectra of errors of the channels, shape (channels, frequencies) or (channels, 1).
     """
     rate = problem.recording.header.sample_rate
     repeated = _unrepeatable(problem)
@@ -63,7 +63,7 @@ def whitening(
         bins[run] = int(np.searchsorted(frequency, min(HIGHEST, 0.5 * rate)))
         power = problem.noise[:, None] ** 2 * samples + _carried(problem, run, (pushes or {}).get(run))
         if errors is not None:
-            power = power + smoothed(np.abs(np.fft.rfft(errors[run], axis=1)) ** 2)
+            power = power + errors[run]
         if repeated is not None:
             power = np.maximum(
                 power, np.array([np.interp(frequency, repeated[0], row) for row in repeated[1]]) * samples
@@ -85,6 +85,21 @@ def _carried(problem: Problem, run: str, push: Array | None) -> Array:
     clean = problem.simulated(run, problem.rest, ())
     twins = list(POOL.map(lambda drive: problem.simulated(run, problem.rest, (), drive), drives))
     return smoothed(np.mean([np.abs(np.fft.rfft(twin - clean, axis=1)) ** 2 for twin in twins], axis=0))
+
+
+def broadband(problem: Problem, residual: Mapping[str, Array]) -> dict[str, Array]:
+    """Return by run the white power, shape (channels, 1), of residuals that are twice the stated noise above HIGHEST.
+
+    A force that chatters between two values is sampled as white noise, which no model foretells.
+    """
+    found = {}
+    for run, values in residual.items():
+        frequency = np.fft.rfftfreq(values.shape[1], 1.0 / problem.recording.header.sample_rate)
+        power = np.abs(np.fft.rfft(values, axis=1)[:, frequency > HIGHEST]) ** 2
+        level = np.median(power, axis=1) / np.log(2.0) if power.size else np.zeros(len(values))
+        stated = problem.noise**2 * values.shape[1]
+        found[run] = np.where(level > 2.0 * stated, level - stated, 0.0)[:, None]
+    return found
 
 
 def _noisy(problem: Problem, floor: Floor, rng: np.random.Generator) -> Floor:

@@ -17,7 +17,7 @@ In the time loop, compiled by numba, with `z` the effect's own state:
 
     on the damper       conditioned(self, heat, v, z)   yield_current(self, i, z)   yield_speed(self, v, z)
                         yield_shape(self, shape, target, late, z)   yield_force(self, force, z)
-                        engaged(self, h, pull, z)   mount_force(self, force, z)   mount_stiffness(self, z)
+                        engaged(self, h, v, pull, z)   mount_force(self, force, z)   mount_stiffness(self, z)
                         added_force(self, x, v, z)   stiction(self, z)   rates(self, x, v, u, i, pull, target, z)
     on the seat         suspension_force(self, plant, x, v, z)   linkage_friction(self, z)
                         cushion_force(self, force, plant, xc, vc, z)

@@ -41,7 +41,7 @@ class AsymmetricLag(NamedTuple):
         return coil._replace(rate_fall=_slower(coil.rate_fall if coil.rate_fall > 0.0 else coil.rate, self.time))
 
 
-@effect("coil.delay", source="sampling and bus latency", forms=({"time": 0.004},))
+@effect("coil.delay", source="sampling and bus latency", forms=({"time": 0.004}, {"time": 0.013}, {"time": 0.03}))
 class Delay(NamedTuple):
     """Pure transport delay from command to coil."""
 

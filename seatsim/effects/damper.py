@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, NamedTuple
 
-from seatsim.effects.base import effect
-from seatsim.effects.laws import State, dahl_rate
+from seatsim.effects.base import Form, effect
+from seatsim.effects.laws import FRICTIONS, State, dahl_rate
 from seatsim.fields import param
 from seatsim.jit import jit
 from seatsim.registry import card_of
@@ -78,7 +78,7 @@ class Asymmetry(NamedTuple):
     "damper.seal_friction",
     source="Coulomb's law; with presliding Dahl 1968",
     initial=(0.0,),
-    forms=({"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0}),
+    forms=FRICTIONS,
 )
 class SealFriction(NamedTuple):
     """Rate-independent friction inside the damper, at every current, seen by the load cell.
@@ -110,26 +110,37 @@ class SealFriction(NamedTuple):
     initial=(0.0,),
     off={"softness": 0.3},
     forms=(
-        {"gap": 1e-4}, {"gap": 1e-3}, {"gap": 3e-4, "softness": 0.9}, {"gap": 3e-5, "stiffness": 4e6},
-        {"gap": 5e-4, "stiffness": 2e6},
+        *({"gap": gap} for gap in (1e-4, 3e-4, 1e-3, 2e-3)), {"gap": 3e-4, "softness": 0.9},
+        *(Form({"gap": gap, "stiffness": 3e6}, within={"stiffness": (1e6, 1e9)}) for gap in (3e-5, 1e-4, 3e-4, 8e-4)),
+        *(Form({"gap": 1e-4 * 1.15**k}, {"softness": 0.05, "turning": 1e-4}) for k in range(24)),
     ),
 )  # fmt: skip
 class FreePlay(NamedTuple):
-    """Backlash at the mount or trapped air: after each reversal of the force a travel `gap` without force.
+    """Backlash at the mount or trapped air: after each reversal a travel `gap` without force.
 
     With g the place in the gap, `g' = v - u` where u is the speed of the piston. Without stiffness the mount is rigid:
     the damper hands on the share h of its force and `u = h v`; with s = 2 g sgn(F) / gap, h rises smoothly from 0 at
-    `s = 1 - 2 softness` to 1 at s = 1. With it the force is the mount's, `S = stiffness max(0, |g| - gap / 2) sgn g`,
-    and u is the speed at which the damper bears S.
+    `s = 1 - 2 softness` to 1 at s = 1: what is reversed is the force. With `turning` it is the motion, and the damper
+    keeps its state where it hands on nothing: `h = (1 + w) h+ / 2 + (1 - w) h- / 2`, `w = tanh(v / turning)`, with h+
+    and h- for the two signs of s. A small `turning` makes the force chatter, unforeseeably, where the damper rests.
+    With stiffness the force is the mount's, `S = stiffness max(0, |g| - gap / 2) sgn g`, and u is the speed at which
+    the damper bears S.
     """
 
     gap: Annotated[float, param("m", "travel without force after a reversal", low=0, high=0.05)]
     softness: Annotated[float, param("-", "share of the gap over which the force returns", above=0, high=1)] = 0.3
     stiffness: Annotated[float, param("N/m", "stiffness of the mount; 0: rigid", low=0, high=1e9)] = 0.0
+    turning: Annotated[float, param("m/s", "speed from which motion opens the gap; 0: force", low=0, high=1)] = 0.0
 
-    def engaged(self, h: float, pull: float, z: State) -> float:
+    def engaged(self, h: float, v: float, pull: float, z: State) -> float:
         """Return the share of speed and force that gets through, of a damper that pulls with `pull` newton."""
-        return h * _passed(self.gap, self.softness, pull, z[0]) if self.gap > 0.0 else h
+        if self.gap <= 0.0:
+            return h
+        if self.turning <= 0.0:
+            return h * _passed(self.gap, self.softness, pull, z[0])
+        w = math.tanh(v / self.turning)
+        up, down = _passed(self.gap, self.softness, 1.0, z[0]), _passed(self.gap, self.softness, -1.0, z[0])
+        return 0.5 * h * ((1.0 + w) * up + (1.0 - w) * down)
 
     def mount_stiffness(self, z: State) -> float:
         """Return the stiffness in N/m of the mount, 0 where it is rigid."""

@@ -10,6 +10,12 @@ State = tuple[float, ...]
 REFERENCE_DEPTH = 0.01
 """m; depth at which buffers of every exponent are equally strong."""
 
+FRICTIONS: tuple[dict[str, float], ...] = (
+    {"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0},
+    {"force": 120.0, "presliding": 1e-3, "lubrication": 20.0},
+)  # fmt: skip
+"""Starts of a friction's fit."""
+
 
 @jit
 def dahl_rate(presliding: float, v: float, z: float) -> float:

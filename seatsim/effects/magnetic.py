@@ -42,8 +42,10 @@ class MagneticSaturation(NamedTuple):
     initial=(0.0, 0.0, 0.0),
     forms=(
         {"width": 0.01},
+        {"width": 0.15},
         {"width": 0.01, "spread": 0.7},
         {"width": 0.01, "lift": 0.5},
+        {"width": 0.15, "lift": 0.5},
         {"width": 0.02, "decay": 1.0},
         {"width": 0.1, "decay": 20.0},
         {"share": 0.1, "decay": 2.0},

@@ -19,6 +19,9 @@ Channel = Literal[
 Named = Annotated[Channel, Field(description="the recorded channel that is wrong")]
 LOGGED = ("current_command", "coil_current")
 """Channels of the controller's log."""
+LATE = (0.001, 0.003, 0.006, 0.011, 0.018, 0.028, 0.042)
+EARLY = tuple(-shift for shift in LATE)
+"""Shifts in s that a fit starts from: with a current that steps it finds the truth from near it alone."""
 
 
 @effect("sensor.gain", source="calibration", by_channel=True, off={"error": 0.0}, forms=({"error": 0.05},))
@@ -89,10 +92,9 @@ class Lag(NamedTuple):
     "sensor.clock_skew",
     source="two clocks",
     forms=(
-        {"shift": 0.004}, {"shift": -0.004},
-        Form({"shift": 0.003}, {"hold": 1.0}), Form({"shift": -0.003}, {"hold": 1.0}),
-        Form({"shift": 0.001}, {"hold": 1.0}), Form({"shift": -0.001}, {"hold": 1.0}),
-        Form({"shift": 0.003, "drift": 1e-5}, {"hold": 1.0}), Form({"shift": -0.003, "drift": 1e-5}, {"hold": 1.0}),
+        *({"shift": shift} for shift in (*LATE[1::2], *EARLY[1::2])),
+        *(Form({"shift": shift}, {"hold": 1.0}) for shift in (*LATE, *EARLY)),
+        *(Form({"shift": shift, "drift": 1e-5}, {"hold": 1.0}) for shift in (*LATE[1::2], *EARLY[1::2])),
         Form({"shift": 0.003, "drift": -5e-5}, {"hold": 1.0}), Form({"shift": -0.003, "drift": 5e-5}, {"hold": 1.0}),
     ),
 )  # fmt: skip

@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.effects.base import Form, effect
-from seatsim.effects.laws import State, buffer, dahl_rate
+from seatsim.effects.laws import FRICTIONS, State, buffer, dahl_rate
 from seatsim.fields import param
 from seatsim.kernel.rig import Motion
 from seatsim.plant import Plant
@@ -16,7 +16,7 @@ from seatsim.plant import Plant
     "suspension.friction",
     source="Coulomb's law; with presliding Dahl 1968",
     initial=(0.0,),
-    forms=({"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0}),
+    forms=FRICTIONS,
 )
 class Friction(NamedTuple):
     """Rate-independent friction in the linkage, not seen by the damper's load cell.
@@ -45,7 +45,14 @@ class Friction(NamedTuple):
 @effect(
     "suspension.progressive_spring",
     source="odd terms of a hardening spring's series; a helper spring that comes to bear",
-    forms=({"rise": 300.0}, {"rise": 300.0, "skew": 1.0}, {"helper": 0.5, "reach": 0.01}),
+    forms=(
+        {"rise": 300.0},
+        {"rise": 4000.0},
+        {"rise": 300.0, "skew": 1.0},
+        {"rise": 4000.0, "skew": 1.0},
+        {"helper": 0.5, "reach": 0.01},
+        {"helper": 4.0, "reach": 0.01},
+    ),
 )
 class ProgressiveSpring(NamedTuple):
     """Stiffness that grows with travel: `f = kf x (1 + skew x + rise x^2)`, and a helper spring beside it.

@@ -49,7 +49,7 @@ class AugmentedDamper(NamedTuple):
         passed = mount_force(effects, outer, math.nan)
         if math.isnan(passed):
             pull = _pull(self.damper, effects, x, v, i, heat, inner, outer)
-            passed = engaged(effects, outer, 1.0, pull) * pull
+            passed = engaged(effects, outer, 1.0, v, pull) * pull
         answer: float = passed + added_force(effects, outer, x, v)
         return answer
 
@@ -71,7 +71,7 @@ class AugmentedDamper(NamedTuple):
         effects, outer = self.effects, own(self.effects, z)
         limit: float = stiction(effects, outer)
         if math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
-            h = engaged(effects, outer, 1.0, v)
+            h = engaged(effects, outer, 1.0, v, v)
             limit += h * coulomb(self.damper, yield_current(effects, outer, i), conditioned(effects, outer, heat, v))
         return limit
 
@@ -86,7 +86,7 @@ def _piston_speed(
     """
     passed = mount_force(effects, outer, math.nan)
     if math.isnan(passed):
-        share: float = engaged(effects, outer, 1.0, pull)
+        share: float = engaged(effects, outer, 1.0, v, pull)
         return share * v
     slope = mount_stiffness(effects, outer) / SETTLING
     other, e_other = v, pull - passed

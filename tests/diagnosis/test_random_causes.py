@@ -9,7 +9,9 @@ from scipy.signal import butter, sosfiltfilt
 from seatsim.diagnosis.diagnose import solved
 from seatsim.diagnosis.latent import Latent
 from seatsim.diagnosis.problem import Drive, problem
+from seatsim.diagnosis.whitening import broadband
 from seatsim.recording import load_recording
+from seatsim.registry import find
 from seatsim.simulation import Forces
 
 RATE = 500.0
@@ -71,3 +73,25 @@ def test_a_random_force_is_named_unless_it_is_withheld(posed):
     shaken = dataclasses.replace(posed, measured=measured)
     assert solved(shaken, (), lambda _: None).random == "floor.unmeasured_input"
     assert solved(shaken, ("floor.unmeasured_input",), lambda _: None).judgement.verdict == "unknown"
+
+
+def test_broadband_noise_is_seen_above_the_compared_band(posed):
+    run, k = posed.runs[0], posed.channels.index("frame_acceleration")
+    quiet = posed.noise[:, None] * np.random.default_rng(3).standard_normal(posed.measured[run].shape)
+    assert not np.any(broadband(posed, {run: quiet})[run])
+    loud = np.where(np.arange(len(quiet))[:, None] == k, 10.0 * quiet, quiet)
+    found = broadband(posed, {run: loud})[run]
+    assert np.flatnonzero(found).tolist() == [k]
+    assert found[k, 0] == pytest.approx(99.0 * posed.noise[k] ** 2 * quiet.shape[1], rel=0.1)
+
+
+def test_chatter_hides_no_cause(posed):
+    heavier = find("effect", "driver.mass")(change=12.0)
+    k, measured = posed.channels.index("frame_acceleration"), {}
+    for seed, run in enumerate(posed.runs):
+        true = posed.simulated(run, posed.rest, [heavier])
+        true[k] += 0.3 * posed.spread[k] * np.random.default_rng(seed).standard_normal(true.shape[1])
+        measured[run] = noisy(posed, true)
+    solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
+    assert solution.judgement.verdict == "known"
+    assert [term.effect for term in solution.judgement.chosen.point.terms] == ["driver.mass"]

@@ -74,10 +74,11 @@ def test_remanence_fades_where_it_decays():
     assert extra[1400] / extra[1000] == pytest.approx(math.exp(-5.0 * 0.4), rel=1e-3)
 
 
-def test_free_play_gives_no_force_over_a_travel_after_each_reversal():
+@pytest.mark.parametrize("turning", [0.0, 1e-4])
+def test_free_play_gives_no_force_over_a_travel_after_each_reversal(turning):
     gap, softness = 2e-3, 0.3
     x, v = strokes(speed=0.1, length=0.01, count=4)
-    force = bench([record("damper.free_play", gap=gap, softness=softness)], x, v, 0.5)
+    force = bench([record("damper.free_play", gap=gap, softness=softness, turning=turning)], x, v, 0.5)
     nominal = bench([], x, v, 0.5)
     for stroke in (1, 2, 3):
         travel = 0.1 * STEP * np.arange(100)
@@ -85,6 +86,18 @@ def test_free_play_gives_no_force_over_a_travel_after_each_reversal():
         free = (travel > 0.1 * gap) & (travel < (1.0 - softness) * gap - 1e-4)
         assert np.max(np.abs(share[free])) == 0.0
         assert share[travel > 2.0 * gap] == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_play_that_motion_opens_lets_go_of_a_damper_that_still_pulls():
+    pulling = INERT._replace(f0=2000.0)
+    x, v = strokes(speed=0.1, length=0.01, count=2)
+    forces = {
+        turning: bench([record("damper.free_play", gap=2e-3, softness=0.05, turning=turning)], x, v, damper=pulling)
+        for turning in (0.0, 1e-4)
+    }
+    turned = slice(105, 115)
+    assert np.max(np.abs(forces[1e-4][turned])) == 0.0
+    assert forces[0.0][turned] == pytest.approx(2000.0, abs=1.0)
 
 
 def test_an_elastic_mount_and_a_dashpot_are_a_maxwell_element():
