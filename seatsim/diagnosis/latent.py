@@ -25,6 +25,8 @@ LAGS = 10
 """Past samples of the motion that a linear filter may use."""
 RIDGE = 1e-3
 """Ridge, relative to the regressors' power."""
+LEAST = 1e-9
+"""Least ridge, for regressors that are all at rest, such as a current that never flows."""
 FORETOLD = 0.12
 """Share of the variance on left-out runs from which a force belongs to the rig."""
 STEADY = 1.4
@@ -67,9 +69,9 @@ def latent(problem: Problem, point: Point, block: str, suspect: Suspect) -> Late
     features = {run: _features(problem, point, run) for run in problem.runs}
     target = {run: _thinned(problem, suspect.course[run]) for run in problem.runs}
     families = list(next(iter(features.values())))
-    shares = {family: _foretold({run: f[family] for run, f in features.items()}, target) for family in families}
+    shares = {family: foretold({run: f[family] for run, f in features.items()}, target) for family in families}
     everything = {run: np.concatenate(list(f.values())) for run, f in features.items()}
-    shares["everything"] = max(_foretold(everything, target), *shares.values())
+    shares["everything"] = max(foretold(everything, target), *shares.values())
     return Latent(block, suspect.quantity, suspect.unit, suspect.course, shares, suspect.channel)
 
 
@@ -106,7 +108,7 @@ def _lagged(values: Array) -> Array:
     return np.array([np.concatenate([np.full(k, values[0]), values[: len(values) - k]]) for k in range(LAGS)])
 
 
-def _foretold(features: dict[str, Array], target: dict[str, Array]) -> float:
+def foretold(features: dict[str, Array], target: dict[str, Array]) -> float:
     """Return the share of the variance of runs that is foretold by a regression on the others."""
     runs = list(target)
     halves = len(runs) == 1
@@ -131,7 +133,7 @@ def _regressed(features: Array, target: Array) -> Array:
     scale = np.sqrt(np.mean(features**2, axis=1)) + 1e-12
     scaled = features / scale[:, None]
     gram = scaled @ scaled.T
-    ridge = RIDGE * np.trace(gram) / len(gram) * np.eye(len(gram))
+    ridge = max(RIDGE * np.trace(gram) / len(gram), LEAST) * np.eye(len(gram))
     weights: Array = np.linalg.solve(gram + ridge, scaled @ target) / scale
     return weights
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 
 from seatsim.diagnosis.diagnose import solved
-from seatsim.diagnosis.latent import Latent
+from seatsim.diagnosis.latent import Latent, foretold
 from seatsim.diagnosis.problem import Drive, problem
 from seatsim.diagnosis.whitening import broadband
 from seatsim.recording import load_recording
@@ -33,6 +33,12 @@ def test_a_force_from_outside_is_as_strong_in_every_run():
     course = coloured(5000, 1.0, 20.0, 1)
     assert left([8.0 * course, 9.0 * course]).from_outside
     assert not left([8.0 * course, 14.0 * course]).from_outside
+
+
+def test_regressors_at_rest_foretell_nothing():
+    courses = {run: coloured(2000, 1.0, 20.0, seed) for seed, run in enumerate("ab")}
+    assert foretold({run: np.zeros((3, 2000)) for run in courses}, courses) == 0.0
+    assert foretold({run: course[None] for run, course in courses.items()}, courses) > 0.99
 
 
 def test_a_zero_wanders_slowly():
