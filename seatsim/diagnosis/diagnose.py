@@ -136,7 +136,7 @@ def _placed(solution: Solution, told: Callable[[str], None]) -> Solution:
 
 
 def _stated(recording: Recording, solution: Solution, notes: list[str], told: Callable[[str], None]) -> Diagnosis:
-    """Put a solution to the proof on a held-out run and say what it amounts to."""
+    """State what a solution amounts to on a held-out run; what fails there beside an unknown cause is given up."""
     engine, judgement, posed = solution.engine, solution.judgement, solution.engine.problem
     chosen = judgement.chosen
     told("holding out a run")
@@ -150,6 +150,9 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     scenarios = [scenario_at(posed, nominal, point) for point in points]
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
     found = gaps(posed, scenarios, [run], spread)
+    if judgement.verdict == "unknown" and chosen.point.terms and found.shrink < 0.0:
+        helpless = given_up(judgement, solution.found.calibrated)
+        return _stated(recording, solution._replace(judgement=helpless), notes, told)
     listed = causes(engine, solution.found, judgement, calibrated, augmented, nominal, run)
     if solution.rest is not None:
         listed = [with_strength(c, solution.rest) if c.effect == solution.random else c for c in listed]
