@@ -120,15 +120,18 @@ def show(title: str, base: Path, labels: Labels, methods: Sequence[str]) -> None
     Console(width=150).print(table)
 
 
-def white(problem: Problem, pushes: Mapping[str, Array] | None = None) -> Whitening:
-    """Return weights from the stated noise of the channels alone, the same at every frequency up to HIGHEST."""
+def white(
+    problem: Problem, pushes: Mapping[str, Array] | None = None, errors: Mapping[str, Array] | None = None
+) -> Whitening:
+    """Return weights from stated noise and white errors of the channels, the same at every frequency up to HIGHEST."""
     noise = np.maximum(problem.noise, 1e-3 * problem.spread)
     rate = problem.recording.header.sample_rate
     weights, bins = {}, {}
     for run in problem.runs:
         samples = problem.measured[run].shape[1]
         bins[run] = int(np.searchsorted(np.fft.rfftfreq(samples, 1.0 / rate), min(HIGHEST, 0.5 * rate)))
-        weights[run] = np.tile(np.sqrt(2.0 / samples) / noise[:, None], bins[run])
+        power = samples * noise[:, None] ** 2 + (errors[run] if errors is not None else 0.0)
+        weights[run] = np.tile(np.sqrt(2.0 / power), bins[run])
     return Whitening(weights, bins)
 
 

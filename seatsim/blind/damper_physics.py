@@ -156,15 +156,14 @@ def damper_force(y: Array, dy: Array, mem: Array, x: float, speed: float, p: Par
 
     With `play_turn` the damper rests, and keeps its state, from where the motion turns until the gap is crossed.
     """
-    v = speed
     force = 0.0
     turning = p.play_turn != 0.0 and p.play_gap > 0.0
+    resting = turning and (abs(y[s.MOUNT]) < 0.5 * p.play_gap or y[s.MOUNT] * speed <= 0.0)
     loose = not turning and (p.play_gap > 0.0 or p.play_air > 0.0)
+    v = 0.0 if resting else speed
     if turning:
-        if abs(y[s.MOUNT]) < 0.5 * p.play_gap or y[s.MOUNT] * speed <= 0.0:
-            v = 0.0
         dy[s.MOUNT] = speed - v
-    if loose:
+    elif loose:
         force = mount_force(y[s.MOUNT], p)
         v = piston_speed(y, mem, x, force, p)
         dy[s.MOUNT] = speed - v
@@ -179,7 +178,7 @@ def damper_force(y: Array, dy: Array, mem: Array, x: float, speed: float, p: Par
         dy[s.PRE] = rate * (math.tanh(v / p.v_ref) - y[s.PRE])
     elif p.pre_share != 0.0:
         dy[s.PRE] = (v - y[s.PRE]) / p.pre_tau
-    if not loose and (v != 0.0 or not turning):
+    if not (loose or resting):
         force = main_force(y, mem, x, v, p)
     if p.rem_gain != 0.0:
         rise = y[s.CUR] - y[s.MAGNET]
