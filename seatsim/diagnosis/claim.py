@@ -31,11 +31,13 @@ ELSEWHERE = 0.07
 
 def shrinks(problem: Problem, nominal: State, chosen: State) -> Array:
     """Return by how much the gap shrinks in each run from one state to another."""
-    powers = [
-        [np.mean((state.residual[run] / problem.spread[:, None]) ** 2) for run in problem.runs]
-        for state in (nominal, chosen)
-    ]
-    return np.asarray(1.0 - np.sqrt(powers[1]) / np.sqrt(powers[0]))
+    return 1.0 - sizes(problem, chosen) / sizes(problem, nominal)
+
+
+def sizes(problem: Problem, state: State) -> Array:
+    """Return the gap of each run in standard deviations of the channels, shape (runs,)."""
+    powers = [np.mean((state.residual[run] / problem.spread[:, None]) ** 2) for run in problem.runs]
+    return np.asarray(np.sqrt(powers))
 
 
 def held_out(engine: Engine, chosen: State, shrink: Array) -> str:

@@ -27,8 +27,9 @@ from seatsim.diagnosis.problem import Problem, problem
 from seatsim.diagnosis.random_cause import counted, joined, random_cause, with_strength
 from seatsim.diagnosis.search import Search, search
 from seatsim.diagnosis.sentences import answer
+from seatsim.diagnosis.support import plain, supported
 from seatsim.diagnosis.unknown_input import unrepeated
-from seatsim.diagnosis.verdict import Judgement, given_up, judged
+from seatsim.diagnosis.verdict import Judgement, beside_unknown, judged
 from seatsim.diagnosis.whitening import broadband, whitening
 from seatsim.recording import Recording, load_recording
 from seatsim.registry import names
@@ -36,6 +37,9 @@ from seatsim.replay import single
 
 CHATTER = 0.5
 """Share of what the best set leaves from which broadband noise is counted as such."""
+
+PLAIN = 2
+"""Most effects that are sought, each from the first start of its form, where only the gap counts."""
 
 
 class Solution(NamedTuple):
@@ -82,7 +86,7 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     first = _searched(engine, offered, effects, told)
     if first.judgement.verdict == "unknown":
         first = _past_chatter(first, shaken, offered, effects, told)
-    first = _placed(first, told)
+    first = _supported(first, offered, told) if first.judgement.verdict == "unknown" else _placed(first, told)
     random = random_cause(posed, first.rest) if first.rest else ""
     if first.rest is None or not random or random in without:
         return first
@@ -118,6 +122,24 @@ def _searched(
     return Solution(engine, found, judged(engine, found, effects))
 
 
+def _supported(first: Solution, offered: Sequence[Candidate], told: Callable[[str], None]) -> Solution:
+    """Return what is unexplained, beside the effects that runs left out support where only the gap counts."""
+    told("weighing the gap alone")
+    posed, bins = first.engine.problem, first.engine.white.bins
+    engine = Engine(posed, plain(posed, first.found.calibrated, bins))
+    plainest = {each.form: each for each in reversed(offered)}
+    found = search(engine, list(plainest.values()), told, PLAIN)
+    chosen, alike = supported(engine, found)
+    start = first.engine.states([chosen.point])[0]
+    first.engine.refresh(start)
+    judgement = beside_unknown(first.judgement, first.engine.fitted(start), alike)
+    placed = _placed(first._replace(judgement=judgement), told)
+    if placed.judgement is not judgement:
+        return placed
+    judgement = dataclasses.replace(judgement, chosen=chosen)
+    return placed._replace(engine=engine, found=found, judgement=judgement)
+
+
 def _placed(solution: Solution, told: Callable[[str], None]) -> Solution:
     """Return the solution with the blocks that the gap lies in, and the course of what is unexplained."""
     engine, found, judgement = solution.engine, solution.found, solution.judgement
@@ -131,7 +153,7 @@ def _placed(solution: Solution, told: Callable[[str], None]) -> Solution:
     held, state = unexplained(engine, found, judgement.chosen)
     rest = latent(engine.problem, state.point, held.block, held.suspects[held.block])
     if state is not judgement.chosen:
-        judgement = given_up(judgement, state)
+        judgement = beside_unknown(judgement, state)
     return solution._replace(judgement=judgement, where=places(engine, state, held), rest=rest)
 
 
@@ -151,13 +173,13 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
     found = gaps(posed, scenarios, [run], spread)
     if judgement.verdict == "unknown" and chosen.point.terms and found.shrink < 0.0:
-        helpless = given_up(judgement, solution.found.calibrated)
+        helpless = beside_unknown(judgement, solution.found.calibrated)
         return _stated(recording, solution._replace(judgement=helpless), notes, told)
     listed = causes(engine, solution.found, judgement, calibrated, augmented, nominal, run)
     if solution.rest is not None:
         listed = [with_strength(c, solution.rest) if c.effect == solution.random else c for c in listed]
     group = judgement.groups[0] if judgement.groups else []
-    asked = experiment(engine, chosen, group) if group and not posed.bench else None
+    asked = experiment(engine, chosen, group) if judgement.verdict == "ambiguous" and not posed.bench else None
     scenario = asked.pop("scenario", None) if asked else None
     relevant = [cause.effect for cause in listed[:10] if cause.probability > 0.003]
     at_work = {solution.random, *(term.effect for term in chosen.point.terms)}

@@ -70,7 +70,9 @@ class Search:
         return max(state.cost / self.rows - 1.0, 0.0)
 
 
-def search(engine: Engine, candidates: Sequence[Candidate], told: Callable[[str], None]) -> Search:
+def search(
+    engine: Engine, candidates: Sequence[Candidate], told: Callable[[str], None], largest: int = LARGEST
+) -> Search:
     """Fit the nuisance parameters alone, then single effects, then larger sets as long as they gain."""
     problem = engine.problem
     nominal = engine.states([Point(problem.rest)])[0]
@@ -81,7 +83,7 @@ def search(engine: Engine, candidates: Sequence[Candidate], told: Callable[[str]
     rows = sum(values.size for values in calibrated.whitened.values())
     traces = _traces(engine, calibrated, candidates)
     found = Search(nominal, [[calibrated]], rows)
-    for size in range(1, LARGEST + 1):
+    for size in range(1, largest + 1):
         told(f"fitting sets of {size}")
         sets = _extended(engine, found, traces, SHORTLIST if size == 1 else SECONDS)
         if not sets:

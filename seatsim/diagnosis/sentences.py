@@ -17,19 +17,28 @@ def answer(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.verdict == "unknown":
         if diagnosis.selected:
-            rest = f" beside {_listed(diagnosis.selected)}: {gap.after['overall']:.3f} of {size} remain."
+            rest = f" beside {_listed(diagnosis.selected)}: {gap.after['overall']:.3f} of {size} remain"
         else:
-            rest = f": {size} nominal, noise {gap.floor['overall']:.3f} (in standard deviations)."
-        return f"Something in the {_unexplained(diagnosis)} that no effect of the library explains makes the gap{rest}"
+            rest = f": {size} nominal, noise {gap.floor['overall']:.3f} (in standard deviations)"
+        where = f"Something in the {_unexplained(diagnosis)} that no effect of the library explains makes the gap"
+        return where + rest + _alike(diagnosis) + "."
     named = "; ".join(_cause(diagnosis, name) for name in diagnosis.selected)
     credit = 1.0 - gap.after["overall"] / gap.calibrated["overall"]
     sentence = f"{named}: it takes {credit:.0%} off the gap that refitted parameters leave ({size} to"
     sentence += f" {gap.after['overall']:.3f}, noise {gap.floor['overall']:.3f})"
     if diagnosis.random:
         sentence += "; its random course cannot be foretold, so that its share of the gap stays"
-    for group in diagnosis.indistinguishable:
-        sentence += f"; these data cannot tell it from {_listed(group[1:])}"
-    return sentence + "."
+    return sentence + _alike(diagnosis) + "."
+
+
+def _alike(diagnosis: Diagnosis) -> str:
+    """Return which effects could stand for those that were selected."""
+    what = "it" if len(diagnosis.selected) == 1 else "{}"
+    said = [
+        f"; these data cannot tell {what.format(group[0])} from {_listed(group[1:])}"
+        for group in diagnosis.indistinguishable
+    ]
+    return "".join(said)
 
 
 def _unexplained(diagnosis: Diagnosis) -> str:

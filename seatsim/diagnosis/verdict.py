@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,12 +46,12 @@ class Judgement:
 def judged(engine: Engine, found: Search, effects: list[str]) -> Judgement:
     """Return the verdict on a search."""
     before = found.excess(found.calibrated)
-    if before < NOTHING or (_rest(engine, found.calibrated) < MATERIAL and not _material(engine, found.sets[1][0])):
+    if before < NOTHING or (_rest(engine, found.calibrated) < MATERIAL and not material(engine, found.sets[1][0])):
         sure = 1.0 / (1.0 + math.exp((before - NOTHING) / 0.05 - 2.0))
         return Judgement("none", found.calibrated, [], dict.fromkeys(effects, 0.004), max(sure, 0.6), 0.02)
     chosen = _chosen(engine, found)
     share = found.excess(chosen) / before
-    rivals = _groups(found, chosen)
+    rivals = groups_of(chosen, _alike(found, chosen))
     small = _rest(engine, chosen) < MATERIAL and not any(len(group) > 2 for group in rivals)
     everywhere = all(left < UNTOUCHED for left in _left(engine, found.calibrated, chosen))
     explained = bool(chosen.point.terms) and ((share < EXPLAINED and everywhere) or small)
@@ -61,17 +62,18 @@ def judged(engine: Engine, found: Search, effects: list[str]) -> Judgement:
     return Judgement(verdict, chosen, groups, _probabilities(chosen, groups, effects, unknown), 0.01, unknown)
 
 
-def given_up(judgement: Judgement, calibrated: State) -> Judgement:
-    """Return the judgement where what is unexplained explains what the effects chosen did, too."""
-    probabilities = _probabilities(calibrated, [], list(judgement.probabilities), judgement.unknown)
-    return dataclasses.replace(judgement, chosen=calibrated, probabilities=probabilities)
+def beside_unknown(judgement: Judgement, chosen: State, alike: Sequence[State] = ()) -> Judgement:
+    """Return the judgement that something is unexplained with another set of effects beside it."""
+    groups = groups_of(chosen, alike)
+    probabilities = _probabilities(chosen, groups, list(judgement.probabilities), judgement.unknown)
+    return dataclasses.replace(judgement, chosen=chosen, groups=groups, probabilities=probabilities)
 
 
 def _chosen(engine: Engine, found: Search) -> State:
     """Return the smallest set that no enlargement beats by enough, with every effect of it material."""
     chosen = found.calibrated
     for sets in found.sets[1:]:
-        better = next((state for state in sets[:3] if _material(engine, state)), None)
+        better = next((state for state in sets[:3] if material(engine, state)), None)
         if better is None or not _enlarges(engine, found, chosen, better):
             if chosen.point.terms or better is None:
                 break
@@ -117,7 +119,7 @@ def movements(engine: Engine, state: State) -> list[Array]:
     return moves
 
 
-def _material(engine: Engine, state: State) -> bool:
+def material(engine: Engine, state: State) -> bool:
     """Whether every effect of a set moves some channel by a material size and by more than its noise."""
     noise = engine.problem.noise / engine.problem.spread
     return all(bool(np.any((move > MATERIAL) & (move > 0.9 * noise))) for move in movements(engine, state))
@@ -136,17 +138,26 @@ def _rests(engine: Engine, state: State) -> Array:
     return np.asarray(np.sqrt(np.maximum(power, 0.0)) / problem.spread)
 
 
-def _groups(found: Search, chosen: State) -> list[list[str]]:
-    """Return groups of effects that could stand for each other: sets that differ in one effect and fit as well."""
-    names = {term.effect for term in chosen.point.terms}
+def _alike(found: Search, chosen: State) -> list[State]:
+    """Return the other sets of as many effects that fit as well."""
     limit = ALIKE * found.excess(chosen) + ALIKE_FLOOR
+    others = found.sets[len(chosen.point.terms)]
+    return [state for state in others if state is not chosen and found.excess(state) <= limit]
+
+
+def groups_of(chosen: State, alike: Sequence[State]) -> list[list[str]]:
+    """Return groups of effects that could stand for each other: sets alike that differ in one effect.
+
+    An effect that stands for one of the chosen counts as that one in the other sets.
+    """
+    names = {term.effect for term in chosen.point.terms}
     groups: dict[str, list[str]] = {}
-    for state in found.sets[len(names)]:
-        other = {term.effect for term in state.point.terms}
-        if state is chosen or found.excess(state) > limit or len(names - other) != 1:
-            continue
-        (replaced,), (stand_in,) = names - other, other - names
-        groups.setdefault(replaced, [replaced]).append(stand_in)
+    for other in sorted(({term.effect for term in state.point.terms} for state in alike), key=lambda s: len(s - names)):
+        stands_for = {member: name for name, group in groups.items() for member in group}
+        missing, added = names - {stands_for.get(name, name) for name in other}, other - names - set(stands_for)
+        if len(other) == len(names) and len(missing) == len(added) == 1:
+            (replaced,), (stand_in,) = missing, added
+            groups.setdefault(replaced, [replaced]).append(stand_in)
     return list(groups.values())
 
 

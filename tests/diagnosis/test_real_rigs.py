@@ -65,3 +65,20 @@ def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, data, 
     assert recording.runs["repeat-3"].repeat_of == "repeat-2"
     found = seatsim.gap(recording.nominal, recording)
     assert 5.0 * found.floor["overall"] < found.overall < 0.4
+
+
+@pytest.mark.parametrize("name, known", [
+    ("utfsm", [{"damper.gas_spring"}]),
+    ("dyke", [{"coil.lag"}, {"damper.gas_spring"}]),
+    ("dyke-130", [{"damper.gas_spring"}]),
+    ("quanser-travel", [{"suspension.friction"}]),
+])  # fmt: skip
+def test_what_the_data_are_known_to_show_stands_beside_what_is_unexplained(real_rigs, data, tmp_path, name, known):
+    rig = next(rig for rig in real_rigs.rigs(data) if rig.name == name)
+    found = seatsim.diagnose(real_rigs.write(rig, tmp_path))
+    assert found.verdict == "unknown"
+    groups = [{each, *(name for group in found.indistinguishable if each in group for name in group)}
+              for each in found.selected]  # fmt: skip
+    assert len(groups) == len(known)
+    assert all(any(effect <= group for group in groups) for effect in known)
+    assert found.gap.shrink > 0.1
