@@ -7,14 +7,16 @@ skipped; more cases per effect may be asked for later.
 
 Which effects could stand for the withheld one is said beforehand, from Fisher projections: those whose trace in the
 recording, with the true effect fitted and the parameters projected out, has an alikeness c with its own above IMITATED.
-An effect counts as imitable where one other imitates it in at least half of its cases. An imitator leaves 1 - c^2 of
-the excess to first order; a fit may bend its form, so that what no projection foretells may still be imitated.
+An imitator leaves 1 - c^2 of the excess to first order, and IMITATED is where that is what an explanation may leave. An
+effect counts as imitable where one other imitates it in at least half of its cases. A fit may bend the imitator's form,
+so that what no projection foretells may still be imitated.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 from collections import Counter
 from collections.abc import Sequence
 from functools import partial
@@ -32,14 +34,15 @@ from seatsim.diagnosis.candidates import candidates
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.problem import problem
+from seatsim.diagnosis.verdict import EXPLAINED
 from seatsim.diagnosis.whitening import whitening
 from seatsim.diagnosis_output import contents
 from seatsim.files import write_json
 from seatsim.recording import load_recording
 from seatsim.registry import names
 
-IMITATED = 0.97
-"""Alikeness from which one effect could stand for another."""
+IMITATED = math.sqrt(1.0 - EXPLAINED)
+"""Alikeness from which one effect leaves so little of another's gap, to first order, that it explains it."""
 
 
 class Case(NamedTuple):

@@ -52,9 +52,9 @@ def held_out(engine: Engine, chosen: State, shrink: Array) -> str:
         shares.append([float(np.mean(move**2)) for move in moves])
     share = np.array(shares) / np.maximum(np.sum(shares, axis=0), 1e-12)
     worst = share.max(axis=1)
-    good = [k for k in range(len(runs)) if worst[k] < 0.6 and share[k].min() > 0.05]
+    good = np.flatnonzero(worst < max(0.6, 1.001 * worst.min()))
     ordinary = np.abs(shrink - np.median(shrink))
-    return runs[min(good, key=lambda k: ordinary[k])] if good else runs[int(np.argmin(worst))]
+    return runs[min(good, key=lambda k: ordinary[k])]
 
 
 def trained(engine: Engine, state: State, run: str) -> tuple[State, State]:

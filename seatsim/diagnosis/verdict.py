@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 MATERIAL = 0.04
 """Movement of a channel, in its standard deviations, from which an effect is material; the contract's 5 % with a margin
 for the fit's error."""
-EXPLAINED = 0.2
+EXPLAINED = 0.12
 """Share of the calibrated excess that a known set leaves at most."""
 UNTOUCHED = 0.5
 """Share of the excess of a channel with a material gap that a known set leaves at most."""
@@ -29,6 +29,8 @@ ALIKE = 1.2
 """Factor on the excess within which two sets explain a recording equally well."""
 ALIKE_FLOOR = 0.02
 """Excess added to it."""
+BESIDE = 0.3
+"""Probability of an effect that runs left out support beside an unknown cause."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,7 +67,7 @@ def judged(engine: Engine, found: Search, effects: list[str]) -> Judgement:
 def beside_unknown(judgement: Judgement, chosen: State, alike: Sequence[State] = ()) -> Judgement:
     """Return the judgement that something is unexplained with another set of effects beside it."""
     groups = groups_of(chosen, alike)
-    probabilities = _probabilities(chosen, groups, list(judgement.probabilities), judgement.unknown)
+    probabilities = _probabilities(chosen, groups, list(judgement.probabilities), min(judgement.unknown, 1.0 - BESIDE))
     return dataclasses.replace(judgement, chosen=chosen, groups=groups, probabilities=probabilities)
 
 
