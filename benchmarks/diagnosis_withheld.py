@@ -5,18 +5,16 @@ the labels in `DIR/labels`. Each is diagnosed twice: with the whole library, by 
 `CASE/diagnosis`, and by a library without it, which must refuse it as `unknown`, into `CASE/withheld`. What is there is
 skipped; more cases per effect may be asked for later.
 
-Which effects could stand for the withheld one is said beforehand, from Fisher projections: those whose trace in the
-recording, with the true effect fitted and the parameters projected out, has an alikeness c with its own above IMITATED.
-An imitator leaves 1 - c^2 of the excess to first order, and IMITATED is where that is what an explanation may leave. An
-effect counts as imitable where one other imitates it in at least half of its cases. A fit may bend the imitator's form,
-so that what no projection foretells may still be imitated.
+Which effects could stand for the withheld one is said without the recording's outputs: the rig with the true effect, as
+fitted, is simulated without noise, and each other effect is fitted to that twin with the parameters inside their
+tolerance. An effect counts as imitable where one other explains IMITATED of it in at least half of its cases.
 """
 
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
-import math
 from collections import Counter
 from collections.abc import Sequence
 from functools import partial
@@ -29,11 +27,12 @@ from threadpoolctl import threadpool_limits
 from seatsim.blind.draw import Order
 from seatsim.blind.make import make_case
 from seatsim.blind.verdicts import Verdict, is_right, read_verdict
-from seatsim.diagnosis.alikeness import alikeness, with_member
+from seatsim.diagnosis.alikeness import with_member
 from seatsim.diagnosis.candidates import candidates
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.problem import problem
+from seatsim.diagnosis.search import search
 from seatsim.diagnosis.verdict import EXPLAINED
 from seatsim.diagnosis.whitening import whitening
 from seatsim.diagnosis_output import contents
@@ -41,12 +40,12 @@ from seatsim.files import write_json
 from seatsim.recording import load_recording
 from seatsim.registry import names
 
-IMITATED = math.sqrt(1.0 - EXPLAINED)
-"""Alikeness from which one effect leaves so little of another's gap, to first order, that it explains it."""
+IMITATED = 1.0 - EXPLAINED
+"""Share of the whitened gap of a twin from which an effect explains another."""
 
 
 class Case(NamedTuple):
-    """An effect, what was said of it by the whole library and by one without it, how alike the others are to it."""
+    """An effect, what was said of it by the whole library and by one without it, the share that others explain."""
 
     effect: str
     without: Verdict
@@ -70,22 +69,24 @@ def diagnosed(without: Sequence[str], case: Path) -> dict[str, Any]:
     return contents(diagnose(case, without=without))
 
 
-def projected(case: Path, effect: str) -> str:
-    """Write how alike the effects are to the true one in a recording; nothing where that has no trace to foretell."""
-    alike = {}
+def imitated(case: Path, effect: str) -> str:
+    """Write what share of the true effect each other could explain; nothing where that has no trace to foretell."""
+    shares: dict[str, float] = {}
     with threadpool_limits(1):
         posed = problem(load_recording(case))
-        if any(candidate.effect == effect for candidate in candidates(posed)):
+        others = [candidate for candidate in candidates(posed) if candidate.effect != effect]
+        if len(others) < len(candidates(posed)):
             engine = Engine(posed, whitening(posed))
             nominal = engine.states([Point(posed.rest)])[0]
             engine.refresh(nominal)
-            true = with_member(engine, engine.fitted(nominal), effect, [effect])
-            engine.refresh(true)
-            known, matrix = alikeness(engine, true, names("effect"))
-            row = matrix[known.index(effect)]
-            alike = {name: float(value) for name, value in zip(known, row, strict=True) if name != effect}
-    write_json(case / "alike.json", alike)
-    return f"{case.name} projected"
+            true = with_member(engine, engine.fitted(nominal), effect, [effect]).point
+            measured = {run: posed.simulated(run, true.u, true.effects) for run in posed.runs}
+            twin = Engine(dataclasses.replace(posed, measured=measured), engine.white)
+            found = search(twin, others, lambda _: None, 1)
+            whole = found.calibrated.cost
+            shares = {state.point.terms[0].effect: 1.0 - state.cost / whole for state in found.sets[1]}
+    write_json(case / "imitated.json", shares)
+    return f"{case.name} imitated"
 
 
 def label_of(out: Path, case: str) -> dict[str, Any]:
@@ -110,7 +111,7 @@ def work(out: Path, wanted: Sequence[str], count: int, seed: int) -> list[str]:
     for case in cases:
         (effect,) = label_of(out, case)["effects"]
         folder = out / case
-        jobs += [(projected, folder, effect)] if not (folder / "alike.json").exists() else []
+        jobs += [(imitated, folder, effect)] if not (folder / "imitated.json").exists() else []
         for name, without in (("diagnosis", ()), ("withheld", (effect,))):
             if not (folder / name / "diagnosis.json").exists():
                 jobs.append((worked, folder / name, partial(diagnosed, without)))
@@ -121,14 +122,14 @@ def work(out: Path, wanted: Sequence[str], count: int, seed: int) -> list[str]:
 def read(out: Path, case: str) -> Case:
     """Return what came of a case."""
     label = label_of(out, case)
-    alike = json.loads((out / case / "alike.json").read_text(encoding="utf-8"))
+    alike = json.loads((out / case / "imitated.json").read_text(encoding="utf-8"))
     whole, without = (read_verdict(out / case / name / "diagnosis.json") for name in ("diagnosis", "withheld"))
     return Case(label["effects"][0], without, alike, is_right(label, whole))
 
 
 def table(cases: Sequence[Case]) -> list[str]:
     """Return the lines of a markdown table, an effect each, and totals over those that no other can imitate."""
-    headings = "effect", "named", "refused as unknown", "taken for", "imitable by", "most alike"
+    headings = "effect", "named", "refused as unknown", "taken for", "imitable by", "most like"
     lines = [f"| {' | '.join(headings)} |", "|---" * len(headings) + "|"]
     alone, imitable = [], []
     for effect in sorted({case.effect for case in cases}):

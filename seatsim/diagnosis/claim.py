@@ -25,8 +25,10 @@ DRAWS = 400
 """Bootstrap samples."""
 LEVEL = (5.0, 95.0)
 """Percentiles of the interval."""
-ELSEWHERE = 0.07
+ELSEWHERE = 0.1
 """Standard deviation by which the shrink differs between excitations that are alike."""
+SPARED, MOVED = 0.6, 0.05
+"""Share of what an effect moves in all runs that one held out may have at most, and has to have at least."""
 
 
 def shrinks(problem: Problem, nominal: State, chosen: State) -> Array:
@@ -41,7 +43,10 @@ def sizes(problem: Problem, state: State) -> Array:
 
 
 def held_out(engine: Engine, chosen: State, shrink: Array) -> str:
-    """Return the run to hold out: without it the others excite the effects well; its shrink is the most ordinary."""
+    """Return the run to hold out, which the effects move and without which the others do: that with the least shrink.
+
+    A run of another kind shrinks less than those that made an effect plain enough to be found.
+    """
     runs = engine.problem.runs
     if not chosen.point.terms or len(runs) < 2:
         return runs[-1]
@@ -52,9 +57,10 @@ def held_out(engine: Engine, chosen: State, shrink: Array) -> str:
         shares.append([float(np.mean(move**2)) for move in moves])
     share = np.array(shares) / np.maximum(np.sum(shares, axis=0), 1e-12)
     worst = share.max(axis=1)
-    good = np.flatnonzero(worst < max(0.6, 1.001 * worst.min()))
-    ordinary = np.abs(shrink - np.median(shrink))
-    return runs[min(good, key=lambda k: ordinary[k])]
+    spared = worst < max(SPARED, 1.001 * worst.min())
+    moved = spared & (share.min(axis=1) > MOVED)
+    good = np.flatnonzero(moved if moved.any() else spared)
+    return runs[min(good, key=lambda k: shrink[k])]
 
 
 def trained(engine: Engine, state: State, run: str) -> tuple[State, State]:

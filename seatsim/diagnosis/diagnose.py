@@ -24,7 +24,7 @@ from seatsim.diagnosis.isolability import isolable, losses
 from seatsim.diagnosis.latent import Latent, latent
 from seatsim.diagnosis.place import places, unexplained
 from seatsim.diagnosis.problem import Problem, problem
-from seatsim.diagnosis.random_cause import counted, joined, random_cause, with_strength
+from seatsim.diagnosis.random_cause import counted, joined, random_cause, wandering, with_strength
 from seatsim.diagnosis.search import Search, search
 from seatsim.diagnosis.sentences import answer
 from seatsim.diagnosis.support import plain, supported
@@ -87,16 +87,19 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     if first.judgement.verdict == "unknown":
         first = _past_chatter(first, shaken, offered, effects, told)
     first = _supported(first, offered, told) if first.judgement.verdict == "unknown" else _placed(first, told)
-    random = random_cause(posed, first.rest) if first.rest else ""
-    if first.rest is None or not random or random in without:
+    rest = first.rest
+    if first.judgement.verdict in ("known", "ambiguous") and not posed.bench:
+        rest = wandering(posed, first.judgement.chosen)
+    random = random_cause(posed, rest) if rest else ""
+    if rest is None or not random or random in without:
         return first
     told(f"counting {random} as noise")
-    noisy = Engine(posed, counted(posed, random, first.rest))
+    noisy = Engine(posed, counted(posed, random, rest))
     second = _searched(noisy, [each for each in offered if each.effect != random], effects, told)
     if second.judgement.verdict == "unknown":
         return first
     judgement, where = joined(second.judgement, _placed(second, told).where, random)
-    rest = first.rest._replace(block=random.partition(".")[0])
+    rest = rest._replace(block=random.partition(".")[0])
     return second._replace(judgement=judgement, where=where, rest=rest, random=random)
 
 

@@ -8,15 +8,34 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatsim.diagnosis.findings import Cause, Estimate, Share
-from seatsim.diagnosis.latent import Latent, rms
+from seatsim.diagnosis.fit import State
+from seatsim.diagnosis.latent import Latent, latent, rms
 from seatsim.diagnosis.problem import Problem
+from seatsim.diagnosis.suspects import Suspect
 from seatsim.diagnosis.unknown_input import power
-from seatsim.diagnosis.verdict import Judgement
+from seatsim.diagnosis.verdict import MATERIAL, Judgement, rests_of
 from seatsim.diagnosis.whitening import Whitening, whitening
 
 OUTSIDE, WANDER = "floor.unmeasured_input", "sensor.bias"
 OWN = 0.6
 """Share of the gap that it is said to make beside other effects."""
+ALONE = 2.0
+"""Factor by which the gap that is left of a channel exceeds those of all others where its zero wanders."""
+
+
+def wandering(problem: Problem, state: State) -> Latent | None:
+    """Return the error of the one channel, not the travel, that stays materially open by a slow course, None without.
+
+    A slow force on the rig would move the travel, and creep moves the travel alone.
+    """
+    rests = rests_of(problem, state)
+    k = int(np.argmax(rests))
+    name, others = problem.channels[k], np.delete(rests, k)
+    if rests[k] < MATERIAL or np.any(others > rests[k] / ALONE) or name == "suspension_displacement":
+        return None
+    course = {run: values[k] for run, values in state.residual.items()}
+    error = Suspect(0.0, f"error of {name}", problem.recording.channels[name].unit, course, name)
+    return latent(problem, state.point, "sensor", error)
 
 
 def random_cause(problem: Problem, rest: Latent) -> str:

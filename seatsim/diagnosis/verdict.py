@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.fit import Engine, State
+from seatsim.diagnosis.problem import Problem
 from seatsim.diagnosis.search import ENLARGE, NOTHING, Search
 
 Array = NDArray[np.float64]
@@ -99,7 +100,7 @@ def _enlarges(engine: Engine, found: Search, chosen: State, better: State) -> bo
 
 def _left(engine: Engine, before: State, after: State) -> list[float]:
     """Return the share of the excess that is left of every channel with a material gap before."""
-    gaps, excess, rest = _rests(engine, before), _by_channel(before), _by_channel(after)
+    gaps, excess, rest = rests_of(engine.problem, before), _by_channel(before), _by_channel(after)
     channels = np.flatnonzero((gaps > MATERIAL) & (excess > NOTHING))
     return [float(rest[k] / excess[k]) for k in channels]
 
@@ -129,12 +130,11 @@ def material(engine: Engine, state: State) -> bool:
 
 def _rest(engine: Engine, state: State) -> float:
     """Return the largest gap of a channel beyond its noise, in the channel's standard deviations."""
-    return float(np.max(_rests(engine, state)))
+    return float(np.max(rests_of(engine.problem, state)))
 
 
-def _rests(engine: Engine, state: State) -> Array:
+def rests_of(problem: Problem, state: State) -> Array:
     """Return the gap of every channel beyond its noise, in the channel's standard deviations."""
-    problem = engine.problem
     residual = np.concatenate([state.residual[run] for run in problem.runs], axis=1)
     power = np.mean(residual**2, axis=1) - problem.noise**2
     return np.asarray(np.sqrt(np.maximum(power, 0.0)) / problem.spread)

@@ -7,8 +7,10 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 
 from seatsim.diagnosis.diagnose import solved
+from seatsim.diagnosis.fit import Point, State
 from seatsim.diagnosis.latent import Latent, foretold
 from seatsim.diagnosis.problem import Drive, problem
+from seatsim.diagnosis.random_cause import wandering
 from seatsim.diagnosis.whitening import broadband
 from seatsim.recording import load_recording
 from seatsim.registry import find
@@ -67,6 +69,36 @@ def test_a_wandering_zero_is_named_with_its_channel(posed):
     solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
     assert solution.random == "sensor.bias"
     assert solution.rest.channel == "frame_acceleration"
+
+
+def test_a_zero_that_wanders_beside_an_effect_is_named_too(posed):
+    heavier, k, measured = find("effect", "driver.mass")(change=12.0), posed.channels.index("damper_force"), {}
+    for seed, run in enumerate(posed.runs):
+        true = posed.simulated(run, posed.rest, [heavier])
+        true[k] += 0.12 * posed.spread[k] * coloured(true.shape[1], 0.2, 0.35, seed, posed.recording.header.sample_rate)
+        measured[run] = noisy(posed, true)
+    solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
+    assert (solution.random, solution.rest.channel) == ("sensor.bias", "damper_force")
+    assert solution.judgement.verdict == "known"
+    assert [term.effect for term in solution.judgement.chosen.point.terms] == ["driver.mass"]
+    assert {share.block for share in solution.where} == {"sensor", "driver"}
+
+
+def test_one_channel_that_stays_open_has_a_wandering_zero_unless_it_is_the_travel(posed):
+    still = {run: np.zeros_like(values) for run, values in posed.measured.items()}
+
+    def of(**shares):
+        rest = {run: values.copy() for run, values in still.items()}
+        for name, share in shares.items():
+            k = posed.channels.index(name)
+            for values in rest.values():
+                values[k] = share * posed.spread[k] * coloured(values.shape[1], 0.05, 0.2, 1, 250.0)
+        return wandering(posed, State(Point(posed.rest), rest, {}, 0.0))
+
+    assert of(damper_force=0.1).channel == "damper_force"
+    assert of(damper_force=0.01) is None
+    assert of(damper_force=0.1, frame_acceleration=0.07) is None
+    assert of(suspension_displacement=0.1) is None
 
 
 def test_a_random_force_is_named_unless_it_is_withheld(posed):
