@@ -25,7 +25,7 @@ from seatsim.blind.sealed import unseal
 from seatsim.blind.verdicts import read_verdict
 from seatsim.diagnosis.nuisance import varied
 from seatsim.diagnosis.problem import Drive, Problem
-from seatsim.diagnosis.whitening import HIGHEST, Whitening
+from seatsim.diagnosis.whitening import Whitening, even
 from seatsim.errors import SeatsimError
 from seatsim.excitations.base import Floor
 from seatsim.files import write_json
@@ -124,15 +124,9 @@ def white(
     problem: Problem, pushes: Mapping[str, Array] | None = None, errors: Mapping[str, Array] | None = None
 ) -> Whitening:
     """Return weights from stated noise and white errors of the channels, the same at every frequency up to HIGHEST."""
-    noise = np.maximum(problem.noise, 1e-3 * problem.spread)
-    rate = problem.recording.header.sample_rate
-    weights, bins = {}, {}
-    for run in problem.runs:
-        samples = problem.measured[run].shape[1]
-        bins[run] = int(np.searchsorted(np.fft.rfftfreq(samples, 1.0 / rate), min(HIGHEST, 0.5 * rate)))
-        power = samples * noise[:, None] ** 2 + (errors[run] if errors is not None else 0.0)
-        weights[run] = np.tile(np.sqrt(2.0 / power), bins[run])
-    return Whitening(weights, bins)
+    noise = np.maximum(problem.noise, 1e-3 * problem.spread)[:, None]
+    power = {run: noise**2 * values.shape[1] for run, values in problem.measured.items()}
+    return even(problem, {run: level + (errors or {}).get(run, 0.0) for run, level in power.items()})
 
 
 class Clamp:

@@ -68,12 +68,8 @@ def trained(engine: Engine, state: State, run: str) -> tuple[State, State]:
     problem = engine.problem
     rest = tuple(name for name in problem.runs if name != run) or problem.runs
     part = Engine(dataclasses.replace(problem, runs=rest), engine.white)
-    base = part.states([Point(problem.rest)])[0]
-    part.refresh(base)
-    calibrated = part.fitted(base)
-    start = part.states([state.point])[0]
-    part.refresh(start)
-    return calibrated, part.fitted(start) if state.point.terms else calibrated
+    calibrated = part.refitted(Point(problem.rest))
+    return calibrated, part.refitted(state.point) if state.point.terms else calibrated
 
 
 def scenario_at(problem: Problem, nominal: Scenario, point: Point) -> Scenario:

@@ -128,14 +128,12 @@ def _searched(
 def _supported(first: Solution, offered: Sequence[Candidate], told: Callable[[str], None]) -> Solution:
     """Return what is unexplained, beside the effects that runs left out support where only the gap counts."""
     told("weighing the gap alone")
-    posed, bins = first.engine.problem, first.engine.white.bins
-    engine = Engine(posed, plain(posed, first.found.calibrated, bins))
+    posed = first.engine.problem
+    engine = Engine(posed, plain(posed, first.found.calibrated))
     plainest = {each.form: each for each in reversed(offered)}
     found = search(engine, list(plainest.values()), told, PLAIN)
     chosen, alike = supported(engine, found)
-    start = first.engine.states([chosen.point])[0]
-    first.engine.refresh(start)
-    judgement = beside_unknown(first.judgement, first.engine.fitted(start), alike)
+    judgement = beside_unknown(first.judgement, first.engine.refitted(chosen.point), alike)
     placed = _placed(first._replace(judgement=judgement), told)
     if placed.judgement is not judgement:
         return placed

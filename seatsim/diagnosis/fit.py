@@ -160,6 +160,12 @@ class Engine:
                 break
         return state
 
+    def refitted(self, point: Point) -> State:
+        """Return the state at the end of a fit from a point, with the nuisances' sensitivities taken there."""
+        start = self.states([point])[0]
+        self.refresh(start)
+        return self.fitted(start)
+
     def _step(self, state: State, jacobian: dict[str, Array]) -> Array:
         """Return the Gauss-Newton step under the bounds."""
         grams = [self.gram(run, own, state.whitened[run]) for run, own in jacobian.items()]

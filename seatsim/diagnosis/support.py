@@ -8,7 +8,6 @@ then: all frequencies weigh the same, and an effect counts by what it takes off 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ from seatsim.diagnosis.fit import Engine, State
 from seatsim.diagnosis.problem import Problem
 from seatsim.diagnosis.search import Search
 from seatsim.diagnosis.verdict import material
-from seatsim.diagnosis.whitening import Whitening
+from seatsim.diagnosis.whitening import Whitening, even
 
 Array = NDArray[np.float64]
 
@@ -34,14 +33,10 @@ FOLDS = 3
 """Parts of the runs that are left out in turn."""
 
 
-def plain(problem: Problem, state: State, bins: Mapping[str, int]) -> Whitening:
+def plain(problem: Problem, state: State) -> Whitening:
     """Return weights that are the same at all frequencies, those of the gap, so that a state leaves LEVEL^-2."""
     level = LEVEL * np.sqrt(np.mean(sizes(problem, state) ** 2)) * problem.spread
-    weights = {}
-    for run in problem.runs:
-        even = np.sqrt(2.0 / problem.measured[run].shape[1]) / level
-        weights[run] = np.tile(even[:, None], (1, bins[run]))
-    return Whitening(weights, dict(bins))
+    return even(problem, {run: level[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()})
 
 
 def supported(engine: Engine, found: Search) -> tuple[State, list[State]]:
@@ -67,8 +62,6 @@ def left_out(engine: Engine, state: State) -> Array:
     for k in range(min(FOLDS, len(problem.runs))):
         others = tuple(run for j, run in enumerate(problem.runs) if j % FOLDS != k)
         part = Engine(dataclasses.replace(problem, runs=others), engine.white)
-        start = part.states([state.point])[0]
-        part.refresh(start)
-        fitted = engine.states([part.fitted(start).point])[0]
+        fitted = engine.states([part.refitted(state.point).point])[0]
         found[k::FOLDS] = sizes(problem, fitted)[k::FOLDS]
     return found

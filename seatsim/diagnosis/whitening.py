@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +61,7 @@ def whitening(
         measured = problem.measured[run]
         samples = measured.shape[1]
         frequency = np.fft.rfftfreq(samples, 1.0 / rate)
-        bins[run] = int(np.searchsorted(frequency, min(HIGHEST, 0.5 * rate)))
+        bins[run] = _compared(frequency, rate)
         power = problem.noise[:, None] ** 2 * samples + _carried(problem, run, (pushes or {}).get(run))
         if errors is not None:
             power = power + errors[run]
@@ -73,6 +74,21 @@ def whitening(
         total = np.maximum(total, 1e-6 * problem.spread[:, None] ** 2 * samples)
         weights[run] = np.sqrt(2.0 / total[:, : bins[run]])
     return Whitening(weights, bins)
+
+
+def even(problem: Problem, power: Mapping[str, Array]) -> Whitening:
+    """Return weights that are the same at all frequencies, from white power by run, shape (channels, 1)."""
+    rate = problem.recording.header.sample_rate
+    weights, bins = {}, {}
+    for run in problem.runs:
+        bins[run] = _compared(np.fft.rfftfreq(problem.measured[run].shape[1], 1.0 / rate), rate)
+        weights[run] = np.tile(np.sqrt(2.0 / power[run]), bins[run])
+    return Whitening(weights, bins)
+
+
+def _compared(frequency: NDArray[np.floating[Any]], rate: float) -> int:
+    """Return how many frequencies in Hz are compared: those below HIGHEST and below half the rate."""
+    return int(np.searchsorted(frequency, min(HIGHEST, 0.5 * rate)))
 
 
 def _carried(problem: Problem, run: str, push: Array | None) -> Array:

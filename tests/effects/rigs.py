@@ -71,7 +71,7 @@ def distance(history, reference):
     return max(gap / (sizes[name] or 1.0) for name, gap in gaps.items())
 
 
-def bench(effects, x, v, current=0.5, temperature=20.0, damper=BINGHAM, step=STEP, factors=TemperatureFactors()):  # noqa: B008
+def bench(effects, x, v, current=0.5, temperature=20.0, damper=BINGHAM, step=STEP, factors=TemperatureFactors()):  # noqa: B008 - immutable
     """The force in N of a damper with effects on it, every step; motion and current every half step."""
     carrier = [] if any(isinstance(effect, type(CARRIER)) for effect in effects) else [CARRIER]
     augmented, rest = damper_with(damper, in_loop((*effects, *carrier))[0])
