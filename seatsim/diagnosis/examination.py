@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from seatsim.diagnosis.checks_of_channels import ranges, shapes
+from seatsim.diagnosis.checks_of_floor import floor
 from seatsim.diagnosis.checks_of_runs import clock, together
 from seatsim.diagnosis.contradictions import contradictions, exchanged_currents
 from seatsim.diagnosis.inspected import Finding, Run
@@ -80,7 +81,7 @@ def _read(recording: Recording) -> tuple[list[Run], list[Finding]]:
 def _each(run: Run) -> list[Finding]:
     """Return what is wrong with one run; a later check asks only where the earlier ones found no error."""
     findings: list[Finding] = []
-    for check in (ranges, exchanged_currents, shapes, contradictions):
+    for check in (ranges, exchanged_currents, shapes, floor, contradictions):
         findings += check(run)
         if _errors(findings):
             break

@@ -74,7 +74,7 @@ def _rest(engine: Engine, state: State) -> Rest:
     before, best = state.cost / rows - 1.0, min(suspect.doubt for suspect in found.values())
     width = DECISIVE * max(before - best, 1e-6)
     driver = found["driver"].doubt + width
-    if min(found[block].doubt for block in ON_FRAME) < driver:
+    if min(found[block].doubt for block in ON_FRAME if block in found) < driver:
         found["driver"] = found["driver"]._replace(doubt=driver)
     best = min(suspect.doubt for suspect in found.values())
     weights = {block: math.exp(-(suspect.doubt - best) / width) for block, suspect in found.items()}

@@ -43,7 +43,8 @@ def random_cause(problem: Problem, rest: Latent) -> str:
     merged = () if "damper_force" in problem.channels else ("damper",)
     if rest.block in ("suspension", *merged) and rest.from_outside:
         return OUTSIDE
-    return WANDER if rest.wanders(problem.recording.header.sample_rate) else ""
+    errs = rest.channel in problem.channels
+    return WANDER if errs and rest.wanders(problem.recording.header.sample_rate) else ""
 
 
 def counted(problem: Problem, effect: str, rest: Latent) -> Whitening:

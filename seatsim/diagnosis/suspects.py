@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.diagnosis.checks_of_floor import follows_floor
 from seatsim.diagnosis.fit import Engine, State, solved
 from seatsim.diagnosis.problem import POOL
 from seatsim.diagnosis.unknown_input import INPUTS, Answer, driven, driven_by_log, power, spectra, unit_error
@@ -51,7 +52,15 @@ def suspects(engine: Engine, state: State) -> dict[str, Suspect]:
         found.pop(name)._replace(quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name)
         for name in problem.channels
     ]
+    if not follows_floor(problem.recording):
+        errors.append(_of_sensor(found.pop("floor")))
     return found | {"sensor": min(errors, key=lambda suspect: suspect.doubt)}
+
+
+def _of_sensor(motion: Suspect) -> Suspect:
+    """Return a motion of the floor that its accelerometer does not see as the error of that."""
+    course = {run: -values for run, values in motion.course.items()}
+    return motion._replace(course=course, quantity="error of floor_acceleration", channel="floor_acceleration")
 
 
 def _answers(engine: Engine, state: State, run: str) -> dict[str, Answer]:

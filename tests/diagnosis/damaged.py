@@ -91,6 +91,28 @@ def clipped(channel, share):
     )
 
 
+def blurred(faulty):
+    """Let the accelerometer of the floor show what a fault makes of its values, and its noise."""
+    noise = NOISE["floor_acceleration"]
+    return lambda f: louder("floor_acceleration", noise)(f.assign(floor_acceleration=faulty(f.floor_acceleration)))
+
+
+def stepped(values):
+    return 0.8 * (values / 0.8).round()
+
+
+def limited(values):
+    return values.clip(-2.0, 2.0)
+
+
+def with_play(values):
+    """Follow at a distance of 0.5 m/s^2 at most, and rest within it."""
+    followed = [0.0]
+    for value in values:
+        followed.append(min(max(followed[-1], value - 0.5), value + 0.5))
+    return np.array(followed[1:])
+
+
 def constant(channel, value=0.0):
     return lambda frame: frame.assign(**{channel: value})
 
@@ -170,6 +192,9 @@ DOUBTS = {
     "held": (held("driver_acceleration", 5), "driver_acceleration", "holds each value for 5 rows"),
     "one row missing": (without(3.0, 3.004), "time", "rows are missing"),
     "too large a current": (shifted("coil_current", 0.8), "coil_current", "outside 0 to 1 A"),
+    "floor in steps": (blurred(stepped), "floor_acceleration", "steps or play"),
+    "floor with play": (blurred(with_play), "floor_acceleration", "steps or play"),
+    "floor at its limit": (blurred(limited), "floor_acceleration", "it is clipped"),
     "late current": (late(0.15, "coil_current"), "coil_current", "s late"),
 }
 """Damages that are said while the diagnosis goes on."""

@@ -8,11 +8,12 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
+from seatsim.diagnosis.checks_of_floor import follows_floor
 from seatsim.diagnosis.coverage import coverage
 from seatsim.diagnosis.examination import examine, refuse
 from seatsim.recording import load_recording
 
-from .damaged import DAMAGES, DOUBTS, FEEDBACK, GAPS, RATE, at_rest, edit, rewrite, scaled
+from .damaged import DAMAGES, DOUBTS, FEEDBACK, GAPS, RATE, at_rest, blurred, edit, rewrite, scaled
 
 
 @pytest.fixture
@@ -177,3 +178,9 @@ def test_the_velocity_of_coverage_is_that_of_the_rig(kept_seat_file, sound):
     fast = np.max(np.abs(result["suspension_velocity"]))
     edges = coverage(load_recording(sound)).visited["velocity"]
     assert max(-edges.low, edges.high) == pytest.approx(fast, rel=0.4)
+
+
+@pytest.mark.parametrize("frequency", [0.5, 2.0, 10.0])
+def test_the_floor_of_a_sine_test_is_followed(copy, frequency):
+    rewrite(copy, blurred(lambda values: 2.0 * np.sin(2 * np.pi * frequency / RATE * np.arange(len(values)))))
+    assert follows_floor(load_recording(copy))

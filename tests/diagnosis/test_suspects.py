@@ -1,6 +1,7 @@
 """The block that an unknown input acts in is found, whatever its course."""
 
 import dataclasses
+import shutil
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from seatsim.diagnosis.unknown_input import INPUTS, unrepeated
 from seatsim.diagnosis.whitening import whitening
 from seatsim.recording import load_recording
 from seatsim.simulation import Forces, simulate
+
+from .damaged import blurred, limited, rewrite, stepped, with_play
 
 
 @pytest.fixture(scope="module")
@@ -88,6 +91,16 @@ def test_an_error_of_one_channel_is_the_sensors(posed):
     best, found = likeliest(dataclasses.replace(posed, measured=measured))
     assert best == "sensor"
     assert found["sensor"].quantity == "error of driver_acceleration"
+
+
+@pytest.mark.parametrize("fault", [stepped, with_play, limited])
+def test_a_floor_that_only_its_sensor_sees_rest_is_the_sensors(sound, tmp_path, fault):
+    copy = shutil.copytree(sound, tmp_path / "copy")
+    rewrite(copy, blurred(fault))
+    best, found = likeliest(problem(load_recording(copy)))
+    assert best == "sensor"
+    assert found[best].channel == "floor_acceleration"
+    assert "floor" not in found
 
 
 def repeated(posed, newtons):
