@@ -5,8 +5,8 @@ A smooth motion turns at any value, so that its slope is about as often within i
     stillness = 2 T(|d| < 2 s) / T(2 s <= |d| < 6 s),      s = noise_rms sqrt(12 / rows),
 
 with d the fitted rise over the rows of a window and T a time, is near 1. A sensor that moves in steps or with play
-stands still where the floor does not; near zero the floor may rest as well. One at its limit shows its extreme more
-often than what is beside.
+stands still where the floor does not; near zero the floor may rest as well, and extremes are looked at apart: a sensor
+at its limit shows one more often than what is beside.
 """
 
 from __future__ import annotations
@@ -54,10 +54,10 @@ def _faults(values: Array, noise: float, rate: float) -> list[tuple[str, str]]:
     noise = max(noise, LEAST)
     if np.std(values) <= 3.0 * noise:
         return []
+    if _stillness(values, noise, max(FEWEST, round(WINDOW * rate))) > STILL:
+        return [("steps", "stands still at values other than zero, as a sensor does that has steps or play; repair it")]
     limits = _limits(values, noise)
-    if limits or _stillness(values, noise, max(FEWEST, round(WINDOW * rate))) <= STILL:
-        return [("limit", f"stands still about its extreme {at:.4g}; it is clipped: widen its range") for at in limits]
-    return [("steps", "stands still at values other than zero, as a sensor does that has steps or play; repair it")]
+    return [("limit", f"stands still about its extreme {at:.4g}; it is clipped: widen its range") for at in limits]
 
 
 def _limits(values: Array, noise: float) -> list[float]:
@@ -77,8 +77,10 @@ def _stillness(values: Array, noise: float, rows: int) -> float:
     windows = sliding_window_view(values, rows)
     rises = windows @ time * rows / (time @ time)
     between = np.linspace(0.0, len(rises) - 1.0, FINE * len(rises))
-    away = np.abs(windows.mean(axis=1)) > NEAR * np.std(values)
+    means, room = windows.mean(axis=1), BIN * noise
+    within = (means > np.min(values) + room) & (means < np.max(values) - room)
+    counted = np.repeat(within & (np.abs(means) > NEAR * np.std(values)), FINE)
     unit = 2.0 * noise * np.sqrt(12.0 / rows)
-    size = np.abs(np.interp(between, np.arange(len(rises)), rises))[np.repeat(away, FINE)]
-    within, beside = np.sum(size < unit), np.sum((size >= unit) & (size < 3.0 * unit))
-    return float(2.0 * within / max(beside, FINE))
+    size = np.abs(np.interp(between, np.arange(len(rises)), rises))[counted]
+    still, beside = np.sum(size < unit), np.sum((size >= unit) & (size < 3.0 * unit))
+    return float(2.0 * still / max(beside, FINE))
