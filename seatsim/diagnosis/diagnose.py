@@ -94,7 +94,7 @@ def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) 
     if rest is None or not random or random in without:
         return first
     told(f"counting {random} as noise")
-    noisy = Engine(posed, counted(posed, random, rest))
+    noisy = Engine(posed, counted(first.engine, random, rest))
     second = _searched(noisy, [each for each in offered if each.effect != random], effects, told)
     if second.judgement.verdict == "unknown":
         return first

@@ -55,13 +55,13 @@ class Latent(NamedTuple):
         return self.shares["everything"] <= FORETOLD and max(strengths) <= STEADY * min(strengths)
 
     def wanders(self, rate: float) -> bool:
-        """Whether it is slow, as the error of a sensor is whose zero wanders; `rate` is that of the courses in Hz."""
+        """Whether it is the error of a sensor whose zero wanders; `rate` is that of the courses in Hz."""
         slow = power = 0.0
         for course in self.course.values():
             spectrum = np.abs(np.fft.rfft(course)) ** 2
             slow += float(np.sum(spectrum[: int(SLOW * len(course) / rate) + 1]))
             power += float(np.sum(spectrum))
-        return slow > MOSTLY * power
+        return self.block == "sensor" and slow > MOSTLY * power
 
 
 def latent(problem: Problem, point: Point, block: str, suspect: Suspect) -> Latent:

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatsim.diagnosis.findings import Cause, Estimate, Share
-from seatsim.diagnosis.fit import State
+from seatsim.diagnosis.fit import Engine, State
 from seatsim.diagnosis.latent import Latent, latent, rms
 from seatsim.diagnosis.problem import Problem
 from seatsim.diagnosis.suspects import Suspect
-from seatsim.diagnosis.unknown_input import power
+from seatsim.diagnosis.unknown_input import INPUTS, carried, power
 from seatsim.diagnosis.verdict import MATERIAL, Judgement, rests_of
 from seatsim.diagnosis.whitening import Whitening, whitening
 
@@ -43,14 +43,16 @@ def random_cause(problem: Problem, rest: Latent) -> str:
     merged = () if "damper_force" in problem.channels else ("damper",)
     if rest.block in ("suspension", *merged) and rest.from_outside:
         return OUTSIDE
-    errs = rest.channel in problem.channels
-    return WANDER if errs and rest.wanders(problem.recording.header.sample_rate) else ""
+    return WANDER if rest.wanders(problem.recording.header.sample_rate) else ""
 
 
-def counted(problem: Problem, effect: str, rest: Latent) -> Whitening:
+def counted(engine: Engine, effect: str, rest: Latent) -> Whitening:
     """Return weights in which the course counts as noise."""
+    problem = engine.problem
     if effect == OUTSIDE:
         return whitening(problem, rest.course)
+    if rest.channel not in problem.channels:
+        return whitening(problem, errors=carried(engine, INPUTS["floor"], rest.course))
     row = np.array([[name == rest.channel] for name in problem.channels], dtype=float)
     return whitening(problem, errors={run: row * power(np.fft.rfft(course)) for run, course in rest.course.items()})
 

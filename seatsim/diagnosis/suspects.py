@@ -23,6 +23,11 @@ from seatsim.diagnosis.unknown_input import INPUTS, Answer, driven, driven_by_lo
 
 Array = NDArray[np.float64]
 
+FLOOR = "floor_acceleration"
+"""Channel of the floor's accelerometer, whose error acts as a motion of the floor would."""
+SLOW = 0.5
+"""Hz below which the zero of an accelerometer wanders, and no floor moves so much that it matters."""
+
 
 class Suspect(NamedTuple):
     """A block that an unknown input may act in: minus twice the log evidence per number compared, less 1.
@@ -52,6 +57,7 @@ def suspects(engine: Engine, state: State) -> dict[str, Suspect]:
         found.pop(name)._replace(quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name)
         for name in problem.channels
     ]
+    errors.append(_of_sensor(found.pop(FLOOR)))
     if not follows_floor(problem.recording):
         errors.append(_of_sensor(found.pop("floor")))
     return found | {"sensor": min(errors, key=lambda suspect: suspect.doubt)}
@@ -60,7 +66,7 @@ def suspects(engine: Engine, state: State) -> dict[str, Suspect]:
 def _of_sensor(motion: Suspect) -> Suspect:
     """Return a motion of the floor that its accelerometer does not see as the error of that."""
     course = {run: -values for run, values in motion.course.items()}
-    return motion._replace(course=course, quantity="error of floor_acceleration", channel="floor_acceleration")
+    return motion._replace(course=course, quantity=f"error of {FLOOR}", unit="m/s^2", channel=FLOOR)
 
 
 def _answers(engine: Engine, state: State, run: str) -> dict[str, Answer]:
@@ -74,6 +80,7 @@ def _answers(engine: Engine, state: State, run: str) -> dict[str, Answer]:
     for block, where in INPUTS.items():
         same = merged and block == "suspension"
         found[block] = found["damper"] if same else driven(engine, state, run, where)
+    found[FLOOR] = driven(engine, state, run, INPUTS["floor"], SLOW)
     if "coil_current" in engine.problem.channels:
         found["coil"] = driven_by_log(engine, state, run)
     return found

@@ -143,14 +143,15 @@ class Driven:
         return best
 
 
-def driven(engine: Engine, state: State, run: str, where: Input) -> Answer:
-    """Return the answer to an input that matches the channels as well as it can.
+def driven(engine: Engine, state: State, run: str, where: Input, highest: float = np.inf) -> Answer:
+    """Return the answer to an input, below a highest frequency in Hz, that matches the channels as well as it can.
 
     What a small input makes of the channels is taken anew about each course, with another random one each time: a
     strong course changes how the damper slips, and what one probe misleads the next may mend.
     """
     rig = _driven(engine, state, run, where)
     plausible, bins = rig.plausible(), engine.white.bins[run]
+    allowed = np.fft.rfftfreq(rig.samples, 1.0 / engine.problem.recording.header.sample_rate)[:bins] <= highest
     course, fruitless = np.zeros(rig.samples), 0
     answer = rig.channels(course)
     left = rig.left(answer)
@@ -159,7 +160,7 @@ def driven(engine: Engine, state: State, run: str, where: Input) -> Answer:
         signature = rig.signature((course, answer), seed)
         size = np.sum(np.abs(signature) ** 2, axis=0)
         step = np.zeros(rig.samples // 2 + 1, dtype=complex)
-        step[:bins] = np.sum(signature.conj() * spectra(left), axis=0) / (size + 2.0 / plausible)
+        step[:bins] = allowed * np.sum(signature.conj() * spectra(left), axis=0) / (size + 2.0 / plausible)
         tried = [course + fraction * np.fft.irfft(step, rig.samples) for fraction in SHORTER]
         course, answer, left = rig.better(tried, (course, answer, left))
         fruitless = fruitless + 1 if np.sum(left**2) > (1.0 - SETTLED) * before else 0
@@ -209,6 +210,15 @@ def unrepeated(engine: Engine, state: State) -> dict[str, Array] | None:
             force = np.fft.irfft(course, rig.samples)
             return {name: np.resize(force, values.shape[1]) for name, values in problem.measured.items()}
     return None
+
+
+def carried(engine: Engine, where: Input, course: dict[str, Array]) -> dict[str, Array]:
+    """Return by run the power spectrum of what a course makes of the channels, shape (channels, frequencies)."""
+    found = {}
+    for run, values in course.items():
+        rig = Driven(engine.problem, engine.white, Point(engine.problem.rest), run, where, np.zeros(0))
+        found[run] = smoothed(np.abs(np.fft.rfft(rig.channels(values) - rig.channels(0.0 * values))) ** 2)
+    return found
 
 
 def _driven(engine: Engine, state: State, run: str, where: Input) -> Driven:

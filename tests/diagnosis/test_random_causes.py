@@ -45,8 +45,9 @@ def test_regressors_at_rest_foretell_nothing():
 
 def test_a_zero_wanders_slowly():
     slow, fast = coloured(12000, 0.02, 0.2, 2), coloured(12000, 2.0, 20.0, 3)
-    assert left([slow, slow + 0.1 * fast]).wanders(RATE)
-    assert not left([fast]).wanders(RATE)
+    assert left([slow, slow + 0.1 * fast], "sensor").wanders(RATE)
+    assert not left([fast], "sensor").wanders(RATE)
+    assert not left([slow]).wanders(RATE)
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +69,17 @@ def test_a_wandering_zero_is_named_with_its_channel(posed):
     solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
     assert solution.random == "sensor.bias"
     assert solution.rest.channel == "frame_acceleration"
+
+
+def test_a_wandering_zero_of_the_floor_is_told_from_a_motion_of_it(posed):
+    measured = {}
+    for seed, run in enumerate(posed.runs):
+        floor = posed.floors[run]
+        wander = 0.03 * coloured(len(floor.acceleration), 0.05, 0.2, seed, 1.0 / floor.step)
+        moving = floor._replace(acceleration=floor.acceleration + wander)
+        measured[run] = noisy(posed, posed.simulated(run, posed.rest, (), Drive(moving)))
+    solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
+    assert (solution.random, solution.rest.channel) == ("sensor.bias", "floor_acceleration")
 
 
 def test_a_zero_that_wanders_beside_an_effect_is_named_too(posed):

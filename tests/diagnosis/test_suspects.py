@@ -27,7 +27,7 @@ def course(samples, rate):
     return np.sin(2 * np.pi * 2.3 * time) + np.sin(2 * np.pi * 5.1 * time) * np.sign(np.sin(2 * np.pi * 0.9 * time))
 
 
-def with_input(posed, block):
+def with_input(posed, block, course=course):
     """Return the problem with the recording of a rig that has an input more, and the stated noise."""
     where, rng, measured = INPUTS[block], np.random.default_rng(3), {}
     for run in posed.runs:
@@ -53,6 +53,11 @@ def likeliest(posed):
 @pytest.mark.parametrize("block", ["damper", "suspension", "cushion", "driver"])
 def test_a_force_in_a_block_is_placed_there(posed, block):
     assert likeliest(with_input(posed, block))[0] == block
+
+
+def test_a_slow_force_is_no_wandering_zero_of_the_floor(posed):
+    slow = with_input(posed, "suspension", lambda samples, rate: np.sin(2 * np.pi * 0.2 / rate * np.arange(samples)))
+    assert likeliest(slow)[0] in ("suspension", "driver")
 
 
 def test_a_current_that_the_command_does_not_foretell_is_the_coils(posed):
