@@ -19,7 +19,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from seatsim.diagnosis.inspected import Array, Finding, Run
 from seatsim.recording import Recording
 
-CHANNEL = "floor_acceleration"
+FLOOR = "floor_acceleration"
+"""Channel of the floor's accelerometer, whose error acts as a motion of the floor would."""
 WINDOW, FEWEST = 0.032, 6
 """Seconds over which a slope is fitted, and least rows."""
 STILL = 3.0
@@ -38,15 +39,15 @@ PILED, FEW = 5.0, 12
 
 def floor(run: Run) -> Iterator[Finding]:
     """Look for an accelerometer of the floor that stands still while the floor moves."""
-    if CHANNEL in run.table:
-        for kind, text in _faults(run.table[CHANNEL], run.noise(CHANNEL), run.rate):
-            yield run.finding("warning", kind, text, CHANNEL)
+    if FLOOR in run.table:
+        for kind, text in _faults(run.table[FLOOR], run.noise(FLOOR), run.rate):
+            yield run.finding("warning", kind, text, FLOOR)
 
 
 def follows_floor(recording: Recording) -> bool:
     """Say whether the accelerometer of the floor follows it in every run."""
-    noise, rate = recording.channels[CHANNEL].noise_rms, recording.header.sample_rate
-    return not any(_faults(recording.table(run)[CHANNEL], noise, rate) for run in recording.runs)
+    noise, rate = recording.channels[FLOOR].noise_rms, recording.header.sample_rate
+    return not any(_faults(recording.table(run)[FLOOR], noise, rate) for run in recording.runs)
 
 
 def _faults(values: Array, noise: float, rate: float) -> list[tuple[str, str]]:

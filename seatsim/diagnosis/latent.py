@@ -15,7 +15,7 @@ from scipy.signal import decimate
 
 from seatsim.diagnosis.fit import Point
 from seatsim.diagnosis.problem import Problem
-from seatsim.diagnosis.suspects import Suspect
+from seatsim.diagnosis.suspects import SLOW, Suspect
 
 Array = NDArray[np.float64]
 
@@ -31,8 +31,8 @@ FORETOLD = 0.12
 """Share of the variance on left-out runs from which a force belongs to the rig."""
 STEADY = 1.4
 """Ratio of its RMS in two runs up to which a force may come from outside."""
-SLOW, MOSTLY = 0.5, 0.9
-"""Hz below which a wandering zero has this share of its power, at least."""
+MOSTLY = 0.9
+"""Share of its power that a wandering zero has below SLOW, at least."""
 
 
 class Latent(NamedTuple):

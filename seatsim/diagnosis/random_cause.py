@@ -6,15 +6,18 @@ import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatsim.diagnosis.findings import Cause, Estimate, Share
-from seatsim.diagnosis.fit import Engine, State
+from seatsim.diagnosis.fit import Engine, Point, State
 from seatsim.diagnosis.latent import Latent, latent, rms
 from seatsim.diagnosis.problem import Problem
 from seatsim.diagnosis.suspects import Suspect
-from seatsim.diagnosis.unknown_input import INPUTS, carried, power
+from seatsim.diagnosis.unknown_input import INPUTS, Driven, power
 from seatsim.diagnosis.verdict import MATERIAL, Judgement, rests_of
-from seatsim.diagnosis.whitening import Whitening, whitening
+from seatsim.diagnosis.whitening import Whitening, smoothed, whitening
+
+Array = NDArray[np.float64]
 
 OUTSIDE, WANDER = "floor.unmeasured_input", "sensor.bias"
 OWN = 0.6
@@ -52,9 +55,15 @@ def counted(engine: Engine, effect: str, rest: Latent) -> Whitening:
     if effect == OUTSIDE:
         return whitening(problem, rest.course)
     if rest.channel not in problem.channels:
-        return whitening(problem, errors=carried(engine, INPUTS["floor"], rest.course))
+        return whitening(problem, errors={run: _carried(engine, run, course) for run, course in rest.course.items()})
     row = np.array([[name == rest.channel] for name in problem.channels], dtype=float)
     return whitening(problem, errors={run: row * power(np.fft.rfft(course)) for run, course in rest.course.items()})
+
+
+def _carried(engine: Engine, run: str, course: Array) -> Array:
+    """Return the power that a motion of the floor leaves in the channels, shape (channels, frequencies)."""
+    rig = Driven(engine.problem, engine.white, Point(engine.problem.rest), run, INPUTS["floor"], np.zeros(0))
+    return smoothed(np.abs(np.fft.rfft(rig.channels(course) - rig.channels(0.0 * course))) ** 2)
 
 
 def joined(judgement: Judgement, where: Sequence[Share], effect: str) -> tuple[Judgement, list[Share]]:

@@ -16,17 +16,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.checks_of_floor import follows_floor
+from seatsim.diagnosis.checks_of_floor import FLOOR, follows_floor
 from seatsim.diagnosis.fit import Engine, State, solved
 from seatsim.diagnosis.problem import POOL
 from seatsim.diagnosis.unknown_input import INPUTS, Answer, driven, driven_by_log, power, spectra, unit_error
 
 Array = NDArray[np.float64]
 
-FLOOR = "floor_acceleration"
-"""Channel of the floor's accelerometer, whose error acts as a motion of the floor would."""
 SLOW = 0.5
-"""Hz below which the zero of an accelerometer wanders, and no floor moves so much that it matters."""
+"""Hz below which the zero of a sensor wanders, and no floor moves so much that it matters."""
 
 
 class Suspect(NamedTuple):

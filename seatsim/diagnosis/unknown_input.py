@@ -212,15 +212,6 @@ def unrepeated(engine: Engine, state: State) -> dict[str, Array] | None:
     return None
 
 
-def carried(engine: Engine, where: Input, course: dict[str, Array]) -> dict[str, Array]:
-    """Return by run the power spectrum of what a course makes of the channels, shape (channels, frequencies)."""
-    found = {}
-    for run, values in course.items():
-        rig = Driven(engine.problem, engine.white, Point(engine.problem.rest), run, where, np.zeros(0))
-        found[run] = smoothed(np.abs(np.fft.rfft(rig.channels(values) - rig.channels(0.0 * values))) ** 2)
-    return found
-
-
 def _driven(engine: Engine, state: State, run: str, where: Input) -> Driven:
     problem, point = engine.problem, state.point
     current = np.zeros(0)
