@@ -74,8 +74,9 @@ def imitated(case: Path, effect: str) -> str:
     shares: dict[str, float] = {}
     with threadpool_limits(1):
         posed = problem(load_recording(case))
-        others = [candidate for candidate in candidates(posed) if candidate.effect != effect]
-        if len(others) < len(candidates(posed)):
+        offered = candidates(posed)
+        others = [candidate for candidate in offered if candidate.effect != effect]
+        if len(others) < len(offered):
             engine = Engine(posed, whitening(posed))
             nominal = engine.states([Point(posed.rest)])[0]
             engine.refresh(nominal)

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from seatsim.diagnosis.inspected import Array, Finding, Run
+from seatsim.diagnosis.inspected import Array, Finding, Run, at_rest
 from seatsim.recording import Recording
 
 FLOOR = "floor_acceleration"
@@ -53,7 +53,7 @@ def follows_floor(recording: Recording) -> bool:
 def _faults(values: Array, noise: float, rate: float) -> list[tuple[str, str]]:
     """Return kind and text of what a record shows; nothing where the floor rests."""
     noise = max(noise, LEAST)
-    if np.std(values) <= 3.0 * noise:
+    if at_rest(values, noise):
         return []
     if _stillness(values, noise, max(FEWEST, round(WINDOW * rate))) > STILL:
         return [("steps", "stands still at values other than zero, as a sensor does that has steps or play; repair it")]

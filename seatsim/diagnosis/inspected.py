@@ -33,6 +33,11 @@ class Finding(NamedTuple):
     run: str | None = None
 
 
+def at_rest(values: Array, noise: float) -> bool:
+    """Say whether values show hardly more than their noise."""
+    return float(np.std(values)) <= 3.0 * noise
+
+
 class Run(NamedTuple):
     """One run under examination: its table, and what the recording says about it."""
 
@@ -62,7 +67,7 @@ class Run(NamedTuple):
 
     def is_still(self, channel: str) -> bool:
         """Say whether a channel shows hardly more than its noise."""
-        return float(np.std(self.table[channel])) <= 3.0 * self.noise(channel)
+        return at_rest(self.table[channel], self.noise(channel))
 
     def finding(self, severity: Severity, kind: str, text: str, channel: str | None = None) -> Finding:
         """Return a finding about this run, or about one channel of it."""

@@ -62,8 +62,9 @@ def counted(engine: Engine, effect: str, rest: Latent) -> Whitening:
 
 def _carried(engine: Engine, run: str, course: Array) -> Array:
     """Return the power that a motion of the floor leaves in the channels, shape (channels, frequencies)."""
-    rig = Driven(engine.problem, engine.white, Point(engine.problem.rest), run, INPUTS["floor"], np.zeros(0))
-    return smoothed(np.abs(np.fft.rfft(rig.channels(course) - rig.channels(0.0 * course))) ** 2)
+    problem = engine.problem
+    rig = Driven(problem, engine.white, Point(problem.rest), run, INPUTS["floor"], np.zeros(0))
+    return smoothed(np.abs(np.fft.rfft(rig.channels(course) - problem.simulated(run, problem.rest, ()))) ** 2)
 
 
 def joined(judgement: Judgement, where: Sequence[Share], effect: str) -> tuple[Judgement, list[Share]]:
