@@ -18,19 +18,19 @@ from rich.table import Table
 from scipy.signal import butter, sosfiltfilt
 from threadpoolctl import threadpool_limits
 
-from seatsim.augmentation import readings, undone
-from seatsim.blind.measures import Rate
-from seatsim.blind.score import KINDS, score_of
+from seatsim.blind.score.measures import Rate
+from seatsim.blind.score.score import KINDS, score_of
+from seatsim.blind.score.verdicts import read_verdict
 from seatsim.blind.sealed import unseal
-from seatsim.blind.verdicts import read_verdict
+from seatsim.diagnosis.noise import Whitening, even
 from seatsim.diagnosis.nuisance import varied
 from seatsim.diagnosis.problem import Drive, Problem
-from seatsim.diagnosis.whitening import Whitening, even
-from seatsim.errors import SeatsimError
 from seatsim.excitations.base import Floor
-from seatsim.files import write_json
-from seatsim.plant import Plant
-from seatsim.simulation import Forces
+from seatsim.rig.plant import Plant
+from seatsim.schema.errors import SeatsimError
+from seatsim.schema.files import write_json
+from seatsim.simulation.augment import readings, undone
+from seatsim.simulation.simulate import Forces
 
 Array = NDArray[np.float64]
 Labels = dict[str, dict[str, Any]]

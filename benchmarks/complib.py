@@ -22,7 +22,7 @@ from threadpoolctl import threadpool_limits
 
 from controllers import Design, GeneralisedPlant, synthesise
 from controllers.synthesis.norm import grid_norm
-from seatsim.errors import SynthesisError
+from seatsim.schema.errors import SynthesisError
 
 NEGLIGIBLE = 1e-6
 """AC1, UWV and NN10 have an infimum of zero."""

@@ -28,18 +28,18 @@ from unittest.mock import patch
 import numpy as np
 from cases import Array, arguments, can_be_fed, fed, opened, show, twin, white, work
 
+from seatsim.cli.outputs.diagnosis import contents
+from seatsim.diagnosis import decide as judging
 from seatsim.diagnosis import diagnose as diagnosing
+from seatsim.diagnosis import noise as weighing
 from seatsim.diagnosis import problem as posing
-from seatsim.diagnosis import verdict as judging
-from seatsim.diagnosis import whitening as weighing
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.findings import Share
+from seatsim.diagnosis.decide import Judgement
 from seatsim.diagnosis.fit import Engine, State
 from seatsim.diagnosis.problem import POOL, Problem
-from seatsim.diagnosis.search import Search
-from seatsim.diagnosis.verdict import Judgement
-from seatsim.diagnosis_output import contents
-from seatsim.errors import RunError
+from seatsim.diagnosis.result import Share
+from seatsim.diagnosis.select import Search
+from seatsim.schema.errors import RunError
 
 ONE_PERCENT = 2.33
 """Standard deviations of chi^2 that noise alone exceeds in 1 % of cases."""

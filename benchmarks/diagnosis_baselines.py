@@ -39,13 +39,13 @@ from cases import (
 )
 from regressed import regressed
 
-from seatsim.diagnosis import search as searching
+from seatsim.diagnosis import select as searching
 from seatsim.diagnosis.candidates import candidates
+from seatsim.diagnosis.decide import movements
+from seatsim.diagnosis.design.isolability import isolable
 from seatsim.diagnosis.fit import Engine, Point, State
-from seatsim.diagnosis.isolability import isolable
 from seatsim.diagnosis.problem import Problem, problem
-from seatsim.diagnosis.verdict import movements
-from seatsim.recording import load_recording
+from seatsim.recordings.recording import load_recording
 
 NAMED, NAMED_NEXT, LARGE = 0.85, 0.8, 0.02
 MISFIT = 8.0

@@ -24,17 +24,17 @@ from cases import run
 from threadpoolctl import threadpool_limits
 
 import seatsim
-from seatsim.blind.case import RunPlan, Setting, drive, read
-from seatsim.blind.commands import SCHEDULE
-from seatsim.blind.draw import Case, Order, draw_case
-from seatsim.blind.folder import recording_files, write_files
-from seatsim.blind.rig import FINE, RATE
-from seatsim.blind.truth import Changes
-from seatsim.diagnosis.experiment import Trial, menu
-from seatsim.diagnosis.findings import Diagnosis
+from seatsim.blind.make.case import RunPlan, Setting, drive, read
+from seatsim.blind.make.draw import Case, Order, draw_case
+from seatsim.blind.make.folder import recording_files, write_files
+from seatsim.blind.truth.commands import SCHEDULE
+from seatsim.blind.truth.rig import FINE, RATE
+from seatsim.blind.truth.truth import Changes
+from seatsim.diagnosis.design.experiment import Trial, menu
 from seatsim.diagnosis.problem import problem
-from seatsim.files import write_json
-from seatsim.recording import load_recording
+from seatsim.diagnosis.result import Diagnosis
+from seatsim.recordings.recording import load_recording
+from seatsim.schema.files import write_json
 
 CELL, LOG = ("damper_force",), ("coil_current",)
 WITHOUT: Mapping[str, tuple[str, ...]] = {

@@ -24,21 +24,21 @@ from typing import Any, NamedTuple
 from cases import run, worked
 from threadpoolctl import threadpool_limits
 
-from seatsim.blind.draw import Order
-from seatsim.blind.make import make_case
-from seatsim.blind.verdicts import Verdict, is_right, read_verdict
-from seatsim.diagnosis.alikeness import with_member
+from seatsim.blind.make.draw import Order
+from seatsim.blind.make.make import make_case
+from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
+from seatsim.cli.outputs.diagnosis import contents
 from seatsim.diagnosis.candidates import candidates
+from seatsim.diagnosis.decide import EXPLAINED
+from seatsim.diagnosis.design.collinearity import with_member
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.fit import Engine, Point
+from seatsim.diagnosis.noise import whitening
 from seatsim.diagnosis.problem import problem
-from seatsim.diagnosis.search import search
-from seatsim.diagnosis.verdict import EXPLAINED
-from seatsim.diagnosis.whitening import whitening
-from seatsim.diagnosis_output import contents
-from seatsim.files import write_json
-from seatsim.recording import load_recording
-from seatsim.registry import names
+from seatsim.diagnosis.select import search
+from seatsim.recordings.recording import load_recording
+from seatsim.schema.files import write_json
+from seatsim.schema.registry import names
 
 IMITATED = 1.0 - EXPLAINED
 """Share of the whitened gap of a twin from which an effect explains another."""

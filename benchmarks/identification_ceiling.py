@@ -20,10 +20,10 @@ from rich.console import Console
 from rich.table import Table
 from threadpoolctl import threadpool_limits
 
-from seatsim.bench_tables import BenchRecord, load_bench
 from seatsim.characterisation.cycles import loops_of, steady_cycles, whole_cycles
 from seatsim.identification.figures import Figures, averaged, figures
 from seatsim.identification.split import Request, split
+from seatsim.recordings.bench_tables import BenchRecord, load_bench
 
 Array = NDArray[np.float64]
 

@@ -26,10 +26,10 @@ from rich.progress import track
 from rich.table import Table
 from threadpoolctl import threadpool_limits
 
-from seatsim.files import write_json
+from seatsim.cli.outputs.identification import contents, parameters
 from seatsim.identification.identify import Request, identify, predict
-from seatsim.identification_output import contents, parameters
-from seatsim.registry import names
+from seatsim.schema.files import write_json
+from seatsim.schema.registry import names
 
 SINES, EARTHQUAKE = "utfsm_mr_sine_raw", "utfsm_mr_earthquake"
 RANDOM, HEAT = "dyke_nees_2012_1158/ranran_50.csv.gz", "fsae_damper_temperature"

@@ -23,17 +23,17 @@ from rich.console import Console
 from rich.table import Table
 from threadpoolctl import threadpool_limits
 
-from seatsim.bench_tables import BenchRecord
-from seatsim.dampers.bench import bench_force
-from seatsim.errors import RunError
-from seatsim.files import write_json
 from seatsim.identification.coordinates import Coordinates, Scales, scaled
 from seatsim.identification.identify import EVERYTHING, identify_records
 from seatsim.identification.information import Information, information
 from seatsim.identification.predict import Bench, drive
 from seatsim.identification.problem import Problem, weights
-from seatsim.registry import card_of, find, names
-from seatsim.temperature import TemperatureFactors
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.errors import RunError
+from seatsim.schema.files import write_json
+from seatsim.schema.registry import card_of, find, names
+from seatsim.simulation.damper_bench import bench_force
 
 Array = NDArray[np.float64]
 

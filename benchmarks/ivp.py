@@ -14,7 +14,7 @@ import numpy as np
 from problem import DAMPER, GAIN, PLANT, STEP
 from scipy.integrate import solve_ivp
 
-from seatsim.coil import Coil
+from seatsim.rig.coil import Coil
 
 MS, M, KF, CF, KC, CC = PLANT[:6]
 C0, C1, ALPHA, K0, K1, X0, F0, A, BETA, GAMMA = DAMPER[:10]

@@ -20,11 +20,11 @@ import pandas as pd
 
 import seatsim
 from controllers.clairvoyant import Bracket, clairvoyant
-from seatsim.brackets import distance
-from seatsim.files import write_json, write_text
-from seatsim.result import Run
-from seatsim.runs import run_many
-from seatsim.temperature import TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.files import write_json, write_text
+from seatsim.simulation.performance_bounds import distance
+from seatsim.simulation.result import Run
+from seatsim.simulation.runs import run_many
 
 SPEEDS = {"B": 25.0, "C": 20.0, "D": 15.0, "E": 8.0, "F": 4.0}
 """m/s at which each class of road is driven."""

@@ -7,15 +7,15 @@ from collections.abc import Callable
 import numpy as np
 
 from controllers.static_output_feedback import OutputFeedback
-from seatsim.coil import Coil
+from seatsim.compilation.cached import compiled
 from seatsim.dampers.bouc_wen import ModifiedBoucWen
 from seatsim.excitations.iso7096 import Iso7096
 from seatsim.kernel.belief import Truth
-from seatsim.kernel.compilation import compiled
 from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
 from seatsim.kernel.rig import Rig
-from seatsim.plant import Plant
-from seatsim.temperature import TemperatureFactors, Thermal
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
+from seatsim.rig.temperature import TemperatureFactors, Thermal
 
 STEP = 1e-3
 GAIN = OutputFeedback(2.0, 2147.6)

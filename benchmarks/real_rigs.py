@@ -29,12 +29,14 @@ from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
 import seatsim
-from seatsim.fields import bounds
-from seatsim.files import write_whole
-from seatsim.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Recording, load_recording
-from seatsim.registry import find
-from seatsim.replay import LEFT_OUT, pooled, single
-from seatsim.scenario import Scenario
+from seatsim.recordings.compared import LEFT_OUT
+from seatsim.recordings.gap import pooled
+from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Recording, load_recording
+from seatsim.scenario.loading import single
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.fields import bounds
+from seatsim.schema.files import write_whole
+from seatsim.schema.registry import find
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 TOLERANCE = 0.1

@@ -18,7 +18,7 @@ CALL = """
 import time
 start = time.perf_counter()
 import numpy as np
-import seatsim.simulation
+import seatsim.simulation.simulate
 from problem import floor, seatsim_run, setup
 acceleration, parts = np.zeros(2), setup(1)
 imported = time.perf_counter()

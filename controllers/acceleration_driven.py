@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.control import Measurement, law
-from seatsim.fields import param
+from seatsim.rig.control import Measurement, law
+from seatsim.schema.fields import param
 
 State = tuple[float, ...]
 

@@ -8,10 +8,10 @@ from pydantic import Field
 
 from controllers.kalman import REST, Estimator, Noise, corrected, dot, estimator, predicted
 from controllers.quadratic import QuadraticWeights, state_feedback
-from seatsim.coil import Coil
-from seatsim.control import Measurement, law
-from seatsim.fields import param
-from seatsim.plant import Plant
+from seatsim.rig.coil import Coil
+from seatsim.rig.control import Measurement, law
+from seatsim.rig.plant import Plant
+from seatsim.schema.fields import param
 
 State = tuple[float, ...]
 

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
 from controllers.linear import held
-from seatsim.control import Measurement
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.plant import Plant, StateSpace, state_space
+from seatsim.compilation.jit import jit
+from seatsim.rig.control import Measurement
+from seatsim.rig.plant import Plant, StateSpace, state_space
+from seatsim.schema.fields import param
 
 Array = NDArray[np.float64]
 State = tuple[float, ...]

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from controllers.linear import held
 from controllers.sampled_loop import SampledLoop, seat_with_coil
-from seatsim.coil import Coil
-from seatsim.plant import Plant, state_space
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant, state_space
 
 Array = NDArray[np.float64]
 

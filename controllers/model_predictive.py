@@ -12,11 +12,11 @@ from pydantic import Field
 from controllers.kalman import REST, Estimator, Noise, corrected, estimator, predicted
 from controllers.planner import Envelope, Planner
 from controllers.quadratic import QuadraticWeights
-from seatsim.coil import Coil
-from seatsim.control import Measurement, law
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.plant import Plant
+from seatsim.compilation.jit import jit
+from seatsim.rig.coil import Coil
+from seatsim.rig.control import Measurement, law
+from seatsim.rig.plant import Plant
+from seatsim.schema.fields import param
 
 State = tuple[float, ...]
 _planners: dict[int, Planner] = {}

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.coil import Coil
-from seatsim.control import Measurement, law
-from seatsim.fields import param
-from seatsim.plant import Plant
+from seatsim.rig.coil import Coil
+from seatsim.rig.control import Measurement, law
+from seatsim.rig.plant import Plant
+from seatsim.schema.fields import param
 
 State = tuple[float, ...]
 

@@ -11,8 +11,8 @@ from scipy.linalg import solve_discrete_are
 
 from controllers.linear import held
 from controllers.quadratic import QuadraticWeights
-from seatsim.fields import param
-from seatsim.plant import Plant, state_space
+from seatsim.rig.plant import Plant, state_space
+from seatsim.schema.fields import param
 
 Array = NDArray[np.float64]
 SETTINGS = {"verbose": False, "adaptive_rho": False, "eps_abs": 1e-4, "eps_rel": 1e-4, "max_iter": 500}

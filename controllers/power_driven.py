@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-from seatsim.control import Measurement, law
-from seatsim.fields import param
-from seatsim.plant import Plant
+from seatsim.rig.control import Measurement, law
+from seatsim.rig.plant import Plant
+from seatsim.schema.fields import param
 
 State = tuple[float, ...]
 

@@ -7,9 +7,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from seatsim.control import Measurement, law
-from seatsim.fields import param
-from seatsim.plant import Plant, state_space
+from seatsim.rig.control import Measurement, law
+from seatsim.rig.plant import Plant, state_space
+from seatsim.schema.fields import param
 
 State = tuple[float, ...]
 

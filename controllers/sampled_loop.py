@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from controllers.linear import held
-from seatsim.coil import Coil
-from seatsim.control import Measurement
-from seatsim.errors import InputError
-from seatsim.plant import Plant, state_space
-from seatsim.sensors import READINGS, Sensors, at_rest
+from seatsim.rig.coil import Coil
+from seatsim.rig.control import Measurement
+from seatsim.rig.plant import Plant, state_space
+from seatsim.rig.sensors import READINGS, Sensors, at_rest
+from seatsim.schema.errors import InputError
 
 Array = NDArray[np.float64]
 QUIET = np.zeros((1, READINGS))

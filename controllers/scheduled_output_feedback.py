@@ -9,10 +9,10 @@ from pydantic import Field
 
 from controllers.seat_plant import Lag, Weights
 from controllers.static_output_feedback import Factor, Gain, OutputFeedback, StaticOutputFeedback
-from seatsim.control import Measurement, law
-from seatsim.errors import InputError
-from seatsim.fields import param
-from seatsim.plant import Plant
+from seatsim.rig.control import Measurement, law
+from seatsim.rig.plant import Plant
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import param
 
 State = tuple[float, ...]
 Temperature = Annotated[float, param("degC", "temperature of a gain", low=-60, high=250)]

@@ -8,8 +8,8 @@ import numpy as np
 from pydantic import Field
 
 from controllers.linear import System, parallel, section, series, unity, weighted
-from seatsim.fields import param
-from seatsim.plant import Plant, state_space
+from seatsim.rig.plant import Plant, state_space
+from seatsim.schema.fields import param
 
 if TYPE_CHECKING:
     from controllers.synthesis import GeneralisedPlant

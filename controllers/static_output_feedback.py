@@ -12,11 +12,11 @@ from pydantic import Field
 
 from controllers.margins import margins, sampled_radius
 from controllers.seat_plant import Lag, Weights, generalised
-from seatsim.coil import Coil
-from seatsim.control import Measurement, law
-from seatsim.errors import InputError
-from seatsim.fields import param
-from seatsim.plant import Plant
+from seatsim.rig.coil import Coil
+from seatsim.rig.control import Measurement, law
+from seatsim.rig.plant import Plant
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import param
 
 if TYPE_CHECKING:
     from collections.abc import Callable

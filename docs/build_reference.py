@@ -5,9 +5,9 @@ from __future__ import annotations
 import inspect
 from pathlib import Path
 
-from seatsim import registry
 from seatsim.dampers.base import CONFIDENCE
-from seatsim.describe import KINDS, SECTIONS, describe
+from seatsim.scenario.describe import KINDS, SECTIONS, describe
+from seatsim.schema import registry
 
 PAGE = Path(__file__).with_name("reference.md")
 HEAD = """# Everything that has a name

@@ -7,36 +7,36 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from seatsim.diagnosis.diagnose import diagnose
-    from seatsim.diagnosis.findings import Diagnosis
-    from seatsim.errors import InputError, RunError, SeatsimError, SynthesisError
+    from seatsim.diagnosis.result import Diagnosis
     from seatsim.identification.identify import Identification, identify
-    from seatsim.loading import load
-    from seatsim.recording import Recording, load_recording
-    from seatsim.replay import Gap, gap
-    from seatsim.result import Channel, Result, Run
-    from seatsim.runs import compare, run
-    from seatsim.scenario import Scenario
+    from seatsim.recordings.gap import Gap, gap
+    from seatsim.recordings.recording import Recording, load_recording
+    from seatsim.scenario.loading import load
+    from seatsim.scenario.scenario import Scenario
+    from seatsim.schema.errors import InputError, RunError, SeatsimError, SynthesisError
+    from seatsim.simulation.result import Channel, Result, Run
+    from seatsim.simulation.runs import compare, run
 
 _HOME = {
-    "Channel": "result",
-    "Diagnosis": "diagnosis.findings",
-    "Gap": "replay",
+    "Channel": "simulation.result",
+    "Diagnosis": "diagnosis.result",
+    "Gap": "recordings.gap",
     "Identification": "identification.identify",
-    "InputError": "errors",
-    "Recording": "recording",
-    "Result": "result",
-    "Run": "result",
-    "RunError": "errors",
-    "Scenario": "scenario",
-    "SeatsimError": "errors",
-    "SynthesisError": "errors",
-    "compare": "runs",
+    "InputError": "schema.errors",
+    "Recording": "recordings.recording",
+    "Result": "simulation.result",
+    "Run": "simulation.result",
+    "RunError": "schema.errors",
+    "Scenario": "scenario.scenario",
+    "SeatsimError": "schema.errors",
+    "SynthesisError": "schema.errors",
+    "compare": "simulation.runs",
     "diagnose": "diagnosis.diagnose",
-    "gap": "replay",
+    "gap": "recordings.gap",
     "identify": "identification.identify",
-    "load": "loading",
-    "load_recording": "recording",
-    "run": "runs",
+    "load": "scenario.loading",
+    "load_recording": "recordings.recording",
+    "run": "simulation.runs",
 }
 __all__ = [
     "Channel",

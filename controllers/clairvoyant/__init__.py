@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from seatsim.registry import register
+from seatsim.schema.registry import register
 
 if TYPE_CHECKING:
-    from seatsim.scenario import Scenario
+    from seatsim.scenario.scenario import Scenario
 
 __all__ = ["WEIGHTS", "Bracket", "clairvoyant"]
 

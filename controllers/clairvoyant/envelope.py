@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from controllers.clairvoyant.recursion import Array, Lines
-from seatsim.dampers.bench import sine_test
-from seatsim.errors import InputError
-from seatsim.scenario import DamperChoice
+from seatsim.scenario.scenario import DamperChoice
+from seatsim.schema.errors import InputError
+from seatsim.simulation.damper_bench import sine_test
 
 TOP = 1.5
 """m/s; speed up to which the lines hold."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from controllers.clairvoyant.recursion import Array, Lines, Modes, Quadratic, deliver, gradient, sweep
 from controllers.clairvoyant.transcription import Transcription
-from seatsim.kernel.compilation import compiled
+from seatsim.compilation.cached import compiled
 
 
 class Run(NamedTuple):

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.jit import jit
+from seatsim.compilation.jit import jit
 
 Array = NDArray[np.float64]
 Modes = NDArray[np.int64]

@@ -13,9 +13,9 @@ from controllers.clairvoyant.feasible import best_run
 from controllers.clairvoyant.problem import Problem, Run
 from controllers.clairvoyant.transcription import Transcription, transcribe
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on
-from seatsim.errors import InputError
-from seatsim.registry import name_of
-from seatsim.scenario import Scenario
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.errors import InputError
+from seatsim.schema.registry import name_of
 
 UNKNOWN = (*ON_DAMPER, *ON_SEAT, "factors", "temperature", "push", "plant")
 """Hooks of effects that change what the bracket is of."""

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from controllers.linear import System, held, parallel, series, unity, weighted
 from seatsim.metrics.weighting import weight
-from seatsim.plant import Plant, state_space
+from seatsim.rig.plant import Plant, state_space
 
 Array = NDArray[np.float64]
 

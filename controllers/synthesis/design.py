@@ -13,8 +13,8 @@ from ruamel.yaml.error import YAMLError
 
 from controllers.synthesis.certify import Certificate
 from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant
-from seatsim.errors import InputError
-from seatsim.files import write_whole
+from seatsim.schema.errors import InputError
+from seatsim.schema.files import write_whole
 
 
 @dataclass(frozen=True, eq=False)

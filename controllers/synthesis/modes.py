@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.scaling import Scaled
-from seatsim.errors import SynthesisError
+from seatsim.schema.errors import SynthesisError
 
 _RANK_TOLERANCE = 1e-10
 _FIXED_TOLERANCE = 1e-7

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from seatsim.errors import InputError
+from seatsim.schema.errors import InputError
 
 Array = NDArray[np.float64]
 MATRICES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")

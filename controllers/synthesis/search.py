@@ -15,7 +15,7 @@ from controllers.synthesis.objective import Objective
 from controllers.synthesis.plant import Array, GeneralisedPlant
 from controllers.synthesis.scaling import scale
 from controllers.synthesis.starts import Start, convex_start, starting_gains
-from seatsim.errors import SynthesisError
+from seatsim.schema.errors import SynthesisError
 
 _FIRST_STARTS, _MORE_STARTS = 6, 24
 # Shares of the time budget: starts are explored until the first (until the second where none is stable), the best

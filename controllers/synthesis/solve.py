@@ -15,7 +15,7 @@ from controllers.synthesis.design import Design
 from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant, StateSpace
 from controllers.synthesis.search import Clock, Told, search
 from controllers.synthesis.verify import verify
-from seatsim.errors import InputError
+from seatsim.schema.errors import InputError
 
 
 @overload

@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from seatsim.excitations.iso7096 import acceleration_density
 from seatsim.excitations.road import LONGEST, SHORTEST, RoadClass, displacement_density
 from seatsim.excitations.vehicle import floor_response
-from seatsim.plant import Plant, StateSpace, state_space
+from seatsim.rig.plant import Plant, StateSpace, state_space
 
 Array = NDArray[np.float64]
 Density = Callable[[Array], Array]

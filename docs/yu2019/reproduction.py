@@ -25,12 +25,12 @@ from scipy.optimize import brentq, least_squares
 from controllers import synthesise
 from controllers.seat_plant import Weights, generalised
 from seatsim.dampers.asymmetric import Yu2019
-from seatsim.dampers.bench import SineTest, sine_test
 from seatsim.dampers.hysteresis_division import Yu2017
-from seatsim.loading import load
-from seatsim.plant import Plant
-from seatsim.scenario import DamperChoice, Inverse, Scenario
-from seatsim.simulation import simulate
+from seatsim.rig.plant import Plant
+from seatsim.scenario.loading import load
+from seatsim.scenario.scenario import DamperChoice, Inverse, Scenario
+from seatsim.simulation.damper_bench import SineTest, sine_test
+from seatsim.simulation.simulate import simulate
 
 Array = NDArray[np.float64]
 Settings = Mapping[str, Any]

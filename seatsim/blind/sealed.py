@@ -13,8 +13,8 @@ from typing import Any
 
 from cryptography.fernet import Fernet, InvalidToken
 
-from seatsim.errors import InputError
-from seatsim.files import write_text, write_whole
+from seatsim.schema.errors import InputError
+from seatsim.schema.files import write_text, write_whole
 
 LABELS = "labels.json"
 SEAL = "seal.txt"

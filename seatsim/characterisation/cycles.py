@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.bench_tables import BenchRecord
-from seatsim.dampers.bench import SineTest
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.simulation.damper_bench import SineTest
 
 Array = NDArray[np.float64]
 

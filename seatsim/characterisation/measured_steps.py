@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.bench_tables import BenchRecord
 from seatsim.characterisation.response import Ensemble, Response, crossing, response
 from seatsim.characterisation.steps import Step, find_steps
+from seatsim.recordings.bench_tables import BenchRecord
 
 Array = NDArray[Any]
 

@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 from seatsim.characterisation.response import Ensemble, Response, crossing, response
 from seatsim.characterisation.rows import row_of_loops
 from seatsim.characterisation.summary import Characterisation
-from seatsim.coil import Coil, relax
 from seatsim.dampers.base import DamperCard
-from seatsim.dampers.bench import bench_force, sine_test
-from seatsim.dampers.stated import stated_damper
-from seatsim.errors import InputError
-from seatsim.registry import card_of, find, name_of
-from seatsim.temperature import TemperatureFactors
-from seatsim.validation import build
-from seatsim.yaml_source import KeyPath, Source
+from seatsim.rig.coil import Coil, relax
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.scenario.damper import stated_damper
+from seatsim.schema.errors import InputError
+from seatsim.schema.registry import card_of, find, name_of
+from seatsim.schema.validation import build
+from seatsim.schema.yaml_source import KeyPath, Source
+from seatsim.simulation.damper_bench import bench_force, sine_test
 
 Array = NDArray[Any]
 

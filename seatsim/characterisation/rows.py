@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from seatsim.bench_tables import BenchRecord
 from seatsim.characterisation.cycles import Cycle, loops_of, mean_loop, steady_cycles, whole_cycles
-from seatsim.dampers.bench import SineTest
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.simulation.damper_bench import SineTest
 
 Array = NDArray[np.float64]
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from seatsim.bench_tables import BenchRecord, unused_columns
 from seatsim.characterisation.cycles import whole_cycles
 from seatsim.characterisation.measured_steps import responses
 from seatsim.characterisation.response import Response, columns_of_step
 from seatsim.characterisation.rows import Row, columns, row_of_record, row_without_cycles
 from seatsim.characterisation.steps import plateaus
+from seatsim.recordings.bench_tables import BenchRecord, unused_columns
 
 SETTLED = 0.2
 """Seconds after a step of current from which on cycles are counted."""

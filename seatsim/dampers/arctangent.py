@@ -7,8 +7,8 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, CurrentLaw, branch, branch_rate, cubic
-from seatsim.fields import param
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 
 @damper(

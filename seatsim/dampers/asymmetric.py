@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
+from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, QuadraticLaw, branch, branch_rate, quadratic
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import Heat, TemperatureFactors
+from seatsim.schema.fields import param
 
 Coefficient = Annotated[float, param("-", "coefficient of a power of u")]
 Three = tuple[Coefficient, Coefficient, Coefficient]

@@ -4,9 +4,9 @@
     def rates(self, x, v, i, heat, z):   time derivative of the state z (a tuple of floats)
     def coulomb(self, i, heat):          magnitude in N of a set-valued friction beside `force` (optional)
 
-with x [m], v = x' [m/s], current i [A], `heat` the temperature factors (`seatsim.temperature.Heat`) by which
+with x [m], v = x' [m/s], current i [A], `heat` the temperature factors (`seatsim.rig.temperature.Heat`) by which
 the model multiplies its viscous, elastic and yield terms. Methods are compiled by numba: plain arithmetic and
-`math` only; what they call from their module is decorated with `seatsim.jit.jit`.
+`math` only; what they call from their module is decorated with `seatsim.compilation.jit.jit`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal, NamedTuple, Protocol, TypeVar
 
-from seatsim.registry import register
-from seatsim.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import Heat, TemperatureFactors
+from seatsim.schema.registry import register
 
 T = TypeVar("T", bound=type)
 State = tuple[float, ...]

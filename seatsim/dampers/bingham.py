@@ -7,8 +7,8 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import CurrentLaw, cubic
-from seatsim.fields import param
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 SET_VALUED_BELOW = 1e-6
 """m/s; a sharper `v_ref` than this is taken as the set-valued sign itself."""

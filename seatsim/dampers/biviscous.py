@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
+from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, CurrentLaw, between, branch, branch_rate, cubic
 from seatsim.dampers.pieces_series import SETTLING, limited
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 WERELEY = "Wereley, Pang and Kamath 1998, J. Intell. Mater. Syst. Struct. 9:642; form recalled, no parameter set found"
 

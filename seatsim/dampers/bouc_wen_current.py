@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
+from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.bouc_wen_variants import NORMALISED, normalised_rate
 from seatsim.dampers.pieces import BRANCH_MEMORY, UTFSM, branch_rate
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 AMPLITUDE, LEAST_AMPLITUDE, MOST_AMPLITUDE = 0.01, 0.001, 0.025
 """Amplitude in m at which the factor of the excitation is 1, and the range beyond which it is held."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
+from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic, power
 from seatsim.dampers.pieces_series import inertance, inertance_rate
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 NORMALISED = "w, hysteretic variable from -1 to 1"
 

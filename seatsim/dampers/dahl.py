@@ -7,8 +7,8 @@ from typing import Annotated, NamedTuple
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.bouc_wen_variants import NORMALISED
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic
-from seatsim.fields import param
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 
 @damper(

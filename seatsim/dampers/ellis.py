@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, NamedTuple
 
+from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 V_REF = 0.1
 """m/s, the speed at which the power law has the force K(I)."""

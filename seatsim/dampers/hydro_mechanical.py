@@ -8,8 +8,8 @@ from typing import Annotated, NamedTuple
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
 from seatsim.dampers.pieces_series import SETTLING
-from seatsim.fields import param
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 
 @damper(

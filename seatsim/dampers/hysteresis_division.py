@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
+from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, branch, branch_rate
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 RISE_TIME = 0.01
 """Time in s in which the envelope of the speed takes up a higher speed."""

@@ -6,8 +6,8 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM
-from seatsim.fields import param
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 DEFLECTION = "w, deflection of the bristles over its bound, from -1 to 1"
 

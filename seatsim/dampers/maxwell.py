@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
+from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic, power
 from seatsim.dampers.pieces_series import SETTLING, inertance, inertance_rate, limited, slip
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 
 @damper(

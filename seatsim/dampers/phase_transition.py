@@ -6,8 +6,8 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic
-from seatsim.fields import param
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
 
 V_REF = 0.1
 """Steady velocity in m/s at which the order parameter is 1, chosen by us: the scale of the damper's speeds."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
+from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State
-from seatsim.fields import param
-from seatsim.jit import jit
+from seatsim.schema.fields import param
 
 QuadraticLaw = tuple[
     Annotated[float, param("", "constant")],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from seatsim.jit import jit
+from seatsim.compilation.jit import jit
 
 SETTLING = 1e-3
 """Shortest time in s in which an inner element settles, chosen by us so that explicit steps of 1 ms are stable.

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import Problem
 from seatsim.effects.base import ON_SEAT, Form, acts_on
-from seatsim.fields import bounds, choices
-from seatsim.registry import card_of, find, names
+from seatsim.schema.fields import bounds, choices
+from seatsim.schema.registry import card_of, find, names
 
 Array = NDArray[np.float64]
 

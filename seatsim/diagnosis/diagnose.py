@@ -10,30 +10,30 @@ from typing import NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from seatsim.diagnosis.alikeness import alikeness
 from seatsim.diagnosis.augmented import content
 from seatsim.diagnosis.candidates import Candidate, candidates
-from seatsim.diagnosis.claim import gaps, held_out, scenario_at, shrinks, trained
-from seatsim.diagnosis.coverage import coverage
-from seatsim.diagnosis.evidence import causes, collected
-from seatsim.diagnosis.examination import examine, refuse
-from seatsim.diagnosis.experiment import experiment
-from seatsim.diagnosis.findings import Array, Diagnosis, Share
+from seatsim.diagnosis.cross_validate import plain, supported
+from seatsim.diagnosis.decide import Judgement, beside_unknown, judged
+from seatsim.diagnosis.design.collinearity import alikeness
+from seatsim.diagnosis.design.experiment import experiment
+from seatsim.diagnosis.design.isolability import isolable, losses
+from seatsim.diagnosis.estimates import causes, collected
 from seatsim.diagnosis.fit import Engine, Point
-from seatsim.diagnosis.isolability import isolable, losses
-from seatsim.diagnosis.latent import Latent, latent
-from seatsim.diagnosis.place import places, unexplained
+from seatsim.diagnosis.localise.discrepancy import Latent, latent
+from seatsim.diagnosis.localise.input_estimate import unrepeated
+from seatsim.diagnosis.localise.localise import places, unexplained
+from seatsim.diagnosis.localise.stochastic import counted, joined, random_cause, wandering, with_strength
+from seatsim.diagnosis.noise import broadband, whitening
 from seatsim.diagnosis.problem import Problem, problem
-from seatsim.diagnosis.random_cause import counted, joined, random_cause, wandering, with_strength
-from seatsim.diagnosis.search import Search, search
+from seatsim.diagnosis.result import Array, Diagnosis, Share
+from seatsim.diagnosis.select import Search, search
 from seatsim.diagnosis.sentences import answer
-from seatsim.diagnosis.support import plain, supported
-from seatsim.diagnosis.unknown_input import unrepeated
-from seatsim.diagnosis.verdict import Judgement, beside_unknown, judged
-from seatsim.diagnosis.whitening import broadband, whitening
-from seatsim.recording import Recording, load_recording
-from seatsim.registry import names
-from seatsim.replay import single
+from seatsim.diagnosis.validate import gaps, held_out, scenario_at, shrinks, trained
+from seatsim.recordings.quality.coverage import coverage
+from seatsim.recordings.quality.examination import examine, refuse
+from seatsim.recordings.recording import Recording, load_recording
+from seatsim.scenario.loading import single
+from seatsim.schema.registry import names
 
 CHATTER = 0.5
 """Share of what the best set leaves from which broadband noise is counted as such."""

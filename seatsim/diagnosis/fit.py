@@ -20,8 +20,8 @@ from scipy.linalg import cholesky
 from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis.candidates import Candidate
+from seatsim.diagnosis.noise import Whitening
 from seatsim.diagnosis.problem import POOL, Problem
-from seatsim.diagnosis.whitening import Whitening
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.fields import describe
-from seatsim.scenario import Scenario
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.fields import describe
 
 Array = NDArray[np.float64]
 

@@ -14,18 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import prev_fast_len
 
-from seatsim.augmentation import readings
-from seatsim.bench_replay import replay_bench
 from seatsim.diagnosis.nuisance import Nuisance, nuisances, varied
 from seatsim.effects.base import off
 from seatsim.effects.damper import SealFriction
-from seatsim.errors import InputError, RunError
 from seatsim.excitations.base import Floor
 from seatsim.excitations.recording import RecordedRun
-from seatsim.recording import Recording
-from seatsim.replay import COMPARED, LEFT_OUT, single, stands_out
-from seatsim.scenario import Scenario, Start
-from seatsim.simulation import Forces, simulate
+from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
+from seatsim.recordings.recording import Recording
+from seatsim.scenario.loading import single
+from seatsim.scenario.scenario import Scenario, Start
+from seatsim.schema.errors import InputError, RunError
+from seatsim.simulation.augment import readings
+from seatsim.simulation.bench_replay import replay_bench
+from seatsim.simulation.simulate import Forces, simulate
 
 Array = NDArray[np.float64]
 CARRIER: Any = SealFriction

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from seatsim.diagnosis.findings import Cause, Diagnosis, Estimate
-from seatsim.registry import find
+from seatsim.diagnosis.result import Cause, Diagnosis, Estimate
+from seatsim.schema.registry import find
 
 
 def answer(diagnosis: Diagnosis) -> str:

@@ -30,7 +30,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
-from seatsim.registry import card_of, register
+from seatsim.schema.registry import card_of, register
 
 T = TypeVar("T", bound=type)
 Values = Mapping[str, float]

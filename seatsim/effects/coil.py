@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-from seatsim.coil import Coil
 from seatsim.effects.base import effect
-from seatsim.fields import param
+from seatsim.rig.coil import Coil
+from seatsim.schema.fields import param
 
 
 @effect(

@@ -6,8 +6,8 @@ from typing import Annotated, NamedTuple
 
 from seatsim.effects.base import Form, effect
 from seatsim.effects.laws import State
-from seatsim.fields import param
-from seatsim.plant import Plant
+from seatsim.rig.plant import Plant
+from seatsim.schema.fields import param
 
 
 @effect(

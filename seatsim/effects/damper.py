@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, NamedTuple
 
+from seatsim.compilation.jit import jit
 from seatsim.effects.base import Form, effect
 from seatsim.effects.laws import FRICTIONS, State, dahl_rate
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.registry import card_of
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.fields import param
+from seatsim.schema.registry import card_of
 
 SHORTEST = 2e-5
 """m; least travel over which a force returns at the end of a gap."""

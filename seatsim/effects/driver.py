@@ -7,9 +7,9 @@ from typing import Annotated, NamedTuple
 
 from seatsim.effects.base import Form, effect
 from seatsim.effects.laws import State
-from seatsim.fields import param
 from seatsim.kernel.rig import Motion
-from seatsim.plant import Plant
+from seatsim.rig.plant import Plant
+from seatsim.schema.fields import param
 
 
 @effect("driver.mass", source="weighing", forms=({"change": 4.0}, {"change": -4.0}))

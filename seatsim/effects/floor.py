@@ -6,7 +6,7 @@ import math
 from typing import Annotated, Any, NamedTuple
 
 from seatsim.effects.base import effect
-from seatsim.fields import param
+from seatsim.schema.fields import param
 
 
 @effect(

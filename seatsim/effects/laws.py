@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from seatsim.jit import jit
+from seatsim.compilation.jit import jit
 
 State = tuple[float, ...]
 REFERENCE_DEPTH = 0.01

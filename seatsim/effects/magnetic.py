@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Any, NamedTuple
 
+from seatsim.compilation.jit import jit
 from seatsim.effects.base import effect
 from seatsim.effects.laws import State
-from seatsim.fields import param
-from seatsim.jit import jit
-from seatsim.temperature import TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.fields import param
 
 FOLLOWING = 500.0
 """1/s; rate at which a play's memory is renewed where the current drags it along."""

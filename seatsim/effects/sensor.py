@@ -9,8 +9,8 @@ from pydantic import Field
 from scipy.signal import lfilter, lfilter_zi
 
 from seatsim.effects.base import Form, effect
-from seatsim.fields import param
-from seatsim.sensors import lag
+from seatsim.rig.sensors import lag
+from seatsim.schema.fields import param
 
 Channel = Literal[
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "displacement",

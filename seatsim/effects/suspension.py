@@ -7,9 +7,9 @@ from typing import Annotated, NamedTuple
 
 from seatsim.effects.base import Form, effect
 from seatsim.effects.laws import FRICTIONS, State, buffer, dahl_rate
-from seatsim.fields import param
 from seatsim.kernel.rig import Motion
-from seatsim.plant import Plant
+from seatsim.rig.plant import Plant
+from seatsim.schema.fields import param
 
 
 @effect(

@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.registry import register
+from seatsim.schema.registry import register
 
 Array = NDArray[np.float64]
 T = TypeVar("T", bound=type)

@@ -16,13 +16,13 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from scipy.fft import rfft
 
-from seatsim.errors import InputError
 from seatsim.excitations.base import Array, Floor, excitation
 from seatsim.excitations.keys import Duration, Speed, Through, choice
 from seatsim.excitations.motion import Motion, check_step, clock, floor_of, samples
 from seatsim.excitations.spectra import lines, motion_of
 from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response, ring_down
-from seatsim.fields import param
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import param
 
 
 @excitation("bumps")

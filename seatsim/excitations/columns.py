@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from seatsim.errors import InputError, nearest
 from seatsim.excitations.base import Array
+from seatsim.schema.errors import InputError, nearest
 
 LEAST_ROWS = 16
 # Rounded times of a steady clock stay within this part of an interval; a lost row does not.

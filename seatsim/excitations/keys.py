@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from seatsim.fields import param
+from seatsim.schema.fields import param
 
 
 def choice(meaning: str, unit: str = "") -> Any:

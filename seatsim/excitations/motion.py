@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.errors import InputError
 from seatsim.excitations.base import Array, Floor
+from seatsim.schema.errors import InputError
 
 SOFT_START = 1.0
 

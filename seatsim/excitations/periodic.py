@@ -7,7 +7,6 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from seatsim.errors import InputError
 from seatsim.excitations.base import Array, Floor, excitation
 from seatsim.excitations.keys import Duration, Quantity, choice
 from seatsim.excitations.motion import (
@@ -21,7 +20,8 @@ from seatsim.excitations.motion import (
     sine,
     soft_start,
 )
-from seatsim.fields import param
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import param
 
 Frequency = Annotated[float, param("Hz", "frequency of the tone", above=0)]
 Amplitude = Annotated[float, param("m or m/s^2", "amplitude of displacement or acceleration, see quantity", above=0)]

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.errors import InputError
 from seatsim.excitations.base import Array, Floor, excitation
-from seatsim.recording import load_recording
+from seatsim.recordings.recording import load_recording
+from seatsim.schema.errors import InputError
 
 CORNER = 0.05
 """Hz below which the floor velocity, an integral of a measured acceleration, is not trusted."""

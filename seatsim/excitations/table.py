@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 from scipy.constants import g
 
-from seatsim.errors import InputError
 from seatsim.excitations.base import Floor, excitation
 from seatsim.excitations.keys import DURATION, SPEED, Through, choice
 from seatsim.excitations.motion import check_step, samples, soft_start
 from seatsim.excitations.road import LONGEST, SHORTEST
 from seatsim.excitations.spectra import Spectrum, band, integrated_twice, limited, lines, mirrored, motion_of
 from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response
-from seatsim.fields import param
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import param
 
 if TYPE_CHECKING:
     from seatsim.excitations.columns import Record

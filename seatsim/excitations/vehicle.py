@@ -15,10 +15,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.errors import InputError
 from seatsim.excitations.base import Array
 from seatsim.excitations.spectra import Spectrum
-from seatsim.fields import param
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import param
 
 LONGEST_RING_DOWN = 600.0
 

@@ -17,8 +17,8 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.errors import InputError, nearest
-from seatsim.fields import bounds, describe
+from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.fields import bounds, describe
 
 Array = NDArray[np.float64]
 

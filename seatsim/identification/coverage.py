@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from seatsim.bench_tables import BenchRecord
 from seatsim.dampers.base import DamperCard
-from seatsim.dampers.bench import centring
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.simulation.damper_bench import centring
 
 BEYOND = 1.05
 """Factor from which a held-out record counts as beyond what was fitted."""

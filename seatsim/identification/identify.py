@@ -9,8 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from seatsim.bench_tables import BenchRecord, load_bench, unused_columns
-from seatsim.errors import RunError
 from seatsim.identification.coverage import coverage, remarks
 from seatsim.identification.figures import Figures, averaged
 from seatsim.identification.information import Information, information
@@ -20,7 +18,9 @@ from seatsim.identification.predict import Bench, Drive, predicted
 from seatsim.identification.problem import Problem
 from seatsim.identification.search import Tell, best, silent
 from seatsim.identification.split import Request, split
-from seatsim.registry import card_of, find
+from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
+from seatsim.schema.errors import RunError
+from seatsim.schema.registry import card_of, find
 
 EVERYTHING = Request()
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.fields import describe
 from seatsim.identification.coordinates import Component
 from seatsim.identification.problem import PER_KELVIN, WARMING, Problem, jacobian
+from seatsim.schema.fields import describe
 
 Array = NDArray[np.float64]
 

@@ -10,12 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.bench_tables import BenchRecord, load_bench
-from seatsim.errors import InputError
 from seatsim.identification.figures import Figures, figures
 from seatsim.identification.predict import Bench, drive, predicted
 from seatsim.identification.smoothing import sharpened, smoothed
 from seatsim.identification.split import Split
+from seatsim.recordings.bench_tables import BenchRecord, load_bench
+from seatsim.schema.errors import InputError
 
 Array = NDArray[np.float64]
 

@@ -11,16 +11,16 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from seatsim.bench_tables import BenchRecord
-from seatsim.errors import InputError, SeatsimError, nearest
-from seatsim.files import write_json
+from seatsim.compilation.cached import digest
 from seatsim.identification.coordinates import numbers_of
 from seatsim.identification.identify import Identification, identify_records, predict_records
 from seatsim.identification.judging import Further
 from seatsim.identification.search import Tell
 from seatsim.identification.split import Request, split
-from seatsim.kernel.compilation import digest
-from seatsim.registry import find, names
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.schema.errors import InputError, SeatsimError, nearest
+from seatsim.schema.files import write_json
+from seatsim.schema.registry import find, names
 
 
 class Place(NamedTuple):

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from seatsim.bench_tables import BenchRecord
-from seatsim.errors import InputError
-from seatsim.fields import describe
 from seatsim.identification.coordinates import Coordinates, Scales, fixed, scaled
 from seatsim.identification.predict import Drive, drive
 from seatsim.identification.problem import Problem, weights
 from seatsim.identification.split import Request
-from seatsim.registry import card_of
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import describe
+from seatsim.schema.registry import card_of
 
 SHORT = 10000
 """Rows of all records together that count in the global search."""

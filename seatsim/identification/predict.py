@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.bench_tables import BenchRecord
-from seatsim.coil import Coil
+from seatsim.compilation.cached import compiled
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
-from seatsim.kernel.compilation import compiled
 from seatsim.kernel.lag import lagged
-from seatsim.registry import card_of
-from seatsim.temperature import TemperatureFactors
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.rig.coil import Coil
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.registry import card_of
 
 Array = NDArray[np.float64]
 

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.bench_tables import BenchRecord
 from seatsim.identification.coordinates import Coordinates
 from seatsim.identification.predict import Bench, Drive, predicted
 from seatsim.kernel.bench import TOLERANCE
-from seatsim.temperature import TemperatureFactors
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.rig.temperature import TemperatureFactors
 
 Array = NDArray[np.float64]
 

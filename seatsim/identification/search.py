@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from seatsim.identification.coordinates import scaled
 from seatsim.identification.predict import Bench, predicted
 from seatsim.identification.problem import PARTS, RATE, Problem, jacobian
-from seatsim.temperature import TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors
 
 Array = NDArray[np.float64]
 Tell = Callable[[str], None]

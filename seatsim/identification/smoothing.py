@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.bench_tables import BenchRecord
+from seatsim.recordings.bench_tables import BenchRecord
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatch
 from typing import NamedTuple
 
-from seatsim.bench_tables import LEAST_ROWS, BenchRecord, stem
-from seatsim.errors import InputError, nearest
+from seatsim.recordings.bench_tables import LEAST_ROWS, BenchRecord, stem
+from seatsim.schema.errors import InputError, nearest
 
 
 class Request(NamedTuple):

@@ -12,10 +12,10 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from seatsim.jit import jit
+from seatsim.compilation.jit import jit
 from seatsim.kernel.chain import Effects, before, folded, joined, own, summed
 from seatsim.kernel.generic import Tuple, coulomb, force, rates
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
 
 FAST = 10.0
 """m/s; speed at which a yield force has its full size."""

@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from seatsim.jit import jit
+from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import Tuple, axpy, combine, heat_at, hook, rates
-from seatsim.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import Heat, TemperatureFactors
 
 
 class Truth(NamedTuple):

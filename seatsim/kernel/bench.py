@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.jit import jit
+from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import Tuple, axpy, combine, force, heat_at, rates
 from seatsim.kernel.inverse import total
-from seatsim.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import Heat, TemperatureFactors
 
 Array = NDArray[np.float64]
 

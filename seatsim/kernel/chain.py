@@ -12,9 +12,9 @@ from typing import Any
 from numba import types
 from numba.extending import overload
 
-from seatsim.jit import INLINED, jit
+from seatsim.compilation.jit import INLINED, jit
 from seatsim.kernel.generic import Tuple
-from seatsim.registry import card_of
+from seatsim.schema.registry import card_of
 
 Effects = tuple[Any, ...]
 

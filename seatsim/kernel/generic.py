@@ -12,9 +12,9 @@ from typing import Any
 from numba import types
 from numba.extending import overload
 
-from seatsim.jit import INLINED, jit
-from seatsim.temperature import Heat, TemperatureFactors
-from seatsim.temperature import heat as _heat
+from seatsim.compilation.jit import INLINED, jit
+from seatsim.rig.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import heat as _heat
 
 Tuple = tuple[float, ...]
 

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.jit import jit
+from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import Tuple, force, friction_limit
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
 
 Array = NDArray[np.float64]
 

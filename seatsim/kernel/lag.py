@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.coil import Coil
-from seatsim.kernel.compilation import compiled
+from seatsim.compilation.cached import compiled
 from seatsim.kernel.step import relaxed
+from seatsim.rig.coil import Coil
 
 Array = NDArray[np.float64]
 

@@ -8,17 +8,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.coil import Coil
-from seatsim.control import Measurement
-from seatsim.jit import jit
+from seatsim.compilation.jit import jit
 from seatsim.kernel.belief import follow, heat, state
 from seatsim.kernel.chain import before
 from seatsim.kernel.generic import Tuple, ask, heat_at, passed, read, update, wants_force
 from seatsim.kernel.inverse import CELLS, invert
 from seatsim.kernel.rig import Rig, Shake
 from seatsim.kernel.step import Drive, Progress, advance, relaxed, start
-from seatsim.sensors import READINGS, Direct
-from seatsim.temperature import Heat, TemperatureFactors, Thermal
+from seatsim.rig.coil import Coil
+from seatsim.rig.control import Measurement
+from seatsim.rig.sensors import READINGS, Direct
+from seatsim.rig.temperature import Heat, TemperatureFactors, Thermal
 
 Array = NDArray[np.float64]
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from seatsim.jit import jit
+from seatsim.compilation.jit import jit
 from seatsim.kernel.chain import Effects, before, folded, joined, own, summed
 from seatsim.kernel.generic import Tuple, force, friction_limit, rates
-from seatsim.plant import Plant
-from seatsim.temperature import Heat
+from seatsim.rig.plant import Plant
+from seatsim.rig.temperature import Heat
 
 MECHANICAL = 8
 """Length of the mechanical state: x, v, xc, vc, then the work of floor, damper, suspension and cushion in J."""

@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from seatsim.coil import Coil, relax
-from seatsim.jit import jit, jit_apart
+from seatsim.compilation.jit import jit, jit_apart
 from seatsim.kernel.generic import Tuple, axpy, combine
 from seatsim.kernel.rig import HELD, Flow, Rig, Shake, derivative
-from seatsim.temperature import Heat
+from seatsim.rig.coil import Coil, relax
+from seatsim.rig.temperature import Heat
 
 relaxed = jit(relax)
 FLOOR_OF_ERROR_SCALE = 0.01

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from seatsim.errors import InputError
+from seatsim.schema.errors import InputError
 
 Array = NDArray[np.float64]
 

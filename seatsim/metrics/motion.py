@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.errors import InputError
 from seatsim.metrics.arrays import as_pair, as_signal, positive, ratio
+from seatsim.schema.errors import InputError
 
 
 def rms(signal: ArrayLike) -> float:

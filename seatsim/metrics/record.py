@@ -8,9 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.errors import InputError
 from seatsim.metrics.arrays import Array, as_signal, finite, positive
 from seatsim.metrics.weighting import can_weight, weight
+from seatsim.schema.errors import InputError
 
 
 class Absent(Exception):  # noqa: N818 - not an error: the metric that asked is left out

@@ -7,10 +7,10 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.errors import InputError
 from seatsim.metrics.arrays import Array, as_pair, positive
 from seatsim.metrics.spectra import cross_density, density
 from seatsim.metrics.weighting import ComplexArray
+from seatsim.schema.errors import InputError
 
 AVERAGES = 8
 """Least number of half-overlapping segments: from few of them the coherence is near 1 for any signals."""

@@ -24,8 +24,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
-from seatsim.errors import InputError, nearest
 from seatsim.metrics.arrays import Array, as_signal, finite, positive
+from seatsim.schema.errors import InputError, nearest
 
 ComplexArray = NDArray[np.complex128]
 

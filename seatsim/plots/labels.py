@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from seatsim.coil import Coil
-from seatsim.fields import describe
-from seatsim.plant import Plant
-from seatsim.result import Run
-from seatsim.scenario import Scenario, Solver
-from seatsim.temperature import TemperatureFactors, Thermal
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
+from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.scenario.scenario import Scenario, Solver
+from seatsim.schema.fields import describe
+from seatsim.simulation.result import Run
 
 MOST = 8
 """Most runs that lines of one panel can tell apart."""

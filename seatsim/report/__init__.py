@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from seatsim.diagnosis.findings import Diagnosis
-from seatsim.files import write_text
+from seatsim.diagnosis.result import Diagnosis
 from seatsim.report.page import page
+from seatsim.schema.files import write_text
 
 __all__ = ["write_report"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from seatsim.diagnosis.findings import Diagnosis
-from seatsim.plots import diagnosis_answer
+from seatsim.diagnosis.result import Diagnosis
+from seatsim.plots.diagnosis import answer as diagnosis_answer
 from seatsim.report.html import Html, joined, pictures, table, tag
 from seatsim.report.words import listed, percent, sentence
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from seatsim.diagnosis.findings import Cause, Diagnosis
-from seatsim.plots.diagnosis_alikeness import alikeness
-from seatsim.plots.diagnosis_answer import MOST, ranking, where
+from seatsim.diagnosis.result import Cause, Diagnosis
+from seatsim.plots.diagnosis.answer import MOST, ranking, where
+from seatsim.plots.diagnosis.collinearity import alikeness
 from seatsim.report.html import Html, bullets, joined, pictures, table, tag
 from seatsim.report.words import estimate, listed, meaning, percent, plain, sentence
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from seatsim.diagnosis.findings import Diagnosis
+from seatsim.diagnosis.result import Diagnosis
 from seatsim.plots import labels
-from seatsim.plots.diagnosis_frame import FACTORS
-from seatsim.plots.diagnosis_latent import latent
-from seatsim.plots.diagnosis_maps import maps
-from seatsim.plots.diagnosis_signals import signals, spectra
+from seatsim.plots.diagnosis.discrepancy import latent
+from seatsim.plots.diagnosis.frame import FACTORS
+from seatsim.plots.diagnosis.maps import maps
+from seatsim.plots.diagnosis.signals import signals, spectra
 from seatsim.report.html import Html, bullets, joined, pictures, table, tag
 from seatsim.report.words import UNKNOWN, listed, sentence
 

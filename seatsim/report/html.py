@@ -6,7 +6,7 @@ import base64
 import html
 from collections.abc import Iterable, Sequence
 
-from seatsim.plots.diagnosis_frame import Picture, png
+from seatsim.plots.diagnosis.frame import Picture, png
 
 EMPTY_TAGS = ("img", "meta", "br")
 CSS_DPI = 96

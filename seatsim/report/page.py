@@ -6,7 +6,7 @@ from collections.abc import Callable
 from importlib.resources import files
 from typing import NamedTuple
 
-from seatsim.diagnosis.findings import Diagnosis
+from seatsim.diagnosis.result import Diagnosis
 from seatsim.report import answer, causes, evidence
 from seatsim.report.html import Html, joined, tag
 

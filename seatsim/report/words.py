@@ -9,10 +9,10 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from seatsim import registry
-from seatsim.diagnosis.findings import Estimate
-from seatsim.errors import InputError
+from seatsim.diagnosis.result import Estimate
 from seatsim.plots import labels
+from seatsim.schema import registry
+from seatsim.schema.errors import InputError
 
 UNKNOWN = "–"
 """What stands where a value is not known."""

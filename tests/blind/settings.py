@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from seatsim.blind.case import CHANNELS, Setting, context_of, draw_setting, drive, read
-from seatsim.blind.sizing import Bench
-from seatsim.blind.truth import Changes, Context
+from seatsim.blind.make.case import CHANNELS, Setting, context_of, draw_setting, drive, read
+from seatsim.blind.make.sizing import Bench
+from seatsim.blind.truth.truth import Changes, Context
 
 
 def small_setting(bingham: bool = False, warm: bool = True, scatter: float = 0.0) -> tuple[Setting, Context, Bench]:

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import seatsim
-from seatsim.blind.case import drive, read
-from seatsim.blind.folder import recording_files, write_files
-from seatsim.blind.rig import STEP, simulate
-from seatsim.blind.slots import record
-from seatsim.blind.truth import Changes
+from seatsim.blind.make.case import drive, read
+from seatsim.blind.make.folder import recording_files, write_files
+from seatsim.blind.truth.rig import STEP, simulate
+from seatsim.blind.truth.slots import record
+from seatsim.blind.truth.truth import Changes
 
 from .settings import small_setting
 

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from seatsim.blind.measures import Rate, calibration_error, reliability
-from seatsim.blind.score import score, score_of
-from seatsim.blind.score_tables import tables
+from seatsim.blind.score.measures import Rate, calibration_error, reliability
+from seatsim.blind.score.score import score, score_of
+from seatsim.blind.score.tables import tables
+from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.blind.sealed import Sealed, new_key, seal
-from seatsim.blind.verdicts import Verdict, is_right, read_verdict
-from seatsim.errors import InputError
+from seatsim.schema.errors import InputError
 
 ONE = {"kind": "one", "effects": ["damper.remanence"], "blocks": ["damper"], "forms": ["remanence-decay"]}
 TWO = {"kind": "two", "effects": ["coil.lag", "driver.mass"], "blocks": ["coil", "driver"]}

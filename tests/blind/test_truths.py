@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from seatsim.blind.case import drive, read
-from seatsim.blind.sizing import severity_for
-from seatsim.blind.truth import BLOCKS, EFFECTS, Changes
-from seatsim.blind.truths import TRUTHS, forms_of
+from seatsim.blind.make.case import drive, read
+from seatsim.blind.make.sizing import severity_for
+from seatsim.blind.truth.catalogue import TRUTHS, forms_of
+from seatsim.blind.truth.truth import BLOCKS, EFFECTS, Changes
 
 from .settings import small_setting
 

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.bench_tables import BenchRecord
-from seatsim.coil import Coil, relax
-from seatsim.dampers.bench import bench_force
 from seatsim.dampers.bouc_wen import BoucWen
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.rig.coil import Coil, relax
+from seatsim.simulation.damper_bench import bench_force
 
 RATE = 1000.0
 DAMPER = BoucWen(c_a=300.0, c_b=500.0, alpha_a=50.0, alpha_b=700.0, A=4000.0, beta=2000.0, gamma=2000.0)

@@ -11,10 +11,10 @@ from typer.testing import CliRunner
 
 from seatsim.characterisation.of_model import characterise_model, settings_of, specimen
 from seatsim.characterisation.summary import characterise
-from seatsim.characterisation_output import tables
-from seatsim.cli import app
-from seatsim.errors import InputError
-from seatsim.plots.characterisation import draw
+from seatsim.cli.app import app
+from seatsim.cli.outputs.characterisation import tables
+from seatsim.plots.bench.characterisation import draw
+from seatsim.schema.errors import InputError
 
 
 def command(*arguments):

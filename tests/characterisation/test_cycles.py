@@ -8,8 +8,8 @@ import pytest
 from seatsim.characterisation.cycles import steady_cycles, whole_cycles
 from seatsim.characterisation.rows import row_of_record
 from seatsim.characterisation.summary import characterise
-from seatsim.dampers.bench import sine_test
 from seatsim.dampers.bingham import Bingham
+from seatsim.simulation.damper_bench import sine_test
 
 FRICTION = Bingham(c_a=300.0, c_b=200.0, fc_a=50.0, fc_b=400.0, f0=30.0, v_ref=0.0)
 
@@ -92,7 +92,7 @@ def test_a_force_of_the_wrong_sign_and_a_velocity_of_the_wrong_unit_are_told(rec
 
 
 def test_measured_sines(shared):
-    from seatsim.bench_tables import load_bench
+    from seatsim.recordings.bench_tables import load_bench
 
     found = characterise(load_bench(shared / "data" / "utfsm_mr_sine_raw"), "sines")
     assert len(found.rows) == 30 and all(row.cycles >= 4 for row in found.rows) and not found.responses

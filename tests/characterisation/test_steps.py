@@ -9,9 +9,9 @@ from seatsim.characterisation.measured_steps import responses
 from seatsim.characterisation.of_model import Specimen, step_response
 from seatsim.characterisation.response import crossing
 from seatsim.characterisation.steps import find_steps
-from seatsim.coil import Coil
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.temperature import TemperatureFactors
+from seatsim.rig.coil import Coil
+from seatsim.rig.temperature import TemperatureFactors
 
 
 def square(on, off, period):

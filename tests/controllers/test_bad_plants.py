@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from controllers import GeneralisedPlant, synthesise
-from seatsim.errors import InputError, SynthesisError
+from seatsim.schema.errors import InputError, SynthesisError
 
 NAMES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
 

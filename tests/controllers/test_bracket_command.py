@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from controllers.clairvoyant import Bracket
-from seatsim.cli import main
-from seatsim.errors import InputError
+from seatsim.cli.app import main
+from seatsim.schema.errors import InputError
 
 LAWS = """
 variants:
@@ -56,7 +56,7 @@ class Interrupted:
 def compared(seat_file, tmp_path, monkeypatch, capsys):
     def call(kind):
         seat_file.write_text(seat_file.read_text() + LAWS)
-        monkeypatch.setattr("seatsim.brackets.find", lambda *_: kind)
+        monkeypatch.setattr("seatsim.simulation.performance_bounds.find", lambda *_: kind)
         monkeypatch.setattr(
             sys, "argv", ["seatsim", "compare", str(seat_file), "--bracket", "--out", str(tmp_path / "o")]
         )

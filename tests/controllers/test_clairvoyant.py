@@ -13,8 +13,8 @@ from controllers.clairvoyant.feasible import best_run
 from controllers.clairvoyant.problem import Problem
 from controllers.clairvoyant.recursion import Lines
 from controllers.clairvoyant.transcription import transcribe
-from seatsim.errors import InputError
-from seatsim.simulation import Forces, simulate
+from seatsim.schema.errors import InputError
+from seatsim.simulation.simulate import Forces, simulate
 
 LAWS = {
     "H-infinity": {"controller": {"law": "static_output_feedback", "gain": [2.0, 2147.6], "sample_time": 0.005}},

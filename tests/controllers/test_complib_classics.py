@@ -7,7 +7,7 @@ import pytest
 from controllers import synthesise
 from controllers.synthesis.modes import require_stabilisable
 from controllers.synthesis.scaling import scale
-from seatsim.errors import SynthesisError
+from seatsim.schema.errors import SynthesisError
 
 
 @pytest.fixture

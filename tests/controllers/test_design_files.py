@@ -9,7 +9,7 @@ import pytest
 from ruamel.yaml import YAML
 
 from controllers import Design
-from seatsim.errors import InputError
+from seatsim.schema.errors import InputError
 
 
 @pytest.fixture

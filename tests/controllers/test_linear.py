@@ -6,8 +6,8 @@ import pytest
 from controllers.linear import System, held, parallel, section, series, unity, weighted
 from controllers.synthesis.norm import response
 from controllers.synthesis.plant import Loop
-from seatsim.errors import InputError
 from seatsim.metrics import weighting
+from seatsim.schema.errors import InputError
 
 OMEGA = np.geomspace(0.5, 300.0, 40)
 

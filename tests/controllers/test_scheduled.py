@@ -8,8 +8,8 @@ import pytest
 import seatsim
 from controllers.scheduled_output_feedback import ScheduledOutputFeedback
 from controllers.seat_plant import Weights
-from seatsim.errors import InputError
-from seatsim.plant import Plant
+from seatsim.rig.plant import Plant
+from seatsim.schema.errors import InputError
 
 SEAT = Plant(20.0, 80.0, 4600.0, 200.0, 60000.0, 1500.0)
 

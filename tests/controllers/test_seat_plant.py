@@ -7,9 +7,9 @@ from controllers.seat_plant import Lag, Weights, actuator, generalised
 from controllers.static_output_feedback import StaticOutputFeedback
 from controllers.synthesis.norm import hinf_norm, response
 from controllers.synthesis.plant import Loop
-from seatsim.coil import Coil
 from seatsim.metrics import weighting
-from seatsim.plant import Plant, state_space
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant, state_space
 
 SEAT = Plant(20.0, 80.0, 4600.0, 200.0, 60000.0, 1500.0)
 OMEGA = np.geomspace(0.5, 300.0, 40)

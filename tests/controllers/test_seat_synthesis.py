@@ -8,8 +8,8 @@ from controllers.synthesis.certify import largest_lmi_eigenvalue
 from controllers.synthesis.norm import grid_norm, hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.verify import verify
-from seatsim.errors import InputError
-from seatsim.plant import Plant, state_space
+from seatsim.rig.plant import Plant, state_space
+from seatsim.schema.errors import InputError
 
 OPTIMA = {10.0: (1.0681900, [-1937.2, 2013.9]), 30.0: (1.1359585, [967.0, 2339.1]), 50.0: (1.1848133, [3268.6, 2613.3])}
 # From the Riccati equations in 60 digits, with control and noise weights of 1e-7; e1 = 10 from the LMI.

@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatsim.registry import card_of, find, names
+from seatsim.schema.registry import card_of, find, names
 
 NAMES = names("damper")
 

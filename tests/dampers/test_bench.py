@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.dampers.bench import bench_force, centring, sine_test
 from seatsim.dampers.bingham import Bingham, OriginalBingham
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.dampers.hyperbolic_tangent import KwokTanh
-from seatsim.errors import InputError, RunError
-from seatsim.temperature import TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.errors import InputError, RunError
+from seatsim.simulation.damper_bench import bench_force, centring, sine_test
 
 VISCOUS = BoucWen(c_a=700.0, alpha_a=0.0, alpha_b=0.0)
 

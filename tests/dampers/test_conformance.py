@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from seatsim.dampers.base import CONFIDENCE, Confidence
-from seatsim.dampers.bench import bench_force, sine_test
-from seatsim.fields import adapter, describe
 from seatsim.kernel import generic
 from seatsim.kernel.bench import FLOOR
-from seatsim.registry import find
-from seatsim.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import Heat, TemperatureFactors
+from seatsim.schema.fields import adapter, describe
+from seatsim.schema.registry import find
+from seatsim.simulation.damper_bench import bench_force, sine_test
 
 COLD = Heat()
 COARSEST, LEVELS, HALVINGS = 256, 6, 3

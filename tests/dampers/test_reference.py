@@ -7,14 +7,14 @@ import pytest
 
 from seatsim.dampers.arctangent import WengArctangent
 from seatsim.dampers.asymmetric import Yu2019
-from seatsim.dampers.bench import bench_force, sine_test
 from seatsim.dampers.bouc_wen import ModifiedBoucWen, SimpleBoucWen
 from seatsim.dampers.hyperbolic_tangent import KwokTanh
 from seatsim.dampers.hysteresis_division import Yu2017
 from seatsim.dampers.pieces import branch, branch_rate
 from seatsim.dampers.sigmoid_gaussian import CURRENTS, TABLES, HongSigmoidGaussian, table_row
-from seatsim.registry import card_of
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
+from seatsim.schema.registry import card_of
+from seatsim.simulation.damper_bench import bench_force, sine_test
 
 COLD = Heat()
 POSITIVE, NEGATIVE = (1.0, 0.0), (-1.0, 0.0)

@@ -8,7 +8,7 @@ import pandas as pd
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.recording_writer import save_recording
+from seatsim.recordings.writer import save_recording
 
 RATE = 250.0
 NOISE = {

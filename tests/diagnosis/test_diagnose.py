@@ -6,11 +6,10 @@ import pytest
 from typer.testing import CliRunner
 
 import seatsim
-from seatsim.blind import absorbed, case
-from seatsim.blind.make import make
+from seatsim.blind.make.make import absorbed, case, make
 from seatsim.blind.sealed import unseal
-from seatsim.cli import app
-from seatsim.diagnosis_output import write_diagnosis
+from seatsim.cli.app import app
+from seatsim.cli.outputs.diagnosis import write_diagnosis
 
 KINDS = ["none", "one", "outside"]
 
@@ -44,7 +43,7 @@ def test_a_hidden_effect_is_named_and_written(made, tmp_path, monkeypatch):
     assert effect in diagnosis.selected or any(effect in group for group in diagnosis.indistinguishable)
     write_diagnosis(diagnosis, tmp_path)
     written = json.loads((tmp_path / "diagnosis.json").read_text())
-    assert {cause["effect"] for cause in written["causes"]} == set(seatsim.registry.names("effect"))
+    assert {cause["effect"] for cause in written["causes"]} == set(seatsim.schema.registry.names("effect"))
     assert sum(place["share"] for place in written["where"]) == pytest.approx(1.0)
     after = seatsim.gap(tmp_path / "augmented.yaml", folder / name, written["held_out"])
     assert after.overall == pytest.approx(written["gap"]["after"]["overall"], rel=1e-3)

@@ -8,10 +8,10 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.diagnosis.checks_of_floor import follows_floor
-from seatsim.diagnosis.coverage import coverage
-from seatsim.diagnosis.examination import examine, refuse
-from seatsim.recording import load_recording
+from seatsim.recordings.quality.coverage import coverage
+from seatsim.recordings.quality.examination import examine, refuse
+from seatsim.recordings.quality.floor import follows_floor
+from seatsim.recordings.recording import load_recording
 
 from .damaged import DAMAGES, DOUBTS, FEEDBACK, GAPS, RATE, at_rest, blurred, edit, rewrite, scaled
 
@@ -130,8 +130,8 @@ def test_the_recordings_of_the_field_are_no_damaged_ones(shared):
 
 
 def test_a_bench_with_a_swapped_force_is_named(tmp_path):
-    from seatsim.dampers.bench import bench_force
     from seatsim.dampers.bouc_wen import BoucWen
+    from seatsim.simulation.damper_bench import bench_force
 
     rows = np.arange(0.0, 12.0, 0.002)
     fine = np.arange(2 * len(rows) - 1) * 0.001

@@ -8,17 +8,18 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.diagnosis.alikeness import Side, alikeness, discrimination
 from seatsim.diagnosis.candidates import candidates
-from seatsim.diagnosis.experiment import experiment
+from seatsim.diagnosis.design.collinearity import Side, alikeness, discrimination
+from seatsim.diagnosis.design.experiment import experiment
 from seatsim.diagnosis.fit import Engine, Point
+from seatsim.diagnosis.noise import whitening
 from seatsim.diagnosis.problem import problem
-from seatsim.diagnosis.whitening import whitening
 from seatsim.effects.damper import GasSpring, SealFriction
 from seatsim.excitations.recording import RecordedRun
-from seatsim.recording import load_recording
-from seatsim.replay import COMPARED, single
-from seatsim.simulation import simulate
+from seatsim.recordings.compared import COMPARED
+from seatsim.recordings.recording import load_recording
+from seatsim.scenario.loading import single
+from seatsim.simulation.simulate import simulate
 
 from .damaged import edit, noisy, rewrite
 

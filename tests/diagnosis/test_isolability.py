@@ -6,7 +6,7 @@ suspension, and the floor's unmeasured input enters the same force balance.
 
 import pytest
 
-from seatsim.diagnosis.isolability import Equation, isolable, losses, overdetermined
+from seatsim.diagnosis.design.isolability import Equation, isolable, losses, overdetermined
 
 ALL = {
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
@@ -41,7 +41,7 @@ def test_the_floor_stands_with_the_suspension():
 
 
 def test_the_redundancy_of_the_full_seat_is_five():
-    from seatsim.diagnosis.isolability import _equations, _matching
+    from seatsim.diagnosis.design.isolability import _equations, _matching
 
     equations = _equations("seat", ALL)
     assert len(equations) - len(_matching(equations)) == 5

@@ -8,13 +8,13 @@ from scipy.signal import butter, sosfiltfilt
 
 from seatsim.diagnosis.diagnose import solved
 from seatsim.diagnosis.fit import Point, State
-from seatsim.diagnosis.latent import Latent, foretold
+from seatsim.diagnosis.localise.discrepancy import Latent, foretold
+from seatsim.diagnosis.localise.stochastic import wandering
+from seatsim.diagnosis.noise import broadband
 from seatsim.diagnosis.problem import Drive, problem
-from seatsim.diagnosis.random_cause import wandering
-from seatsim.diagnosis.whitening import broadband
-from seatsim.recording import load_recording
-from seatsim.registry import find
-from seatsim.simulation import Forces
+from seatsim.recordings.recording import load_recording
+from seatsim.schema.registry import find
+from seatsim.simulation.simulate import Forces
 
 RATE = 500.0
 

@@ -12,15 +12,13 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
-from seatsim.diagnosis.findings import Cause, Diagnosis, Estimate, Evidence, Gaps, Share, Trace
-from seatsim.plots import (
-    diagnosis_alikeness,
-    diagnosis_answer,
-    diagnosis_latent,
-    diagnosis_maps,
-    diagnosis_signals,
-)  # fmt: skip
-from seatsim.plots.diagnosis_bins import FEWEST, binned_rms, loudest, settled, worst
+from seatsim.diagnosis.result import Cause, Diagnosis, Estimate, Evidence, Gaps, Share, Trace
+from seatsim.plots.diagnosis import answer as diagnosis_answer
+from seatsim.plots.diagnosis import collinearity as diagnosis_alikeness
+from seatsim.plots.diagnosis import discrepancy as diagnosis_latent
+from seatsim.plots.diagnosis import maps as diagnosis_maps
+from seatsim.plots.diagnosis import signals as diagnosis_signals  # fmt: skip
+from seatsim.plots.diagnosis.bins import FEWEST, binned_rms, loudest, settled, worst
 from seatsim.report import write_report
 from seatsim.report.html import tag
 from seatsim.report.words import estimate, percent, sentence

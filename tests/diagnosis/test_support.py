@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 import seatsim
+from seatsim.diagnosis.decide import groups_of
 from seatsim.diagnosis.fit import Point, State
-from seatsim.diagnosis.verdict import groups_of
 
 RATE = 250.0
 NOMINAL = """\

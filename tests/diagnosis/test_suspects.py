@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.fit import Engine, Point
+from seatsim.diagnosis.localise.hypotheses import suspects
+from seatsim.diagnosis.localise.input_estimate import INPUTS, unrepeated
+from seatsim.diagnosis.noise import whitening
 from seatsim.diagnosis.problem import Drive, problem
-from seatsim.diagnosis.suspects import suspects
-from seatsim.diagnosis.unknown_input import INPUTS, unrepeated
-from seatsim.diagnosis.whitening import whitening
-from seatsim.recording import load_recording
-from seatsim.simulation import Forces, simulate
+from seatsim.recordings.recording import load_recording
+from seatsim.simulation.simulate import Forces, simulate
 
 from .damaged import blurred, limited, rewrite, stepped, with_play
 

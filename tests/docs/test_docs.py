@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from seatsim.cli import app
+from seatsim.cli.app import app
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCH = (
@@ -63,7 +63,7 @@ from seatsim.diagnosis.candidates import candidates
 from seatsim.diagnosis.problem import problem
 from seatsim.effects.base import off
 from seatsim.kernel.rig import MECHANICAL, Rig, Shake, derivative
-from seatsim.temperature import Heat
+from seatsim.rig.temperature import Heat
 
 effects = [{"effect": "example_2:AirDrag", "parameters": {"drag": 350.0}}]
 scenario, = load("quickstart", {"effects": effects, "variants": {}})

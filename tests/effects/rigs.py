@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatsim.augmentation import changed, damper_with, in_loop, readings
-from seatsim.dampers.bench import bench_force
 from seatsim.dampers.bingham import Bingham
 from seatsim.effects.base import off
-from seatsim.loading import load
-from seatsim.registry import card_of, find, names
-from seatsim.simulation import simulate
-from seatsim.temperature import TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.scenario.loading import load
+from seatsim.schema.registry import card_of, find, names
+from seatsim.simulation.augment import changed, damper_with, in_loop, readings
+from seatsim.simulation.damper_bench import bench_force
+from seatsim.simulation.simulate import simulate
 
 NAMES = names("effect")
 STEP = 1e-3

@@ -5,9 +5,9 @@ import pandas as pd
 import pytest
 
 import seatsim
-from seatsim.coil import Coil, relax
 from seatsim.effects.base import ON_SEAT, acts_on
-from seatsim.registry import find
+from seatsim.rig.coil import Coil, relax
+from seatsim.schema.registry import find
 
 from .rigs import BINGHAM, NAMES, STEP, bench, cycles, record, starts
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatsim.coil import Coil, relax
-from seatsim.registry import find
+from seatsim.rig.coil import Coil, relax
+from seatsim.schema.registry import find
 
 from .rigs import record, shaken, starts
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 import pytest
 
 from seatsim.effects.base import ON_DAMPER, acts_on, off
-from seatsim.fields import adapter, bounds, choices, describe
-from seatsim.registry import card_of, find
-from seatsim.scenario import Solver
-from seatsim.simulation import simulate
+from seatsim.scenario.scenario import Solver
+from seatsim.schema.fields import adapter, bounds, choices, describe
+from seatsim.schema.registry import card_of, find
+from seatsim.simulation.simulate import simulate
 
 from .rigs import NAMES, distance, shaken, starts
 

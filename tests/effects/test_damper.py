@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.augmentation import changed
-from seatsim.temperature import TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.simulation.augment import changed
 
 from .rigs import BINGHAM, INERT, STEP, bench, cycles, record, strokes, work
 

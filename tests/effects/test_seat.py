@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatsim.scenario import Start
+from seatsim.scenario.scenario import Start
 
 from .rigs import distance, record, seat, shaken
 

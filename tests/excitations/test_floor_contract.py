@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
 
-from seatsim.errors import InputError
 from seatsim.excitations.bumps import Bumps
 from seatsim.excitations.iso7096 import Iso7096
 from seatsim.excitations.periodic import Chirp, Sine, SteppedSine
 from seatsim.excitations.road import Road
-from seatsim.fields import adapter, describe
-from seatsim.registry import card_of, name_of
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import adapter, describe
+from seatsim.schema.registry import card_of, name_of
 
 STEP = 0.001
 BUMP = {"height": 0.05, "length": 1.0, "speed": 8, "duration": 6.0, "number": 2, "spacing": 12.0}

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from seatsim.errors import InputError
 from seatsim.excitations.periodic import Chirp, Sine, SteppedSine
+from seatsim.schema.errors import InputError
 
 STEP = 0.001
 

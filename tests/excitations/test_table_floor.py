@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 from scipy.signal import welch
 
-from seatsim.errors import InputError
 from seatsim.excitations.road import Road, profile
 from seatsim.excitations.table import Table
-from seatsim.fields import adapter, describe
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import adapter, describe
 
 ROOT = Path(__file__).parents[2]
 MEASURED = ROOT.parent / "shared" / "data"

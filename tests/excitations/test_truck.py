@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from seatsim.errors import InputError
 from seatsim.excitations.bumps import Bumps
 from seatsim.excitations.road import LONGEST, SHORTEST, Road, displacement_density
 from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response, ring_down, state_space
+from seatsim.schema.errors import InputError
 
 
 def test_response_agrees_with_the_state_space():

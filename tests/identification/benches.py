@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pandas as pd
 
-from seatsim.bench_tables import BenchRecord
-from seatsim.coil import Coil
-from seatsim.dampers.bench import bench_force
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.kernel.lag import lagged
-from seatsim.temperature import TemperatureFactors
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.rig.coil import Coil
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.simulation.damper_bench import bench_force
 
 BINGHAM = Bingham(c_a=400.0, c_b=900.0, fc_a=60.0, fc_b=500.0, f0=30.0, v_ref=0.004)
 BOUC_WEN = BoucWen(c_a=500.0, c_b=800.0, alpha_a=60.0, alpha_b=500.0, k0=900.0, f0=30.0, A=2000.0, beta=1300.0,

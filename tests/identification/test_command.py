@@ -9,16 +9,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from ruamel.yaml import YAML
 from typer.testing import CliRunner
 
-from seatsim.cli import app, main
-from seatsim.errors import InputError, RunError
+from seatsim.cli.app import app, main
+from seatsim.cli.outputs.identification import contents, write_identification
 from seatsim.identification import league as league_module
 from seatsim.identification.identify import identify
 from seatsim.identification.judging import Further
 from seatsim.identification.league import Place, league, ranked
 from seatsim.identification.search import silent
 from seatsim.identification.split import Request
-from seatsim.identification_output import contents, write_identification
-from seatsim.plots.identification import loops
+from seatsim.plots.bench.identification import loops
+from seatsim.schema.errors import InputError, RunError
 
 from .benches import BINGHAM, made, sines, write
 

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
-from seatsim.errors import InputError
-from seatsim.fields import bounds
 from seatsim.identification.coordinates import (
     Coordinates,
     Scales,
@@ -18,7 +16,9 @@ from seatsim.identification.coordinates import (
     numbers_of,
     scaled,
 )
-from seatsim.registry import card_of, find, names
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import bounds
+from seatsim.schema.registry import card_of, find, names
 
 MODELS = [name for name in names("damper") if find("damper", name).__module__.startswith("seatsim.dampers.")]
 SCALES = Scales(force=400.0, stroke=0.006, speed=0.06, current=1.0)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from seatsim.bench_tables import load_bench
 from seatsim.identification.identify import identify, predict
 from seatsim.identification.split import Request
+from seatsim.recordings.bench_tables import load_bench
 
 FOLDERS = {
     "utfsm_mr_sine_raw": (30, [0.0, 0.25, 0.5, 0.75, 1.0], False),

@@ -5,18 +5,18 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.bench_tables import BenchRecord
-from seatsim.coil import Coil, relax
-from seatsim.dampers.bench import bench_force
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.errors import InputError
 from seatsim.identification.figures import averaged, figures
 from seatsim.identification.judging import Further, foretold, further, judge
 from seatsim.identification.predict import Bench, drive, predicted
 from seatsim.identification.smoothing import sharpened, smoothed
 from seatsim.identification.split import Request, split
 from seatsim.kernel.lag import lagged
-from seatsim.temperature import TemperatureFactors
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.rig.coil import Coil, relax
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.errors import InputError
+from seatsim.simulation.damper_bench import bench_force
 
 from .benches import BINGHAM, BOUC_WEN, made, write
 

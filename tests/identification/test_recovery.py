@@ -8,12 +8,12 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.errors import InputError, RunError
 from seatsim.identification import identify as module
 from seatsim.identification.identify import identify_records
 from seatsim.identification.information import correlation_length
 from seatsim.identification.split import Request
-from seatsim.temperature import TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.errors import InputError, RunError
 
 from .benches import BINGHAM, BOUC_WEN, made, sines
 

@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.bench_columns import KNOWN, meaning
-from seatsim.bench_tables import load_bench, unused_columns
-from seatsim.errors import InputError
+from seatsim.recordings.bench_columns import KNOWN, meaning
+from seatsim.recordings.bench_tables import load_bench, unused_columns
+from seatsim.schema.errors import InputError
 
 from .benches import columns, made
 

@@ -3,15 +3,15 @@
 import numpy as np
 
 from controllers.constant import Replay
-from seatsim.coil import Coil
+from seatsim.compilation.cached import compiled
 from seatsim.kernel.belief import Truth
 from seatsim.kernel.chain import state_of
-from seatsim.kernel.compilation import compiled
 from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
 from seatsim.kernel.rig import Rig
-from seatsim.plant import Plant
-from seatsim.registry import card_of
-from seatsim.temperature import TemperatureFactors, Thermal
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
+from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.schema.registry import card_of
 
 STEP = 1e-3
 SEAT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)

@@ -6,7 +6,7 @@ from scipy.signal import StateSpace, lsim
 
 from seatsim.dampers.bingham import Bingham
 from seatsim.effects.suspension import Friction
-from seatsim.plant import Plant, state_space
+from seatsim.rig.plant import Plant, state_space
 
 from .rigs import SEAT, STEP, driven, imbalance, rough
 

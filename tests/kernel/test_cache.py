@@ -40,7 +40,7 @@ import sys
 from pathlib import Path
 from model import Model
 import loop
-from seatsim.kernel.compilation import compiled
+from seatsim.compilation.cached import compiled
 {before}
 function = compiled(loop.evaluate, (Model,))
 print(function(Model(3.0), 1.0), sum(function.stats.cache_hits.values()))
@@ -49,7 +49,7 @@ print(function(Model(3.0), 1.0), sum(function.stats.cache_hits.values()))
 NURSERY = """
 import json, os, sys
 import numba
-import seatsim.kernel.compilation, seatsim.kernel.generic
+import seatsim.compilation.cached, seatsim.kernel.generic
 numba.njit(lambda v: 2.0 * v)(1.0)
 sys.path.insert(0, "")
 for line in sys.stdin:

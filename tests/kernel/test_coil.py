@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from seatsim.coil import Coil
 from seatsim.dampers.bingham import Bingham
-from seatsim.temperature import TemperatureFactors, Thermal
+from seatsim.rig.coil import Coil
+from seatsim.rig.temperature import TemperatureFactors, Thermal
 
 from .rigs import STEP, driven, rough
 

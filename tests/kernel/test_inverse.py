@@ -8,8 +8,8 @@ from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
 from seatsim.kernel.belief import Belief
 from seatsim.kernel.inverse import CELLS, invert, total
-from seatsim.registry import card_of
-from seatsim.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import Heat, TemperatureFactors
+from seatsim.schema.registry import card_of
 
 from .dampers import Parabola, Wavy
 from .rigs import rms, rough, run

@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatsim import simulation
+from seatsim.simulation.simulate import simulate as simulation
 
 
 @pytest.fixture(scope="module")

@@ -1,8 +1,9 @@
 """Every registered law, with the keys it must have, in the compiled form of the quickstart seat."""
 
-from seatsim import registry, simulation
-from seatsim.coil import Coil
-from seatsim.plant import Plant
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
+from seatsim.schema import registry
+from seatsim.simulation.simulate import simulate as simulation
 
 REQUIRED = {
     "constant": {"current": 0.5},

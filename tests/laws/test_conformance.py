@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import seatsim
-from seatsim.control import Measurement
 from seatsim.kernel.generic import ask, update
+from seatsim.rig.control import Measurement
 
 from .records import LAWS, NOT_LINEAR, REQUIRED, ready
 

@@ -9,7 +9,7 @@ import seatsim
 from controllers.linear import held
 from controllers.planner import Envelope, Planner
 from controllers.quadratic import QuadraticWeights
-from seatsim.plant import state_space
+from seatsim.rig.plant import state_space
 
 from .records import SEAT
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.signal import cont2discrete, lfilter
 
-from seatsim.control import Measurement
-from seatsim.errors import InputError
-from seatsim.loading import load
-from seatsim.sensors import Sensors, at_rest
+from seatsim.rig.control import Measurement
+from seatsim.rig.sensors import Sensors, at_rest
+from seatsim.scenario.loading import load
+from seatsim.schema.errors import InputError
 
 STEP, EVERY = 0.001, 5
 PERIOD = STEP * EVERY

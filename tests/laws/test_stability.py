@@ -11,12 +11,12 @@ from controllers.kalman import Noise, dot, estimator, predicted
 from controllers.margins import margins, sampled_radius
 from controllers.quadratic import QuadraticWeights, state_feedback
 from controllers.sampled_loop import sampled_loop
-from seatsim.errors import InputError
-from seatsim.loading import load
-from seatsim.plant import state_space
-from seatsim.registry import card_of, name_of
-from seatsim.sensors import Sensors
-from seatsim.simulation import _ready
+from seatsim.rig.plant import state_space
+from seatsim.rig.sensors import Sensors
+from seatsim.scenario.loading import load
+from seatsim.schema.errors import InputError
+from seatsim.schema.registry import card_of, name_of
+from seatsim.simulation.simulate import _ready
 
 from .records import COIL, LINEAR, SEAT, ready
 

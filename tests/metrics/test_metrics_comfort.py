@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from seatsim.errors import InputError
 from seatsim.metrics import (
     crest_factor,
     daily_exposure,
@@ -22,6 +21,7 @@ from seatsim.metrics import (
     weight,
     weighted_rms,
 )
+from seatsim.schema.errors import InputError
 
 RATE = 1000.0
 

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import signal as sp
 
-from seatsim.errors import InputError
 from seatsim.metrics import (
     electrical_energy,
     end_stop_hits,
@@ -18,6 +17,7 @@ from seatsim.metrics import (
     rms,
     transmissibility,
 )
+from seatsim.schema.errors import InputError
 
 
 def test_rms_and_peak_of_a_sine():

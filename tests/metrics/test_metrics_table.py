@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import seatsim.metrics
-from seatsim.errors import InputError
 from seatsim.metrics import METRICS, rms, seat_factor, summarise, weight
+from seatsim.schema.errors import InputError
 
 STEP = 0.001
 NAMES = [

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import signal as sp
 
-from seatsim.errors import InputError
 from seatsim.metrics import WEIGHTINGS, response, weight
+from seatsim.schema.errors import InputError
 
 NOMINAL = np.array([
     0.5, 0.63, 0.8, 1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8, 10, 12.5, 16, 20, 25, 31.5, 40, 50, 63, 80,

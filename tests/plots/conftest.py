@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from seatsim.coil import Coil
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.metrics import summarise
-from seatsim.plant import Plant
-from seatsim.result import UNITS, Run
-from seatsim.scenario import DamperChoice, Scenario
-from seatsim.simulation import History
-from seatsim.temperature import TemperatureFactors
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.scenario.scenario import DamperChoice, Scenario
+from seatsim.simulation.result import UNITS, Run
+from seatsim.simulation.simulate import History
 
 PLANT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0, travel=(-0.05, 0.05))
 FADING = TemperatureFactors(viscous=-0.0067, yield_force=-0.0067)

@@ -8,9 +8,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Annotation
 
 from seatsim.metrics import Metric
-from seatsim.plots.pareto import BEST, BOUND, pareto
-from seatsim.plots.placing import placed
-from seatsim.result import Run
+from seatsim.plots.runs.pareto import BEST, BOUND, pareto
+from seatsim.plots.runs.placing import placed
+from seatsim.simulation.result import Run
 
 
 class Fake:

@@ -5,19 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatsim.coil import Coil
-from seatsim.dampers.bench import sine_test
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.metrics import summarise
 from seatsim.plots import labels
-from seatsim.plots.comparison import comparison, swept_number
-from seatsim.plots.envelope import force_velocity
-from seatsim.plots.histories import time_histories
-from seatsim.plots.loops import amplitude_of, damper_loops, specimens
-from seatsim.plots.spectra import psd, transmissibility
+from seatsim.plots.runs.comparison import comparison, swept_number
+from seatsim.plots.runs.envelope import force_velocity
+from seatsim.plots.runs.histories import time_histories
+from seatsim.plots.runs.loops import amplitude_of, damper_loops, specimens
+from seatsim.plots.runs.spectra import psd, transmissibility
 from seatsim.plots.thinning import BINS, CLOSE_UP, Window, eventful, thinned
-from seatsim.simulation import History
-from seatsim.temperature import TemperatureFactors
+from seatsim.rig.coil import Coil
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.simulation.damper_bench import sine_test
+from seatsim.simulation.simulate import History
 
 
 def texts(figure):

@@ -7,8 +7,8 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
-from seatsim.plots import draw
-from seatsim.result import Result
+from seatsim.plots.runs.draw import draw
+from seatsim.simulation.result import Result
 
 ALWAYS = {"time_histories", "psd", "transmissibility", "damper_loops", "force_velocity"}
 LONG = "a variant whose name goes on and on, beyond all use"

@@ -8,10 +8,10 @@ import pandas as pd
 import pytest
 
 import seatsim
-from seatsim.cli import main
-from seatsim.dampers.bench import bench_force
+from seatsim.cli.app import main
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.recording_writer import save_recording
+from seatsim.recordings.writer import save_recording
+from seatsim.simulation.damper_bench import bench_force
 
 CHANNELS = ["floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement",
             "damper_force", "current_command", "coil_current", "damper_temperature"]  # fmt: skip

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from seatsim.cli import main
+from seatsim.cli.app import main
 
 GOOD = """\
 name: good

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import seatsim
-from seatsim.loading import load
+from seatsim.scenario.loading import load
 
 FOLDER = Path(__file__).resolve().parents[2] / "scenarios"
 FILES = [path for path in sorted(FOLDER.rglob("*.yaml")) if "data" not in path.parts]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import seatsim
-from seatsim.loading import load
+from seatsim.scenario.loading import load
 
 
 def test_a_sweep_makes_every_combination_in_order(seat_file):
@@ -45,9 +45,9 @@ def test_whole_numbers_and_exponents_are_numbers(seat_file):
 def test_a_users_own_damper_and_law_run_like_built_in_ones(seat_file, monkeypatch):
     (seat_file.parent / "own_parts.py").write_text(
         "from typing import Annotated, NamedTuple\n"
-        "from seatsim.control import law\n"
+        "from seatsim.rig.control import law\n"
         "from seatsim.dampers.base import damper\n"
-        "from seatsim.fields import param\n\n"
+        "from seatsim.schema.fields import param\n\n"
         "@damper('own', source='a test', current_order=1)\n"
         "class Own(NamedTuple):\n"
         "    c: Annotated[float, param('N s/(m A)', 'damping', low=0)] = 1000.0\n"

@@ -6,7 +6,7 @@ import pandas as pd
 import pyarrow.parquet as pq
 import pytest
 
-from seatsim.cli import main
+from seatsim.cli.app import main
 
 
 def seatsim_command(monkeypatch, *arguments):

@@ -5,8 +5,8 @@ import pytest
 
 import seatsim
 from controllers.margins import margins, sampled_radius
-from seatsim.coil import Coil
-from seatsim.plant import Plant, state_space
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant, state_space
 
 GAIN = np.array([[2.0, 2147.6]])
 COIL = Coil(130.0, 1.0)

@@ -9,7 +9,7 @@ import pytest
 
 from controllers import synthesise
 from controllers.seat_plant import Weights, generalised
-from seatsim.loading import load
+from seatsim.scenario.loading import load
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS, SCRIPTS = ROOT / "scenarios" / "yu2019", ROOT / "docs" / "yu2019"

@@ -1,0 +1,1 @@
+"""Comparison of verdicts with the sealed labels."""

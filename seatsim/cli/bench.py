@@ -1,0 +1,123 @@
+"""The commands on measured dampers: characterise, identify."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from seatsim.cli.terminal import Out, complain, out, pairs, told, warn, wide, wrote
+from seatsim.schema.errors import InputError
+
+if TYPE_CHECKING:
+    from seatsim.identification.judging import Further
+    from seatsim.identification.split import Request
+    from seatsim.recordings.bench_tables import BenchRecord
+
+
+def characterise(
+    data: Annotated[Path | None, typer.Argument(help="A bench table, or a folder of them.", show_default=False)] = None,
+    out_folder: Out = None,
+    model: Annotated[str | None, typer.Option("--model", help="A damper model, in place of data.")] = None,
+    parameters: Annotated[
+        Path | None, typer.Option("--parameters", help="A file with a damper, in place of data.")
+    ] = None,
+    currents: Annotated[str, typer.Option("--currents", metavar="A,A", help="Currents of a model's tests.")] = "",
+    temperatures: Annotated[str, typer.Option("--temperatures", metavar="C,C", help="Temperatures in degC.")] = "",
+    amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M", help="Amplitudes in m.")] = "",
+    frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ", help="Frequencies.")] = "",
+) -> None:
+    """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
+    from seatsim.characterisation.of_model import characterise_model, settings_of, specimen
+    from seatsim.characterisation.summary import characterise as of_records
+    from seatsim.cli.outputs.characterisation import WIDEST_TABLE, remarks, tables, write_characterisation
+    from seatsim.recordings.bench_tables import load_bench
+
+    grid = (currents, temperatures, amplitudes, frequencies)
+    if (data is None) == (model is None and parameters is None) or (data is not None and any(grid)):
+        raise InputError("characterise either DATA, or a model by --model or --parameters with its tests; see --help")
+    if data is not None:
+        records = load_bench(data)
+        found = of_records(records, _title(data), str(data))
+    else:
+        tested = specimen(model, parameters)
+        found = characterise_model(tested, settings_of(tested, *grid))
+    for table in tables(found):
+        wide(WIDEST_TABLE).print(table)
+    warn(remarks(found))
+    folder = out_folder or Path("out") / f"characterise-{found.name}"
+    wrote(folder, write_characterisation(found, folder))
+
+
+def identify(
+    data: Annotated[Path, typer.Argument(help="A bench table, or a folder of them.", show_default=False)],
+    model: Annotated[str, typer.Option("--model", help="A damper model, or all for the league.", show_default=False)],
+    test: Annotated[
+        list[str] | None, typer.Option("--test", metavar="GLOB", help="Hold out the files whose names match.")
+    ] = None,
+    test_fraction: Annotated[
+        float, typer.Option("--test-fraction", help="Hold out this share of each record, its last part.")
+    ] = 0.0,
+    fix: Annotated[
+        list[str] | None, typer.Option("--fix", metavar="NAME=VALUE", help="Keep a parameter at a value.")
+    ] = None,
+    ignore_temperature: Annotated[bool, typer.Option("--ignore-temperature", help="Do not fit its influence.")] = False,
+    more: Annotated[
+        list[Path] | None, typer.Option("--predict", metavar="DATA", help="Predict further records, not fitted.")
+    ] = None,
+    moving_average: Annotated[
+        float, typer.Option("--moving-average", metavar="S", help="Average that the predicted records went through.")
+    ] = 0.0,
+    centred: Annotated[bool, typer.Option("--centred", help="The predicted records' mean force was removed.")] = False,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the global search.")] = 0,
+    out_folder: Out = None,
+) -> None:
+    """Fit a damper model to bench records and judge it on records held out; or every model, as a league."""
+    from seatsim.identification.judging import further
+    from seatsim.identification.split import Request
+    from seatsim.recordings.bench_tables import load_bench
+
+    fixed = pairs(fix, "--fix", "v_ref=0.005")
+    request = Request(tuple(test or ()), test_fraction, fixed, ignore_temperature, seed)
+    folder = out_folder or Path("out") / f"identify-{_title(data)}-{model.rpartition(':')[2]}"
+    records, beside = load_bench(data), further(more or [], moving_average, centred)
+    if model == "all":
+        _league(records, request, beside, folder)
+    else:
+        _identify(records, model, request, beside, folder)
+
+
+def _identify(records: list[BenchRecord], model: str, request: Request, beside: Further, folder: Path) -> None:
+    from seatsim.cli.outputs.identification import tables, write_identification
+    from seatsim.identification.identify import identify_records, predict_records
+
+    with told() as tell:
+        found = predict_records(identify_records(records, model, request, tell), beside)
+        paths = write_identification(found, folder)
+    for table in tables(found):
+        out.print(table)
+    warn(found.notes)
+    wrote(folder, paths)
+
+
+def _league(records: list[BenchRecord], request: Request, beside: Further, folder: Path) -> None:
+    """Identify every model, print and write the table; exit 1 where one failed."""
+    from seatsim.cli.outputs.identification import league_table, write_identification, write_league
+    from seatsim.identification.league import league
+
+    with told() as tell:
+        places = league(
+            records, request, beside, folder, tell, lambda found: write_identification(found, folder / found.model)
+        )
+    out.print(league_table(places))
+    failed = [place for place in places if place.failed]
+    for place in failed:
+        complain(f"failed: {place.failed}")
+    wrote(folder, [write_league(places, folder)])
+    if failed:
+        raise typer.Exit(1)
+
+
+def _title(data: Path) -> str:
+    return data.resolve().name.split(".")[0]

@@ -1,0 +1,57 @@
+"""A synthesised design, as the terminal shows it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from rich.table import Table
+
+from seatsim.scenario.scenario import Scenario
+from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME
+
+
+def design_table(design: Any, scenario: Scenario) -> Table:
+    """Return a design as a table: gain, norm beside what no controller can go below, certificate, margins, poles.
+
+    The margins beside the disk's are those of the scenario's own plant, coil and controller.
+    """
+    table = Table(title="H-infinity static output feedback", title_justify="left", show_header=False, box=None)
+    proof = design.certificate
+    rows = {
+        "gain on (x, v)": ", ".join(f"{value:.6g}" for value in design.gain.ravel()) + "  [N/m, N s/m]",
+        "gamma": f"{design.gamma:.6g} (largest gain permitted {design.max_gain:g})",
+        "lower bound": f"{design.lower_bound:.6g}, of any linear controller of any order",
+        "certificate": f"bounded-real lemma at gamma {proof.gamma:.6g}" if proof else "none in double precision",
+        "disk margin": _disk(min(loop.disk_margin for loop in design.loops)),
+        "peak": f"{design.peak_frequency / (2 * math.pi):.3g} Hz",
+        "poles": ", ".join(f"{pole:.3g}" for pole in design.poles) + "  [rad/s]",
+    }
+    if len(design.loops) > 1:
+        rows["plants"] = _several(design.loops)
+    if not all(loop.norms_agree for loop in design.loops):
+        rows["norms"] = "bisection and frequency grid differ by more than 1e-6: gamma may be too small"
+    for name, value in (rows | _checks(design, scenario)).items():
+        table.add_row(name, value)
+    return table
+
+
+def _disk(margin: float) -> str:
+    most = "any" if margin > 2 - 1e-6 else f"{(2 + margin) / (2 - margin):.3g}"
+    least, turn = (2 - margin) / (2 + margin), 2 * math.degrees(math.atan(margin / 2))
+    return f"gain times {max(least, 0.0):.2g} to {most}, phase {turn:.3g} degrees"
+
+
+def _several(loops: Any) -> str:
+    norms, proven = [loop.gamma for loop in loops], sum(loop.certificate is not None for loop in loops)
+    return f"{len(loops)}, of which {proven} certified; gamma {min(norms):.6g} to {max(norms):.6g}, the worst is shown"
+
+
+def _checks(design: Any, scenario: Scenario) -> dict[str, str]:
+    control = scenario.control
+    if control is None or not hasattr(control.law, "checks"):
+        return {}
+    found: dict[str, str] = control.law.checks(
+        scenario.plant, scenario.coil, control.sample_time or DEFAULT_SAMPLE_TIME, design.gain
+    )
+    return found

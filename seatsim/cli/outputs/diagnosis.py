@@ -1,0 +1,102 @@
+"""Diagnoses on disk and on the terminal: `diagnosis.json`, `augmented.yaml`, `report.html`, and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+from ruamel.yaml import YAML
+
+from seatsim.diagnosis.diagnose import diagnose
+from seatsim.diagnosis.result import Diagnosis
+from seatsim.report import write_report
+from seatsim.schema.errors import SeatsimError
+from seatsim.schema.files import plain, write_json, write_whole
+
+PROCESSES = 2
+"""Recordings of a set that are diagnosed at once."""
+LISTED = 6
+"""Causes in the table."""
+
+
+def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
+    """Write `diagnosis.json`, `augmented.yaml`, `report.html`, and `experiment.yaml` where one is proposed."""
+    dump = YAML(typ="safe").dump
+    paths = [write_whole(folder / "augmented.yaml", partial(dump, diagnosis.augmented))]
+    if diagnosis.experiment_scenario is not None:
+        paths.append(write_whole(folder / "experiment.yaml", partial(dump, diagnosis.experiment_scenario)))
+    paths.append(write_report(diagnosis, folder / "report.html"))
+    paths.append(write_json(folder / "diagnosis.json", contents(diagnosis)))
+    return paths
+
+
+def contents(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Return a diagnosis as it stands in `diagnosis.json`."""
+    gap = diagnosis.gap
+    experiment = diagnosis.experiment
+    if experiment is not None and diagnosis.experiment_scenario is not None:
+        experiment = experiment | {"file": "experiment.yaml"}
+    fields = {
+        "verdict": diagnosis.verdict, "sentence": diagnosis.sentence, "where": diagnosis.where,
+        "causes": diagnosis.causes, "probability_none": diagnosis.probability_none,
+        "probability_unknown": diagnosis.probability_unknown, "selected": diagnosis.selected,
+        "indistinguishable": diagnosis.indistinguishable, "experiment": experiment,
+        "held_out": diagnosis.held_out, "isolable": diagnosis.isolable,
+        "gap": {
+            "before": gap.before, "calibrated": gap.calibrated, "after": gap.after, "floor": gap.floor,
+            "shrink": gap.shrink, "shrink_interval": list(gap.shrink_interval),
+        },
+        "notes": diagnosis.notes, "augmented": "augmented.yaml",
+    }  # fmt: skip
+    found: dict[str, Any] = plain(fields)
+    return found
+
+
+def tables(diagnosis: Diagnosis) -> list[Table]:
+    """Return the gaps and the likeliest causes as tables."""
+    gap = diagnosis.gap
+    gaps = Table(title=f"gap on {', '.join(diagnosis.held_out)}, in standard deviations", title_justify="left")
+    for heading in ("channel", "nominal", "refitted", "with effects", "noise floor"):
+        gaps.add_column(heading, justify="left" if heading == "channel" else "right")
+    columns = (gap.before, gap.calibrated, gap.after, gap.floor)
+    for name in gap.before["channels"]:
+        gaps.add_row(name, *(f"{column['channels'][name]:.4f}" for column in columns))
+    gaps.add_section()
+    gaps.add_row("overall", *(f"{column['overall']:.4f}" for column in columns))
+    ranked = Table(title=f"verdict: {diagnosis.verdict}", title_justify="left")
+    for heading in ("effect", "probability", "own shrink"):
+        ranked.add_column(heading, justify="left" if heading == "effect" else "right")
+    for cause in diagnosis.causes[:LISTED]:
+        ranked.add_row(cause.effect, f"{cause.probability:.2f}", f"{cause.shrink:.2f}")
+    ranked.add_row("none", f"{diagnosis.probability_none:.2f}", "")
+    ranked.add_row("unknown", f"{diagnosis.probability_unknown:.2f}", "")
+    return [gaps, ranked]
+
+
+def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
+    """Diagnose every case of a folder that has no diagnosis yet, into `CASE/diagnosis`; may be taken up again."""
+    cases = sorted(path.parent for path in folder.glob("case-*/recording.yaml"))
+    open_cases = [case for case in cases if not (case / "diagnosis" / "diagnosis.json").exists()]
+    count(len(cases) - len(open_cases), len(cases))
+    with ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
+        futures = [pool.submit(_diagnosed, case) for case in open_cases]
+        try:
+            for done, future in enumerate(as_completed(futures), len(cases) - len(open_cases) + 1):
+                future.result()
+                count(done, len(cases))
+        except KeyboardInterrupt:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _diagnosed(case: Path) -> None:
+    """Diagnose one case; one that cannot be diagnosed is left without, and counts as wrong."""
+    try:
+        write_diagnosis(diagnose(case), case / "diagnosis")
+    except SeatsimError as error:
+        write_json(case / "diagnosis" / "error.json", {"error": str(error)})

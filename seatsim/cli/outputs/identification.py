@@ -1,0 +1,157 @@
+"""Identifications on disk and on the terminal: `parameters.yaml`, `fit.json`, `league.csv`, pictures, tables."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections import Counter
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.markup import escape
+from rich.table import Table
+from ruamel.yaml import YAML
+
+from seatsim.cli.outputs.runs import write_pictures
+from seatsim.identification.figures import Figures
+from seatsim.identification.identify import Identification
+from seatsim.identification.league import Place
+from seatsim.schema.files import write_json, write_text, write_whole
+
+LISTED = 40
+"""Most records of the table on the terminal."""
+HEAD = """\
+# Found by `seatsim identify`. `damper` and `actuator` are as a scenario has them; under `bench`: the displacement [m]
+# that counts as zero, and the growth of the offset with temperature [N/K].
+"""
+NO_COIL = "# No command that changes was recorded: the rates of the actuator are defaults.\n"
+
+
+def write_identification(found: Identification, folder: str | Path) -> list[Path]:
+    """Write `parameters.yaml`, `fit.json` and the picture of an identification; return their paths."""
+    from seatsim.plots.bench.identification import loops
+
+    folder = Path(folder)
+    text = io.StringIO(HEAD + ("" if found.commanded else NO_COIL))
+    text.seek(0, io.SEEK_END)
+    yaml = YAML()
+    yaml.default_flow_style = False
+    yaml.dump(parameters(found), text)
+    paths = [
+        write_text(folder / "parameters.yaml", text.getvalue()),
+        write_json(folder / "fit.json", contents(found)),
+    ]
+    return [*paths, *write_pictures({"loops": loops(found)}, folder)]
+
+
+def parameters(found: Identification) -> dict[str, Any]:
+    """Return the damper and its coil as a scenario has them, with what else the bench needs under `bench`."""
+    bench = found.bench
+    values = {
+        name: list(map(float, value)) if isinstance(value, tuple) else value if isinstance(value, int) else float(value)
+        for name, value in bench.damper._asdict().items()
+    }
+    damper: dict[str, Any] = {"model": found.model, "parameters": values}
+    if found.warm:
+        damper["temperature_factors"] = {name: float(value) for name, value in bench.factors._asdict().items()}
+    end = max(float(each.record.current.max()) for each in found.judged if each.part != "predicted")
+    return {
+        "damper": damper,
+        "actuator": {"rate": float(bench.rise), "rate_fall": float(bench.fall), "max_current": end or 1.0},
+        "bench": {"displacement_origin": found.origin, "offset_per_kelvin": float(bench.warming)},
+    }
+
+
+def contents(found: Identification) -> dict[str, Any]:
+    """Return what `fit.json` holds; `test` is null where nothing was held out."""
+    records = {
+        name: {"part": each.part, "current": each.record.mean_current, **each.figures._asdict()}
+        for name, each in zip(_names(found), found.judged, strict=True)
+    }
+    known = found.information
+    further = {"predicted": found.mean("predicted")} if found.mean("predicted") else {}
+    return {
+        "model": found.model,
+        "train": found.mean("train"),
+        "test": found.mean("test"),
+        **further,
+        "records": records,
+        "parameters": known.estimates,
+        "not_identified": [estimate.name for estimate in known.estimates if not estimate.identified],
+        "correlated": known.correlated,
+        "coverage": found.coverage,
+        "effective_samples": known.samples,
+        "bic": found.bic,
+        "seconds": found.seconds,
+        "ns_per_step": found.ns_per_step,
+        "notes": found.notes,
+    }
+
+
+def _names(found: Identification) -> list[str]:
+    """Return the names of the judged records, with the part they had where the name alone does not tell them apart."""
+    names = [each.record.name for each in found.judged]
+    full = [
+        f"{name} ({each.part})" if names.count(name) > 1 else name
+        for name, each in zip(names, found.judged, strict=True)
+    ]
+    seen: Counter[str] = Counter()
+    for k, name in enumerate(full):
+        seen[name] += 1
+        full[k] = f"{name} {seen[name]}" if seen[name] > 1 else name
+    return full
+
+
+def tables(found: Identification) -> list[Table]:
+    """Return the tables of figures and of parameters."""
+    figures = _table(f"{found.model}: agreement with the measured force", ("", "R²", "MD", "RMSE [N]", "fit [%]"))
+    for judged in found.judged if len(found.judged) <= LISTED else ():
+        figures.add_row(f"{escape(judged.record.name)} ({judged.part})", *_figures(judged.figures))
+    figures.add_section()
+    for part in ("train", "test", "predicted"):
+        mean = found.mean(part)
+        if mean:
+            figures.add_row(f"mean, {part}", *_figures(mean))
+    values = _table(f"{found.model}: parameters, ±1.96 standard deviations", ("", "value", "±", "unit", ""))
+    for estimate in found.information.estimates:
+        note = "" if estimate.identified else "not identified"
+        row = (f"{estimate.value:.5g}", f"{1.96 * estimate.std:.2g}", escape(estimate.unit), note)
+        values.add_row(escape(estimate.name), *row)
+    return [figures, values]
+
+
+def write_league(places: Sequence[Place], folder: Path) -> Path:
+    """Write `league.csv`, the best model first."""
+    import pandas as pd
+
+    frame = pd.DataFrame([place._asdict() for place in places])
+    return write_whole(folder / "league.csv", partial(frame.to_csv, index=False))
+
+
+def league_table(places: Sequence[Place]) -> Table:
+    """Return the league as a table."""
+    table = _table("league", ("model", "train [%]", "test [%]", "parameters", "ns a step", "BIC", "s"))
+    for place in places:
+        if place.failed:
+            table.add_row(place.model, *["-"] * 6)
+            continue
+        fits = [
+            f"{fit:.1f}" if math.isfinite(fit) else "-" for fit in (place.train_fit_percent, place.test_fit_percent)
+        ]
+        rest = (place.ns_per_step, place.bic, place.seconds)
+        table.add_row(place.model, *fits, str(place.parameters), *(f"{value:.0f}" for value in rest))
+    return table
+
+
+def _table(title: str, headings: Sequence[str]) -> Table:
+    table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD)
+    for k, heading in enumerate(headings):
+        table.add_column(escape(heading), justify="right" if k and heading not in ("unit", "") else "left")
+    return table
+
+
+def _figures(figures: Figures) -> tuple[str, ...]:
+    return f"{figures.r2:.4f}", f"{figures.md:.3f}", f"{figures.rmse:.1f}", f"{figures.fit_percent:.1f}"

@@ -1,0 +1,110 @@
+"""The comparison table on the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from rich import box
+from rich.markup import escape
+from rich.table import Table
+
+from seatsim.metrics.arrays import ratio
+from seatsim.simulation.performance_bounds import distance
+from seatsim.simulation.result import Run
+
+
+class Column(NamedTuple):
+    """A metric in the table: its heading, the factor to the unit shown, its decimals."""
+
+    metric: str
+    heading: str
+    scale: float
+    decimals: int
+
+
+COLUMNS = (
+    Column("driver_acceleration_rms", "driver\nRMS\n\\[m/s²]", 1.0, 3),
+    Column("driver_acceleration_weighted", "driver\nWk RMS\n\\[m/s²]", 1.0, 3),
+    Column("driver_vdv", "driver\nVDV\n\\[m/s¹·⁷⁵]", 1.0, 2),
+    Column("seat_factor", "SEAT\nfactor\n\\[-]", 1.0, 2),
+    Column("suspension_displacement_rms", "travel\nRMS\n\\[mm]", 1e3, 2),
+    Column("suspension_displacement_peak", "travel\npeak\n\\[mm]", 1e3, 1),
+    Column("current_rms", "current\nRMS\n\\[A]", 1.0, 2),
+)
+COMPARED = COLUMNS[:-1]
+"""Columns of which the smallest value is the best."""
+
+
+def comparison(runs: Sequence[Run], title: str) -> Table:
+    """Return the table of runs: what sets them apart, then comfort, travel and effort; best comfort and travel bold."""
+    labels = _label_keys(runs)
+    table = _headed(title, labels)
+    for column in COLUMNS:
+        table.add_column(column.heading, justify="right", vertical="bottom", no_wrap=True)
+    best = {column.metric: _best(runs, column.metric) for column in COMPARED}
+    for run in runs:
+        cells = [escape(_label(run, key)) for key in labels]
+        cells += [_cell(run, column, best.get(column.metric)) for column in COLUMNS]
+        table.add_row(*cells)
+    return table
+
+
+def distances(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Table:
+    """Return the table of how far each run with a bracket is from its two ends, at the run's travel."""
+    chosen = [run for run in runs if run.scenario.rig in brackets]
+    keys = _label_keys(chosen)
+    table = _headed("Distance from the clairvoyant bracket, at each run's travel", keys)
+    for heading in ("Wk RMS", "bound", "best"):
+        table.add_column(f"{heading}\n\\[m/s²]", justify="right", vertical="bottom", no_wrap=True)
+    for heading in ("above\nbound", "above\nbest", "bracket's\nwidth"):
+        table.add_column(f"{heading}\n\\[%]", justify="right", vertical="bottom", no_wrap=True)
+    for run in chosen:
+        d = distance(run, brackets[run.scenario.rig])
+        cells = [_number(value, 3) for value in (d.acceleration, d.bound, d.best)]
+        cells += [_number(1e2 * value, 1) for value in (d.above_bound, d.above_best, ratio(d.best, d.bound) - 1)]
+        table.add_row(*(escape(_label(run, key)) for key in keys), *cells)
+    return table
+
+
+def _headed(title: str, keys: Sequence[str]) -> Table:
+    """Return a table without rows, whose first columns are the labels of the runs."""
+    table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for key in keys:
+        heading = "damper\n\\[°C]" if key == "temperature" else key.rpartition(".")[2].replace("_", "\n")
+        table.add_column(heading, vertical="bottom", no_wrap="." in key or key == "temperature")
+    return table
+
+
+def _number(value: float, decimals: int) -> str:
+    return f"{value:.{decimals}f}" if math.isfinite(value) else "-"
+
+
+def _label_keys(runs: Sequence[Run]) -> list[str]:
+    keys: dict[str, None] = {}
+    if len({run.scenario.name for run in runs}) > 1:
+        keys["scenario"] = None
+    for run in runs:
+        keys |= dict.fromkeys(run.scenario.label)
+    return list(keys) or ["scenario"]
+
+
+def _label(run: Run, key: str) -> str:
+    value: Any = run.scenario.name if key == "scenario" else run.scenario.label.get(key, "")
+    return f"{value:g}" if isinstance(value, int | float) else str(value)
+
+
+def _best(runs: Sequence[Run], metric: str) -> float:
+    values = [run.metrics[metric].value for run in runs if metric in run.metrics]
+    return min((value for value in values if math.isfinite(value)), default=math.nan)
+
+
+def _cell(run: Run, column: Column, best: float | None) -> str:
+    if column.metric not in run.metrics:
+        return "-"
+    value = run.metrics[column.metric].value
+    if not math.isfinite(value):
+        return "-"
+    text = f"{value * column.scale:.{column.decimals}f}"
+    return f"[bold green]{text}[/]" if best is not None and value == best else text

@@ -1,0 +1,148 @@
+"""Compiled functions on disk, keyed by the sources of everything that is compiled into them.
+
+numba keys its cache by the file of the outermost function alone; a changed callee (an edited damper model) would be
+served from a stale entry. Here every combination of sources has a cache folder of its own. The key holds the files and
+what is loaded of them, since a file may be edited after its import.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import os
+import sys
+import sysconfig
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache
+from importlib.util import resolve_name
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import numba
+import numpy as np
+import platformdirs
+
+from seatsim.compilation.jit import ARITHMETIC
+
+_OUTSIDE = ("numba", "numpy", "scipy", "llvmlite", "pydantic", "control", "cvxpy")
+_STANDARD = Path(sysconfig.get_path("stdlib"))
+_ONE_AT_A_TIME = threading.Lock()
+"""Runs on threads share numba's setting of the cache folder, and Python 3.11 cannot parse on two of them at once."""
+
+
+def compiled(function: Callable[..., Any], plugged: Iterable[type]) -> Callable[..., Any]:
+    """Return the compiled `function`, cached on disk under its sources and those of the `plugged` classes."""
+    with _ONE_AT_A_TIME:
+        return _compiled(function, frozenset(plugged))
+
+
+@cache
+def _compiled(function: Callable[..., Any], plugged: frozenset[type]) -> Callable[..., Any]:
+    modules = {sys.modules[part.__module__] for part in (function, *plugged)}
+    folder = cache_folder() / digest(modules)
+    # Without the folder numba would cache beside the source, where it may find stale code; a notebook has no source.
+    on_disk = all(map(_source, modules)) and _usable(folder)
+    previous = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(folder)
+    try:
+        dispatcher: Callable[..., Any] = numba.njit(cache=on_disk, nogil=True, **ARITHMETIC)(function)
+    finally:
+        numba.config.CACHE_DIR = previous
+    return dispatcher
+
+
+def _usable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK | os.X_OK)
+
+
+def cache_folder() -> Path:
+    """Return the folder of compiled runs: `SEATSIM_CACHE_DIR`, or the user's cache folder."""
+    chosen = os.environ.get("SEATSIM_CACHE_DIR")
+    return Path(chosen) if chosen else Path(platformdirs.user_cache_dir("seatsim")) / "compiled"
+
+
+def digest(modules: Iterable[ModuleType]) -> str:
+    """Return a hash over the given modules and what these reach outside libraries: the files and what is loaded."""
+    state = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
+    for module in sorted(_reachable(modules), key=lambda module: module.__name__):
+        state.update(f"{module.__file__}".encode() + Path(str(module.__file__)).read_bytes())
+        for part in _loaded(module):
+            state.update(part)
+    return state.hexdigest()[:20]
+
+
+def _reachable(modules: Iterable[ModuleType]) -> set[ModuleType]:
+    """Return the modules and all that they import, directly or not, without libraries that do not change."""
+    found: set[ModuleType] = set()
+    waiting = list(modules)
+    while waiting:
+        module = waiting.pop()
+        if module not in found and _changes(module):
+            found.add(module)
+            waiting += [sys.modules[name] for name in _imported(module) if name in sys.modules]
+    return found
+
+
+def _imported(module: ModuleType) -> Iterator[str]:
+    """Yield the full names of what the module's source imports, outside functions and not for type checkers only."""
+    waiting: list[ast.AST] = [ast.parse(Path(str(module.__file__)).read_bytes())]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            origin = resolve_name("." * node.level + (node.module or ""), module.__package__)
+            yield origin
+            yield from (f"{origin}.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            waiting += node.orelse
+        elif isinstance(node, ast.Module | ast.stmt | ast.ExceptHandler) and not isinstance(node, ast.FunctionDef):
+            waiting += ast.iter_child_nodes(node)
+
+
+def _loaded(module: ModuleType) -> Iterator[bytes]:
+    """Yield the code of the module's functions and methods and its constants, as they are in this process."""
+    for name, value in sorted(vars(module).items()):
+        own = getattr(value, "__module__", None) == module.__name__
+        functions = vars(value).values() if own and isinstance(value, type) else [getattr(value, "py_func", value)]
+        for function in functions:
+            if isinstance(function, FunctionType):
+                yield from _code(function.__code__)
+        if isinstance(value, int | float | complex | np.ndarray | tuple) and not name.startswith("__"):
+            yield f"{name} {_constant(value)}".encode()
+
+
+def _constant(value: Any) -> str:
+    """Return a number, or a tuple or array of numbers, in full; nothing of other values."""
+    if isinstance(value, np.ndarray):
+        return f"{value.dtype.str} {value.shape} {value.tobytes().hex()}"
+    if isinstance(value, tuple):
+        return "(" + ", ".join(map(_constant, value)) + ")"
+    return repr(value) if isinstance(value, int | float | complex) else ""
+
+
+def _code(code: CodeType) -> Iterator[bytes]:
+    yield code.co_code + repr(code.co_names).encode()
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _code(constant)
+        else:
+            yield repr(sorted(constant, key=repr) if isinstance(constant, frozenset) else constant).encode()
+
+
+def _source(module: ModuleType) -> Path | None:
+    file = getattr(module, "__file__", None)
+    return Path(file) if file and file.endswith(".py") else None
+
+
+def _changes(module: ModuleType) -> bool:
+    file = _source(module)
+    if file is None or module.__name__.partition(".")[0] in _OUTSIDE:
+        return False
+    return _STANDARD not in file.parents or "site-packages" in file.parts

@@ -1,0 +1,1 @@
+"""What a recording, or the next experiment, can tell apart: isolability, collinearity, proposed experiments."""

@@ -1,0 +1,1 @@
+"""Figures of dampers on a bench: characterisation and identification."""

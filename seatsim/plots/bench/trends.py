@@ -1,0 +1,144 @@
+"""Peak force, energy and equivalent damping of a characterisation against current and temperature."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from seatsim.characterisation.rows import Row
+from seatsim.characterisation.summary import WARMER, Characterisation, settings
+from seatsim.plots import labels, style
+from seatsim.plots.bench.loops import coldest, setting, strongest
+from seatsim.plots.style import Entry, Grid
+
+MOST = 8
+"""Most settings that lines of one panel can tell apart."""
+
+
+class Figured(NamedTuple):
+    """A figure of a row: the label of its axis, value, spread, and its values cycle by cycle where these are kept."""
+
+    label: str
+    value: Callable[[Row], float]
+    spread: Callable[[Row], float] = lambda _: float("nan")
+    cycles: Callable[[Row], Sequence[float]] = lambda _: ()
+
+
+class Across(NamedTuple):
+    """What figures are drawn over: the label of the axis, its value, and the name of what a line holds fixed."""
+
+    label: str
+    value: Callable[[Row], float]
+    fixed: Callable[[Row], str]
+
+
+PEAKS = (
+    Figured(
+        "peak force in rebound [N]", lambda r: r.peak_rebound, lambda r: r.peak_rebound_sd,
+        lambda r: (r.cycle_values or {}).get("peak_rebound", ()),
+    ),
+    Figured(
+        "peak force in compression [N]", lambda r: -r.peak_compression, lambda r: r.peak_compression_sd,
+        lambda r: [-value for value in (r.cycle_values or {}).get("peak_compression", ())],
+    ),
+)  # fmt: skip
+ENERGY = Figured(
+    "energy per cycle [J]", lambda r: r.energy, lambda r: r.energy_sd,
+    lambda r: (r.cycle_values or {}).get("energy", ()),
+)  # fmt: skip
+DAMPING = Figured(
+    "equivalent damping [kN·s/m]", lambda r: 1e-3 * r.damping, lambda r: 1e-3 * r.damping_sd,
+    lambda r: [1e-3 * value for value in (r.cycle_values or {}).get("damping", ())],
+)  # fmt: skip
+BY_CURRENT = Across("current [A]", lambda r: r.current, lambda r: f", {r.temperature:.0f} °C")
+BY_TEMPERATURE = Across("temperature [°C]", lambda r: r.temperature, lambda r: f", {r.current:.3g} A")
+BY_FREQUENCY = Across("frequency [Hz]", lambda r: r.frequency, lambda r: "")
+
+
+def energy(found: Characterisation) -> Figure:
+    """Return peaks, energy and damping over the current, and over the temperature where it varies, line by setting."""
+    rows = [row for row in found.rows if row.loop is not None]
+    blocks = blocks_of(rows)
+    looks, note = looks_of(blocks)
+    figures = [[PEAKS[0], PEAKS[1]], [ENERGY, DAMPING]]
+    grid = Grid(heights=(2.7,) * (2 * len(blocks)), columns=2, right=0.3, gap=(0.95, 0.7))
+    title = f"Peak force, energy and damping: {labels.clean(found.name, labels.LONGEST_TITLE - 30)}"
+    page = style.page(title, note, grid, list(looks.values()))
+    for index, (across, groups) in enumerate(blocks):
+        for panels, row in zip(page.rows[2 * index : 2 * index + 2], figures, strict=True):
+            for axes, figured in zip(panels, row, strict=True):
+                trend(axes, across, figured, groups, looks)
+                if min(figured.value(row) for group in groups for row in group) >= 0.0:
+                    axes.set_ylim(bottom=0.0)
+    return page.figure
+
+
+def blocks_of(rows: Sequence[Row]) -> list[tuple[Across, list[list[Row]]]]:
+    """Return what figures are drawn over, with the groups of rows that make a line each.
+
+    Over the current at the lowest temperature of each setting; over the temperature at its largest current; over the
+    frequency where neither varies.
+    """
+    groups = settings(rows)
+    currents = [coldest(group) for group in groups]
+    blocks = []
+    if any(len({row.current for row in group}) > 1 for group in currents):
+        blocks.append((BY_CURRENT, currents))
+    warmed = [strongest(group) for group in groups]
+    if _range([row.temperature for row in rows]) > WARMER or any(row.temperature_range > WARMER for row in rows):
+        blocks.append((BY_TEMPERATURE, warmed))
+    return blocks or [(BY_FREQUENCY, groups)]
+
+
+def looks_of(blocks: Sequence[tuple[Across, list[list[Row]]]]) -> tuple[dict[str, Entry], str]:
+    """Return the look of each setting, and a note on what is held fixed and what is left out."""
+    names = list(dict.fromkeys(setting(group[0]) for _, groups in blocks for group in groups))
+    looks = {entry.label: entry for entry in style.entries(names[:MOST])}
+    parts = []
+    for across, groups in blocks:
+        fixed = {across.fixed(group[0]).strip(", ") for group in groups}
+        if len(fixed) == 1 and not fixed & {"", "nan °C"}:
+            parts.append(f"over {across.label.split(' [')[0]} at {fixed.pop()}")
+    note = f"{'; '.join(parts)}." if parts else "One line for each amplitude and frequency."
+    note = note[0].upper() + note[1:]
+    return looks, note + (f" {MOST} of {len(names)} settings are shown." if len(names) > MOST else "")
+
+
+def trend(
+    axes: Axes, across: Across, figured: Figured, groups: Sequence[Sequence[Row]], looks: dict[str, Entry]
+) -> None:
+    """Draw a figure of some groups of rows over a quantity: a line where no two rows are at the same place."""
+    for group in groups:
+        look = looks.get(setting(group[0]))
+        if look is None:
+            continue
+        ordered = sorted(group, key=across.value)
+        x = np.array([across.value(row) for row in ordered])
+        y = np.array([figured.value(row) for row in ordered])
+        bars = np.nan_to_num([figured.spread(row) for row in ordered])
+        apart = bool(np.all(np.diff(x) > (WARMER if across is BY_TEMPERATURE else 0.0)))
+        axes.errorbar(
+            x, y, bars if np.any(bars) else None, color=look.colour, linestyle=look.dashes if apart else "none",
+            linewidth=1.4, marker="o", markersize=4.5, capsize=2.5, elinewidth=0.9,
+        )  # fmt: skip
+        if across is BY_TEMPERATURE:
+            _cycle_dots(axes, ordered, figured, look)
+    axes.set_xlabel(across.label)
+    axes.set_ylabel(figured.label)
+
+
+def _cycle_dots(axes: Axes, rows: Sequence[Row], figured: Figured, look: Entry) -> None:
+    for row in rows:
+        values = figured.cycles(row)
+        if row.temperature_range > WARMER and len(values):
+            warmth = (row.cycle_values or {})["temperature"]
+            axes.plot(warmth, values, ".", color=look.colour, markersize=3, alpha=0.5, zorder=1)
+
+
+def _range(values: Sequence[float]) -> float:
+    known = [value for value in values if np.isfinite(value)]
+    return max(known) - min(known) if known else 0.0

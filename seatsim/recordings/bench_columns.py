@@ -1,0 +1,178 @@
+"""Columns of bench tables: what they hold, told by their names, in SI units.
+
+A column is called by its quantity, followed by its unit where that is not the SI unit: `displacement_mm`, `force_kN`,
+`velocity_m_s`, also written `Displacement [mm]` or `velocity (m/s)`. A force may name its current, `force_0p4A_N`.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.yaml_source import Source
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+LENGTHS, CURRENTS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}, {"A": 1.0, "mA": 1e-3}
+QUANTITIES: dict[str, tuple[tuple[str, ...], dict[str, float]]] = {
+    "time": (("time", "t"), {"s": 1.0, "ms": 1e-3}),
+    "displacement": (("displacement", "stroke", "position", "x"), LENGTHS),
+    "velocity": (("velocity", "speed", "v"), {f"{unit}_s": size for unit, size in LENGTHS.items()}),
+    "force": (("force", "damper_force", "f"), {"N": 1.0, "kN": 1e3}),
+    "current": (("current", "coil_current", "i"), CURRENTS),
+    "command": (("current_command", "current_cmd", "command"), CURRENTS),
+    "voltage": (("voltage", "command_voltage"), {"V": 1.0, "mV": 1e-3}),
+    "temperature": (("temperature", "damper_temperature"), {"C": 1.0, "degC": 1.0, "K": 1.0}),
+    "segment": (("segment",), {}),
+    "valid": (("valid",), {}),
+}
+"""Names of every quantity, and its units with their size; a bare name is in the first of them."""
+DRIVES = ("current", "command", "voltage")
+"""What drives the damper, in the order in which one is chosen."""
+NEEDED = ("time", "displacement", "force")
+KELVIN = 273.15
+FORCE_AT = re.compile(r"(?:damper_)?force_(\d+(?:[p.]\d+)?)a(?:_(k?n))?")
+MISSPELT = 0.9
+"""Likeness to a known name (of difflib) from which on an unknown column is taken for an error of spelling."""
+LISTED = 12
+"""Most columns that an error lists."""
+RATES = ("sample_rate_Hz", "sample_rate")
+
+
+class Meaning(NamedTuple):
+    """What a column holds: `factor` value + `zero` in SI units (degC); `at`, the current in A that its name states."""
+
+    quantity: str
+    factor: float = 1.0
+    zero: float = 0.0
+    at: float | None = None
+
+
+def _known() -> dict[str, Meaning]:
+    known = {}
+    for quantity, (names, units) in QUANTITIES.items():
+        for name in names:
+            known[name] = Meaning(quantity)
+            for unit, size in units.items():
+                known[f"{name}_{unit.lower()}"] = Meaning(quantity, size, -KELVIN if unit == "K" else 0.0)
+    return known
+
+
+KNOWN = _known()
+"""Every name that a column may have, in small letters."""
+
+
+class Columns(NamedTuple):
+    """The columns of a table: name by quantity, forces by the current in their names (or None), those not used."""
+
+    by_quantity: dict[str, str]
+    forces: dict[float | None, str]
+    unused: tuple[str, ...]
+
+
+def meaning(column: str) -> Meaning | None:
+    """Return what a column of this name holds, None where the name is not known."""
+    plain = re.sub(r"[^0-9a-z.]+", "_", column.lower()).strip("_")
+    at = FORCE_AT.fullmatch(plain)
+    if at:
+        return Meaning("force", 1e3 if at[2] == "kn" else 1.0, at=float(at[1].replace("p", ".")))
+    return KNOWN.get(plain)
+
+
+def columns_of(names: Iterable[str], file: Path) -> Columns:
+    """Return what the columns of a table hold.
+
+    Raises:
+        InputError: two columns hold the same, or the name of one is misspelt.
+    """
+    found: dict[str, str] = {}
+    forces: dict[float | None, str] = {}
+    unused = []
+    for name in names:
+        known = meaning(name)
+        if known is None:
+            unused.append(name)
+            continue
+        other = forces.get(known.at) if known.quantity == "force" else found.get(known.quantity)
+        if other is not None:
+            raise InputError(f"{file}: '{other}' and '{name}' both hold the {known.quantity}; rename or remove one")
+        if known.quantity == "force":
+            forces[known.at] = name
+        else:
+            found[known.quantity] = name
+    for name in unused:
+        close = difflib.get_close_matches(name.lower(), KNOWN, n=1, cutoff=MISSPELT)
+        quantity = KNOWN[close[0]].quantity if close else "nothing"
+        if close and quantity not in {*found, *(["force"] if forces else [])}:
+            raise InputError(f"{file}: column '{name}' is not known; name it {_spelt(quantity)}, or remove it")
+    return Columns(found, forces, tuple(unused))
+
+
+def numbers(frame: pd.DataFrame, column: str, file: Path) -> Array:
+    """Return a column of a table in SI units, shape (N,).
+
+    Raises:
+        InputError: a row of it is no finite number.
+    """
+    import pandas as pd
+
+    known = meaning(column)
+    values = pd.to_numeric(frame[column], errors="coerce").to_numpy(dtype=float)
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        more = f" (and {bad.size - 1} more rows)" if bad.size > 1 else ""
+        raise InputError(
+            f"{file}, line {frame.index[bad[0]] + 2}, {column}: '{frame[column].iloc[bad[0]]}'{more} is not a finite"
+            " number; correct it, or mark such rows by 0 in a column 'valid'"
+        )
+    return values * known.factor + known.zero if known else values
+
+
+def check_needed(there: Iterable[str], columns: Sequence[str], file: Path) -> None:
+    """Raise InputError, with the nearest column, at the first quantity that a bench table needs and this one lacks."""
+    lacking = [quantity for quantity in NEEDED if quantity not in set(there)]
+    if lacking:
+        quantity = lacking[0]
+        hint, others = nearest(quantity, columns), ", ".join(QUANTITIES[quantity][0][1:])
+        rate = f", or give '{RATES[0]}' in {file.name.partition('.csv')[0]}.yaml" if quantity == "time" else ""
+        raise InputError(
+            f"{file}: no column holds the {quantity}{hint}; name it {_spelt(quantity)} (also {others} with the unit)"
+            f"{rate}; there are {', '.join(columns[:LISTED])}{', ...' * (len(columns) > LISTED)}"
+        )
+
+
+def _spelt(quantity: str) -> str:
+    units = QUANTITIES[quantity][1]
+    return " or ".join(f"'{quantity}_{unit}'" for unit in units) if units else f"'{quantity}'"
+
+
+def constants(sidecar: Source) -> dict[str, float]:
+    """Return what a sidecar states of a whole table, by quantity in SI units; `rate` is the sample rate in Hz.
+
+    Numbers count under the names that a column may have; everything else is a description.
+
+    Raises:
+        InputError: a number is not finite, or the sample rate is not positive.
+    """
+    found: dict[str, float] = {}
+    for key, value in sidecar.data.items():
+        known = meaning(str(key))
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            continue
+        if not np.isfinite(value) or (key in RATES and value <= 0.0):
+            raise sidecar.error((key,), f"{value} is not permitted; write a finite number, above 0 for a sample rate")
+        if key in RATES:
+            found.setdefault("rate", float(value))
+        elif known and known.quantity in (*DRIVES, "temperature"):
+            found[known.quantity] = value * known.factor + known.zero
+    return found

@@ -1,0 +1,217 @@
+"""Records of dampers on test benches: tables of measured motion, current, temperature and force.
+
+A table is a CSV file with columns named as in `seatsim.recordings.bench_columns`. What is constant over a table may
+stand in a sidecar of the same name, `sine.yaml` beside `sine.csv`, under the same names. Tables are split into records
+where the time jumps and where the column `segment` changes; rows whose `valid` is 0 are left out. A folder with
+`recording.yaml` is read as it says.
+"""
+
+from __future__ import annotations
+
+import lzma
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.recordings.bench_columns import DRIVES, KNOWN, check_needed, columns_of, constants, numbers
+from seatsim.recordings.recording import HEADER, load_recording
+from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.yaml_source import Source
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+Table = dict[str, Array]
+
+SUFFIXES = (".csv", ".csv.gz", ".csv.bz2", ".csv.xz", ".csv.zip")
+GAP = 1.5
+"""Median intervals between rows that make a gap."""
+OFF = 1.0
+"""Median intervals by which a row may be off the even spacing of its record."""
+LEAST_ROWS = 20
+KEPT = 0.9
+"""Share of a table's rows that its records hold at least; the rest are scraps between gaps."""
+SLOPE_WINDOW = 0.02
+"""Seconds over which a velocity that was not recorded is derived from the displacement."""
+
+
+class BenchRecord(NamedTuple):
+    """One uninterrupted record of a damper on a bench; arrays of shape (N,) at `rate` Hz, SI units.
+
+    `current` is in A, zero where it was negative; where `commanded`, it is what was asked of the driver (a voltage
+    counts as so many A), which the coil follows with a lag. `temperature` is in degC, None where it was not recorded.
+    `unused` are the columns of its file that hold nothing known.
+    """
+
+    name: str
+    file: str
+    rate: float
+    displacement: Array
+    velocity: Array
+    force: Array
+    current: Array
+    commanded: bool
+    temperature: Array | None
+    unused: tuple[str, ...] = ()
+
+    @property
+    def time(self) -> Array:
+        """Seconds since the first row."""
+        return np.asarray(np.arange(len(self.force)) / self.rate, dtype=float)
+
+    @property
+    def mean_current(self) -> float:
+        """Mean current in A."""
+        return float(self.current[0] if np.ptp(self.current) == 0.0 else np.mean(self.current))
+
+    def part(self, first: int, last: int) -> BenchRecord:
+        """Return rows `first` to `last` (excluded)."""
+        cut = slice(first, last)
+        warmth = None if self.temperature is None else self.temperature[cut]
+        arrays = {name: getattr(self, name)[cut] for name in ("displacement", "velocity", "force", "current")}
+        return self._replace(temperature=warmth, **arrays)
+
+    def liveliest(self, rows: int) -> tuple[int, int]:
+        """Return first and last row (excluded) of the stretch of at most so many rows with the highest mean speed."""
+        if len(self.force) <= rows:
+            return 0, len(self.force)
+        travel = np.concatenate([[0.0], np.cumsum(np.abs(self.velocity))])
+        first = int(np.argmax(travel[rows:] - travel[:-rows]))
+        return first, first + rows
+
+
+def load_bench(path: str | Path) -> list[BenchRecord]:
+    """Return the records of a table or of every table of a folder, in the order of their names.
+
+    Raises:
+        InputError: nothing is there, or a table is short of a column, not numeric, too short or unevenly sampled.
+    """
+    path = Path(path)
+    if not path.exists():
+        beside = [other.name for other in path.parent.iterdir()] if path.parent.is_dir() else []
+        hint = nearest(path.name, beside)
+        raise InputError(f"{path}: no such file or folder{hint}; give a bench table, or a folder of them")
+    if (path / HEADER).exists():
+        return _recorded(path)
+    files = sorted(file for file in path.iterdir() if file.name.endswith(SUFFIXES)) if path.is_dir() else [path]
+    if not files:
+        raise InputError(f"{path}: holds no table; give a folder with files that end in {', '.join(SUFFIXES)}")
+    return [record for file in files for record in _records(file)]
+
+
+def stem(file: str) -> str:
+    """Return a table's file name without its endings."""
+    return file.partition(".csv")[0]
+
+
+def unused_columns(records: Sequence[BenchRecord]) -> list[str]:
+    """Return a sentence on the columns that hold nothing known, none where there are none."""
+    names = dict.fromkeys(name for record in records for name in record.unused)
+    return [f"columns that are not used: {', '.join(names)}"] if names else []
+
+
+def _records(file: Path) -> Iterator[BenchRecord]:
+    frame = _frame(file)
+    columns = columns_of(map(str, frame), file)
+    sidecar = file.with_name(stem(file.name) + ".yaml")
+    stated = constants(Source(sidecar)) if sidecar.exists() else {}
+    if "time" not in columns.by_quantity and "rate" in stated:
+        frame = frame.assign(time=np.arange(len(frame)) / stated["rate"])
+        columns.by_quantity["time"] = "time"
+    check_needed([*columns.by_quantity, *(["force"] if columns.forces else [])], list(map(str, frame)), file)
+    if "valid" in columns.by_quantity:
+        frame = frame[numbers(frame, columns.by_quantity.pop("valid"), file) != 0.0]
+    table = {quantity: numbers(frame, column, file) for quantity, column in columns.by_quantity.items()}
+    driven = any(drive in table for drive in DRIVES)
+    for quantity, value in stated.items():
+        if quantity == "temperature" or (quantity in DRIVES and not driven):
+            table.setdefault(quantity, np.full(len(frame), value))
+    lines = frame.index.to_numpy() + 2
+    for at, column in columns.forces.items():
+        current = {} if at is None else {"current": np.full(len(frame), at)}
+        for record in _split({**table, "force": numbers(frame, column, file), **current}, file, lines):
+            yield record._replace(unused=columns.unused)
+
+
+def _frame(file: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    try:
+        frame = pd.read_csv(file, low_memory=False)
+    except (OSError, ValueError, EOFError, zlib.error, zipfile.BadZipFile, lzma.LZMAError) as error:
+        reason = str(error).strip()
+        raise InputError(f"{file}: cannot be read as a table: {reason}; give a CSV file with a row of names") from error
+    return frame.set_axis([str(name) for name in frame.columns], axis=1)
+
+
+def _split(table: Table, file: Path, lines: NDArray[np.int64]) -> Iterator[BenchRecord]:
+    """Yield the uninterrupted records of a table, whose rows stand on these lines."""
+    time = table["time"]
+    interval = np.diff(time)
+    normal = float(np.median(interval)) if len(interval) else 0.0
+    if len(time) < LEAST_ROWS or normal <= 0.0:
+        raise InputError(f"{file}: holds {len(time)} rows of rising time; a record has at least {LEAST_ROWS}")
+    jumps = (interval > GAP * normal) | (interval <= 0.0)
+    if "segment" in table:
+        jumps |= np.diff(table["segment"]) != 0.0
+    edges = [0, *(np.flatnonzero(jumps) + 1), len(time)]
+    parts = [slice(a, b) for a, b in pairwise(edges) if b - a >= LEAST_ROWS]
+    uneven = [int(np.flatnonzero(jumps)[0]) + 1] if sum(p.stop - p.start for p in parts) < KEPT * len(time) else []
+    for part in parts:
+        off = np.abs(time[part] - np.linspace(time[part][0], time[part][-1], part.stop - part.start))
+        uneven += [part.start + int(np.argmax(off))] if np.max(off) > OFF * normal else []
+    if uneven:
+        place = f"{file}, line {lines[uneven[0]]}, {time[uneven[0]]:g} s"
+        raise InputError(f"{place}: rows are not evenly spaced in time; resample them to a constant rate")
+    yield from _named([_record({name: y[part] for name, y in table.items()}, file) for part in parts])
+
+
+def _named(records: Sequence[BenchRecord]) -> Iterator[BenchRecord]:
+    """Yield the records of a file with names that tell them apart, by their current where that is constant."""
+    titles = [f"{r.name}, {r.mean_current:g} A" if np.ptp(r.current) == 0.0 else r.name for r in records]
+    for number, (record, title) in enumerate(zip(records, titles, strict=True), 1):
+        yield record._replace(name=f"{title}, part {number}" if titles.count(title) > 1 else title)
+
+
+def _record(table: Mapping[str, Array], file: Path) -> BenchRecord:
+    time, x = table["time"], table["displacement"]
+    rate = (len(time) - 1) / float(time[-1] - time[0])
+    drive = next((name for name in DRIVES if name in table), None)
+    current = np.maximum(table[drive], 0.0) if drive else np.zeros(len(time))
+    velocity = table["velocity"] if "velocity" in table else _slope(x, rate)
+    commanded = drive in ("command", "voltage") and bool(np.ptp(current) > 0.0)
+    name, warmth = stem(file.name), table.get("temperature")
+    return BenchRecord(name, file.name, rate, x, velocity, table["force"], current, commanded, warmth)
+
+
+def _slope(x: Array, rate: float) -> Array:
+    """Return the derivative of a displacement by the method of Savitzky and Golay, order 3 over `SLOPE_WINDOW`."""
+    from scipy.signal import savgol_filter
+
+    window = min(max(5, 2 * round(0.5 * SLOPE_WINDOW * rate) + 1), 2 * ((len(x) - 1) // 2) + 1)
+    return np.asarray(savgol_filter(x, window, 3, deriv=1, delta=1.0 / rate), dtype=float)
+
+
+def _recorded(folder: Path) -> list[BenchRecord]:
+    """Return the runs of a recording of a bench."""
+    recording = load_recording(folder)
+    if recording.header.rig != "damper_bench" or "damper_force" not in recording.channels:
+        raise InputError(
+            f"{folder / HEADER}: rig '{recording.header.rig}' with {', '.join(recording.channels)}; a damper is"
+            " identified from a recording of 'rig: damper_bench' with the channel damper_force"
+        )
+    records = []
+    for name in recording.runs:
+        table = {KNOWN[channel].quantity: values for channel, values in recording.table(name).items()}
+        if recording.voltage_gain is not None and "voltage" in table:
+            table["voltage"] = table["voltage"] * recording.voltage_gain
+        table["time"] = np.arange(len(table["force"])) / recording.header.sample_rate
+        records.append(_record(table, folder / name)._replace(name=name))
+    return records

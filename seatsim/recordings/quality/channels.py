@@ -1,0 +1,108 @@
+"""What is wrong with a channel of a run, told by its values alone: their range, their shape."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.recordings.quality.issue import MOTION, Array, Finding, Run
+
+STUCK = 0.5
+"""Seconds without any change that a noisy channel does not have."""
+CLIPPED = 0.002
+"""Share of rows at an extreme above which clipping is an error."""
+
+
+def ranges(run: Run) -> Iterator[Finding]:
+    """Look at constant channels, currents and temperatures."""
+    for channel in run.table:
+        yield from _constant(run, channel)
+    for channel in ("current_command", "coil_current"):
+        if channel in run.table:
+            yield from _current(run, channel)
+    if "damper_temperature" in run.table:
+        yield from _temperature(run, "damper_temperature")
+
+
+def _constant(run: Run, channel: str) -> Iterator[Finding]:
+    values, noise = run.table[channel], run.noise(channel)
+    if (channel in MOTION or noise > 0.0) and np.ptp(values) == 0.0:
+        text = f"is {values[0]:g} throughout; the sensor is dead: repair it or remove the channel"
+        yield run.finding("warning" if channel == "damper_temperature" else "error", "constant", text, channel)
+    elif channel in MOTION and run.is_still(channel) and channel != run.driver:
+        text = f"shows hardly more than its noise of {noise:g}; it cannot be judged"
+        yield run.finding("warning", "silent", text, channel)
+
+
+def _current(run: Run, channel: str) -> Iterator[Finding]:
+    values, most = run.table[channel], run.nominal.coil.max_current
+    low, high = float(np.min(values)), float(np.max(values))
+    seen = f"ranges from {low:.3g} to {high:.3g} A"
+    if max(-low, high) > 30.0 * most:
+        text = f"{seen} where max_current is {most:g} A; is it in mA? convert it to A"
+        yield run.finding("error", "unit", text, channel)
+    elif -low > max(0.25 * most, 2.0 * high):
+        yield run.finding("error", "sign", f"{seen}; its sign is swapped: turn it", channel)
+    elif -low > 0.25 * most or high > 1.3 * most:
+        text = f"{seen}, outside 0 to {most:g} A; check its zero and its scale"
+        yield run.finding("warning", "range", text, channel)
+
+
+def _temperature(run: Run, channel: str) -> Iterator[Finding]:
+    low, high = float(np.min(run.table[channel])), float(np.max(run.table[channel]))
+    if low < -40.0 or high > 200.0:
+        guess = "is it in kelvin? " if low > 230.0 and high < 480.0 else ""
+        seen = f"ranges from {low:.4g} to {high:.4g} degC, outside -40 to 200 degC"
+        yield run.finding("error", "unit", f"{seen}; {guess}convert it to degC", channel)
+
+
+def shapes(run: Run) -> Iterator[Finding]:
+    """Look for flat tops, held values and stretches without change."""
+    for channel, values in run.table.items():
+        if channel in ("current_command", "command_voltage", "damper_temperature") or np.ptp(values) == 0.0:
+            continue
+        is_fine = run.noise(channel) > _quantum(values)
+        for extreme, rows in _flat_tops(values):
+            is_sure = is_fine and rows > CLIPPED * len(values)
+            text = f"{rows} rows stand at its extreme {extreme:.4g}; it is clipped: widen its range"
+            yield run.finding("error" if is_sure else "warning", "clipped", text, channel)
+        if is_fine:
+            yield from _held(run, channel)
+
+
+def _held(run: Run, channel: str) -> Iterator[Finding]:
+    lengths, starts = _plateaus(run.table[channel])
+    longest = int(np.argmax(lengths))
+    if lengths[longest] > max(STUCK * run.rate, 20):
+        begin, end = starts[longest] / run.rate, (starts[longest] + lengths[longest]) / run.rate
+        text = f"is stuck from {begin:.3g} to {end:.3g} s; cut the run there or repair the sensor"
+        yield run.finding("error", "stuck", text, channel)
+    elif np.median(lengths) >= 2:
+        text = f"holds each value for {int(np.median(lengths))} rows; its own rate is lower: interpolate it"
+        yield run.finding("warning", "held", text, channel)
+
+
+def _plateaus(values: Array) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
+    """Return length and first row of each stretch of equal values."""
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
+    return np.diff(np.append(starts, len(values))), starts
+
+
+def _flat_tops(values: Array) -> Iterator[tuple[float, int]]:
+    """Yield each extreme other than zero at which more rows stand than in the 2 % of the range beside it."""
+    near = 0.02 * float(np.ptp(values))
+    lengths, starts = _plateaus(values)
+    usual = float(np.median(lengths))
+    for extreme in (float(np.max(values)), float(np.min(values))):
+        at = values == extreme
+        rows = int(np.sum(at))
+        beside = int(np.sum(np.abs(values - extreme) <= near)) - rows
+        if extreme != 0.0 and rows >= max(5 * usual, beside) and np.max(lengths[at[starts]]) >= 3 * usual:
+            yield extreme, rows
+
+
+def _quantum(values: Array) -> float:
+    """Return the smallest step between two values."""
+    return float(np.min(np.diff(np.unique(values)), initial=np.inf))

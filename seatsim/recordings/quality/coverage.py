@@ -1,0 +1,213 @@
+"""What a recording visited: velocities, travels, currents, temperatures and frequencies, and what it left out.
+
+An effect that acts where the rig has not been cannot be judged, however good the data are. The velocity is the slope of
+the displacement below the frequency at which its spectrum meets its noise (a density of 2 noise^2 / sample_rate), or,
+where no displacement is recorded, the integral of frame acceleration - floor acceleration above 0.5 Hz.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.recordings.recording import Recording
+from seatsim.rig.temperature import Thermal
+from seatsim.scenario.loading import single
+from seatsim.scenario.scenario import Scenario
+
+Array = NDArray[np.float64]
+PERCENTILES = (0.1, 5.0, 50.0, 95.0, 99.9)
+WARM = 5.0
+"""K above the temperature of the nominal scenario from which thermal fade can be seen."""
+DROP, DROP_TIME = 0.1, 0.2
+"""Fall of the current, as a share of the largest, and the seconds within which it counts as one."""
+FULL_CURRENT = 0.8
+"""Share of the largest current that must be visited."""
+LARGE_TRAVEL, FAST, LIFT = 0.03, 0.3, 1.0
+"""m, m/s and m/s^2 that must be visited for stops, for the damper at speed and for the cushion in tension."""
+TRUNK = (3.0, 8.0)
+"""Hz; a seated driver's inner resonance lies between."""
+
+
+class Visited(NamedTuple):
+    """The range of a quantity over all runs, and the values at its PERCENTILES."""
+
+    quantity: str
+    unit: str
+    low: float
+    high: float
+    percentiles: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """Seconds recorded, the quantities visited by name, the band of the excitation in Hz, and what is left out."""
+
+    seconds: float
+    visited: dict[str, Visited]
+    band: tuple[float, float] | None
+    missing: list[str]
+
+
+def coverage(recording: Recording) -> Coverage:
+    """Return what the runs of a recording visited, and a sentence for each thing that they cannot judge.
+
+    Raises:
+        InputError: a table or the nominal scenario cannot be read.
+    """
+    tables = [recording.table(run) for run in recording.runs]
+    nominal, rate = single(recording.nominal), recording.header.sample_rate
+    pools: dict[str, tuple[str, list[Array]]] = {}
+    for table in tables:
+        for name, unit, values in _quantities(recording, table):
+            pools.setdefault(name, (unit, []))[1].append(values)
+    visited = {name: _visited(name, unit, np.concatenate(parts)) for name, (unit, parts) in pools.items()}
+    drop = max((_drop(c, rate) for c in pools.get("current", ("A", []))[1]), default=0.0)
+    seconds = sum(len(next(iter(table.values()))) for table in tables) / rate
+    band = _band(recording, tables)
+    return Coverage(seconds, visited, band, _missing(recording, nominal, visited, drop, band))
+
+
+def _quantities(recording: Recording, table: dict[str, Array]) -> list[tuple[str, str, Array]]:
+    """Return name, unit and values of what one run visited."""
+    found = []
+    for channel in ("suspension_displacement", "displacement"):
+        if channel in table:
+            found.append(("travel", "m", table[channel]))
+    velocity = _velocity(recording, table)
+    if velocity is not None:
+        found.append(("velocity", "m/s", velocity))
+    for channel in ("coil_current", "current_command"):
+        if channel in table:
+            found.append(("current", "A", table[channel]))
+            break
+    else:
+        if "command_voltage" in table and recording.voltage_gain is not None:
+            found.append(("current", "A", recording.voltage_gain * table["command_voltage"]))
+    for channel, name, unit in (
+        ("damper_temperature", "temperature", "degC"),
+        ("driver_acceleration", "driver", "m/s^2"),
+    ):
+        if channel in table:
+            found.append((name, unit, table[channel]))
+    return found
+
+
+def _velocity(recording: Recording, table: dict[str, Array]) -> Array | None:
+    """Return the velocity across the damper in m/s, shape (N,); None where no channel tells it."""
+    from scipy.signal import butter, sosfiltfilt
+
+    rate = recording.header.sample_rate
+    if "velocity" in table:
+        return table["velocity"]
+    for channel in ("displacement", "suspension_displacement"):
+        if channel in table:
+            return _slope(table[channel], recording.channels[channel].noise_rms, rate)
+    if "frame_acceleration" not in table:
+        return None
+    relative = np.cumsum(table["frame_acceleration"] - table["floor_acceleration"]) / rate
+    return np.asarray(sosfiltfilt(butter(2, 0.5, "highpass", fs=rate, output="sos"), relative))
+
+
+def _slope(values: Array, noise: float, rate: float) -> Array:
+    """Return the derivative below the frequency at which the spectrum falls to four times that of the noise."""
+    from scipy.signal import butter, sosfiltfilt, welch
+
+    rows = min(len(values), max(64, round(2.0 * rate)))
+    frequency, density = welch(values, rate, nperseg=rows)
+    above = np.flatnonzero(density > 4.0 * 2.0 * noise**2 / rate)
+    corner = float(frequency[above[-1]]) if above.size else 0.0
+    smooth = values
+    if corner < 0.4 * rate:
+        smooth = sosfiltfilt(butter(2, max(corner, 1.0 / rows * rate), fs=rate, output="sos"), values)
+    return np.asarray(np.gradient(smooth, 1.0 / rate))
+
+
+def _visited(name: str, unit: str, values: Array) -> Visited:
+    percentiles = tuple(float(p) for p in np.percentile(values, PERCENTILES))
+    return Visited(name, unit, float(np.min(values)), float(np.max(values)), percentiles)
+
+
+def _drop(current: Array, rate: float) -> float:
+    """Return the largest fall of a current within DROP_TIME, in A."""
+    rows = max(1, round(DROP_TIME * rate))
+    return float(np.max(current[:-rows] - current[rows:], initial=0.0))
+
+
+def _band(recording: Recording, tables: list[dict[str, Array]]) -> tuple[float, float] | None:
+    """Return the band that holds 98 % of the power of the excitation's acceleration (a bench: of its velocity)."""
+    from scipy.signal import welch
+
+    rate = recording.header.sample_rate
+    channel = "floor_acceleration" if recording.header.rig == "seat" else "displacement"
+    rows = min([len(table[channel]) for table in tables] + [round(8.0 * rate)])
+    spectra = [welch(table[channel], rate, nperseg=rows) for table in tables]
+    frequency = spectra[0][0]
+    weight = 1.0 if channel == "floor_acceleration" else frequency**2
+    floor = 2.0 * recording.channels[channel].noise_rms ** 2 / rate
+    power = np.cumsum(np.maximum(np.mean([s[1] for s in spectra], axis=0) - floor, 0.0) * weight)
+    if power[-1] <= 0.0:
+        return None
+    low, high = (float(frequency[np.searchsorted(power, share * power[-1])]) for share in (0.01, 0.99))
+    return low, high
+
+
+def _missing(
+    recording: Recording, nominal: Scenario, visited: dict[str, Visited], drop: float, band: tuple[float, float] | None
+) -> list[str]:
+    """Return a sentence for each place where the rig has not been, with what cannot be judged for it."""
+    sentences = [*_missing_motion(recording, visited), *_missing_current(nominal, visited, drop)]
+    sentences += [_missing_temperature(nominal, visited.get("temperature"))]
+    if recording.header.rig == "seat" and band is not None and not (band[0] < TRUNK[0] and band[1] > TRUNK[1]):
+        place = f"the floor shakes between {band[0]:.2g} and {band[1]:.2g} Hz only"
+        sentences.append(
+            f"{place}: a driver's inner resonance between {TRUNK[0]:g} and {TRUNK[1]:g} Hz is hard to judge"
+        )
+    return [sentence for sentence in sentences if sentence]
+
+
+def _missing_motion(recording: Recording, visited: dict[str, Visited]) -> list[str]:
+    sentences = []
+    travel, velocity, driver = (visited.get(name) for name in ("travel", "velocity", "driver"))
+    if travel is None:
+        sentences.append(
+            "no displacement is recorded: end stops, springs and free play are seen through other channels"
+        )
+    elif recording.header.rig == "seat" and max(-travel.low, travel.high) < LARGE_TRAVEL:
+        place = f"travel stays within {1e3 * travel.low:.0f} to {1e3 * travel.high:.0f} mm"
+        sentences.append(f"{place}: end stops and progressive springs beyond that cannot be judged")
+    if velocity is not None and max(-velocity.percentiles[0], velocity.percentiles[-1]) < FAST:
+        reached = max(-velocity.percentiles[0], velocity.percentiles[-1])
+        sentences.append(f"velocity hardly exceeds {reached:.2g} m/s: the damper's force at speed cannot be judged")
+    if driver is not None and driver.low > -LIFT:
+        place = f"the driver is never accelerated downwards by more than {max(0.0, -driver.low):.2g} m/s^2"
+        sentences.append(f"{place}: separation from the cushion cannot be judged")
+    return sentences
+
+
+def _missing_current(nominal: Scenario, visited: dict[str, Visited], drop: float) -> list[str]:
+    current, most = visited.get("current"), nominal.coil.max_current
+    if current is None:
+        return ["no current is recorded: what the coil does cannot be judged apart from the damper"]
+    low, high = current.percentiles[0], current.percentiles[-1]
+    if high - low < DROP * most:
+        return [f"current stays at {low:.2g} to {high:.2g} A: coil, remanence and saturation cannot be judged"]
+    sentences = []
+    if drop < DROP * most:
+        sentences.append(f"current never drops by more than {drop:.2g} A: remanence cannot be judged")
+    if high < FULL_CURRENT * most:
+        sentences.append(f"current never exceeds {high:.2g} A: magnetic saturation beyond that cannot be judged")
+    return sentences
+
+
+def _missing_temperature(nominal: Scenario, temperature: Visited | None) -> str:
+    stated = nominal.temperature.start if isinstance(nominal.temperature, Thermal) else nominal.temperature
+    if temperature is None:
+        return "no temperature is recorded: thermal fade can only be seen as a weaker damper, not be told by its warmth"
+    warmest = temperature.percentiles[-1]
+    if warmest - stated < WARM:
+        return f"no run is warmer than {warmest:.0f} degC: thermal fade cannot be judged"
+    return ""

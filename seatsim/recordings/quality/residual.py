@@ -1,0 +1,112 @@
+"""How badly the channels of a run fit a simulation, and each other.
+
+With `e(a, b) = rms(a - b) / sqrt(rms(a)^2 + rms(b)^2)` (0 alike, 1 unrelated or of another size, 1.41 opposite) between
+0.5 and 8 Hz, the misfit of a run is the sum of e^2 over
+
+    each compared channel against the simulation (the coil current at all frequencies),
+    x'' against frame acceleration - floor acceleration (a bench: x' against velocity),
+    Fd against -(ms zs'' + m zc'' + kf x + cf x'),
+
+where the channels are there.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from seatsim.recordings.compared import COMPARED, LEFT_OUT
+from seatsim.recordings.quality.issue import Array, Run, Table
+from seatsim.recordings.replay import replay
+from seatsim.schema.errors import RunError
+
+
+class Restored(NamedTuple):
+    """An effect that replaces recorded inputs by others, shape (rows,) each."""
+
+    channels: Table
+
+    def truth(self, channel: str, step: float, values: Array) -> Array:
+        """Return what drives the simulation, shape (N,): linear between the rows."""
+        rows = self.channels.get(channel)
+        return values if rows is None else np.interp(np.linspace(0, len(rows) - 1, len(values)), range(len(rows)), rows)
+
+
+def simulated(run: Run, inputs: Table) -> Table | None:
+    """Return the nominal outputs without the first second, driven by these inputs; None where there is no solution."""
+    effects: tuple[Any, ...] = (*run.nominal.effects, Restored(inputs))
+    try:
+        return replay(dataclasses.replace(run.nominal, effects=effects), run.recording, run.name)[1]
+    except RunError:
+        return None
+
+
+def misfits(run: Run, table: Table, outputs: Table | None) -> dict[str, float]:
+    """Return e^2 of each compared channel (1 where there is no simulation) and of each balance between channels."""
+    skip = round(LEFT_OUT * run.rate)
+    used = {name: values[skip:] for name, values in table.items()}
+    compared = [name for name in COMPARED[run.recording.header.rig] if name in used]
+    pairs = {name: (used[name], np.zeros_like(used[name]) if outputs is None else outputs[name]) for name in compared}
+    pairs |= _balances(run, used)
+    if not pairs:
+        return {}
+    smooth = dict(zip(pairs, band(run, np.array(list(pairs.values()))), strict=True))
+    return {name: _unlike(*(pair if name == "coil_current" else smooth[name])) for name, pair in pairs.items()}
+
+
+def _balances(run: Run, used: Table) -> Iterator[tuple[str, tuple[Array, Array]]]:
+    """Yield name and both sides of each equation between recorded channels alone."""
+    plant = run.nominal.plant
+    travel = used.get("suspension_displacement")
+    if {"displacement", "velocity"} <= set(used):
+        yield "velocity balance", (_slope(run, used["displacement"]), used["velocity"])
+    if plant is None or travel is None or "frame_acceleration" not in used:
+        return
+    frame, speed = used["frame_acceleration"], _slope(run, travel)
+    yield "motion balance", (_slope(run, speed), frame - used["floor_acceleration"])
+    if {"damper_force", "driver_acceleration"} <= set(used):
+        inertia = plant.frame_mass * frame + plant.driver_mass * used["driver_acceleration"]
+        spring = plant.suspension_stiffness * travel + plant.suspension_damping * speed
+        yield "force balance", (used["damper_force"], -inertia - spring)
+
+
+def _slope(run: Run, values: Array) -> Array:
+    return np.asarray(np.gradient(band(run, values), 1.0 / run.rate))
+
+
+def _unlike(first: Array, second: Array) -> float:
+    """Return e^2, between 0 (alike) and 2 (opposite)."""
+    size = float(np.mean(first**2) + np.mean(second**2))
+    return float(np.mean((first - second) ** 2)) / size if size > 0.0 else 0.0
+
+
+def band(run: Run, values: Array) -> Array:
+    """Return values, shape (..., N), between 0.5 and 8 Hz (a bench: below 8 Hz, without their mean)."""
+    from scipy.signal import sosfiltfilt
+
+    sections, rows = _filter(run.rate, run.recording.header.rig == "seat"), values.shape[-1]
+    swinging = values - np.mean(values, axis=-1, keepdims=True)
+    return np.asarray(sosfiltfilt(sections, swinging, padlen=min(3 * rows // 4, 100)))
+
+
+@functools.cache
+def _filter(rate: float, on_seat: bool) -> Array:
+    from scipy.signal import butter
+
+    high = min(8.0, 0.4 * rate)
+    edges = (min(0.5, 0.5 * high), high) if on_seat else high
+    return np.asarray(butter(2, edges, "bandpass" if on_seat else "lowpass", fs=rate, output="sos"))
+
+
+def lateness(first: Array, second: Array, most: int) -> tuple[int, float]:
+    """Return by how many rows the first is late against the second, and their correlation then."""
+    from scipy.signal import correlate
+
+    product = correlate(first, second, mode="full", method="fft")[len(second) - 1 - most : len(second) + most]
+    size = float(np.linalg.norm(first) * np.linalg.norm(second))
+    peak = int(np.argmax(product))
+    return peak - most, float(product[peak]) / size if size > 0.0 else 0.0

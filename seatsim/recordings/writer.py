@@ -1,0 +1,68 @@
+"""A simulated result written as a recording of a rig."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from ruamel.yaml import YAML
+
+from seatsim.recordings.recording import SEAT_CHANNELS
+from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.files import write_whole
+from seatsim.simulation.result import Result, Run
+
+
+def save_recording(result: Result, folder: str | Path, channels: Sequence[str], tolerance: float = 0.02) -> Path:
+    """Write the runs of one simulated seat as a recording without noise, one row a step, and return its folder.
+
+    The nominal scenario is the first run's, driven by `law: replay` and `kind: recording`.
+
+    Raises:
+        InputError: a channel is none that a seat recording has.
+    """
+    folder = Path(folder)
+    for name in channels:
+        if name not in SEAT_CHANNELS:
+            raise InputError(
+                f"'{name}' is no channel of a seat{nearest(name, SEAT_CHANNELS)}: {', '.join(SEAT_CHANNELS)}"
+            )
+    first = result.runs[0]
+    if any(run.history.step != first.history.step for run in result.runs):
+        raise InputError("the runs differ in solver.step; a recording has one sample rate")
+    files = {f"run-{index + 1}": run for index, run in enumerate(result.runs)}
+    nominal = _nominal(first, {"current_command", "coil_current"} & set(channels))
+    header = {
+        "rig": "seat",
+        "sample_rate": 1.0 / first.history.step,
+        "parameter_tolerance": tolerance,
+        "nominal": "nominal.yaml",
+        "runs": [{"name": name, "file": f"{name}.csv.gz"} for name in files],
+        "channels": {name: {"unit": SEAT_CHANNELS[name]} for name in channels},
+    }
+    for name, run in files.items():
+        frame = pd.DataFrame({key: np.asarray(run[key]) for key in ("time", *channels)})
+        write_whole(folder / f"{name}.csv.gz", partial(frame.to_csv, index=False, float_format="%.7g"))
+    for file, content in (("nominal.yaml", nominal), ("recording.yaml", header)):
+        write_whole(folder / file, partial(YAML(typ="safe").dump, content))
+    return folder
+
+
+def _nominal(run: Run, recorded: set[str]) -> dict[str, Any]:
+    """Return the content of the nominal scenario; a current that is not `recorded` must be a constant one."""
+    if run.scenario.source is None:
+        raise InputError(f"{run.scenario.name}: only the result of a scenario file can become a recording")
+    values = run.scenario.source.data
+    law: dict[str, Any] = {"law": "replay"}
+    if not recorded:
+        commands = run["current_command"]
+        if np.ptp(commands) > 0.0:
+            raise InputError("a current that changes must be recorded: add the channel current_command or coil_current")
+        law["current"] = float(commands[0])
+    kept = ("plant", "damper", "actuator", "temperature", "effects", "solver")
+    nominal = {key: values[key] for key in kept if key in values}
+    return nominal | {"controller": law, "excitation": {"kind": "recording"}}

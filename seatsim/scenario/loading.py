@@ -1,0 +1,159 @@
+"""From a scenario file to scenarios: one for each variant and each value of a sweep."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
+from seatsim.rig.sensors import Sensors
+from seatsim.rig.temperature import Thermal
+from seatsim.scenario.damper import stated_damper
+from seatsim.scenario.expansion import expand
+from seatsim.scenario.published import check_published
+from seatsim.scenario.scenario import Control, DamperChoice, Inverse, Scenario, Solver, Start
+from seatsim.schema.errors import InputError
+from seatsim.schema.validation import build, check_keys, chosen_class, mapping
+from seatsim.schema.yaml_source import KeyPath, Source
+
+BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
+SEAT_KEYS = (*BENCH_KEYS, "plant", "controller", "excitation", "start", "sweep", "variants", "published")
+CONTROL_KEYS = ("law", "sample_time", "inverse", "sensors")
+EXAMPLES = (Path(__file__).parents[1] / "examples", Path(__file__).parents[2] / "scenarios")
+
+
+def load(path: str | Path, settings: Mapping[str, Any] | None = None) -> list[Scenario]:
+    """Return the scenarios of a file, at least one.
+
+    `settings` replaces values by dotted key, such as `{"plant.driver_mass": 55.0}`. A path that does not exist is
+    looked up among the examples that come with seatsim.
+
+    Raises:
+        InputError: anything in the file is missing, unknown or not permitted.
+    """
+    source = Source(_located(Path(path)))
+    return [_scenario(variant, label) for variant, label in expand(source, settings or {})]
+
+
+def single(path: str | Path, settings: Mapping[str, Any] | None = None) -> Scenario:
+    """Load a file that holds one run."""
+    scenarios = load(path, settings)
+    if len(scenarios) != 1:
+        raise InputError(f"{path}: holds {len(scenarios)} runs; this command takes one, without sweep or variants")
+    return scenarios[0]
+
+
+def _located(path: Path) -> Path:
+    if path.exists():
+        return path
+    if not path.is_absolute():
+        inside = Path(*path.parts[1:]) if path.parts[:1] == ("scenarios",) else path
+        for folder in EXAMPLES:
+            for name in (inside, inside.with_name(f"{inside.name}.yaml")):
+                if (folder / name).is_file():
+                    return folder / name
+    found = {path.relative_to(folder) for folder in EXAMPLES if folder.is_dir() for path in folder.rglob("*.yaml")}
+    known = sorted(str(path) for path in found if "data" not in path.parts)
+    raise InputError(f"{path}: no such file; give the path of a scenario, or an example: {', '.join(known)}")
+
+
+def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
+    data = source.data
+    check_keys(data, SEAT_KEYS, source, ())
+    bench = not {"plant", "controller", "excitation"} & set(data)
+    if "published" in data:
+        check_published(source, list(label))
+    for key in ("damper", "actuator", "temperature") + (() if bench else ("plant", "controller", "excitation")):
+        if key not in data:
+            raise source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator, temperature,"
+                                   " controller and excitation")  # fmt: skip
+    sys.path.extend(folder for folder in (str(source.path.parent), "") if folder not in sys.path)
+    return Scenario(
+        name=str(data.get("name", source.path.stem)),
+        damper=_damper(data["damper"], source, ("damper",)),
+        coil=build(Coil, data["actuator"], source, ("actuator",), required=("rate", "max_current")),
+        temperature=_temperature(data["temperature"], source),
+        plant=None if bench else build(Plant, data["plant"], source, ("plant",)),
+        control=None if bench else _control(data["controller"], source),
+        excitation=None if bench else _excitation(data["excitation"], source),
+        effects=_effects(data.get("effects", []), source),
+        solver=build(Solver, data.get("solver", {}), source, ("solver",)),
+        start=build(Start, data.get("start", {}), source, ("start",)),
+        seed=_seed(data.get("seed", 0), source),
+        label=label,
+        source=source,
+    )
+
+
+def _damper(values: Any, source: Source, keys: KeyPath, extra: tuple[str, ...] = ()) -> DamperChoice:
+    return DamperChoice(*stated_damper(values, source, keys, extra))
+
+
+def _temperature(value: Any, source: Source) -> float | Thermal:
+    if isinstance(value, Mapping):
+        thermal: Thermal = build(Thermal, value, source, ("temperature",))
+        return thermal
+    return float(build(Thermal, {"start": value}, source, ("temperature",)).start)
+
+
+def _control(values: Any, source: Source) -> Control:
+    keys: KeyPath = ("controller",)
+    mapping(values, source, keys)
+    cls = chosen_class("law", values, "law", source, keys)
+    own = {key: value for key, value in values.items() if key not in CONTROL_KEYS}
+    if isinstance(own.get("design"), str):
+        own["design"] = str(source.path.parent / own["design"])
+    inverse = _inverse(values["inverse"], source) if "inverse" in values else None
+    sensors = build(Sensors, values["sensors"], source, (*keys, "sensors")) if "sensors" in values else None
+    sample_time = values.get("sample_time")
+    if sample_time is not None and not (_is_number(sample_time) and 0 < sample_time <= 1):
+        raise source.error((*keys, "sample_time"), f"{sample_time!r} is not permitted; it must be 0 to 1 s")
+    return Control(build(cls, own, source, keys), sample_time, inverse, sensors)
+
+
+def _inverse(values: Any, source: Source) -> Inverse:
+    keys: KeyPath = ("controller", "inverse")
+    damper = _damper(values, source, keys, extra=("temperature",))
+    temperature = values.get("temperature", "measured")
+    if temperature == "measured":
+        return Inverse(damper, None)
+    if not _is_number(temperature):
+        raise source.error((*keys, "temperature"), f"{temperature!r} is not permitted; a number in degC or 'measured'")
+    return Inverse(damper, float(temperature))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _excitation(values: Any, source: Source) -> Any:
+    keys: KeyPath = ("excitation",)
+    mapping(values, source, keys)
+    cls = chosen_class("excitation", values, "kind", source, keys)
+    own = {key: value for key, value in values.items() if key != "kind"}
+    if isinstance(own.get("path"), str):
+        own["path"] = str(source.path.parent / own["path"])
+    return build(cls, own, source, keys)
+
+
+def _effects(values: Any, source: Source) -> tuple[Any, ...]:
+    if not isinstance(values, list):
+        raise source.error(("effects",), f"{values!r} is not a list; write '- effect: NAME' below it")
+    effects: list[Any] = []
+    for index, value in enumerate(values):
+        keys: KeyPath = ("effects", index)
+        mapping(value, source, keys)
+        check_keys(value, ("effect", "parameters"), source, keys)
+        cls = chosen_class("effect", value, "effect", source, keys)
+        effects.append(build(cls, value.get("parameters", {}), source, (*keys, "parameters")))
+    return tuple(effects)
+
+
+def _seed(value: Any, source: Source) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or value < 0:
+        raise source.error(("seed",), f"{value!r} is not permitted; it must be a whole number of at least 0")
+    return value

@@ -1,0 +1,114 @@
+"""From a mapping of a YAML file to a validated record, with one clear error where it does not fit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.fields import adapter, describe
+from seatsim.schema.registry import find
+from seatsim.schema.yaml_source import KeyPath, Source
+
+
+def build(
+    record: type, values: Any, source: Source, keys: KeyPath, required: Iterable[str] = (), hint: str = ""
+) -> Any:
+    """Return the `record` with the given values, which stand under `keys` in the source.
+
+    `required` names fields that must be given although the record has defaults; `hint` is added to errors of a
+    missing key. Raises InputError with place, value, what is permitted and the nearest valid name.
+    """
+    mapping(values, source, keys)
+    known = [card.name for card in describe(record)]
+    check_keys(values, known, source, keys)
+    _check_finite(values, source, keys)
+    for name in required:
+        if name not in values:
+            raise source.error(keys, f"key '{name}' is missing{hint}")
+    try:
+        return adapter(record).validate_python(_tuples(values))
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = (*keys, *(part for part in first["loc"] if not str(part).startswith("function-")))
+        raise source.error(where, _problem(record, first) + (hint if first["type"] == "missing" else "")) from None
+
+
+def mapping(values: Any, source: Source, keys: KeyPath) -> Mapping[str, Any]:
+    """Return the values if they are a mapping, else raise InputError."""
+    if not isinstance(values, Mapping):
+        raise source.error(keys, f"{_shown(values)} is not a mapping; write its keys indented below it")
+    return values
+
+
+def check_keys(values: Mapping[str, Any], known: Iterable[str], source: Source, keys: KeyPath) -> None:
+    """Raise InputError at the first key that is not known."""
+    permitted = list(known)
+    for key in values:
+        if key not in permitted:
+            raise source.error((*keys, key), f"unknown key{nearest(key, permitted)}; permitted: {', '.join(permitted)}")
+
+
+def choose(values: Mapping[str, Any], key: str, source: Source, keys: KeyPath) -> str:
+    """Return the text under a key that must be there, such as a model's name."""
+    if key not in values:
+        raise source.error(keys, f"key '{key}' is missing{nearest(key, values)}")
+    if not isinstance(values[key], str):
+        raise source.error((*keys, key), f"{_shown(values[key])} is not a name; write it as text")
+    return str(values[key])
+
+
+def chosen_class(kind: str, values: Mapping[str, Any], key: str, source: Source, keys: KeyPath) -> type:
+    """Return the registered class of a kind that is named under a key, or raise InputError at that place."""
+    name = choose(values, key, source, keys)
+    try:
+        return find(kind, name)
+    except InputError as error:
+        raise source.error((*keys, key), str(error)) from error
+
+
+def _check_finite(value: Any, source: Source, keys: KeyPath) -> None:
+    """Raise InputError at the first number that is infinite or not a number."""
+    if isinstance(value, Mapping | list):
+        items = value.items() if isinstance(value, Mapping) else enumerate(value)
+        for key, item in items:
+            _check_finite(item, source, (*keys, key))
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise source.error(keys, f"{value} is not permitted; it must be a finite number")
+
+
+def _problem(record: type, error: ErrorDetails) -> str:
+    """Translate pydantic's finding into what is wrong, what is permitted, and in which unit."""
+    context, value = error.get("ctx") or {}, _shown(error["input"])
+    name = error["loc"][0] if error["loc"] else ""
+    unit = next((card.unit for card in describe(record) if card.name == name), "")
+    suffix = f" {unit}" if unit and unit != "-" else ""
+    bounds = {"greater_than_equal": ("at least", "ge"), "less_than_equal": ("at most", "le")}
+    bounds |= {"greater_than": ("greater than", "gt"), "less_than": ("less than", "lt")}
+    if error["type"] in bounds:
+        word, bound = bounds[error["type"]]
+        return f"{value} is not permitted; it must be {word} {context[bound]:g}{suffix}"
+    if error["type"] == "missing":
+        return "this key is missing"
+    if error["type"] == "literal_error":
+        options = [part.strip("' ") for part in str(context["expected"]).replace(" or ", ", ").split(",")]
+        return f"{value} is not permitted{nearest(error['input'], options)}; permitted: {', '.join(options)}"
+    if error["type"].startswith(("float", "int", "finite")):
+        return f"{value} is not permitted; it must be a finite number{f' in {unit}' if suffix else ''}"
+    return f"{value} is not permitted: {error['msg'][0].lower()}{error['msg'][1:]}"
+
+
+def _shown(value: Any) -> str:
+    text = f"'{value}'" if isinstance(value, str) else str(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _tuples(value: Any) -> Any:
+    """Return the value with lists as tuples, which strict validation of records asks for."""
+    if isinstance(value, Mapping):
+        return {key: _tuples(item) for key, item in value.items()}
+    return tuple(_tuples(item) for item in value) if isinstance(value, list | tuple) else value

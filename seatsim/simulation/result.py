@@ -1,0 +1,95 @@
+"""What a run gives: channels with units, metrics, and the table over several runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.metrics import Metric
+from seatsim.scenario.scenario import Scenario
+from seatsim.simulation.simulate import History
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+UNITS = {
+    "time": "s",
+    "floor_acceleration": "m/s^2",
+    "frame_acceleration": "m/s^2",
+    "driver_acceleration": "m/s^2",
+    "suspension_displacement": "m",
+    "suspension_velocity": "m/s",
+    "cushion_displacement": "m",
+    "cushion_velocity": "m/s",
+    "damper_force": "N",
+    "wanted_force": "N",
+    "force_served": "-",
+    "coil_current": "A",
+    "current_command": "A",
+    "damper_temperature": "degC",
+    "energy_floor": "J",
+    "energy_damper": "J",
+    "energy_suspension": "J",
+    "energy_cushion": "J",
+    "energy_stored": "J",
+}
+"""Unit of every channel of a history."""
+
+
+class Channel(np.ndarray[Any, np.dtype[np.float64]]):
+    """A channel of a run: an array of shape (N,) with its `name` and `unit`."""
+
+    name: str
+    unit: str
+
+    def __new__(cls, values: NDArray[np.float64], name: str, unit: str) -> Channel:
+        """Return a view of the values with a name and a unit."""
+        channel = np.asarray(values, dtype=np.float64).view(cls)
+        channel.name, channel.unit = name, unit
+        return channel
+
+    def __array_finalize__(self, other: Any) -> None:
+        """Carry name and unit over to what is made from the channel."""
+        self.name = getattr(other, "name", "")
+        self.unit = getattr(other, "unit", "")
+
+
+@dataclass(frozen=True)
+class Run:
+    """One simulated run: its scenario, its history, its metrics by name, and what its user is warned of."""
+
+    scenario: Scenario
+    history: History
+    metrics: dict[str, Metric]
+    warnings: tuple[str, ...] = ()
+
+    def __getitem__(self, name: str) -> Channel:
+        """Return a channel with its unit, such as `driver_acceleration`."""
+        return Channel(self.history[name], name, UNITS[name])
+
+
+@dataclass(frozen=True)
+class Result:
+    """The runs of one or several scenarios, and the brackets of their rigs (by `Scenario.rig`) where asked for."""
+
+    runs: Sequence[Run]
+    brackets: Mapping[str, Any] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Channel:
+        """Return a channel of the first run with its unit."""
+        return self.runs[0][name]
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """The metrics of every run: a row a run, with the columns that set the runs apart first; SI units."""
+        import pandas as pd
+
+        rows = []
+        for run in self.runs:
+            row: dict[str, Any] = {"scenario": run.scenario.name, **run.scenario.label}
+            rows.append(row | {name: metric.value for name, metric in run.metrics.items()})
+        return pd.DataFrame(rows)
