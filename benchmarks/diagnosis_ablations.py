@@ -61,12 +61,12 @@ def judged_by_chance(engine: Engine, found: Search, effects: list[str]) -> Judge
         return judged(engine, found, effects)
 
 
-def search_fed(engine: Engine, candidates: Sequence[Candidate], told: Any, *largest: int) -> Search:
+def search_fed(engine: Engine, candidates: Sequence[Candidate], progress: Any, *largest: int) -> Search:
     """Search with all blocks fed measured signals."""
     if not can_be_fed(engine.problem):
-        return search(engine, candidates, told, *largest)
+        return search(engine, candidates, progress, *largest)
     with patch.object(Problem, "residuals", residuals_fed):
-        return search(engine_fed(engine), candidates, told, *largest)
+        return search(engine_fed(engine), candidates, progress, *largest)
 
 
 def judged_fed(engine: Engine, found: Search, effects: list[str]) -> Judgement:

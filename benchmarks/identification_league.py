@@ -70,7 +70,7 @@ def random(data: Path, models: list[str]) -> list[Task]:
     return [Task("random", data / RANDOM, model, Request(test_fraction=0.3)) for model in models]
 
 
-def heat(data: Path, models: list[str]) -> list[Task]:
+def scaling(data: Path, models: list[str]) -> list[Task]:
     """Return the fits with and without temperature, of every file apart."""
     files = sorted((data / HEAT).glob("*.csv*"))
     requests = [Request(test_fraction=0.5, ignore_temperature=cold) for cold in (False, True)]
@@ -157,7 +157,7 @@ def report(data: Path, out: Path, groups: list[str], models: list[str]) -> None:
         console.print(league("random motion, switched command: the last 30 %", results, ("train", "test")))
     if "heat" in groups:
         chosen = [model for model in WARMED if model in models]
-        console.print(warmth(list(all_done(heat(data, chosen), out))))
+        console.print(warmth(list(all_done(scaling(data, chosen), out))))
     if "joint" in groups:
         results = list(all_done([Task("joint", data / SINES, "modified_bouc_wen", Request())], out))
         console.print(league("one fit to all sines", results, ("train",)))

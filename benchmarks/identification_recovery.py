@@ -32,7 +32,7 @@ from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import RunError
 from seatsim.schema.files import write_json
-from seatsim.schema.registry import card_of, find, names
+from seatsim.schema.registry import find, names, specification_of
 from seatsim.simulation.damper_bench import bench_force
 
 Array = NDArray[np.float64]
@@ -74,10 +74,10 @@ def bench_records(record: Any, rng: np.random.Generator) -> list[BenchRecord]:
     Raises:
         RunError: its state ran away.
     """
-    card = card_of(type(record))
+    specification = specification_of(type(record))
     top = largest(record)
     records = []
-    for name, x, v in motions(min(1.0, card.max_speed / FASTEST)):
+    for name, x, v in motions(min(1.0, specification.max_speed / FASTEST)):
         for share in SHARES[::2] if name == "random" else SHARES:
             force = bench_force(record, x, v, share * top, 20.0, 1.0 / RATE, TemperatureFactors())
             force += NOISE * np.std(force) * rng.standard_normal(len(force))
@@ -88,8 +88,8 @@ def bench_records(record: Any, rng: np.random.Generator) -> list[BenchRecord]:
 
 def largest(record: Any) -> float:
     """Return the largest current in A of a damper's tests."""
-    card = card_of(type(record))
-    return float(min(card.max_current, getattr(record, "law_end", card.max_current)))
+    specification = specification_of(type(record))
+    return float(min(specification.max_current, getattr(record, "law_end", specification.max_current)))
 
 
 def problem_of(record: Any, records: list[BenchRecord]) -> Problem:
@@ -98,7 +98,7 @@ def problem_of(record: Any, records: list[BenchRecord]) -> Problem:
         np.std(np.concatenate([getattr(r, name) for r in records])) for name in ("force", "displacement", "velocity")
     )
     coordinates = Coordinates(
-        record, Scales(*map(float, sizes), largest(record)), card_of(type(record)).held, len(SHARES)
+        record, Scales(*map(float, sizes), largest(record)), specification_of(type(record)).fixed, len(SHARES)
     )
     drives = [drive(each, 0.0, False) for each in records]
     return Problem(coordinates, drives, weights(records, drives), False, None)
@@ -111,7 +111,7 @@ def drawn(model: str, rng: np.random.Generator) -> tuple[Any, list[BenchRecord]]
     offset = {"f0": OFFSET} if "f0" in start._fields else {}
     for _ in range(DRAWS):
         plain = Coordinates(
-            start, Scales(1e3, 0.01, 0.1, largest(start)), (*card_of(type(start)).held, "f0"), len(SHARES)
+            start, Scales(1e3, 0.01, 0.1, largest(start)), (*specification_of(type(start)).fixed, "f0"), len(SHARES)
         )
         vector = plain.vector(start)
         change = rng.uniform(-OFF, OFF, len(vector))

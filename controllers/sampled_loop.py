@@ -130,17 +130,17 @@ def _period(
     instruments = sensors.instruments(step, every * step) if sensors else None
 
     def one(z: Array, command: float) -> tuple[Array, float]:
-        seat, told, own = z[:5], tuple(z[5 : len(z) - memory]), tuple(z[len(z) - memory :])
+        seat, progress, own = z[:5], tuple(z[5 : len(z) - memory]), tuple(z[len(z) - memory :])
         y = _true(A, seat)
         if instruments:
-            y, told = instruments.read(y, QUIET, 0, told)
+            y, progress = instruments.read(y, QUIET, 0, progress)
         answer = law.wanted_force(y, own)
         own = law.update(y, own) if memory else own
         for _ in range(every):
             seat = flow @ seat + push[:, 0] * command
             if instruments:
-                told = instruments.passed(0.0, seat[0], tuple(A @ seat), told)
-        return np.concatenate([seat, told, own]), answer
+                progress = instruments.passed(0.0, seat[0], tuple(A @ seat), progress)
+        return np.concatenate([seat, progress, own]), answer
 
     return one
 

@@ -79,11 +79,11 @@ class StaticOutputFeedback(NamedTuple):
         gain = (Design.load(Path(self.design)) if self.design else self.synthesis(plant)).gain
         return OutputFeedback(float(gain[0, 0]), float(gain[0, 1]))
 
-    def synthesis(self, plant: Plant, told: Callable[[str], object] = lambda text: None) -> Design:
+    def synthesis(self, plant: Plant, progress: Callable[[str], object] = lambda text: None) -> Design:
         """Return the H-infinity design for a plant with this law's weights (the default ones where none are given)."""
         from controllers.synthesis import synthesise
 
-        return synthesise(self.plants(plant), told=told)
+        return synthesise(self.plants(plant), progress=progress)
 
     def plants(self, plant: Plant) -> list[GeneralisedPlant]:
         """Return the generalised plant of every driver with every force factor."""

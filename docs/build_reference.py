@@ -23,9 +23,16 @@ def catalogue(names: list[str]) -> str:
     lines += ["", "| model | is | confidence | states | speed | current |", "|---|---|---|---|---|---|"]
     for name in names:
         cls = registry.find("damper", name)
-        card, title = registry.card_of(cls), (inspect.getdoc(cls) or "").partition("\n\n")[0]
+        specification, title = registry.specification_of(cls), (inspect.getdoc(cls) or "").partition("\n\n")[0]
         title = " ".join(title.partition(": `")[0].split()).rstrip(".")
-        row = name, title, card.confidence, len(card.initial), f"{card.max_speed:g} m/s", f"{card.max_current:g} A"
+        row = (
+            name,
+            title,
+            specification.confidence,
+            len(specification.initial),
+            f"{specification.max_speed:g} m/s",
+            f"{specification.max_current:g} A",
+        )
         lines.append(f"| [{row[0]}](#{row[0]}) | {' | '.join(str(cell) for cell in row[1:])} |")
     return "\n".join([*lines, ""])
 

@@ -41,9 +41,9 @@ class Bracket:
     step: float
 
     @classmethod
-    def of(cls, scenario: Scenario, tell: Callable[[str], None] = lambda text: None) -> Bracket:
+    def of(cls, scenario: Scenario, progress: Callable[[str], None] = lambda text: None) -> Bracket:
         """Return the bracket of a scenario's seat, damper and floor."""
-        return clairvoyant(scenario, tell=tell)
+        return clairvoyant(scenario, progress=progress)
 
     @property
     def reached(self) -> Array:
@@ -80,7 +80,7 @@ def clairvoyant(
     scenario: Scenario,
     weights: ArrayLike = WEIGHTS,
     hold: float = HOLD,
-    tell: Callable[[str], None] = lambda text: None,
+    progress: Callable[[str], None] = lambda text: None,
 ) -> Bracket:
     """Return the bracket of a scenario's seat, damper and floor; see docs/bracket.md for method and validity.
 
@@ -88,7 +88,7 @@ def clairvoyant(
         scenario: its law, coil rate and sample times play no part.
         weights: of the squared travel in 1/s^4, above 0.
         hold: time in s over which a force is held, a multiple of `solver.step`.
-        tell: is told what is being done.
+        progress: is called with what is being done.
 
     Raises:
         InputError: the scenario has no seat or one that is not linear, its damper is not dissipative, or a number is
@@ -96,4 +96,4 @@ def clairvoyant(
     """
     from controllers.clairvoyant.solve import solve
 
-    return solve(scenario, np.asarray(weights, dtype=np.float64), hold, tell)
+    return solve(scenario, np.asarray(weights, dtype=np.float64), hold, progress)

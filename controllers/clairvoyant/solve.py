@@ -21,7 +21,7 @@ UNKNOWN = (*ON_DAMPER, *ON_SEAT, "factors", "temperature", "push", "plant")
 """Hooks of effects that change what the bracket is of."""
 
 
-def solve(scenario: Scenario, weights: Array, hold: float, tell: Callable[[str], None]) -> Bracket:
+def solve(scenario: Scenario, weights: Array, hold: float, progress: Callable[[str], None]) -> Bracket:
     """Return the bracket, from the middle weight outwards: each bound starts from its neighbour's multipliers."""
     if weights.ndim != 1 or not len(weights) or not (np.isfinite(weights) & (weights > 0)).all():
         raise InputError("the weights of a bracket are one or more numbers above 0, in 1/s^4")
@@ -29,7 +29,7 @@ def solve(scenario: Scenario, weights: Array, hold: float, tell: Callable[[str],
     middle, order = len(weights) // 2, np.argsort(weights)
     found: dict[int, tuple[Bound, Run]] = {}
     for place in sorted(range(len(weights)), key=lambda place: abs(place - middle)):
-        tell(f"{scenario.title}: bracket, weight {len(found) + 1} of {len(weights)}")
+        progress(f"{scenario.title}: bracket, weight {len(found) + 1} of {len(weights)}")
         problem = Problem(transcription, float(weights[order[place]]))
         near = found.get(place - 1 if place > middle else place + 1)
         found[place] = _ends(problem, band, near[0].logarithms if near else None)

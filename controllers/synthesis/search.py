@@ -48,7 +48,7 @@ class Clock(NamedTuple):
 
 
 def search(
-    plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], seed: int, clock: Clock, told: Told
+    plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], seed: int, clock: Clock, progress: Told
 ) -> Array:
     """Return the best gain (nu, ny) found, between the two `limits` (nu, ny).
 
@@ -69,13 +69,13 @@ def search(
     best: Candidate | None = None
     while True:
         objective = everything.on([scaled[i].plant for i in chosen])
-        told(f"plants {', '.join(map(str, chosen))} of {len(plants)}" if len(plants) > 1 else "searching")
+        progress(f"plants {', '.join(map(str, chosen))} of {len(plants)}" if len(plants) > 1 else "searching")
         part = clock.part(1.0 if len(chosen) == len(scaled) else _SUBSET)
         starts = _starts(objective, best, seed)
         found = _explore(objective, starts, part)
         if not found.candidates:
             raise SynthesisError(_not_stabilised(found, first.rate, float(np.abs(limits).max()), clock.budget))
-        best = _lowest(objective, found, starts, seed, part, told)
+        best = _lowest(objective, found, starts, seed, part, progress)
         norms = [everything.on([each.plant]).norm(best.entries) for each in scaled]
         worst = int(np.argmax(norms))
         if norms[worst] <= best.gamma * _COVERED or worst in chosen:
@@ -108,21 +108,21 @@ def _explore(objective: Objective, starts: Iterator[Start], clock: Clock) -> Des
 
 
 def _lowest(
-    objective: Objective, found: Descent, starts: Iterator[Start], seed: int, clock: Clock, told: Told
+    objective: Objective, found: Descent, starts: Iterator[Start], seed: int, clock: Clock, progress: Told
 ) -> Candidate:
     """Refine the candidates; where starts disagree, improve upon the best, and go on while further starts gain."""
-    told(f"{found.starts} starts, {len(found.candidates)} stabilised, gamma {found.candidates[0].gamma:.6g}")
+    progress(f"{found.starts} starts, {len(found.candidates)} stabilised, gamma {found.candidates[0].gamma:.6g}")
     best = refine(objective, found.candidates, clock.after(_REFINED))
     deadline = clock.after(_IMPROVED)
     gained = not found.agrees
     while gained and time.monotonic() < deadline:
-        told(f"gamma {best.gamma:.6g}, looking about it")
+        progress(f"gamma {best.gamma:.6g}, looking about it")
         best = improve(objective, best, seed, deadline)
-        told(f"gamma {best.gamma:.6g}, further starts")
+        progress(f"gamma {best.gamma:.6g}, further starts")
         more = explore(objective, islice(starts, _FIRST_STARTS), deadline)
         lower = refine(objective, [best, *more.candidates], deadline)
         gained, best = lower.gamma < best.gamma * _GAINED, lower
-    told(f"gamma {best.gamma:.6g}")
+    progress(f"gamma {best.gamma:.6g}")
     return best
 
 

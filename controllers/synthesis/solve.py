@@ -27,7 +27,7 @@ def synthesise(
     bounds: tuple[ArrayLike, ArrayLike] | None = ...,
     time_budget: float = ...,
     seed: int = ...,
-    told: Told = ...,
+    progress: Told = ...,
 ) -> Design: ...
 @overload
 def synthesise(
@@ -39,7 +39,7 @@ def synthesise(
     bounds: tuple[ArrayLike, ArrayLike] | None = ...,
     time_budget: float = ...,
     seed: int = ...,
-    told: Told = ...,
+    progress: Told = ...,
 ) -> Design: ...
 @overload
 def synthesise(
@@ -56,7 +56,7 @@ def synthesise(
     bounds: tuple[ArrayLike, ArrayLike] | None = ...,
     time_budget: float = ...,
     seed: int = ...,
-    told: Told = ...,
+    progress: Told = ...,
 ) -> Design: ...
 
 
@@ -75,7 +75,7 @@ def synthesise(
     bounds: tuple[ArrayLike, ArrayLike] | None = None,
     time_budget: float = 60.0,
     seed: int = 0,
-    told: Told = lambda text: None,
+    progress: Told = lambda text: None,
 ) -> Design:
     """Find the static output feedback `u = gain @ y` with the smallest H-infinity norm from w to z.
 
@@ -85,7 +85,7 @@ def synthesise(
     `max_gain` bounds every |gain_ij| in the user's units: many infima lie at infinite gain, so quote gamma with it.
     `bounds = (low, high)`, each one number or (nu, ny), bounds the entries further.
     `time_budget` in s: the search stops there, a computation under way may take a few seconds more. The same seed
-    gives the same design, unless time runs out. `told` is called with a line on what the search does.
+    gives the same design, unless time runs out. `progress` is called with a line on what the search does.
     The problem is not convex: the answer is the best of several starts, a local optimum with a certificate of its own
     gamma.
 
@@ -96,10 +96,10 @@ def synthesise(
     begin = time.monotonic()
     plants = _as_plants((A, B1, B2, C1, C2, D11, D12, D21), split)
     _check_options(max_gain, time_budget)
-    gain = search(plants, _limits(plants[0], max_gain, bounds), seed, Clock(begin, time_budget), told)
+    gain = search(plants, _limits(plants[0], max_gain, bounds), seed, Clock(begin, time_budget), progress)
     loops = tuple(verify(plant, gain) for plant in plants)
     design = Design(gain, float(max_gain), 0.0, loops)
-    told("the bound of any controller")
+    progress("the bound of any controller")
     return replace(design, lower_bound=min(_least(design, begin + time_budget), design.gamma))
 
 

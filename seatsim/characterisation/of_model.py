@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from seatsim.characterisation.response import Ensemble, Response, crossing, response
 from seatsim.characterisation.rows import row_of_loops
 from seatsim.characterisation.summary import Characterisation
-from seatsim.dampers.base import DamperCard
+from seatsim.dampers.base import DamperSpecification
 from seatsim.rig.coil import Coil, relax
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.damper import stated_damper
 from seatsim.schema.errors import InputError
-from seatsim.schema.registry import card_of, find, name_of
+from seatsim.schema.registry import find, name_of, specification_of
 from seatsim.schema.validation import build
 from seatsim.schema.yaml_source import KeyPath, Source
 from seatsim.simulation.damper_bench import bench_force, sine_test
@@ -56,10 +56,10 @@ class Specimen(NamedTuple):
         return name_of("damper", type(self.damper))
 
     @property
-    def card(self) -> DamperCard:
+    def specification(self) -> DamperSpecification:
         """What is stated of the model."""
-        card: DamperCard = card_of(type(self.damper))
-        return card
+        specification: DamperSpecification = specification_of(type(self.damper))
+        return specification
 
 
 class Settings(NamedTuple):
@@ -82,7 +82,9 @@ def specimen(model: str | None, parameters: Path | None) -> Specimen:
     """
     if parameters is None:
         cls: Any = find("damper", model or "")
-        return Specimen(cls(), card_of(cls).factors, Coil(max_current=card_of(cls).max_current), False)
+        return Specimen(
+            cls(), specification_of(cls).factors, Coil(max_current=specification_of(cls).max_current), False
+        )
     source = Source(Path(parameters))
     whole = "damper" in source.data
     keys: KeyPath = ("damper",) if whole else ()
@@ -91,7 +93,7 @@ def specimen(model: str | None, parameters: Path | None) -> Specimen:
     if model not in (None, values["model"]):
         problem = f"is '{values['model']}', not the '{model}' of --model; leave --model out"
         raise source.error((*keys, "model"), problem)
-    coil = Coil(max_current=card_of(type(damper)).max_current)
+    coil = Coil(max_current=specification_of(type(damper)).max_current)
     if whole and "actuator" in source.data:
         coil = build(Coil, source.data["actuator"], source, ("actuator",), ("rate", "max_current"))
     return Specimen(damper, factors, coil)
@@ -109,13 +111,13 @@ def settings_of(
     Raises:
         InputError: a list is not of numbers, or one of them is out of bounds.
     """
-    card, factors = tested.card, tested.factors
-    largest = min(card.max_current, tested.coil.max_current)
-    low, high = card.temperatures
+    specification, factors = tested.specification, tested.factors
+    largest = min(specification.max_current, tested.coil.max_current)
+    low, high = specification.temperatures
     warm = (low, 0.5 * (low + high), high) if any(factors[:3]) and high > low else (factors.reference,)
     far = _numbers("--amplitudes", amplitudes, "m", "0.005,0.01", above=0.0)
     fast = _numbers("--frequencies", frequencies, "Hz", "0.5,1,2", above=0.0)
-    reach = card.max_speed / (2.0 * math.pi)
+    reach = specification.max_speed / (2.0 * math.pi)
     if not far:
         largest_far = _rounded(min(LARGEST, reach / max(fast))) if fast else LARGEST
         far = [0.5 * largest_far, largest_far]
@@ -174,7 +176,7 @@ def characterise_model(tested: Specimen, chosen: Settings) -> Characterisation:
         test = sine_test(tested.damper, x, f, i, warm, tested.factors, cycles)
         test = test._replace(time=test.time - test.time[0])
         rows.append(row_of_loops([test], f"{1e3 * x:g} mm, {f:g} Hz, {i:g} A, {warm:g} degC", "", i, warm))
-    speed = 0.5 * min(max(row.peak_speed for row in rows), tested.card.max_speed)
+    speed = 0.5 * min(max(row.peak_speed for row in rows), tested.specification.max_speed)
     answers = list(_responses(tested, chosen, speed))
     return Characterisation(
         tested.name, f"{tested.name}: {tested.damper}", False, rows, answers, list(_notes(tested, chosen))
@@ -218,17 +220,17 @@ def step_response(tested: Specimen, before: float, after: float, speed: float, t
 
 def _notes(tested: Specimen, chosen: Settings) -> Iterator[str]:
     """Yield what the user has to know of the settings."""
-    card = tested.card
-    if card.complete and not tested.stated:
+    specification = tested.specification
+    if specification.complete and not tested.stated:
         yield f"{tested.name} is a form without a parameter set of its own; shown are the values of its record"
     speed = 2.0 * math.pi * max(chosen.frequencies) * max(chosen.amplitudes)
-    if speed > 1.01 * card.max_speed:
-        yield f"speeds reach {speed:.3g} m/s; the model holds up to {card.max_speed:g} m/s"
-    if max(chosen.currents) > card.max_current:
-        yield f"currents reach {max(chosen.currents):g} A; the model holds up to {card.max_current:g} A"
+    if speed > 1.01 * specification.max_speed:
+        yield f"speeds reach {speed:.3g} m/s; the model holds up to {specification.max_speed:g} m/s"
+    if max(chosen.currents) > specification.max_current:
+        yield f"currents reach {max(chosen.currents):g} A; the model holds up to {specification.max_current:g} A"
     if max(chosen.currents) > tested.coil.max_current:
         yield f"the coil carries {tested.coil.max_current:g} A at most: no response to a larger current is told"
-    low, high = card.temperatures
+    low, high = specification.temperatures
     if any(tested.factors[:3]) and not low <= min(chosen.temperatures) <= max(chosen.temperatures) <= high:
         yield f"the model's temperatures are {low:g} to {high:g} degC"
     if len(chosen.temperatures) > 1 and not any(tested.factors[:3]):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from seatsim.cli.bench import characterise, identify
-from seatsim.cli.terminal import Out, complain, counted, err, out, pairs, say, told, warn, wrote
+from seatsim.cli.terminal import Out, complain, count_progress, err, out, pairs, say, show_progress, warn, wrote
 from seatsim.schema.errors import InputError, SeatsimError
 
 if TYPE_CHECKING:
@@ -72,8 +72,8 @@ def synthesise(scenario: OneScenario, out_folder: Out = None, settings: Settings
     from seatsim.scenario.synthesis import design_for
 
     chosen = single(scenario, pairs(settings, *SET))
-    with told() as tell:
-        design = design_for(chosen, tell)
+    with show_progress() as progress:
+        design = design_for(chosen, progress)
     out.print(design_table(design, chosen))
     folder = out_folder or Path("out") / chosen.name
     design.save(folder / "design.yaml")
@@ -109,8 +109,8 @@ def diagnose(
     withheld = without or []
     for name in withheld:
         find("effect", name)
-    with told() as tell:
-        diagnosis = find_cause(recording, withheld, tell)
+    with show_progress() as progress:
+        diagnosis = find_cause(recording, withheld, progress)
     for table in tables(diagnosis):
         out.print(table)
     warn(diagnosis.notes)
@@ -126,9 +126,9 @@ app.command()(identify)
 @app.command()
 def describe(name: Annotated[str, typer.Argument(help="A name, such as bouc_wen or road.")] = "") -> None:
     """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds."""
-    from seatsim.scenario.describe import describe as tell
+    from seatsim.scenario.describe import describe as progress
 
-    say(tell(name))
+    say(progress(name))
 
 
 blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed.", no_args_is_help=True)
@@ -148,7 +148,7 @@ def blind_make(
     """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""
     from seatsim.blind.make.make import make
 
-    with counted("making recordings") as count:
+    with count_progress("making recordings") as count:
         key = make(cases, seed, out_folder, sealed, count, kinds)
     out.print(f"written: {cases} recordings in {out_folder}, labels sealed in {sealed}", markup=False, highlight=False)
     say(f"key (shown once): {key}")
@@ -169,9 +169,9 @@ def blind_score(
     from seatsim.schema.files import write_json
 
     unseal(sealed, key, folder)
-    with counted("diagnosing") as count:
+    with count_progress("diagnosing") as count:
         diagnose_all(folder, count)
-    with counted("scoring") as count:
+    with count_progress("scoring") as count:
         found = score(folder, sealed, key, progress=count)
     for table in tables(found):
         out.print(table)
@@ -193,7 +193,7 @@ def _execute(groups: list[list[str]], chosen: list[Path | None], values: dict[st
     done: dict[int, Run] = {}
     interrupted = False
     finished = itertools.count(1)
-    with counted("simulating", len(scenarios)) as count:
+    with count_progress("simulating", len(scenarios)) as count:
         try:
             for scenario, answer in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
                 if isinstance(answer, SeatsimError):
@@ -240,9 +240,9 @@ def _brackets(runs: list[Run]) -> dict[str, Any]:
     from seatsim.simulation.performance_bounds import beaten, brackets
 
     found: dict[str, Any] = {}
-    with told() as tell:
+    with show_progress() as progress:
         try:
-            for rig, answer in brackets(runs, tell):
+            for rig, answer in brackets(runs, progress):
                 if isinstance(answer, InputError):
                     complain(f"no bracket: {answer}")
                 else:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seatsim.cli.terminal import Out, complain, out, pairs, told, warn, wide, wrote
+from seatsim.cli.terminal import Out, complain, out, pairs, show_progress, warn, wide, wrote
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
@@ -92,8 +92,8 @@ def _identify(records: list[BenchRecord], model: str, request: Request, beside: 
     from seatsim.cli.outputs.identification import tables, write_identification
     from seatsim.identification.identify import identify_records, predict_records
 
-    with told() as tell:
-        found = predict_records(identify_records(records, model, request, tell), beside)
+    with show_progress() as progress:
+        found = predict_records(identify_records(records, model, request, progress), beside)
         paths = write_identification(found, folder)
     for table in tables(found):
         out.print(table)
@@ -106,9 +106,9 @@ def _league(records: list[BenchRecord], request: Request, beside: Further, folde
     from seatsim.cli.outputs.identification import league_table, write_identification, write_league
     from seatsim.identification.league import league
 
-    with told() as tell:
+    with show_progress() as progress:
         places = league(
-            records, request, beside, folder, tell, lambda found: write_identification(found, folder / found.model)
+            records, request, beside, folder, progress, lambda found: write_identification(found, folder / found.model)
         )
     out.print(league_table(places))
     failed = [place for place in places if place.failed]

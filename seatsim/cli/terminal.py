@@ -48,7 +48,7 @@ def complain(text: str) -> None:
 
 
 @contextmanager
-def counted(title: str, total: int | None = None) -> Iterator[Any]:
+def count_progress(title: str, total: int | None = None) -> Iterator[Any]:
     """Show a bar on the terminal that is told `(done, total)`."""
     with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
         task = progress.add_task(title, total=total)
@@ -56,7 +56,7 @@ def counted(title: str, total: int | None = None) -> Iterator[Any]:
 
 
 @contextmanager
-def told() -> Iterator[Any]:
+def show_progress() -> Iterator[Any]:
     """Show on the terminal what is being done."""
     with err.status("reading") as status:
         yield status.update

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, CurrentLaw, branch, branch_rate, cubic
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
@@ -43,13 +43,13 @@ class WengArctangent(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
         angle = math.atan(self.k_h * (v + cubic(self.v_h, held) * branch(z)))
-        yielding = cubic(self.fc, held) * heat.yielding * 2.0 / math.pi * angle
-        return cubic(self.c0, held) * heat.viscous * v + yielding + self.f0
+        yielding = cubic(self.fc, held) * scaling.yielding * 2.0 / math.pi * angle
+        return cubic(self.c0, held) * scaling.viscous * v + yielding + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return branch_rate(v, z)

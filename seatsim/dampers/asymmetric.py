@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, QuadraticLaw, branch, branch_rate, quadratic
-from seatsim.rig.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.fields import param
 
 Coefficient = Annotated[float, param("-", "coefficient of a power of u")]
@@ -51,7 +51,7 @@ def opening(q: Seven, d: Six, u: float) -> float:
     temperatures=(20.0, 80.0),
     factors=TemperatureFactors(-0.00667, -0.00667, -0.00667, 20.0),
     confidence="published",
-    held=("p_den", "n_den", "q_den", "held_from", "asymmetry"),
+    fixed=("p_den", "n_den", "q_den", "held_from", "asymmetry"),
     smooth=True,
 )
 class Yu2019(NamedTuple):
@@ -97,7 +97,7 @@ class Yu2019(NamedTuple):
     asymmetry: Annotated[float, param("-", "weight of the asymmetric part", low=0, high=1)] = 1.0
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         u = min(max(v, -self.held_from), self.held_from) / self.v_ref
         s, sign = abs(u), branch(z)
@@ -105,10 +105,10 @@ class Yu2019(NamedTuple):
         here, mirrored = opening(self.q, self.q_den, u) * sign, opening(self.q, self.q_den, -u) * sign
         symmetric = 0.5 * (here + mirrored) + (0.5 * (up + down) if v >= 0.0 else -0.5 * (up + down))
         asymmetric = 0.5 * (here - mirrored + up - down)
-        linear = quadratic(self.c, i) * heat.viscous * v + (self.k[0] + self.k[1] * i) * heat.stiffness * x
+        linear = quadratic(self.c, i) * scaling.viscous * v + (self.k[0] + self.k[1] * i) * scaling.stiffness * x
         shape = symmetric + self.asymmetry * asymmetric
-        return linear + quadratic(self.alpha, i) * heat.yielding * shape + self.f0
+        return linear + quadratic(self.alpha, i) * scaling.yielding * shape + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return branch_rate(v, z)

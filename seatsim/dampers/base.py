@@ -1,12 +1,12 @@
 """What a damper is: a record of parameters with `force` and, where it has a state, `rates`.
 
-    def force(self, x, v, i, heat, z):   force in N, positive when it opposes extension
-    def rates(self, x, v, i, heat, z):   time derivative of the state z (a tuple of floats)
+    def force(self, x, v, i, scaling, z):   force in N, positive when it opposes extension
+    def rates(self, x, v, i, scaling, z):   time derivative of the state z (a tuple of floats)
     def coulomb(self, i, heat):          magnitude in N of a set-valued friction beside `force` (optional)
 
-with x [m], v = x' [m/s], current i [A], `heat` the temperature factors (`seatsim.rig.temperature.Heat`) by which
-the model multiplies its viscous, elastic and yield terms. Methods are compiled by numba: plain arithmetic and
-`math` only; what they call from their module is decorated with `seatsim.compilation.jit.jit`.
+with x [m], v = x' [m/s], current i [A], and `scaling` the factors of the temperature by which the model multiplies its
+viscous, elastic and yield terms (`seatsim.rig.temperature.TemperatureScaling`). Methods are compiled by numba: plain
+arithmetic and `math` only; what they call from their module is decorated with `seatsim.compilation.jit.jit`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal, NamedTuple, Protocol, TypeVar
 
-from seatsim.rig.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.registry import register
 
 T = TypeVar("T", bound=type)
@@ -33,11 +33,11 @@ CONFIDENCE: dict[Confidence, str] = {
 class Damper(Protocol):
     """The part of a damper that every model has; see the module for the optional methods."""
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: Any) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: Any) -> float:
         """Return the damper force in N."""
 
 
-class DamperCard(NamedTuple):
+class DamperSpecification(NamedTuple):
     """What is stated of a damper model.
 
     initial: state at rest. current_order: degree (1 or 2) of the polynomial in the current that `force` is at
@@ -45,7 +45,7 @@ class DamperCard(NamedTuple):
     model branches on sgn(x) or sgn(dv/dt), so that it is wrong where the motion is not centred about x = 0.
     The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it. complete: the
     model is a form without a parameter set of its own; a scenario states all of its parameters.
-    confidence: a word of `CONFIDENCE`. held: fields that an identification does not fit, beside `law_end`: they
+    confidence: a word of `CONFIDENCE`. fixed: fields that an identification does not fit, beside `law_end`: they
     state the model's range, or no data tell them from the others. smooth: the rates are smooth functions of
     motion and state, without switch or corner, so that an integrator keeps its order.
     """
@@ -61,7 +61,7 @@ class DamperCard(NamedTuple):
     factors: TemperatureFactors
     complete: bool
     confidence: Confidence
-    held: tuple[str, ...]
+    fixed: tuple[str, ...]
     smooth: bool
 
 
@@ -78,11 +78,11 @@ def damper(
     factors: TemperatureFactors | None = None,
     complete: bool = False,
     confidence: Confidence = "published",
-    held: tuple[str, ...] = (),
+    fixed: tuple[str, ...] = (),
     smooth: bool = False,
 ) -> Callable[[T], T]:
-    """Register a record class as the damper `model: name`; see `DamperCard` for the facts."""
-    card = DamperCard(
+    """Register a record class as the damper `model: name`; see `DamperSpecification` for the facts."""
+    specification = DamperSpecification(
         source,
         initial,
         state,
@@ -94,7 +94,7 @@ def damper(
         factors or TemperatureFactors(),
         complete,
         confidence,
-        held,
+        fixed,
         smooth,
     )
-    return register("damper", name, card)
+    return register("damper", name, specification)

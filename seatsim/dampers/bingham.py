@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import CurrentLaw, cubic
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 SET_VALUED_BELOW = 1e-6
@@ -20,7 +20,7 @@ SET_VALUED_BELOW = 1e-6
     current_order=1,
     complete=True,
     confidence="published",
-    held=("v_ref",),
+    fixed=("v_ref",),
 )
 class Bingham(NamedTuple):
     """Bingham damper with laws linear in the current.
@@ -37,17 +37,17 @@ class Bingham(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     v_ref: Annotated[float, param("m/s", "speed that regularises the sign", low=0, high=1)] = 0.004
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N, without the friction where that is set-valued."""
-        smooth = (self.c_a + self.c_b * i) * heat.viscous * v + self.f0
+        smooth = (self.c_a + self.c_b * i) * scaling.viscous * v + self.f0
         if self.v_ref < SET_VALUED_BELOW:
             return smooth
-        return smooth + (self.fc_a + self.fc_b * i) * heat.yielding * math.tanh(v / self.v_ref)
+        return smooth + (self.fc_a + self.fc_b * i) * scaling.yielding * math.tanh(v / self.v_ref)
 
-    def coulomb(self, i: float, heat: Heat) -> float:
+    def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the set-valued friction in N; 0 where the sign is regularised."""
         if self.v_ref < SET_VALUED_BELOW:
-            return max(0.0, (self.fc_a + self.fc_b * i) * heat.yielding)
+            return max(0.0, (self.fc_a + self.fc_b * i) * scaling.yielding)
         return 0.0
 
 
@@ -70,10 +70,10 @@ class OriginalBingham(NamedTuple):
     fc: Annotated[CurrentLaw, param("N", "yield force fc(I)")] = (35.7, 390.0, 675.0, -609.3)
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return the smooth part of F in N."""
-        return cubic(self.c0, i) * heat.viscous * v + self.f0
+        return cubic(self.c0, i) * scaling.viscous * v + self.f0
 
-    def coulomb(self, i: float, heat: Heat) -> float:
+    def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the set-valued yield force in N."""
-        return max(0.0, cubic(self.fc, i) * heat.yielding)
+        return max(0.0, cubic(self.fc, i) * scaling.yielding)

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic, power
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
@@ -40,14 +40,14 @@ class UpdatedBingham(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return the part of F in N that is not set-valued."""
         thinning = power(1.0 + abs(v) / self.v_s, self.p - 1.0)
-        return cubic(self.c0, min(i, self.law_end)) * heat.viscous * thinning * v + self.f0
+        return cubic(self.c0, min(i, self.law_end)) * scaling.viscous * thinning * v + self.f0
 
-    def coulomb(self, i: float, heat: Heat) -> float:
+    def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the set-valued yield force in N."""
-        return max(0.0, cubic(self.fc, min(i, self.law_end)) * heat.yielding)
+        return max(0.0, cubic(self.fc, min(i, self.law_end)) * scaling.yielding)
 
 
 @damper(
@@ -79,9 +79,9 @@ class Powell(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
         friction = (1.0 + (self.r - 1.0) * math.exp(-self.a * abs(v))) * math.tanh(self.e * v)
-        linear = self.k * heat.stiffness * x + cubic(self.c, held) * heat.viscous * v
-        return linear + cubic(self.fc, held) * heat.yielding * friction + self.f0
+        linear = self.k * scaling.stiffness * x + cubic(self.c, held) * scaling.viscous * v
+        return linear + cubic(self.fc, held) * scaling.yielding * friction + self.f0

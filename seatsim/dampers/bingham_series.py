@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
 from seatsim.dampers.pieces_series import slip
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
@@ -44,16 +44,16 @@ class ModifiedBingham(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        return (self.k_a + self.k_b * held) * heat.stiffness * z[0] + self.f0
+        return (self.k_a + self.k_b * held) * scaling.stiffness * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e',)."""
         held = min(i, self.law_end)
-        q = (self.k_a + self.k_b * held) * heat.stiffness * z[0]
-        return (v - slip(q, cubic(self.fc, held) * heat.yielding, cubic(self.c0, held) * heat.viscous),)
+        q = (self.k_a + self.k_b * held) * scaling.stiffness * z[0]
+        return (v - slip(q, cubic(self.fc, held) * scaling.yielding, cubic(self.c0, held) * scaling.viscous),)
 
 
 @damper(
@@ -90,15 +90,15 @@ class GamotaFilisko(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        return (self.k2_a + self.k2_b * held) * heat.stiffness * z[0] + self.f0
+        return (self.k2_a + self.k2_b * held) * scaling.stiffness * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e2', e1')."""
         held = min(i, self.law_end)
-        q = (self.k2_a + self.k2_b * held) * heat.stiffness * z[0]
-        flow = slip(q, cubic(self.fc, held) * heat.yielding, cubic(self.c0, held) * heat.viscous)
-        creep = (q - self.k1 * heat.stiffness * z[1]) / (self.c1 * heat.viscous)
+        q = (self.k2_a + self.k2_b * held) * scaling.stiffness * z[0]
+        flow = slip(q, cubic(self.fc, held) * scaling.yielding, cubic(self.c0, held) * scaling.viscous)
+        creep = (q - self.k1 * scaling.stiffness * z[1]) / (self.c1 * scaling.viscous)
         return (v - flow - creep, creep)

@@ -9,7 +9,7 @@ from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, CurrentLaw, between, branch, branch_rate, cubic
 from seatsim.dampers.pieces_series import SETTLING, limited
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 WERELEY = "Wereley, Pang and Kamath 1998, J. Intell. Mater. Syst. Struct. 9:642; form recalled, no parameter set found"
@@ -46,11 +46,11 @@ class Biviscous(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        pre, post = cubic(self.c_pre, held) * heat.viscous, cubic(self.c_post, held) * heat.viscous
-        return two_slopes(pre, post, cubic(self.fy, held) * heat.yielding, v, 0.0) + self.f0
+        pre, post = cubic(self.c_pre, held) * scaling.viscous, cubic(self.c_post, held) * scaling.viscous
+        return two_slopes(pre, post, cubic(self.fy, held) * scaling.yielding, v, 0.0) + self.f0
 
 
 @damper(
@@ -87,14 +87,14 @@ class HystereticBiviscous(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        pre, post = cubic(self.c_pre, held) * heat.viscous, cubic(self.c_post, held) * heat.viscous
+        pre, post = cubic(self.c_pre, held) * scaling.viscous, cubic(self.c_post, held) * scaling.viscous
         shift = pre * (self.v0_a + self.v0_b * held) * branch(z)
-        return two_slopes(pre, post, cubic(self.fy, held) * heat.yielding, v, shift) + self.f0
+        return two_slopes(pre, post, cubic(self.fy, held) * scaling.yielding, v, shift) + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return branch_rate(v, z)
 
@@ -133,15 +133,15 @@ class HystereticArctangent(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
         shifted = v + (self.v0_a + self.v0_b * held) * branch(z)
         angle = math.atan(between(self.k_0, self.k_1, i, self.law_end) * shifted)
-        yielding = cubic(self.fy, held) * heat.yielding * 2.0 / math.pi * angle
-        return cubic(self.c_post, held) * heat.viscous * v + yielding + self.f0
+        yielding = cubic(self.fy, held) * scaling.yielding * 2.0 / math.pi * angle
+        return cubic(self.c_post, held) * scaling.viscous * v + yielding + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return branch_rate(v, z)
 
@@ -180,16 +180,16 @@ class LumpedBiviscous(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        return (self.k_a + self.k_b * held) * heat.stiffness * z[0] + self.f0
+        return (self.k_a + self.k_b * held) * scaling.stiffness * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e', u')."""
         held, u = min(i, self.law_end), z[1]
-        pre, post = cubic(self.c_pre, held) * heat.viscous, cubic(self.c_post, held) * heat.viscous
-        fy = cubic(self.fy, held) * heat.yielding
+        pre, post = cubic(self.c_pre, held) * scaling.viscous, cubic(self.c_post, held) * scaling.viscous
+        fy = cubic(self.fy, held) * scaling.yielding
         slope = pre if abs((pre - post) * u) < fy else post
-        driven = (self.k_a + self.k_b * held) * heat.stiffness * z[0] - two_slopes(pre, post, fy, u, 0.0)
-        return (v - u, driven / (self.m * heat.viscous + SETTLING * slope))
+        driven = (self.k_a + self.k_b * held) * scaling.stiffness * z[0] - two_slopes(pre, post, fy, u, 0.0)
+        return (v - u, driven / (self.m * scaling.viscous + SETTLING * slope))

@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import CurrentLaw, bouc_wen_rate, cubic
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 HYSTERESIS = "z, the hysteretic displacement"
@@ -20,7 +20,7 @@ HYSTERESIS = "z, the hysteretic displacement"
     current_order=1,
     complete=True,
     confidence="published",
-    held=("A", "x0"),
+    fixed=("A", "x0"),
 )
 class BoucWen(NamedTuple):
     """Simple Bouc-Wen damper with laws linear in the current.
@@ -41,13 +41,13 @@ class BoucWen(NamedTuple):
     gamma: Annotated[float, param("[z]^(1-n)/m", "shape: coefficient of |v| z |z|^(n-1)")] = 1000.0
     n: Annotated[float, param("-", "sharpness of yielding", low=1, high=20)] = 2.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
-        viscous = (self.c_a + self.c_b * i) * heat.viscous * v
-        elastic = self.k0 * heat.stiffness * (x - self.x0)
-        return viscous + elastic + (self.alpha_a + self.alpha_b * i) * heat.yielding * z[0] + self.f0
+        viscous = (self.c_a + self.c_b * i) * scaling.viscous * v
+        elastic = self.k0 * scaling.stiffness * (x - self.x0)
+        return viscous + elastic + (self.alpha_a + self.alpha_b * i) * scaling.yielding * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (z',)."""
         return (bouc_wen_rate(self.A, self.beta, self.gamma, self.n, v, z[0]),)
 
@@ -61,7 +61,7 @@ class BoucWen(NamedTuple):
     max_speed=0.13,
     max_current=1.0,
     confidence="published",
-    held=("A",),
+    fixed=("A",),
 )
 class SimpleBoucWen(NamedTuple):
     """Simple Bouc-Wen damper of the RD-1005-3 with cubic current laws.
@@ -84,12 +84,12 @@ class SimpleBoucWen(NamedTuple):
     gamma: Annotated[float, param("1/m^2", "shape: coefficient of |v| z |z|^(n-1)")] = 1.507e6
     n: Annotated[float, param("-", "sharpness of yielding", low=1, high=20)] = 2.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
-        viscous = cubic(self.c0, i) * heat.viscous * v
-        return viscous + self.k0 * heat.stiffness * x + cubic(self.alpha, i) * heat.yielding * z[0] + self.f0
+        viscous = cubic(self.c0, i) * scaling.viscous * v
+        return viscous + self.k0 * scaling.stiffness * x + cubic(self.alpha, i) * scaling.yielding * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (z',)."""
         return (bouc_wen_rate(self.A, self.beta, self.gamma, self.n, v, z[0]),)
 
@@ -102,7 +102,7 @@ class SimpleBoucWen(NamedTuple):
     max_speed=0.13,
     max_current=1.0,
     confidence="published",
-    held=("A", "x0"),
+    fixed=("A", "x0"),
 )
 class ModifiedBoucWen(NamedTuple):
     """Modified Bouc-Wen damper: a Bouc-Wen element in series with a dashpot c1.
@@ -135,17 +135,17 @@ class ModifiedBoucWen(NamedTuple):
     n: Annotated[float, param("-", "sharpness of yielding", low=1, high=20)] = 2.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        c0, c1 = cubic(self.c0, held) * heat.viscous, cubic(self.c1, held) * heat.viscous
-        inner = cubic(self.alpha, held) * heat.yielding * z[1] + self.k0 * heat.stiffness * (x - z[0])
-        return c1 * (inner + c0 * v) / (c0 + c1) + self.k1 * heat.stiffness * (x - self.x0) + self.f0
+        c0, c1 = cubic(self.c0, held) * scaling.viscous, cubic(self.c1, held) * scaling.viscous
+        inner = cubic(self.alpha, held) * scaling.yielding * z[1] + self.k0 * scaling.stiffness * (x - z[0])
+        return c1 * (inner + c0 * v) / (c0 + c1) + self.k1 * scaling.stiffness * (x - self.x0) + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (y', z')."""
         held = min(i, self.law_end)
-        c0, c1 = cubic(self.c0, held) * heat.viscous, cubic(self.c1, held) * heat.viscous
-        inner = cubic(self.alpha, held) * heat.yielding * z[1] + self.k0 * heat.stiffness * (x - z[0])
+        c0, c1 = cubic(self.c0, held) * scaling.viscous, cubic(self.c1, held) * scaling.viscous
+        inner = cubic(self.alpha, held) * scaling.yielding * z[1] + self.k0 * scaling.stiffness * (x - z[0])
         flow = (inner + c0 * v) / (c0 + c1)
         return (flow, bouc_wen_rate(self.A, self.beta, self.gamma, self.n, v - flow, z[1]))

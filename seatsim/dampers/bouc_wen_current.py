@@ -9,7 +9,7 @@ from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.bouc_wen_variants import NORMALISED, normalised_rate
 from seatsim.dampers.pieces import BRANCH_MEMORY, UTFSM, branch_rate
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 AMPLITUDE, LEAST_AMPLITUDE, MOST_AMPLITUDE = 0.01, 0.001, 0.025
@@ -80,14 +80,14 @@ class CurrentDependentBoucWen(NamedTuple):
     k: Annotated[float, param("N/m", "stiffness, of the gas accumulator", low=0)] = 650.0
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         c = saturating(self.c_0, self.c_1, self.c_2, self.c_3, i, self.i_c)
         alpha = saturating(self.alpha_0, self.alpha_1, self.alpha_2, self.alpha_3, i, self.i_c)
-        smooth = c * heat.viscous * v + self.k * heat.stiffness * x
-        return smooth + alpha * heat.yielding * z[0] + self.f0
+        smooth = c * scaling.viscous * v + self.k * scaling.stiffness * x
+        return smooth + alpha * scaling.yielding * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         alpha = saturating(self.alpha_0, self.alpha_1, self.alpha_2, self.alpha_3, i, self.i_c)
         return (normalised_rate(self.stiffness / alpha, self.sigma, self.n, v, z[0]),)
@@ -141,14 +141,14 @@ class FrequencyDependentBoucWen(NamedTuple):
     k: Annotated[float, param("N/m", "stiffness, of the gas accumulator", low=0)] = 800.0
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         c = saturating(self.c_0, self.c_1, self.c_2, self.c_3, i, self.i_c)
         alpha = saturating(self.alpha_0, self.alpha_1, self.alpha_2, self.alpha_3, i, self.i_c)
-        smooth = c * heat.viscous * v + self.k * heat.stiffness * x
-        return excitation_factor(self.d2, self.d4, z[1], z[2]) * (smooth + alpha * heat.yielding * z[3]) + self.f0
+        smooth = c * scaling.viscous * v + self.k * scaling.stiffness * x
+        return excitation_factor(self.d2, self.d4, z[1], z[2]) * (smooth + alpha * scaling.yielding * z[3]) + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (d', s', r', w')."""
         alpha = saturating(self.alpha_0, self.alpha_1, self.alpha_2, self.alpha_3, i, self.i_c)
         w = normalised_rate(self.stiffness / alpha, self.sigma, self.n, v, z[3])

@@ -9,7 +9,7 @@ from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic, power
 from seatsim.dampers.pieces_series import inertance, inertance_rate
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 NORMALISED = "w, hysteretic variable from -1 to 1"
@@ -57,12 +57,12 @@ class ShearBoucWen(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        return cubic(self.kx, held) * heat.viscous * v + cubic(self.kw, held) * heat.yielding * z[0] + self.f0
+        return cubic(self.kx, held) * scaling.viscous * v + cubic(self.kw, held) * scaling.yielding * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         rho = between(self.rho0, self.rho1, i, self.law_end)
         return (normalised_rate(rho, self.sigma, self.n, v, z[0]),)
@@ -107,14 +107,14 @@ class LargeScaleBoucWen(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
         thinned = cubic(self.a1, held) * math.exp(-power(self.a2 * abs(v), self.p)) * v
-        flow = (thinned + inertance(self.m, v, z[1])) * heat.viscous
-        return flow + self.k * heat.stiffness * x + cubic(self.alpha, held) * heat.yielding * z[0] + self.f0
+        flow = (thinned + inertance(self.m, v, z[1])) * scaling.viscous
+        return flow + self.k * scaling.stiffness * x + cubic(self.alpha, held) * scaling.yielding * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w', u')."""
         rho = between(self.rho0, self.rho1, i, self.law_end)
         return (normalised_rate(rho, self.sigma, self.n, v, z[0]), inertance_rate(v, z[1]))
@@ -129,7 +129,7 @@ class LargeScaleBoucWen(NamedTuple):
     max_current=1.0,
     temperatures=(20.0, 20.0),
     confidence="recalled",
-    held=("mu",),
+    fixed=("mu",),
 )
 class NonsymmetricalBoucWen(NamedTuple):
     """Bouc-Wen damper whose hysteresis sees the velocity shifted by mu, so that the loop is not symmetric.
@@ -158,13 +158,13 @@ class NonsymmetricalBoucWen(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        smooth = cubic(self.c, held) * heat.viscous * v + self.k * heat.stiffness * x
-        return smooth + cubic(self.alpha, held) * heat.yielding * z[0] + self.f0
+        smooth = cubic(self.c, held) * scaling.viscous * v + self.k * scaling.stiffness * x
+        return smooth + cubic(self.alpha, held) * scaling.yielding * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         rho = between(self.rho0, self.rho1, i, self.law_end)
         return (normalised_rate(rho, self.sigma, self.n, v - self.mu, z[0]),)

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.bouc_wen_variants import NORMALISED
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
@@ -43,12 +43,12 @@ class ModifiedDahl(NamedTuple):
     sigma: Annotated[float, param("1/m", "slope of w from zero", low=150, high=1e6)] = 15300.0
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
-        smooth = self.k0 * heat.stiffness * x + (self.c00 + self.c01 * i) * heat.viscous * v
-        return smooth + (self.fd0 + self.fd1 * i) * heat.yielding * z[0] + self.f0
+        smooth = self.k0 * scaling.stiffness * x + (self.c00 + self.c01 * i) * scaling.viscous * v
+        return smooth + (self.fd0 + self.fd1 * i) * scaling.yielding * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return (self.sigma * (v - abs(v) * z[0]),)
 
@@ -85,11 +85,11 @@ class ViscousDahl(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        return cubic(self.kx, held) * heat.viscous * v + cubic(self.kw, held) * heat.yielding * z[0] + self.f0
+        return cubic(self.kx, held) * scaling.viscous * v + cubic(self.kw, held) * scaling.yielding * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return (between(self.rho0, self.rho1, i, self.law_end) * (v - abs(v) * z[0]),)

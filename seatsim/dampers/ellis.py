@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 V_REF = 0.1
@@ -51,11 +51,11 @@ def ellis_force(v: float, damping: float, height: float, exponent: float) -> flo
 
 
 @jit
-def series_force(d: Any, v: float, i: float, heat: Heat, stop: float) -> float:
+def series_force(d: Any, v: float, i: float, scaling: TemperatureScaling, stop: float) -> float:
     """Return the force q in N through fluid and play, where the stops of the play push with `stop` N."""
-    play = d.c_y * heat.viscous
-    damping = 1.0 / (1.0 / (d.c_p * heat.viscous) + 1.0 / play)
-    height = max(cubic(d.K, i), LEAST_FORCE) * heat.yielding
+    play = d.c_y * scaling.viscous
+    damping = 1.0 / (1.0 / (d.c_p * scaling.viscous) + 1.0 / play)
+    height = max(cubic(d.K, i), LEAST_FORCE) * scaling.yielding
     force: float = ellis_force(v + stop / play, damping, height, max(d.p_a + d.p_b * i, LEAST_EXPONENT))
     return force
 
@@ -105,17 +105,17 @@ class Ellis(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        stop = heat.stiffness * self.k_s * beyond(z[0], self.half)
-        q = series_force(self, v, held, heat, stop)
-        elastic = heat.stiffness * self.k0 * x
-        return q + cubic(self.c0, held) * heat.viscous * v + self.f_s * heat.yielding * z[1] + elastic + self.f0
+        stop = scaling.stiffness * self.k_s * beyond(z[0], self.half)
+        q = series_force(self, v, held, scaling, stop)
+        elastic = scaling.stiffness * self.k0 * x
+        return q + cubic(self.c0, held) * scaling.viscous * v + self.f_s * scaling.yielding * z[1] + elastic + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (y', w')."""
         held = min(i, self.law_end)
-        stop = heat.stiffness * self.k_s * beyond(z[0], self.half)
-        play = (series_force(self, v, held, heat, stop) - stop) / (self.c_y * heat.viscous)
+        stop = scaling.stiffness * self.k_s * beyond(z[0], self.half)
+        play = (series_force(self, v, held, scaling, stop) - stop) / (self.c_y * scaling.viscous)
         return (play, (v - abs(v) * z[1]) / self.x_s)

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
 from seatsim.dampers.pieces_series import slip
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
@@ -46,16 +46,16 @@ class EquivalentOhOnoda(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N, without the friction of the seal."""
-        return (self.ks * z[0] + self.ka * x) * heat.stiffness + self.f0
+        return (self.ks * z[0] + self.ka * x) * scaling.stiffness + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e',)."""
         held = min(i, self.law_end)
-        q = self.ks * heat.stiffness * z[0]
-        return (v - slip(q, cubic(self.fy, held) * heat.yielding, cubic(self.c, held) * heat.viscous),)
+        q = self.ks * scaling.stiffness * z[0]
+        return (v - slip(q, cubic(self.fy, held) * scaling.yielding, cubic(self.c, held) * scaling.viscous),)
 
-    def coulomb(self, i: float, heat: Heat) -> float:
+    def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the friction of the seal in N."""
-        return self.fs * heat.yielding
+        return self.fs * scaling.yielding

@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
 from seatsim.dampers.pieces_series import SETTLING
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
@@ -22,7 +22,7 @@ from seatsim.schema.fields import param
     max_current=1.0,
     temperatures=(20.0, 20.0),
     confidence="reading",
-    held=("A",),
+    fixed=("A",),
     smooth=True,
 )
 class HydroMechanical(NamedTuple):
@@ -57,19 +57,19 @@ class HydroMechanical(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N, without the friction of the seal."""
-        return (self.A * z[0] / self.C + self.k_g * x) * heat.stiffness + self.f0
+        return (self.A * z[0] / self.C + self.k_g * x) * scaling.stiffness + self.f0
 
-    def coulomb(self, i: float, heat: Heat) -> float:
+    def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the seal's set-valued friction in N."""
-        return self.fs * heat.yielding
+        return self.fs * scaling.yielding
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (V', Q')."""
         held, flow = min(i, self.law_end), z[1]
-        resistance, yielding = cubic(self.R, held) * heat.viscous, cubic(self.P_y, held) * heat.yielding
+        resistance, yielding = cubic(self.R, held) * scaling.viscous, cubic(self.P_y, held) * scaling.yielding
         sign = math.tanh(flow / self.Q_r)
         slope = resistance + yielding * (1.0 - sign * sign) / self.Q_r
-        driven = z[0] / self.C * heat.stiffness - resistance * flow - yielding * sign
-        return (self.A * v - flow, driven / (self.L * heat.viscous + SETTLING * slope))
+        driven = z[0] / self.C * scaling.stiffness - resistance * flow - yielding * sign
+        return (self.A * v - flow, driven / (self.L * scaling.viscous + SETTLING * slope))

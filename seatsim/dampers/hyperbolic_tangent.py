@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, QuadraticLaw, branch, branch_rate, quadratic
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
@@ -48,15 +48,15 @@ class KwokTanh(NamedTuple):
     f0_b: Annotated[float, param("N/A", "rise of the offset with current")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 2.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        viscous = (self.c_a + self.c_b * held) * heat.viscous * v
-        elastic = (self.k_a + self.k_b * held) * heat.stiffness * x
+        viscous = (self.c_a + self.c_b * held) * scaling.viscous * v
+        elastic = (self.k_a + self.k_b * held) * scaling.stiffness * x
         curve = math.tanh(self.beta * v + (self.delta_a + self.delta_b * held) * branch(z))
-        yielding = quadratic(self.alpha, held) * heat.yielding * curve
+        yielding = quadratic(self.alpha, held) * scaling.yielding * curve
         return viscous + elastic + yielding + self.f0_a + self.f0_b * held
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return branch_rate(v, z)

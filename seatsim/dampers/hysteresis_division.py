@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, branch, branch_rate
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 RISE_TIME = 0.01
@@ -33,7 +33,7 @@ def envelope_rate(speed: float, envelope: float) -> float:
     max_current=1.0,
     temperatures=(20.0, 20.0),
     confidence="published",
-    held=("c_i2", "d2"),
+    fixed=("c_i2", "d2"),
 )
 class Yu2017(NamedTuple):
     """Backbone and branch of a symmetric loop, divided and scaled by one height S.
@@ -63,14 +63,14 @@ class Yu2017(NamedTuple):
     d2: Annotated[float, param("m/s", "branch, speed of its largest value")] = 0.0
     d3: Annotated[float, param("m^2/s^2", "branch, squared width", above=0)] = 1.732e-4
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         speed = abs(v)
         height = self.c1 + self.c2 / (1.0 + math.exp(self.c3 * z[1])) + self.c_i1 * math.exp(self.c_i2 * i)
         backbone = (1.0 - math.exp(self.b1 * speed)) / (1.0 + math.exp(self.b2 * speed))
         loop = self.d1 * math.exp(-((speed - self.d2) ** 2) / self.d3) * branch(z)
-        return height * heat.yielding * (math.copysign(backbone, v) + loop)
+        return height * scaling.yielding * (math.copysign(backbone, v) + loop)
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w', e')."""
         return (*branch_rate(v, z), envelope_rate(abs(v), z[1]))

@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 DEFLECTION = "w, deflection of the bristles over its bound, from -1 to 1"
@@ -46,13 +46,13 @@ class LuGreJimenez(NamedTuple):
     i0: Annotated[float, param("A", "current that stands for the friction at zero current", low=0)] = 0.068
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         level = i + self.i0
-        bristles = level / (self.a0 * (1.0 + self.a1 * level)) * heat.yielding * z[0]
-        return bristles + (self.sigma1 * (v - abs(v) * z[0]) + self.sigma2 * v) * heat.viscous + self.f0
+        bristles = level / (self.a0 * (1.0 + self.a1 * level)) * scaling.yielding * z[0]
+        return bristles + (self.sigma1 * (v - abs(v) * z[0]) + self.sigma2 * v) * scaling.viscous + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return (self.sigma0 * self.a0 * (1.0 + self.a1 * (i + self.i0)) * (v - abs(v) * z[0]),)
 
@@ -91,12 +91,12 @@ class LuGreSakai(NamedTuple):
     a0: Annotated[float, param("1/m", "inverse of the bound of the deflection", low=100, high=1e6)] = 9780.0
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
-        bristles = (self.fa + self.fb * i) * heat.yielding * z[0]
+        bristles = (self.fa + self.fb * i) * scaling.yielding * z[0]
         slip = self.sigma1 * (v - abs(v) * z[0])
-        return bristles + (slip + (self.sigma2 + self.sigmab * i) * v) * heat.viscous + self.f0
+        return bristles + (slip + (self.sigma2 + self.sigmab * i) * v) * scaling.viscous + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return (self.a0 * (v - abs(v) * z[0]),)

@@ -8,7 +8,7 @@ from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic, power
 from seatsim.dampers.pieces_series import SETTLING, inertance, inertance_rate, limited, slip
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
@@ -42,19 +42,19 @@ class Bingmax(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N, without the friction."""
-        return (self.k_a + self.k_b * min(i, self.law_end)) * heat.stiffness * z[0] + self.f0
+        return (self.k_a + self.k_b * min(i, self.law_end)) * scaling.stiffness * z[0] + self.f0
 
-    def coulomb(self, i: float, heat: Heat) -> float:
+    def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the set-valued friction in N."""
-        return max(0.0, cubic(self.fy, min(i, self.law_end)) * heat.yielding)
+        return max(0.0, cubic(self.fy, min(i, self.law_end)) * scaling.yielding)
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e',)."""
         held = min(i, self.law_end)
-        k = (self.k_a + self.k_b * held) * heat.stiffness
-        return (v - k * z[0] / (cubic(self.c, held) * heat.viscous),)
+        k = (self.k_a + self.k_b * held) * scaling.stiffness
+        return (v - k * z[0] / (cubic(self.c, held) * scaling.viscous),)
 
 
 @jit
@@ -107,24 +107,24 @@ class MaxwellNonlinearSlider(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        maxwell = (self.k_a + self.k_b * held) * heat.stiffness * z[0]
-        return limited(maxwell, slider(self, v, held, heat, z[1])) + self.f0
+        maxwell = (self.k_a + self.k_b * held) * scaling.stiffness * z[0]
+        return limited(maxwell, slider(self, v, held, scaling, z[1])) + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e', u')."""
         held = min(i, self.law_end)
-        k = (self.k_a + self.k_b * held) * heat.stiffness
-        creep = k * z[0] / ((self.c_a + self.c_b * held) * heat.viscous)
-        over = slip(k * z[0], slider(self, v, held, heat, z[1]), k * SETTLING)
+        k = (self.k_a + self.k_b * held) * scaling.stiffness
+        creep = k * z[0] / ((self.c_a + self.c_b * held) * scaling.viscous)
+        over = slip(k * z[0], slider(self, v, held, scaling, z[1]), k * SETTLING)
         return (v - creep - over, inertance_rate(v, z[1]))
 
 
 @jit
-def slider(d: MaxwellNonlinearSlider, v: float, held: float, heat: Heat, u: float) -> float:
+def slider(d: MaxwellNonlinearSlider, v: float, held: float, scaling: TemperatureScaling, u: float) -> float:
     """Return the magnitude in N of the post-yield force at the current `held`."""
     braking = min(0.0, min(max(v / d.v_t, -1.0), 1.0) * inertance(d.m0, v, u))
     rising = rising_power(cubic(d.b, held), d.n, abs(v), d.v_t)
-    return (rising + braking) * heat.viscous + cubic(d.a, held) * heat.yielding
+    return (rising + braking) * scaling.viscous + cubic(d.a, held) * scaling.yielding

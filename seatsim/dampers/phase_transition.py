@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, between, cubic
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 V_REF = 0.1
@@ -49,12 +49,12 @@ class PhaseTransition(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        return cubic(self.c, held) * heat.viscous * v + cubic(self.fy, held) * heat.yielding * z[0] + self.f0
+        return cubic(self.c, held) * scaling.viscous * v + cubic(self.fy, held) * scaling.yielding * z[0] + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (p',)."""
         gradient = z[0] * (self.a + (1.0 - self.a) * z[0] ** 4)
         return ((v / V_REF - gradient) / between(self.tau0, self.tau1, i, self.law_end),)

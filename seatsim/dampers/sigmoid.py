@@ -9,7 +9,7 @@ from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.hysteresis_division import envelope_rate
 from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, branch, branch_rate
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
@@ -29,7 +29,7 @@ def logistic(k: float, a: float, s: float) -> float:
     max_current=1.0,
     temperatures=(20.0, 20.0),
     confidence="recalled",
-    held=("k0", "k2"),
+    fixed=("k0", "k2"),
 )
 class Sigmoid(NamedTuple):
     """Generalised sigmoid: an S-curve of the velocity whose height and shift follow current and peak speed.
@@ -62,13 +62,13 @@ class Sigmoid(NamedTuple):
     kv: Annotated[float, param("s/m", "viscous rise of the force, over its height", low=0)] = 4.02
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         height = self.ft0 * (1.0 + math.exp(self.a1 * z[1])) * logistic(self.k2, self.a2, i + self.i0)
         shift = self.k4 * z[1] * logistic(self.k3, self.a3, i + self.i1) * branch(z)
         curve = math.tanh(0.5 * self.a0 / (1.0 + self.k0 * z[1]) * (v + shift))
-        return height * curve * (heat.yielding + self.kv * abs(v) * heat.viscous) + self.f0
+        return height * curve * (scaling.yielding + self.kv * abs(v) * scaling.viscous) + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w', e')."""
         return (*branch_rate(v, z), envelope_rate(abs(v), z[1]))

@@ -12,7 +12,7 @@ from scipy.interpolate import PchipInterpolator
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import BRANCH_STATE, CurrentLaw, branch, branch_rate, cubic
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 Row = tuple[float, float, float, float, float]
@@ -72,7 +72,7 @@ def _at(c: NDArray[np.float64], s: float) -> float:
     max_current=2.0,
     temperatures=(20.0, 20.0),
     confidence="published",
-    held=("test", "v_unit"),
+    fixed=("test", "v_unit"),
     smooth=True,
 )
 class HongSigmoidGaussian(NamedTuple):
@@ -99,16 +99,16 @@ class HongSigmoidGaussian(NamedTuple):
     v_unit: Annotated[float, param("m/s", "velocity unit of the tables", above=0, high=1)] = 0.0254
     offset_share: Annotated[float, param("-", "kept share of the published offset", low=0, high=1)] = 0.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         a, b, c, sigma, r = table_row(self.test, i)
         u = v / self.v_unit
         # G is written about its middle a + b/2, so that it cannot overflow.
         mean = -0.5 * b * math.tanh(0.5 * c * u)
         thickness = r / (math.sqrt(2.0 * math.pi) * sigma) * math.exp(-0.5 * (u / sigma) ** 2)
-        return 1e3 * (heat.yielding * (mean + branch(z) * thickness) + self.offset_share * (a + 0.5 * b))
+        return 1e3 * (scaling.yielding * (mean + branch(z) * thickness) + self.offset_share * (a + 0.5 * b))
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return branch_rate(v, z)
 
@@ -150,13 +150,13 @@ class SigmoidGaussian(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
         mean = cubic(self.s, held) * math.tanh(0.5 * v / self.v_c)
         thickness = cubic(self.r, held) * math.exp(-0.5 * (v / self.sigma) ** 2)
-        return cubic(self.c0, held) * heat.viscous * v + heat.yielding * (mean + branch(z) * thickness) + self.f0
+        return cubic(self.c0, held) * scaling.viscous * v + scaling.yielding * (mean + branch(z) * thickness) + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
         return branch_rate(v, z)

@@ -9,7 +9,7 @@ from seatsim.compilation.jit import jit
 from seatsim.dampers.base import State, damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
 from seatsim.dampers.pieces_series import SETTLING, inertance, inertance_rate, limited, slip
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
 
@@ -20,9 +20,9 @@ def yielded(force: float, limit: float) -> float:
 
 
 @jit
-def solid_force(k1: float, k2: float, heat: Heat, z: State) -> float:
+def solid_force(k1: float, k2: float, scaling: TemperatureScaling, z: State) -> float:
     """Return the force in N of a standard solid with the deflections z[0] of spring k1 and z[1] of spring k2."""
-    return (k1 * z[0] + k2 * z[1]) * heat.stiffness
+    return (k1 * z[0] + k2 * z[1]) * scaling.stiffness
 
 
 @damper(
@@ -66,21 +66,21 @@ class ViscoelasticPlastic(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held, width = min(i, self.law_end), 4.0 * self.eps
         low, high = math.tanh((v - self.v_y) / width), math.tanh((v + self.v_y) / width)
         post = 0.5 * (1.0 + math.tanh((abs(v) - self.v_y) / width))
-        solid = (1.0 - post) * (self.k_a + self.k_b * held) * heat.stiffness * z[0]
-        flow = post * heat.viscous * (cubic(self.c, held) * v + inertance(self.m, post * v, z[1]))
-        return solid + flow + 0.5 * (low + high) * cubic(self.fc, held) * heat.yielding + self.f0
+        solid = (1.0 - post) * (self.k_a + self.k_b * held) * scaling.stiffness * z[0]
+        flow = post * scaling.viscous * (cubic(self.c, held) * v + inertance(self.m, post * v, z[1]))
+        return solid + flow + 0.5 * (low + high) * cubic(self.fc, held) * scaling.yielding + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e', u')."""
         held = min(i, self.law_end)
         post = 0.5 * (1.0 + math.tanh((abs(v) - self.v_y) / (4.0 * self.eps)))
-        elastic = (self.k_a + self.k_b * held) * heat.stiffness * z[0]
-        creep = elastic / (cubic(self.c1, held) * heat.viscous)
+        elastic = (self.k_a + self.k_b * held) * scaling.stiffness * z[0]
+        creep = elastic / (cubic(self.c1, held) * scaling.viscous)
         return ((1.0 - post) * v - creep, inertance_rate(post * v, z[1]))
 
 
@@ -123,25 +123,25 @@ class LiViscoelasticPlastic(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N, without the friction of the seal."""
         held = min(i, self.law_end)
-        f, fc = solid_force(self.k_a + self.k_b * held, self.k2, heat, z), cubic(self.fc, held) * heat.yielding
+        f, fc = solid_force(self.k_a + self.k_b * held, self.k2, scaling, z), cubic(self.fc, held) * scaling.yielding
         share = yielded(f, fc)
         flow = cubic(self.cv, held) * v + inertance(self.R, share * v, z[2])
-        return limited(f, fc) + share * heat.viscous * flow + self.f0
+        return limited(f, fc) + share * scaling.viscous * flow + self.f0
 
-    def coulomb(self, i: float, heat: Heat) -> float:
+    def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the seal's set-valued friction in N."""
-        return self.fs * heat.yielding
+        return self.fs * scaling.yielding
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e1', e2', u')."""
         held = min(i, self.law_end)
-        k1, fc = self.k_a + self.k_b * held, cubic(self.fc, held) * heat.yielding
-        f = solid_force(k1, self.k2, heat, z)
-        rate = v - slip(f, fc, (k1 + self.k2) * heat.stiffness * SETTLING)
-        creep = self.k2 * heat.stiffness * z[1] / (self.c2 * heat.viscous)
+        k1, fc = self.k_a + self.k_b * held, cubic(self.fc, held) * scaling.yielding
+        f = solid_force(k1, self.k2, scaling, z)
+        rate = v - slip(f, fc, (k1 + self.k2) * scaling.stiffness * SETTLING)
+        creep = self.k2 * scaling.stiffness * z[1] / (self.c2 * scaling.viscous)
         return (rate, rate - creep, inertance_rate(yielded(f, fc) * v, z[2]))
 
 
@@ -177,15 +177,15 @@ class StiffnessViscosityElastoSlide(NamedTuple):
     f0: Annotated[float, param("N", "offset, of the gas accumulator")] = 0.0
     law_end: Annotated[float, param("A", "current beyond which the laws are held", above=0)] = 1.0
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: State) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        linear = self.k0 * heat.stiffness * x + cubic(self.c0, held) * heat.viscous * v
-        elastic = (self.ke_a + self.ke_b * held) * heat.stiffness * z[0]
-        return linear + limited(elastic, cubic(self.n_s, held) * heat.yielding) + self.f0
+        linear = self.k0 * scaling.stiffness * x + cubic(self.c0, held) * scaling.viscous * v
+        elastic = (self.ke_a + self.ke_b * held) * scaling.stiffness * z[0]
+        return linear + limited(elastic, cubic(self.n_s, held) * scaling.yielding) + self.f0
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: State) -> State:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e',)."""
         held = min(i, self.law_end)
-        ke = (self.ke_a + self.ke_b * held) * heat.stiffness
-        return (v - slip(ke * z[0], cubic(self.n_s, held) * heat.yielding, ke * SETTLING),)
+        ke = (self.ke_a + self.ke_b * held) * scaling.stiffness
+        return (v - slip(ke * z[0], cubic(self.n_s, held) * scaling.yielding, ke * SETTLING),)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from seatsim.diagnosis.problem import Problem
 from seatsim.effects.base import ON_SEAT, Form, acts_on
 from seatsim.schema.fields import bounds, choices
-from seatsim.schema.registry import card_of, find, names
+from seatsim.schema.registry import find, names, specification_of
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ class Candidate(NamedTuple):
     @property
     def limits(self) -> list[bool]:
         """Which free parameters are such limits: larger where the effect is off."""
-        off = card_of(self.cls).off
+        off = specification_of(self.cls).off
         return [abs(off.get(name, 0.0)) > abs(start) for name, start in zip(self.free, self.start, strict=True)]
 
     @property
@@ -71,8 +71,12 @@ def candidates(problem: Problem, without: Sequence[str] = ()) -> list[Candidate]
         cls: Any = find("effect", name)
         if name in without or cls in present or not _fits(cls, problem):
             continue
-        for form in card_of(cls).forms:
-            places = [{"channel": channel} for channel in _channels(cls, problem)] if card_of(cls).by_channel else [{}]
+        for form in specification_of(cls).forms:
+            places = (
+                [{"channel": channel} for channel in _channels(cls, problem)]
+                if specification_of(cls).by_channel
+                else [{}]
+            )
             placed = [_candidate(name, cls, form, place) for place in places]
             found += [start for candidate in placed for start in _starts(candidate)]
     return found
@@ -93,7 +97,7 @@ def _fits(cls: Any, problem: Problem) -> bool:
     commanded = "current_command" in recorded or "command_voltage" in recorded
     if hasattr(cls, "coil") and not commanded:
         return False
-    return bool(card_of(cls).suits(problem.scenario.damper.record))
+    return bool(specification_of(cls).suits(problem.scenario.damper.record))
 
 
 def _channels(cls: Any, problem: Problem) -> list[str]:
@@ -103,8 +107,8 @@ def _channels(cls: Any, problem: Problem) -> list[str]:
 
 
 def _candidate(name: str, cls: Any, form: Form, place: dict[str, Any]) -> Candidate:
-    off = {field: 0.0 for field in cls._fields if field not in place} | dict(card_of(cls).off)
-    fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.held) | place
+    off = {field: 0.0 for field in cls._fields if field not in place} | dict(specification_of(cls).off)
+    fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.fixed) | place
     ranges = [form.within.get(f, _range(cls, f, value, k > 0)) for k, (f, value) in enumerate(form.free.items())]
     low, high = zip(*ranges, strict=True)
     return Candidate(name, cls, fixed, tuple(form.free), tuple(form.free.values()), low, high)

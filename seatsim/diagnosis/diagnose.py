@@ -54,11 +54,11 @@ class Solution(NamedTuple):
 
 
 def diagnose(
-    recording: str | Path | Recording, without: Sequence[str] = (), told: Callable[[str], None] = lambda _: None
+    recording: str | Path | Recording, without: Sequence[str] = (), progress: Callable[[str], None] = lambda _: None
 ) -> Diagnosis:
     """Say where the gap between a recording and its nominal scenario lies, what causes it, and how far it shrinks.
 
-    `without` names effects that are withheld from the library; `told` is called with what is being done.
+    `without` names effects that are withheld from the library; `progress` is called with what is being done.
 
     Raises:
         InputError: the recording is damaged in a way that would lead to a wrong verdict.
@@ -66,46 +66,46 @@ def diagnose(
     """
     if not isinstance(recording, Recording):
         recording = load_recording(recording)
-    told("looking at the data")
+    progress("looking at the data")
     examination = examine(recording)
     refuse(examination)
     with threadpool_limits(1):
-        solution = solved(problem(recording), without, told)
-        return _stated(recording, solution, [finding.sentence for finding in examination.findings], told)
+        solution = solved(problem(recording), without, progress)
+        return _stated(recording, solution, [finding.sentence for finding in examination.findings], progress)
 
 
-def solved(posed: Problem, without: Sequence[str], told: Callable[[str], None]) -> Solution:
+def solved(posed: Problem, without: Sequence[str], progress: Callable[[str], None]) -> Solution:
     """Search for the causes; where what is left comes from outside, count it as noise and search again."""
     offered = candidates(posed, without)
     effects = [name for name in names("effect") if name not in without]
-    told("weighing the channels")
+    progress("weighing the channels")
     engine = Engine(posed, whitening(posed))
     shaken = None if posed.bench else unrepeated(engine, engine.states([Point(posed.rest)])[0])
     if shaken is not None:
         engine = Engine(posed, whitening(posed, shaken))
-    first = _searched(engine, offered, effects, told)
+    first = _searched(engine, offered, effects, progress)
     if first.judgement.verdict == "unknown":
-        first = _past_chatter(first, shaken, offered, effects, told)
-    first = _supported(first, offered, told) if first.judgement.verdict == "unknown" else _placed(first, told)
+        first = _past_chatter(first, shaken, offered, effects, progress)
+    first = _supported(first, offered, progress) if first.judgement.verdict == "unknown" else _placed(first, progress)
     rest = first.rest
     if first.judgement.verdict in ("known", "ambiguous") and not posed.bench:
         rest = wandering(posed, first.judgement.chosen)
     random = random_cause(posed, rest) if rest else ""
     if rest is None or not random or random in without:
         return first
-    told(f"counting {random} as noise")
+    progress(f"counting {random} as noise")
     noisy = Engine(posed, counted(first.engine, random, rest))
-    second = _searched(noisy, [each for each in offered if each.effect != random], effects, told)
+    second = _searched(noisy, [each for each in offered if each.effect != random], effects, progress)
     if second.judgement.verdict == "unknown":
         return first
-    judgement, where = joined(second.judgement, _placed(second, told).where, random)
+    judgement, where = joined(second.judgement, _placed(second, progress).where, random)
     rest = rest._replace(block=random.partition(".")[0])
     return second._replace(judgement=judgement, where=where, rest=rest, random=random)
 
 
 def _past_chatter(
     first: Solution, shaken: Mapping[str, Array] | None, offered: Sequence[Candidate], effects: list[str],
-    told: Callable[[str], None],
+    progress: Callable[[str], None],
 ) -> Solution:  # fmt: skip
     """Search again where most of what the best set leaves is broadband, and return what explains the gap beside it."""
     posed, best = first.engine.problem, first.found.sets[-1][0]
@@ -113,35 +113,35 @@ def _past_chatter(
     chatter = sum(float(np.sum(power * weights[run] ** 2)) for run, power in errors.items())
     if chatter < CHATTER * first.found.excess(best) * first.found.rows:
         return first
-    told("counting chatter as noise")
-    second = _searched(Engine(posed, whitening(posed, shaken, errors)), offered, effects, told)
+    progress("counting chatter as noise")
+    second = _searched(Engine(posed, whitening(posed, shaken, errors)), offered, effects, progress)
     return second if second.judgement.verdict in ("known", "ambiguous") else first
 
 
 def _searched(
-    engine: Engine, offered: Sequence[Candidate], effects: list[str], told: Callable[[str], None]
+    engine: Engine, offered: Sequence[Candidate], effects: list[str], progress: Callable[[str], None]
 ) -> Solution:
-    found = search(engine, offered, told)
+    found = search(engine, offered, progress)
     return Solution(engine, found, judged(engine, found, effects))
 
 
-def _supported(first: Solution, offered: Sequence[Candidate], told: Callable[[str], None]) -> Solution:
+def _supported(first: Solution, offered: Sequence[Candidate], progress: Callable[[str], None]) -> Solution:
     """Return what is unexplained, beside the effects that runs left out support where only the gap counts."""
-    told("weighing the gap alone")
+    progress("weighing the gap alone")
     posed = first.engine.problem
     engine = Engine(posed, plain(posed, first.found.calibrated))
     plainest = {each.form: each for each in reversed(offered)}
-    found = search(engine, list(plainest.values()), told, PLAIN)
+    found = search(engine, list(plainest.values()), progress, PLAIN)
     chosen, alike = supported(engine, found)
     judgement = beside_unknown(first.judgement, first.engine.refitted(chosen.point), alike)
-    placed = _placed(first._replace(judgement=judgement), told)
+    placed = _placed(first._replace(judgement=judgement), progress)
     if placed.judgement is not judgement:
         return placed
     judgement = dataclasses.replace(judgement, chosen=chosen)
     return placed._replace(engine=engine, found=found, judgement=judgement)
 
 
-def _placed(solution: Solution, told: Callable[[str], None]) -> Solution:
+def _placed(solution: Solution, progress: Callable[[str], None]) -> Solution:
     """Return the solution with the blocks that the gap lies in, and the course of what is unexplained."""
     engine, found, judgement = solution.engine, solution.found, solution.judgement
     if judgement.verdict == "none":
@@ -150,7 +150,7 @@ def _placed(solution: Solution, told: Callable[[str], None]) -> Solution:
         return solution._replace(where=places(engine, judgement.chosen, None))
     if engine.problem.bench:
         return solution._replace(where=[Share("damper", 1.0)])
-    told("asking which block could hold the rest")
+    progress("asking which block could hold the rest")
     held, state = unexplained(engine, found, judgement.chosen)
     rest = latent(engine.problem, state.point, held.block, held.suspects[held.block])
     if state is not judgement.chosen:
@@ -158,11 +158,11 @@ def _placed(solution: Solution, told: Callable[[str], None]) -> Solution:
     return solution._replace(judgement=judgement, where=places(engine, state, held), rest=rest)
 
 
-def _stated(recording: Recording, solution: Solution, notes: list[str], told: Callable[[str], None]) -> Diagnosis:
+def _stated(recording: Recording, solution: Solution, notes: list[str], progress: Callable[[str], None]) -> Diagnosis:
     """State what a solution amounts to on a held-out run; what fails there beside an unknown cause is given up."""
     engine, judgement, posed = solution.engine, solution.judgement, solution.engine.problem
     chosen = judgement.chosen
-    told("holding out a run")
+    progress("holding out a run")
     shrink = shrinks(posed, solution.found.nominal, chosen)
     run = held_out(engine, chosen, shrink)
     calibrated, augmented = trained(engine, chosen, run)
@@ -175,7 +175,7 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], told: Ca
     found = gaps(posed, scenarios, [run], spread)
     if judgement.verdict == "unknown" and chosen.point.terms and found.shrink < 0.0:
         helpless = beside_unknown(judgement, solution.found.calibrated)
-        return _stated(recording, solution._replace(judgement=helpless), notes, told)
+        return _stated(recording, solution._replace(judgement=helpless), notes, progress)
     listed = causes(engine, solution.found, judgement, calibrated, augmented, nominal, run)
     if solution.rest is not None:
         listed = [with_strength(c, solution.rest) if c.effect == solution.random else c for c in listed]

@@ -52,7 +52,7 @@ def causes(
 def _parameters(engine: Engine, state: State, index: int) -> dict[str, Estimate | str]:
     """Return the free parameters of an effect with their standard deviations from the fit's normal matrix."""
     term, values = state.point.terms[index], state.point.values[index]
-    units = {card.name: card.unit for card in describe(term.cls)}
+    units = {specification.name: specification.unit for specification in describe(term.cls)}
     stds = _deviations(engine, state)
     start = len(state.point.u) + sum(len(t.free) for t in state.point.terms[:index])
     found: dict[str, Estimate | str] = {

@@ -38,13 +38,17 @@ def nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
     sections = {"plant": scenario.plant, "damper": scenario.damper.record, "coil": scenario.coil}
     found = []
     for section, record in sections.items():
-        for card in describe(type(record)) if record is not None else []:
-            value = getattr(record, card.name)
-            if card.name in LEFT_OUT or not isinstance(value, float | int) or (section == "coil" and value == 0.0):
+        for specification in describe(type(record)) if record is not None else []:
+            value = getattr(record, specification.name)
+            if (
+                specification.name in LEFT_OUT
+                or not isinstance(value, float | int)
+                or (section == "coil" and value == 0.0)
+            ):
                 continue
-            span = tolerance * (abs(value) if value else scales.get(card.unit, 0.0))
-            if span > 0.0 and card.name != "resistance":
-                found.append(Nuisance(section, card.name, float(value), span))
+            span = tolerance * (abs(value) if value else scales.get(specification.unit, 0.0))
+            if span > 0.0 and specification.name != "resistance":
+                found.append(Nuisance(section, specification.name, float(value), span))
     return found
 
 

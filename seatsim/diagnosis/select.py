@@ -71,7 +71,7 @@ class Search:
 
 
 def search(
-    engine: Engine, candidates: Sequence[Candidate], told: Callable[[str], None], largest: int = LARGEST
+    engine: Engine, candidates: Sequence[Candidate], progress: Callable[[str], None], largest: int = LARGEST
 ) -> Search:
     """Fit the nuisance parameters alone, then single effects, then larger sets as long as they gain."""
     problem = engine.problem
@@ -84,7 +84,7 @@ def search(
     traces = _traces(engine, calibrated, candidates)
     found = Search(nominal, [[calibrated]], rows)
     for size in range(1, largest + 1):
-        told(f"fitting sets of {size}")
+        progress(f"fitting sets of {size}")
         sets = _extended(engine, found, traces, SHORTLIST if size == 1 else SECONDS)
         if not sets:
             break
@@ -96,7 +96,7 @@ def search(
         if not _gains(found):
             break
     if len(found.sets) > LARGEST and found.excess(found.sets[-1][0]) < ENLARGE * found.excess(found.sets[-2][0]):
-        told("pruning")
+        progress("pruning")
         found.sets[-2] = _best_forms([*found.sets[-2], *_pruned(engine, found.sets[-1][0])])
     return found
 

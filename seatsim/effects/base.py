@@ -15,7 +15,7 @@ Before a run, in Python:
 
 In the time loop, compiled by numba, with `z` the effect's own state:
 
-    on the damper       conditioned(self, heat, v, z)   yield_current(self, i, z)   yield_speed(self, v, z)
+    on the damper       conditioned(self, scaling, v, z)   yield_current(self, i, z)   yield_speed(self, v, z)
                         yield_shape(self, shape, target, late, z)   yield_force(self, force, z)
                         engaged(self, h, v, pull, z)   mount_force(self, force, z)   mount_stiffness(self, z)
                         added_force(self, x, v, z)   stiction(self, z)   rates(self, x, v, u, i, pull, target, z)
@@ -30,7 +30,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
-from seatsim.schema.registry import card_of, register
+from seatsim.schema.registry import register, specification_of
 
 T = TypeVar("T", bound=type)
 Values = Mapping[str, float]
@@ -43,17 +43,17 @@ ON_SEAT = ("suspension_force", "linkage_friction", "cushion_force", "inner_mass"
 
 
 class Form(NamedTuple):
-    """Where a fit to a recording starts: the values of the parameters it frees, and of others that it holds.
+    """Where a fit to a recording starts: the values of the parameters it frees, and of others that it fixes.
 
     `within` bounds a free parameter more closely than its field does, where beyond it would be another effect.
     """
 
     free: Values
-    held: Values = MappingProxyType({})
+    fixed: Values = MappingProxyType({})
     within: Mapping[str, tuple[float, float]] = MappingProxyType({})
 
 
-class EffectCard(NamedTuple):
+class EffectSpecification(NamedTuple):
     """What is stated of an effect.
 
     source: of the law. initial: its state at rest. off: parameters at which the rig is unchanged, where that is not
@@ -81,12 +81,12 @@ def effect(
 ) -> Callable[[T], T]:
     """Register a record class as `effect: name`, where the part before the dot is the block it lives in."""
     stated = tuple(form if isinstance(form, Form) else Form(form) for form in forms)
-    return register("effect", name, EffectCard(source, initial, off or {}, stated, suits, by_channel))
+    return register("effect", name, EffectSpecification(source, initial, off or {}, stated, suits, by_channel))
 
 
 def off(cls: Any) -> Any:
     """Return the record of an effect at the parameters that leave the rig unchanged."""
-    values = dict.fromkeys(cls._fields, 0.0) | dict(card_of(cls).off)
+    values = dict.fromkeys(cls._fields, 0.0) | dict(specification_of(cls).off)
     return cls(**values)
 
 

@@ -8,9 +8,9 @@ from typing import Annotated, Any, NamedTuple
 from seatsim.compilation.jit import jit
 from seatsim.effects.base import Form, effect
 from seatsim.effects.laws import FRICTIONS, State, dahl_rate
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
-from seatsim.schema.registry import card_of
+from seatsim.schema.registry import specification_of
 
 SHORTEST = 2e-5
 """m; least travel over which a force returns at the end of a gap."""
@@ -65,13 +65,16 @@ class Asymmetry(NamedTuple):
         """Return the yield force in N, given what it would be in both directions alike."""
         return force * (1.0 + self.pulling * self.offset) + self.pulling * abs(force)
 
-    def conditioned(self, heat: Heat, v: float, z: State) -> Heat:
+    def conditioned(self, scaling: TemperatureScaling, v: float, z: State) -> TemperatureScaling:
         """Return the factors of the damper's parts at a speed."""
         if self.viscous == 0.0 and self.yielding == 0.0:
-            return heat
+            return scaling
         side = math.tanh(v / self.speed) + self.offset
-        viscous, yielding = heat.viscous * (1.0 + self.viscous * side), heat.yielding * (1.0 + self.yielding * side)
-        return Heat(viscous, heat.stiffness, yielding)
+        viscous, yielding = (
+            scaling.viscous * (1.0 + self.viscous * side),
+            scaling.yielding * (1.0 + self.yielding * side),
+        )
+        return TemperatureScaling(viscous, scaling.stiffness, yielding)
 
 
 @effect(
@@ -167,7 +170,7 @@ def _passed(gap: float, softness: float, pull: float, g: float) -> float:
 
 def _without_state(damper: Any) -> bool:
     """Whether a damper has no hysteresis of its own."""
-    return not card_of(type(damper)).initial
+    return not specification_of(type(damper)).initial
 
 
 @effect(

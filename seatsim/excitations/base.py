@@ -42,7 +42,7 @@ class Excitation(Protocol):
         """Return the floor's motion sampled every `step` seconds; every random draw derives from `seed`."""
 
 
-class ExcitationCard(NamedTuple):
+class ExcitationSpecification(NamedTuple):
     """What is stated of an excitation: its source (standard and clause) where there is one."""
 
     source: str
@@ -50,4 +50,4 @@ class ExcitationCard(NamedTuple):
 
 def excitation(name: str, source: str = "") -> Callable[[T], T]:
     """Register a record class as the excitation `kind: name`."""
-    return register("excitation", name, ExcitationCard(source))
+    return register("excitation", name, ExcitationSpecification(source))

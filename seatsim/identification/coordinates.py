@@ -86,21 +86,21 @@ class Component(NamedTuple):
 class Coordinates:
     """The free parameters of a record class, between the record and a vector of shape (P,).
 
-    start: a record of the class, from which sizes are taken; held: fields that stay as they are in it; levels: how many
+    start: a record of the class, from which sizes are taken; fixed: fields that stay as they are in it; levels: how many
     currents the data hold, which a law's degree stays below, None for any number.
     """
 
-    def __init__(self, start: Any, scales: Scales, held: Sequence[str] = (), levels: int | None = None) -> None:
+    def __init__(self, start: Any, scales: Scales, fixed: Sequence[str] = (), levels: int | None = None) -> None:
         self.start, self.levels = start, levels
         self.cls: Any = type(start)
         self.end = float(getattr(start, "law_end", scales.current) or 1.0)
         self.components: list[Component] = []
-        self.bounds = {card.name: bounds(self.cls, card.name) for card in describe(self.cls)}
-        for card in describe(self.cls):
-            value = getattr(start, card.name)
-            moot = scales.current == 0.0 and dimension(card.unit).get("A", 0.0) != 0.0
-            if card.name not in (*SETTINGS, *held) and not moot and not isinstance(value, int | str):
-                self.components += self._of_field(card.name, card.unit, value, scales)
+        self.bounds = {specification.name: bounds(self.cls, specification.name) for specification in describe(self.cls)}
+        for specification in describe(self.cls):
+            value = getattr(start, specification.name)
+            moot = scales.current == 0.0 and dimension(specification.unit).get("A", 0.0) != 0.0
+            if specification.name not in (*SETTINGS, *fixed) and not moot and not isinstance(value, int | str):
+                self.components += self._of_field(specification.name, specification.unit, value, scales)
         self.low = np.array([c.low for c in self.components])
         self.high = np.array([c.high for c in self.components])
 
@@ -183,17 +183,17 @@ def scaled(record: Any, force: float, end: float) -> Any:
     cls: Any = type(record)
     stretch = end / float(getattr(record, "law_end", end) or end)
     changed: dict[str, Any] = {"law_end": end} if hasattr(record, "law_end") else {}
-    for card in describe(cls):
-        value = getattr(record, card.name)
-        powers = dimension(card.unit)
+    for specification in describe(cls):
+        value = getattr(record, specification.name)
+        powers = dimension(specification.unit)
         factor = force ** powers.get("N", 0.0)
-        if card.name in SETTINGS or isinstance(value, int | str):
+        if specification.name in SETTINGS or isinstance(value, int | str):
             continue
         if isinstance(value, tuple):
-            law = is_law(cls, card.name)
-            changed[card.name] = tuple(factor * c / (stretch**k if law else 1.0) for k, c in enumerate(value))
+            law = is_law(cls, specification.name)
+            changed[specification.name] = tuple(factor * c / (stretch**k if law else 1.0) for k, c in enumerate(value))
         else:
-            changed[card.name] = value * factor * stretch ** powers.get("A", 0.0)
+            changed[specification.name] = value * factor * stretch ** powers.get("A", 0.0)
     return record._replace(**changed)
 
 
@@ -219,4 +219,4 @@ def fixed(record: Any, values: Mapping[str, float]) -> Any:
 
 def numbers_of(cls: type) -> list[str]:
     """Return the names of the numbers of a record class, those that can be fixed."""
-    return [card.name for card in describe(cls) if isinstance(card.default, int | float)]
+    return [specification.name for specification in describe(cls) if isinstance(specification.default, int | float)]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from seatsim.dampers.base import DamperCard
+from seatsim.dampers.base import DamperSpecification
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.simulation.damper_bench import centring
 
@@ -33,10 +33,12 @@ def coverage(records: Sequence[BenchRecord]) -> dict[str, Any]:
     }
 
 
-def remarks(card: DamperCard, train: Sequence[BenchRecord], test: Sequence[BenchRecord], origin: float) -> list[str]:
+def remarks(
+    specification: DamperSpecification, train: Sequence[BenchRecord], test: Sequence[BenchRecord], origin: float
+) -> list[str]:
     """Return what the user should know of the data: motion off centre, tests outside what was fitted."""
     notes = []
-    if card.centred:
+    if specification.centred:
         off = next((text for r in train if (text := centring(r.displacement - origin, r.velocity))), "")
         notes += [off] if off else []
     for name, unit in (("velocity", "m/s"), ("current", "A"), ("displacement", "m")):

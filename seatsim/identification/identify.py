@@ -20,7 +20,7 @@ from seatsim.identification.search import Tell, best, silent
 from seatsim.identification.split import Request, split
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 from seatsim.schema.errors import RunError
-from seatsim.schema.registry import card_of, find
+from seatsim.schema.registry import find, specification_of
 
 EVERYTHING = Request()
 
@@ -52,7 +52,7 @@ class Identification(NamedTuple):
         return averaged(each) if each else None
 
 
-def identify(data: str | Path, model: str, request: Request = EVERYTHING, tell: Tell = silent) -> Identification:
+def identify(data: str | Path, model: str, request: Request = EVERYTHING, progress: Tell = silent) -> Identification:
     """Fit a damper model to the bench records of a file or folder.
 
     Minimised is the mean over records of mean (y - s)^2 / std(y)^2, with the measured force y and the simulated one s:
@@ -63,11 +63,11 @@ def identify(data: str | Path, model: str, request: Request = EVERYTHING, tell: 
         InputError: the data, the model or the request is not as it must be.
         RunError: no parameters were found with which the model's state stays finite.
     """
-    return identify_records(load_bench(data), model, request, tell)
+    return identify_records(load_bench(data), model, request, progress)
 
 
 def identify_records(
-    records: Sequence[BenchRecord], model: str, request: Request = EVERYTHING, tell: Tell = silent
+    records: Sequence[BenchRecord], model: str, request: Request = EVERYTHING, progress: Tell = silent
 ) -> Identification:
     """Fit a damper model to bench records; see `identify`."""
     began = time.perf_counter()
@@ -75,8 +75,8 @@ def identify_records(
     origin = origin_of(parts.fitted)
     problem, short = posed(parts.fitted, cls, origin, request)
     try:
-        vector = best(problem, short, request.seed, tell)
-        tell("judging the parameters")
+        vector = best(problem, short, request.seed, progress)
+        progress("judging the parameters")
         known = information(problem, vector)
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         raise RunError(f"{model}: the fit failed: {error}; hold a parameter by --fix") from error
@@ -86,7 +86,7 @@ def identify_records(
     if away:
         raise RunError(f"{model}: no parameters were found with which its state stays finite on {', '.join(away)}")
     tests = [each.record for each in judged if each.part == "test"]
-    notes = [*_notes(problem, vector, known), *remarks(card_of(cls), parts.fitted, tests, origin)]
+    notes = [*_notes(problem, vector, known), *remarks(specification_of(cls), parts.fitted, tests, origin)]
     notes += [*_of_predictions(judged), *unused_columns(records)]
     return Identification(
         model=model,

@@ -108,7 +108,7 @@ def _correlated(labels: list[str], covariance: Array) -> list[tuple[str, str, fl
 def _names(problem: Problem) -> list[tuple[str, str]]:
     """Return the name and the unit of every parameter."""
     components = problem.coordinates.components
-    unit_of = {card.name: card.unit for card in describe(problem.coordinates.cls)}
+    unit_of = {specification.name: specification.unit for specification in describe(problem.coordinates.cls)}
     own = [(c.name, unit_of[c.field] + _per_current(c)) for c in components]
     units = {"temperature_factors": "1/K", "actuator": "1/s", "bench": "N/K"}
     return own + [(name, units[name.partition(".")[0]]) for name in problem.beside]

@@ -45,7 +45,7 @@ def league(
     request: Request,
     more: Further,
     folder: Path,
-    tell: Tell,
+    progress: Tell,
     keep: Callable[[Identification], object],
 ) -> list[Place]:
     """Identify every registered model; what stands in `folder` of the same data, request and models is not done again.
@@ -67,7 +67,7 @@ def league(
             continue
         own = request._replace(fix=_own(request.fix, find("damper", model)))
         try:
-            found = identify_records(records, model, own, _of(model, tell))
+            found = identify_records(records, model, own, _of(model, progress))
         except SeatsimError as error:
             place = Place(model, math.nan, math.nan, 0, math.nan, math.nan, math.nan, str(error))
         else:
@@ -103,8 +103,8 @@ def ranked(places: Sequence[Place]) -> list[Place]:
     return sorted(places, key=merit, reverse=True)
 
 
-def _of(model: str, tell: Tell) -> Tell:
-    return lambda text: tell(f"{model}: {text}")
+def _of(model: str, progress: Tell) -> Tell:
+    return lambda text: progress(f"{model}: {text}")
 
 
 def _read(path: Path) -> Place:

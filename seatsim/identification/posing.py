@@ -14,7 +14,7 @@ from seatsim.identification.split import Request
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import describe
-from seatsim.schema.registry import card_of
+from seatsim.schema.registry import specification_of
 
 SHORT = 10000
 """Rows of all records together that count in the global search."""
@@ -41,13 +41,13 @@ def posed(records: Sequence[BenchRecord], cls: Any, origin: float, request: Requ
         InputError: nothing moves, the class has a number without default, or what is fixed is none of its numbers or
             all of them.
     """
-    blank = [card.name for card in describe(cls) if card.required]
+    blank = [specification.name for specification in describe(cls) if specification.required]
     if blank:
         raise InputError(f"{cls.__name__}: a fit starts from defaults; give {', '.join(blank)} one")
     scales = _scales(records)
     start = fixed(scaled(cls(), 1.0, scales.current or 1.0), request.fix)
-    held = (*card_of(cls).held, *request.fix)
-    coordinates = Coordinates(start, scales, held, _levels(records))
+    names = (*specification_of(cls).fixed, *request.fix)
+    coordinates = Coordinates(start, scales, names, _levels(records))
     if not coordinates.components:
         raise InputError(f"--fix {', '.join(request.fix)} leaves no parameter of {cls.__name__} to fit; leave one free")
     reference = None if request.ignore_temperature else _reference(records)

@@ -15,7 +15,7 @@ from seatsim.kernel.lag import lagged
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
-from seatsim.schema.registry import card_of
+from seatsim.schema.registry import specification_of
 
 Array = NDArray[np.float64]
 
@@ -69,8 +69,8 @@ def drive(record: BenchRecord, origin: float, every: bool) -> Drive:
         odd = slice(0, len(x) - 1 + len(x) % 2)
         x, v, current, warm = (np.ascontiguousarray(y[odd]) for y in (x, v, record.current, warm))
         return Drive(x, v, current, record.commanded, warm, 2.0 / rate, record.force[odd][::2].copy())
-    held = np.repeat(record.current, 2)[:-1] if record.commanded else _linear(record.current)
-    return Drive(_cubic(x), _cubic(v), held, record.commanded, _linear(warm), 1.0 / rate, record.force.copy())
+    fixed = np.repeat(record.current, 2)[:-1] if record.commanded else _linear(record.current)
+    return Drive(_cubic(x), _cubic(v), fixed, record.commanded, _linear(warm), 1.0 / rate, record.force.copy())
 
 
 def _cubic(y: Array) -> Array:
@@ -97,7 +97,7 @@ def predicted(bench: Bench, drive: Drive, most: int = MOST_PARTS, tolerance: flo
         current = lagged(Coil(bench.rise, rate_fall=bench.fall), current, 0.5 * drive.step, current[0])
     out = np.full(len(drive.force), math.nan)
     run = compiled(run_bench, classes_of(bench.damper))
-    state = card_of(type(bench.damper)).initial
+    state = specification_of(type(bench.damper)).initial
     given = (drive.x, drive.v, current, drive.temperature, state, drive.step, most, tolerance, out)
     run(bench.damper, bench.factors, *given)
     return out + bench.warming * (drive.temperature[::2] - bench.factors.reference)

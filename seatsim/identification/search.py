@@ -28,7 +28,7 @@ def silent(text: str) -> None:
     """Tell nothing."""
 
 
-def best(problem: Problem, short: Problem, seed: int, tell: Tell = silent) -> Array:
+def best(problem: Problem, short: Problem, seed: int, progress: Tell = silent) -> Array:
     """Return the best vector of a problem, shape (P,), found from `short` stretches of its records.
 
     Least squares from the defaults, from the defaults with their forces scaled to the measured ones, and from the end
@@ -36,9 +36,9 @@ def best(problem: Problem, short: Problem, seed: int, tell: Tell = silent) -> Ar
     influence keeps its default.
     """
     plain = problem.vector(Bench(problem.coordinates.start, TemperatureFactors(), RATE, RATE))
-    first = min((refined(short, start, tell, SHORTLY) for start in (plain, _forced(short, plain))), key=_cost)
-    near = refined(short, started(short, first[0], seed, PER_PARAMETER * len(plain), tell), tell, SHORTLY)
-    found = refined(problem, min((first, near), key=_cost)[0], tell, FULLY)[0]
+    first = min((refined(short, start, progress, SHORTLY) for start in (plain, _forced(short, plain))), key=_cost)
+    near = refined(short, started(short, first[0], seed, PER_PARAMETER * len(plain), progress), progress, SHORTLY)
+    found = refined(problem, min((first, near), key=_cost)[0], progress, FULLY)[0]
     slopes = jacobian(short, found, short.residuals(found))
     return np.where(np.any(slopes != 0.0, axis=0), found, plain)
 
@@ -56,7 +56,7 @@ def _forced(problem: Problem, vector: Array) -> Array:
     return problem.vector(bench._replace(damper=scaled(bench.damper, ratio, problem.coordinates.end)))
 
 
-def started(problem: Problem, start: Array, seed: int, evaluations: int, tell: Tell = silent) -> Array:
+def started(problem: Problem, start: Array, seed: int, evaluations: int, progress: Tell = silent) -> Array:
     """Return the best vector of a CMA-ES from `start` (Hansen 2016, arXiv:1604.00772)."""
     import cma
 
@@ -73,12 +73,12 @@ def started(problem: Problem, start: Array, seed: int, evaluations: int, tell: T
     with ThreadPoolExecutor() as pool:
         while not strategy.stop():
             found = strategy.ask()
-            strategy.tell(found, list(pool.map(problem.cost, map(np.asarray, found))))
-            tell(f"searching, error {100.0 * strategy.best.f**0.5:.1f} %")
+            strategy.progress(found, list(pool.map(problem.cost, map(np.asarray, found))))
+            progress(f"searching, error {100.0 * strategy.best.f**0.5:.1f} %")
     return np.asarray(strategy.best.x, dtype=float)
 
 
-def refined(problem: Problem, start: Array, tell: Tell = silent, most: int = FULLY) -> tuple[Array, float]:
+def refined(problem: Problem, start: Array, progress: Tell = silent, most: int = FULLY) -> tuple[Array, float]:
     """Return the vector of least squares near `start` and its cost (trust region, Branch et al. 1999)."""
     from scipy.optimize import least_squares
 
@@ -87,7 +87,7 @@ def refined(problem: Problem, start: Array, tell: Tell = silent, most: int = FUL
     def value(vector: Array) -> Array:
         last.clear()
         residuals = last[vector.tobytes()] = problem.residuals(vector)
-        tell(f"fitting, error {100.0 * (np.sum(residuals**2) / len(problem.drives)) ** 0.5:.2f} %")
+        progress(f"fitting, error {100.0 * (np.sum(residuals**2) / len(problem.drives)) ** 0.5:.2f} %")
         return residuals
 
     def slopes(vector: Array) -> Array:

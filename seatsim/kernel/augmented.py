@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from seatsim.compilation.jit import jit
 from seatsim.kernel.chain import Effects, before, folded, joined, own, summed
 from seatsim.kernel.generic import Tuple, coulomb, force, rates
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 
 FAST = 10.0
 """m/s; speed at which a yield force has its full size."""
@@ -43,42 +43,50 @@ class AugmentedDamper(NamedTuple):
     damper: Any
     effects: Effects
 
-    def force(self, x: float, v: float, i: float, heat: Heat, z: Tuple) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> float:
         """Return the smooth force in N."""
         effects, inner, outer = self.effects, before(self.effects, z), own(self.effects, z)
         passed = mount_force(effects, outer, math.nan)
         if math.isnan(passed):
-            pull = _pull(self.damper, effects, x, v, i, heat, inner, outer)
+            pull = _pull(self.damper, effects, x, v, i, scaling, inner, outer)
             passed = engaged(effects, outer, 1.0, v, pull) * pull
         answer: float = passed + added_force(effects, outer, x, v)
         return answer
 
-    def rates(self, x: float, v: float, i: float, heat: Heat, z: Tuple) -> Tuple:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> Tuple:
         """Return the rates of the damper's state, then of the effects'."""
         effects, inner, outer = self.effects, before(self.effects, z), own(self.effects, z)
-        pull = _pull(self.damper, effects, x, v, i, heat, inner, outer)
-        u = _piston_speed(self.damper, effects, x, v, i, heat, inner, outer, pull)
+        pull = _pull(self.damper, effects, x, v, i, scaling, inner, outer)
+        u = _piston_speed(self.damper, effects, x, v, i, scaling, inner, outer, pull)
         target = 0.0
         if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
-            felt = conditioned(effects, outer, heat, v)
+            felt = conditioned(effects, outer, scaling, v)
             target = _split(self.damper, x, v, yield_current(effects, outer, i), felt, inner).shape
         theirs = effect_rates(effects, outer, x, v, u, i, pull, target)
-        answer: Tuple = rates(self.damper, x, u, i, heat, inner) + theirs
+        answer: Tuple = rates(self.damper, x, u, i, scaling, inner) + theirs
         return answer
 
-    def friction_limit(self, v: float, i: float, heat: Heat, z: Tuple) -> float:
+    def friction_limit(self, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> float:
         """Return the limit of the set-valued friction in N: the yield force's, and what the effects add."""
         effects, outer = self.effects, own(self.effects, z)
         limit: float = stiction(effects, outer)
         if math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
             h = engaged(effects, outer, 1.0, v, v)
-            limit += h * coulomb(self.damper, yield_current(effects, outer, i), conditioned(effects, outer, heat, v))
+            limit += h * coulomb(self.damper, yield_current(effects, outer, i), conditioned(effects, outer, scaling, v))
         return limit
 
 
 @jit
 def _piston_speed(
-    damper: Any, effects: Effects, x: float, v: float, i: float, heat: Heat, inner: Tuple, outer: Tuple, pull: float
+    damper: Any,
+    effects: Effects,
+    x: float,
+    v: float,
+    i: float,
+    scaling: TemperatureScaling,
+    inner: Tuple,
+    outer: Tuple,
+    pull: float,
 ) -> float:
     """Return the piston's speed u in m/s, where the damper's end goes at v and would pull with `pull` at that speed.
 
@@ -91,12 +99,12 @@ def _piston_speed(
     slope = mount_stiffness(effects, outer) / SETTLING
     other, e_other = v, pull - passed
     u: float = v - e_other / slope
-    e_u = _pull(damper, effects, x, u, i, heat, inner, outer) + (u - v) * slope - passed
+    e_u = _pull(damper, effects, x, u, i, scaling, inner, outer) + (u - v) * slope - passed
     for _ in range(TRIALS):
         if abs(e_u) < NEAR or e_u == e_other:
             break
         trial = u - e_u * (u - other) / (e_u - e_other)
-        e_trial = _pull(damper, effects, x, trial, i, heat, inner, outer) + (trial - v) * slope - passed
+        e_trial = _pull(damper, effects, x, trial, i, scaling, inner, outer) + (trial - v) * slope - passed
         if e_trial * e_u < 0.0:
             other, e_other = u, e_u
         else:
@@ -106,11 +114,13 @@ def _piston_speed(
 
 
 @jit
-def _pull(damper: Any, effects: Effects, x: float, v: float, i: float, heat: Heat, inner: Tuple, outer: Tuple) -> float:
+def _pull(
+    damper: Any, effects: Effects, x: float, v: float, i: float, scaling: TemperatureScaling, inner: Tuple, outer: Tuple
+) -> float:
     """Return the damper's force in N before what is lost in a gap and added beside it."""
-    felt = conditioned(effects, outer, heat, v)
+    felt = conditioned(effects, outer, scaling, v)
     i_y = yield_current(effects, outer, i)
-    rest = Heat(felt.viscous, felt.stiffness, 0.0)
+    rest = TemperatureScaling(felt.viscous, felt.stiffness, 0.0)
     base: float = force(damper, x, v, i, rest, inner)
     if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
         part = _shaped(damper, effects, x, v, i_y, felt, inner, outer)
@@ -124,11 +134,11 @@ def _pull(damper: Any, effects: Effects, x: float, v: float, i: float, heat: Hea
 
 @jit
 def _shaped(
-    damper: Any, effects: Effects, x: float, v: float, i: float, heat: Heat, inner: Tuple, outer: Tuple
+    damper: Any, effects: Effects, x: float, v: float, i: float, scaling: TemperatureScaling, inner: Tuple, outer: Tuple
 ) -> float:
     """Return the yield part in N where it has a shape of its own."""
-    parts = _split(damper, x, v, i, heat, inner)
-    late = _split(damper, x, yield_speed(effects, outer, v), i, heat, inner).shape
+    parts = _split(damper, x, v, i, scaling, inner)
+    late = _split(damper, x, yield_speed(effects, outer, v), i, scaling, inner).shape
     part: float = parts.middle + parts.size * yield_shape(effects, outer, math.nan, parts.shape, late)
     return part
 
@@ -142,19 +152,21 @@ class YieldPart(NamedTuple):
 
 
 @jit
-def _split(damper: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> YieldPart:
+def _split(damper: Any, x: float, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> YieldPart:
     """Return the yield part of a damper's force, with its set-valued friction."""
-    rest = Heat(heat.viscous, heat.stiffness, 0.0)
-    rebound, compression = _yield(damper, x, FAST, i, heat, rest, z), _yield(damper, x, -FAST, i, heat, rest, z)
-    friction = coulomb(damper, i, heat)
+    rest = TemperatureScaling(scaling.viscous, scaling.stiffness, 0.0)
+    rebound, compression = _yield(damper, x, FAST, i, scaling, rest, z), _yield(damper, x, -FAST, i, scaling, rest, z)
+    friction = coulomb(damper, i, scaling)
     middle, size = 0.5 * (rebound + compression), 0.5 * (rebound - compression) + friction
-    now = _yield(damper, x, v, i, heat, rest, z) - middle + (0.0 if v == 0.0 else math.copysign(friction, v))
+    now = _yield(damper, x, v, i, scaling, rest, z) - middle + (0.0 if v == 0.0 else math.copysign(friction, v))
     return YieldPart(middle, size, now / size if size > 0.0 else 0.0)
 
 
 @jit
-def _yield(damper: Any, x: float, v: float, i: float, heat: Heat, rest: Heat, z: Tuple) -> float:
-    part: float = force(damper, x, v, i, heat, z) - force(damper, x, v, i, rest, z)
+def _yield(
+    damper: Any, x: float, v: float, i: float, scaling: TemperatureScaling, rest: TemperatureScaling, z: Tuple
+) -> float:
+    part: float = force(damper, x, v, i, scaling, z) - force(damper, x, v, i, rest, z)
     return part
 
 

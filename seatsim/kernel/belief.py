@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import Tuple, axpy, combine, heat_at, hook, rates
-from seatsim.rig.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 
 
 class Truth(NamedTuple):
@@ -23,7 +23,7 @@ class Truth(NamedTuple):
         """Return the state with which the inverse evaluates the damper."""
         return true
 
-    def heat(self, true: Any, temperature: float) -> Any:
+    def scaling(self, true: Any, temperature: float) -> Any:
         """Return the temperature factors that the inverse uses."""
         return true
 
@@ -43,7 +43,7 @@ class Belief(NamedTuple):
         """Return the state with which the inverse evaluates the damper."""
         return own
 
-    def heat(self, true: Any, temperature: float) -> Any:
+    def scaling(self, true: Any, temperature: float) -> Any:
         """Return the temperature factors that the inverse uses."""
         return heat_at(self.factors, temperature if math.isnan(self.temperature) else self.temperature)
 
@@ -55,14 +55,22 @@ def state(self: Any, true: Tuple, own: Tuple) -> Tuple:
 
 
 @hook
-def heat(self: Any, true: Heat, temperature: float) -> Heat:
+def scaling(self: Any, true: TemperatureScaling, temperature: float) -> TemperatureScaling:
     """Temperature factors that the inverse uses."""
     raise TypeError
 
 
 @jit
 def follow(
-    damper: Any, own: Tuple, x: float, v: float, x_next: float, v_next: float, i: float, heat: Heat, length: float
+    damper: Any,
+    own: Tuple,
+    x: float,
+    v: float,
+    x_next: float,
+    v_next: float,
+    i: float,
+    scaling: TemperatureScaling,
+    length: float,
 ) -> Tuple:
     """Return a believed state after `length` seconds, in two Runge-Kutta steps along motion linear between samples."""
     h = 0.5 * length
@@ -70,9 +78,9 @@ def follow(
         xa, va = x + 0.5 * part * (x_next - x), v + 0.5 * part * (v_next - v)
         xb, vb = xa + 0.25 * (x_next - x), va + 0.25 * (v_next - v)
         xc, vc = xa + 0.5 * (x_next - x), va + 0.5 * (v_next - v)
-        k1 = rates(damper, xa, va, i, heat, own)
-        k2 = rates(damper, xb, vb, i, heat, axpy(own, 0.5 * h, k1))
-        k3 = rates(damper, xb, vb, i, heat, axpy(own, 0.5 * h, k2))
-        k4 = rates(damper, xc, vc, i, heat, axpy(own, h, k3))
+        k1 = rates(damper, xa, va, i, scaling, own)
+        k2 = rates(damper, xb, vb, i, scaling, axpy(own, 0.5 * h, k1))
+        k3 = rates(damper, xb, vb, i, scaling, axpy(own, 0.5 * h, k2))
+        k4 = rates(damper, xc, vc, i, scaling, axpy(own, h, k3))
         own = combine(own, h, k1, k2, k3, k4)
     return own

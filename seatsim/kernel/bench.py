@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import Tuple, axpy, combine, force, heat_at, rates
 from seatsim.kernel.inverse import total
-from seatsim.rig.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 
 Array = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ def run_bench(
 @jit
 def _advance(
     damper: Any,
-    heat: Heat,
+    scaling: TemperatureScaling,
     x: Array,
     v: Array,
     current: Array,
@@ -84,7 +84,7 @@ def _advance(
     while True:
         state, worst = z, 0.0
         for part in range(parts):
-            state, error = _part(damper, heat, x, v, current, state, step / parts, part / parts, 1.0 / parts)
+            state, error = _part(damper, scaling, x, v, current, state, step / parts, part / parts, 1.0 / parts)
             if not error <= worst:
                 worst = error
         if worst <= tolerance or parts >= most:
@@ -97,7 +97,15 @@ def _advance(
 
 @jit
 def _part(
-    damper: Any, heat: Heat, x: Array, v: Array, current: Array, z: Tuple, h: float, s: float, ds: float
+    damper: Any,
+    scaling: TemperatureScaling,
+    x: Array,
+    v: Array,
+    current: Array,
+    z: Tuple,
+    h: float,
+    s: float,
+    ds: float,
 ) -> tuple[Tuple, float]:
     """Return the state after a part of `h` seconds from the fraction `s` of the step, and its relative error.
 
@@ -106,15 +114,15 @@ def _part(
     middle, end = s + 0.5 * ds, s + ds
     xm, vm, im = _between(x, middle), _between(v, middle), _between(current, middle)
     xe, ve, ie = _between(x, end), _between(v, end), _between(current, end)
-    k1 = rates(damper, _between(x, s), _between(v, s), _between(current, s), heat, z)
-    k2 = rates(damper, xm, vm, im, heat, axpy(z, 0.5 * h, k1))
-    k3 = rates(damper, xm, vm, im, heat, axpy(z, 0.5 * h, k2))
-    k4 = rates(damper, xe, ve, ie, heat, axpy(z, h, k3))
+    k1 = rates(damper, _between(x, s), _between(v, s), _between(current, s), scaling, z)
+    k2 = rates(damper, xm, vm, im, scaling, axpy(z, 0.5 * h, k1))
+    k3 = rates(damper, xm, vm, im, scaling, axpy(z, 0.5 * h, k2))
+    k4 = rates(damper, xe, ve, ie, scaling, axpy(z, h, k3))
     state = combine(z, h, k1, k2, k3, k4)
-    k5 = rates(damper, xe, ve, ie, heat, state)
+    k5 = rates(damper, xe, ve, ie, scaling, state)
     embedded = axpy(axpy(state, -h / 6.0, k4), h / 6.0, k5)
-    got = force(damper, xe, ve, ie, heat, state)
-    error = abs(got - force(damper, xe, ve, ie, heat, embedded))
+    got = force(damper, xe, ve, ie, scaling, state)
+    error = abs(got - force(damper, xe, ve, ie, scaling, embedded))
     return state, error / (FLOOR + abs(got))
 
 

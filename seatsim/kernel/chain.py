@@ -14,21 +14,21 @@ from numba.extending import overload
 
 from seatsim.compilation.jit import INLINED, jit
 from seatsim.kernel.generic import Tuple
-from seatsim.schema.registry import card_of
+from seatsim.schema.registry import specification_of
 
 Effects = tuple[Any, ...]
 
 
 def state_of(classes: Sequence[type]) -> Tuple:
     """Return the state at rest of records of these classes."""
-    return tuple(value for cls in classes for value in card_of(cls).initial)
+    return tuple(value for cls in classes for value in specification_of(cls).initial)
 
 
 def _parts(classes: Sequence[type], name: str) -> Iterator[tuple[int, Callable[..., Any], slice]]:
     """Yield index, method and part of the state of every class that has the method."""
     start = 0
     for index, cls in enumerate(classes):
-        end = start + len(card_of(cls).initial)
+        end = start + len(specification_of(cls).initial)
         if hasattr(cls, name):
             yield index, getattr(cls, name), slice(start, end)
         start = end

@@ -13,8 +13,8 @@ from numba import types
 from numba.extending import overload
 
 from seatsim.compilation.jit import INLINED, jit
-from seatsim.rig.temperature import Heat, TemperatureFactors
-from seatsim.rig.temperature import heat as _heat
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+from seatsim.rig.temperature import scaling as _heat
 
 Tuple = tuple[float, ...]
 
@@ -37,27 +37,27 @@ def hook(default: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @hook
-def force(self: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> float:
+def force(self: Any, x: float, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> float:
     """Damper force in N; every damper has its own."""
     raise TypeError
 
 
 @hook
-def rates(self: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> Tuple:
+def rates(self: Any, x: float, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> Tuple:
     """Time derivative of the damper's state."""
     return ()
 
 
 @hook
-def coulomb(self: Any, i: float, heat: Heat) -> float:
+def coulomb(self: Any, i: float, scaling: TemperatureScaling) -> float:
     """Magnitude in N of the damper's set-valued friction."""
     return 0.0
 
 
 @hook
-def friction_limit(self: Any, v: float, i: float, heat: Heat, z: Tuple) -> float:
+def friction_limit(self: Any, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> float:
     """Largest set-valued friction in N at this speed and state."""
-    limit: float = coulomb(self, i, heat)
+    limit: float = coulomb(self, i, scaling)
     return limit
 
 
@@ -137,4 +137,4 @@ def _unrolled(arguments: str, term: str, length: int) -> Callable[..., Any]:
     return implementation
 
 
-heat_at: Callable[[TemperatureFactors, float], Heat] = jit(_heat)
+heat_at: Callable[[TemperatureFactors, float], TemperatureScaling] = jit(_heat)

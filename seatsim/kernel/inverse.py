@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import Tuple, force, friction_limit
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,15 @@ class Answer(NamedTuple):
 
 @jit
 def invert(
-    damper: Any, order: int, wanted: float, x: float, v: float, heat: Heat, z: Tuple, max_current: float, grid: Array
+    damper: Any,
+    order: int,
+    wanted: float,
+    x: float,
+    v: float,
+    scaling: TemperatureScaling,
+    z: Tuple,
+    max_current: float,
+    grid: Array,
 ) -> Answer:
     """Return the least current in `[0, max_current]` whose force comes closest to `wanted` clipped to what can be done.
 
@@ -43,27 +51,29 @@ def invert(
     if wanted * v <= 0.0:
         current = 0.0
     elif order > 0:
-        current = _closed_form(damper, wanted, x, v, heat, z, max_current)
+        current = _closed_form(damper, wanted, x, v, scaling, z, max_current)
     else:
-        current = _search(damper, wanted, x, v, heat, z, max_current, grid)
-    got = total(damper, x, v, current, heat, z)
+        current = _search(damper, wanted, x, v, scaling, z, max_current, grid)
+    got = total(damper, x, v, current, scaling, z)
     served = 1.0 if abs(got - wanted) <= 1e-6 * (1.0 + abs(wanted)) else 0.0
     return Answer(current, got, served)
 
 
 @jit
-def total(damper: Any, x: float, v: float, i: float, heat: Heat, z: Tuple) -> float:
+def total(damper: Any, x: float, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> float:
     """Return the damper force in N with its set-valued friction, which is zero at v = 0."""
-    smooth: float = force(damper, x, v, i, heat, z)
-    friction: float = friction_limit(damper, v, i, heat, z)
+    smooth: float = force(damper, x, v, i, scaling, z)
+    friction: float = friction_limit(damper, v, i, scaling, z)
     return smooth + friction * (0.0 if v == 0.0 else math.copysign(1.0, v))
 
 
 @jit
-def _closed_form(damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float) -> float:
-    f0 = total(damper, x, v, 0.0, heat, z)
-    f1 = total(damper, x, v, 0.5 * top, heat, z)
-    f2 = total(damper, x, v, top, heat, z)
+def _closed_form(
+    damper: Any, target: float, x: float, v: float, scaling: TemperatureScaling, z: Tuple, top: float
+) -> float:
+    f0 = total(damper, x, v, 0.0, scaling, z)
+    f1 = total(damper, x, v, 0.5 * top, scaling, z)
+    f2 = total(damper, x, v, top, scaling, z)
     a, b, c = 2.0 * (f0 - 2.0 * f1 + f2), 4.0 * f1 - 3.0 * f0 - f2, f0 - target
     size = abs(f0) + abs(f1) + abs(f2)
     if abs(a) <= 1e-10 * size:
@@ -91,16 +101,18 @@ def _closed_form(damper: Any, target: float, x: float, v: float, heat: Heat, z: 
 
 
 @jit
-def _search(damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float, grid: Array) -> float:
+def _search(
+    damper: Any, target: float, x: float, v: float, scaling: TemperatureScaling, z: Tuple, top: float, grid: Array
+) -> float:
     # The whole grid first: without an early exit the compiler evaluates several currents at once.
     for j in range(CELLS + 1):
-        grid[j] = total(damper, x, v, top * j / CELLS, heat, z) - target
+        grid[j] = total(damper, x, v, top * j / CELLS, scaling, z) - target
     if grid[0] == 0.0:
         return 0.0
     for j in range(CELLS):
         if grid[j] * grid[j + 1] <= 0.0:
             left, right = top * j / CELLS, top * (j + 1) / CELLS
-            return _bracket(damper, target, x, v, heat, z, left, grid[j], right, grid[j + 1])
+            return _bracket(damper, target, x, v, scaling, z, left, grid[j], right, grid[j + 1])
     closest = abs(grid[0])
     for j in range(1, CELLS + 1):
         closest = min(closest, abs(grid[j]))
@@ -108,13 +120,21 @@ def _search(damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple
     while best < CELLS and abs(grid[best]) > closest:
         best += 1
     if 0 < best < CELLS:
-        return _turn(damper, target, x, v, heat, z, top, grid, best)
+        return _turn(damper, target, x, v, scaling, z, top, grid, best)
     return top * best / CELLS
 
 
 @jit
 def _turn(
-    damper: Any, target: float, x: float, v: float, heat: Heat, z: Tuple, top: float, grid: Array, best: int
+    damper: Any,
+    target: float,
+    x: float,
+    v: float,
+    scaling: TemperatureScaling,
+    z: Tuple,
+    top: float,
+    grid: Array,
+    best: int,
 ) -> float:
     """Return the current near the grid's `best`, where the force turns, that comes closest to the target.
 
@@ -122,9 +142,9 @@ def _turn(
     """
     a, b = grid[best - 1] - grid[best], grid[best + 1] - grid[best]
     turn = top * (best + 0.5 * (a - b) / (a + b)) / CELLS if a + b != 0.0 else top * best / CELLS
-    f_turn = total(damper, x, v, turn, heat, z) - target
+    f_turn = total(damper, x, v, turn, scaling, z) - target
     if grid[best] * f_turn <= 0.0:
-        return _bracket(damper, target, x, v, heat, z, top * (best - 1) / CELLS, grid[best - 1], turn, f_turn)
+        return _bracket(damper, target, x, v, scaling, z, top * (best - 1) / CELLS, grid[best - 1], turn, f_turn)
     return turn if abs(f_turn) < abs(grid[best]) else top * best / CELLS
 
 
@@ -134,7 +154,7 @@ def _bracket(
     target: float,
     x: float,
     v: float,
-    heat: Heat,
+    scaling: TemperatureScaling,
     z: Tuple,
     left: float,
     f_left: float,
@@ -146,7 +166,7 @@ def _bracket(
     middle = right
     for _ in range(60):
         middle = (left * f_right - right * f_left) / (f_right - f_left)
-        f_middle = total(damper, x, v, middle, heat, z) - target
+        f_middle = total(damper, x, v, middle, scaling, z) - target
         if abs(f_middle) <= 1e-6:
             break
         if f_middle * f_left > 0.0:

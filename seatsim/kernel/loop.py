@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel.belief import follow, heat, state
+from seatsim.kernel.belief import follow, scaling, state
 from seatsim.kernel.chain import before
 from seatsim.kernel.generic import Tuple, ask, heat_at, passed, read, update, wants_force
 from seatsim.kernel.inverse import CELLS, invert
@@ -18,7 +18,7 @@ from seatsim.kernel.step import Drive, Progress, advance, relaxed, start
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Measurement
 from seatsim.rig.sensors import READINGS, Direct
-from seatsim.rig.temperature import Heat, TemperatureFactors, Thermal
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling, Thermal
 
 Array = NDArray[np.float64]
 
@@ -135,7 +135,7 @@ def run_loop(setup: Setup, inputs: Inputs, rig_state: Tuple, believed: Tuple, la
             ratio * now.state[0],
             ratio * now.state[1],
             0.5 * (current + next_current),
-            heat(belief, factors, temperature),
+            scaling(belief, factors, temperature),
             step,
         )
         if timing.self_heating:
@@ -174,7 +174,13 @@ def _drive(
 
 @jit
 def _decide(
-    setup: Setup, y: Measurement, now: Progress, factors: Heat, believed: Tuple, law_state: Tuple, grid: Array
+    setup: Setup,
+    y: Measurement,
+    now: Progress,
+    factors: TemperatureScaling,
+    believed: Tuple,
+    law_state: Tuple,
+    grid: Array,
 ) -> tuple[float, float, float]:
     """Return the command in A, the force in N that the law wants (NaN: it wants a current) and whether it is served."""
     law, belief, top = setup.law, setup.belief, setup.max_command
@@ -188,7 +194,7 @@ def _decide(
         answer,
         ratio * y.displacement,
         ratio * y.velocity,
-        heat(belief, factors, y.temperature),
+        scaling(belief, factors, y.temperature),
         state(belief, before(setup.rig.effects, now.state[8:]), believed),
         top,
         grid,

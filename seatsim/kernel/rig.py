@@ -9,7 +9,7 @@ from seatsim.compilation.jit import jit
 from seatsim.kernel.chain import Effects, before, folded, joined, own, summed
 from seatsim.kernel.generic import Tuple, force, friction_limit, rates
 from seatsim.rig.plant import Plant
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 
 MECHANICAL = 8
 """Length of the mechanical state: x, v, xc, vc, then the work of floor, damper, suspension and cushion in J."""
@@ -68,7 +68,9 @@ class Flow(NamedTuple):
 
 
 @jit
-def derivative(rig: Rig, s: Tuple, shake: Shake, current: float, heat: Heat, slip: float) -> tuple[Tuple, Flow]:
+def derivative(
+    rig: Rig, s: Tuple, shake: Shake, current: float, scaling: TemperatureScaling, slip: float
+) -> tuple[Tuple, Flow]:
     """Return the rates of the state `(x, v, xc, vc, works..., *z, *effects)` and the flow.
 
     x = zs - z0, xc = zc - zs. `slip` is the direction of sliding of the set-valued friction, -1 or 1, or HELD, where
@@ -79,14 +81,14 @@ def derivative(rig: Rig, s: Tuple, shake: Shake, current: float, heat: Heat, sli
     x, v, xc, vc = s[0], s[1], s[2], s[3]
     z, ze = before(effects, s[8:]), own(effects, s[8:])
     ratio = plant.damper_ratio
-    smooth = force(rig.damper, ratio * x, ratio * v, current, heat, z)
+    smooth = force(rig.damper, ratio * x, ratio * v, current, scaling, z)
     spring = plant.suspension_stiffness * x
     resistance = plant.suspension_damping * v + suspension_force(effects, ze, plant, x, v)
     linear = plant.cushion_stiffness * xc + plant.cushion_damping * vc
     cushion = cushion_force(effects, ze, linear, plant, xc, vc)
     free = (cushion - spring - resistance - ratio * smooth + shake.push) / plant.frame_mass - shake.floor
 
-    damper_limit = ratio * friction_limit(rig.damper, ratio * v, current, heat, z)
+    damper_limit = ratio * friction_limit(rig.damper, ratio * v, current, scaling, z)
     linkage = linkage_friction(effects, ze)
     limit = damper_limit + linkage
     friction, acceleration = _friction(free, v, slip, limit, plant.frame_mass)
@@ -102,7 +104,7 @@ def derivative(rig: Rig, s: Tuple, shake: Shake, current: float, heat: Heat, sli
         (resistance + share * linkage) * v,
         (cushion - plant.cushion_stiffness * xc) * vc,
     )
-    dz = rates(rig.damper, ratio * x, ratio * v, current, heat, z)
+    dz = rates(rig.damper, ratio * x, ratio * v, current, scaling, z)
     de = effect_rates(effects, ze, plant, Motion(x, v, xc, vc, frame, driver))
     return (v, acceleration, vc, driver - frame) + works + dz + de, Flow(damper_force, friction, limit)
 

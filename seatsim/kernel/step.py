@@ -14,7 +14,7 @@ from seatsim.compilation.jit import jit, jit_apart
 from seatsim.kernel.generic import Tuple, axpy, combine
 from seatsim.kernel.rig import HELD, Flow, Rig, Shake, derivative
 from seatsim.rig.coil import Coil, relax
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
 
 relaxed = jit(relax)
 FLOOR_OF_ERROR_SCALE = 0.01
@@ -95,9 +95,11 @@ def shake_at(drive: Drive, time: float) -> Shake:
 
 
 @jit
-def start(rig: Rig, state: Tuple, shake: Shake, current: float, heat: Heat, substep: float) -> Progress:
+def start(
+    rig: Rig, state: Tuple, shake: Shake, current: float, scaling: TemperatureScaling, substep: float
+) -> Progress:
     """Return the progress of a rig in `state`, sliding or at rest."""
-    rates, flow = derivative(rig, state, shake, current, heat, 0.0)
+    rates, flow = derivative(rig, state, shake, current, scaling, 0.0)
     return Progress(state, rates, flow, _phase(state, rates, flow), substep)
 
 
@@ -121,31 +123,31 @@ def _margin(slip: float, state: Tuple, flow: Flow) -> float:
 
 @jit
 def _try(
-    rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, time: float, h: float
+    rig: Rig, coil: Coil, drive: Drive, scaling: TemperatureScaling, now: Progress, time: float, h: float
 ) -> tuple[Tuple, Tuple, Flow, Tuple, float]:
     """Return state, rates, flow after a sub-step of `h` from `time`, the fourth stage, and the current at the end."""
     middle, end = shake_at(drive, time + 0.5 * h), shake_at(drive, time + h)
     i_middle, i_end = _currents(coil, drive, time, h)
     k1, slip = now.rates, now.slip
-    k2, _ = derivative(rig, axpy(now.state, 0.5 * h, k1), middle, i_middle, heat, slip)
-    k3, _ = derivative(rig, axpy(now.state, 0.5 * h, k2), middle, i_middle, heat, slip)
-    k4, _ = derivative(rig, axpy(now.state, h, k3), end, i_end, heat, slip)
+    k2, _ = derivative(rig, axpy(now.state, 0.5 * h, k1), middle, i_middle, scaling, slip)
+    k3, _ = derivative(rig, axpy(now.state, 0.5 * h, k2), middle, i_middle, scaling, slip)
+    k4, _ = derivative(rig, axpy(now.state, h, k3), end, i_end, scaling, slip)
     state = combine(now.state, h, k1, k2, k3, k4)
-    rates, flow = derivative(rig, state, end, i_end, heat, slip)
+    rates, flow = derivative(rig, state, end, i_end, scaling, slip)
     return state, rates, flow, k4, i_end
 
 
 @jit
 def advance(
-    rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, tolerance: float
+    rig: Rig, coil: Coil, drive: Drive, scaling: TemperatureScaling, now: Progress, tolerance: float
 ) -> tuple[Progress, float, bool]:
     """Return the progress after one step, the current then, and whether the step succeeded."""
     h = now.substep
     if h == drive.length and now.flow.friction_limit <= 0.0:
-        state, rates, flow, k4, i_end = _try(rig, coil, drive, heat, now, 0.0, h)
+        state, rates, flow, k4, i_end = _try(rig, coil, drive, scaling, now, 0.0, h)
         if flow.friction_limit <= 0.0 and _error(state, rates, k4, h, tolerance) <= 1.0:
             return Progress(state, rates, flow, 0.0, h), i_end, True
-    return _divided(rig, coil, drive, heat, now, tolerance)
+    return _divided(rig, coil, drive, scaling, now, tolerance)
 
 
 @jit
@@ -157,7 +159,7 @@ def _error(state: Tuple, rates: Tuple, k4: Tuple, h: float, tolerance: float) ->
 
 @jit_apart
 def _divided(
-    rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, tolerance: float
+    rig: Rig, coil: Coil, drive: Drive, scaling: TemperatureScaling, now: Progress, tolerance: float
 ) -> tuple[Progress, float, bool]:
     """Advance by one step in as many sub-steps as it needs, with the set-valued friction."""
     time, current, h = 0.0, drive.current, now.substep
@@ -166,7 +168,7 @@ def _divided(
         last = h >= remaining * (1.0 - 1e-12)
         if last:
             h = remaining
-        state, rates, flow, k4, i_end = _try(rig, coil, drive, heat, now, time, h)
+        state, rates, flow, k4, i_end = _try(rig, coil, drive, scaling, now, time, h)
         error = _error(state, rates, k4, h, tolerance)
         if not error <= 1.0 and h > SMALLEST * drive.length:
             h *= max(0.1, 0.9 / error**0.25) if error < 1e12 else 0.1
@@ -175,11 +177,11 @@ def _divided(
             return now, current, False
         tried, slip = h, now.slip
         if _margin(slip, state, flow) < 0.0:
-            h, state, flow, i_end = _end_of_phase(rig, coil, drive, heat, now, time, h, state, flow)
+            h, state, flow, i_end = _end_of_phase(rig, coil, drive, scaling, now, time, h, state, flow)
             last = last and h == tried
             state = state[:1] + (0.0,) + state[2:]
             slip = math.copysign(1.0, flow.friction) if slip == HELD else 0.0
-            rates, flow = derivative(rig, state, shake_at(drive, time + h), i_end, heat, slip)
+            rates, flow = derivative(rig, state, shake_at(drive, time + h), i_end, scaling, slip)
         if slip == 0.0 or flow.friction_limit <= 0.0:
             slip = _phase(state, rates, flow)
         now = Progress(state, rates, flow, slip, h)
@@ -194,7 +196,15 @@ def _divided(
 
 @jit
 def _end_of_phase(
-    rig: Rig, coil: Coil, drive: Drive, heat: Heat, now: Progress, time: float, h: float, state: Tuple, flow: Flow
+    rig: Rig,
+    coil: Coil,
+    drive: Drive,
+    scaling: TemperatureScaling,
+    now: Progress,
+    time: float,
+    h: float,
+    state: Tuple,
+    flow: Flow,
 ) -> tuple[float, Tuple, Flow, float]:
     """Return the time until sliding or rest ends, the state, flow and current then, by the Illinois method.
 
@@ -205,7 +215,7 @@ def _end_of_phase(
     i_end = drive.current
     for _ in range(TRIES):
         h = (low * m_high - high * m_low) / (m_high - m_low) if m_low > 0.0 else 0.5 * (low + high)
-        state, _, flow, _, i_end = _try(rig, coil, drive, heat, now, time, h)
+        state, _, flow, _, i_end = _try(rig, coil, drive, scaling, now, time, h)
         margin = _margin(now.slip, state, flow)
         if abs(margin) <= SHARP or high - low <= SMALLEST * drive.length:
             break

@@ -23,16 +23,16 @@ from seatsim.metrics.motion import (
     rms,
 )
 from seatsim.metrics.spectra import cross_density, density
-from seatsim.metrics.table import METRICS, Card, Metric, summarise
+from seatsim.metrics.table import METRICS, Metric, MetricSpecification, summarise
 from seatsim.metrics.transmissibility import Transmissibility, transmissibility
 from seatsim.metrics.weighting import WEIGHTINGS, Weighting, response, weight
 
 __all__ = [
     "METRICS",
     "WEIGHTINGS",
-    "Card",
     "Dose",
     "Metric",
+    "MetricSpecification",
     "TrackingError",
     "Transmissibility",
     "Weighting",

@@ -38,7 +38,7 @@ class Run(NamedTuple):
     coil_resistance: float | None
 
 
-class Card(NamedTuple):
+class MetricSpecification(NamedTuple):
     """A metric before there is a run: `value` works it out, or raises `Absent` where an input is missing."""
 
     unit: str
@@ -74,9 +74,9 @@ def summarise(
     """
     run = Run(Record(history, step, settle), travel, coil_resistance)
     metrics = {}
-    for name, card in METRICS.items():
+    for name, specification in METRICS.items():
         try:
-            metrics[name] = Metric(card.value(run), card.unit, card.meaning)
+            metrics[name] = Metric(specification.value(run), specification.unit, specification.meaning)
         except Absent:
             continue
     return metrics
@@ -154,26 +154,38 @@ def _temperature_final(run: Run) -> float:
     return float(run.record.whole("damper_temperature")[-1])
 
 
-METRICS: Mapping[str, Card] = {
-    "driver_acceleration_rms": Card("m/s^2", "RMS acceleration of the driver", _rms("driver_acceleration")),
-    "driver_acceleration_peak": Card("m/s^2", "largest driver acceleration", _peak("driver_acceleration")),
-    "driver_acceleration_weighted": Card("m/s^2", "RMS driver acceleration, Wk-weighted", _weighted_rms),
-    "driver_vdv": Card("m/s^1.75", "vibration dose value of the driver, Wk-weighted", _vdv),
-    "driver_mtvv": Card("m/s^2", "largest Wk-weighted RMS of the driver in any second", _mtvv),
-    "driver_crest_factor": Card("-", "peak over RMS of the driver's Wk-weighted acceleration", _crest_factor),
-    "seat_factor": Card("-", "Wk-weighted RMS of the driver over that of the floor (SEAT)", _seat_factor),
-    "frame_acceleration_rms": Card("m/s^2", "RMS acceleration of the frame", _rms("frame_acceleration")),
-    "frame_acceleration_peak": Card("m/s^2", "largest frame acceleration", _peak("frame_acceleration")),
-    "suspension_displacement_rms": Card("m", "RMS suspension travel", _rms("suspension_displacement")),
-    "suspension_displacement_peak": Card("m", "largest suspension travel", _peak("suspension_displacement")),
-    "end_stop_hits": Card("-", "separate excursions beyond the travel", _end_stop_hits),
-    "force_tracking_error": Card("N", "RMS of wanted less delivered force", _tracking_error),
-    "force_tracking_error_relative": Card("-", "the same over the RMS of the wanted force", _tracking_relative),
-    "force_served_share": Card("-", "share of time the wanted force could be delivered", _served_share),
-    "current_rms": Card("A", "RMS coil current", _rms("coil_current")),
-    "electrical_energy": Card("J", "heat of the coil", _electrical_energy),
-    "damper_energy": Card("J", "energy dissipated by the damper", _damper_energy),
-    "energy_residual": Card("-", "energy unaccounted for over the largest energy", _energy_residual),
-    "temperature_final": Card("degC", "temperature of the damper at the end", _temperature_final),
+METRICS: Mapping[str, MetricSpecification] = {
+    "driver_acceleration_rms": MetricSpecification(
+        "m/s^2", "RMS acceleration of the driver", _rms("driver_acceleration")
+    ),
+    "driver_acceleration_peak": MetricSpecification(
+        "m/s^2", "largest driver acceleration", _peak("driver_acceleration")
+    ),
+    "driver_acceleration_weighted": MetricSpecification("m/s^2", "RMS driver acceleration, Wk-weighted", _weighted_rms),
+    "driver_vdv": MetricSpecification("m/s^1.75", "vibration dose value of the driver, Wk-weighted", _vdv),
+    "driver_mtvv": MetricSpecification("m/s^2", "largest Wk-weighted RMS of the driver in any second", _mtvv),
+    "driver_crest_factor": MetricSpecification(
+        "-", "peak over RMS of the driver's Wk-weighted acceleration", _crest_factor
+    ),
+    "seat_factor": MetricSpecification(
+        "-", "Wk-weighted RMS of the driver over that of the floor (SEAT)", _seat_factor
+    ),
+    "frame_acceleration_rms": MetricSpecification("m/s^2", "RMS acceleration of the frame", _rms("frame_acceleration")),
+    "frame_acceleration_peak": MetricSpecification("m/s^2", "largest frame acceleration", _peak("frame_acceleration")),
+    "suspension_displacement_rms": MetricSpecification("m", "RMS suspension travel", _rms("suspension_displacement")),
+    "suspension_displacement_peak": MetricSpecification(
+        "m", "largest suspension travel", _peak("suspension_displacement")
+    ),
+    "end_stop_hits": MetricSpecification("-", "separate excursions beyond the travel", _end_stop_hits),
+    "force_tracking_error": MetricSpecification("N", "RMS of wanted less delivered force", _tracking_error),
+    "force_tracking_error_relative": MetricSpecification(
+        "-", "the same over the RMS of the wanted force", _tracking_relative
+    ),
+    "force_served_share": MetricSpecification("-", "share of time the wanted force could be delivered", _served_share),
+    "current_rms": MetricSpecification("A", "RMS coil current", _rms("coil_current")),
+    "electrical_energy": MetricSpecification("J", "heat of the coil", _electrical_energy),
+    "damper_energy": MetricSpecification("J", "energy dissipated by the damper", _damper_energy),
+    "energy_residual": MetricSpecification("-", "energy unaccounted for over the largest energy", _energy_residual),
+    "temperature_final": MetricSpecification("degC", "temperature of the damper at the end", _temperature_final),
 }
 """All metrics by name, in the order of the table."""

@@ -101,8 +101,8 @@ def unit_of(scenario: Scenario, key: str) -> str:
         return "degC"
     section, _, name = key.rpartition(".")
     record = _records(scenario).get(section)
-    cards = describe(record) if record else []
-    found = next((card.unit for card in cards if card.name == name), "")
+    specifications = describe(record) if record else []
+    found = next((specification.unit for specification in specifications if specification.name == name), "")
     return "" if found == "-" else found
 
 

@@ -46,7 +46,7 @@ class Measurement(NamedTuple):
     replayed: float
 
 
-class LawCard(NamedTuple):
+class LawSpecification(NamedTuple):
     """What is stated of a law: initial value of its state, whether it replays a recording row by row, its source."""
 
     initial: tuple[float, ...]
@@ -56,4 +56,4 @@ class LawCard(NamedTuple):
 
 def law(name: str, initial: tuple[float, ...] = (), replays: bool = False, source: str = "") -> Callable[[T], T]:
     """Register a record class as the control law `law: name` with the `initial` value of its state."""
-    return register("law", name, LawCard(initial, replays, source))
+    return register("law", name, LawSpecification(initial, replays, source))

@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 from seatsim.schema.fields import param
 
 
-class Heat(NamedTuple):
+class TemperatureScaling(NamedTuple):
     """Factors by which temperature scales the viscous, elastic and yield parts of a damper's force (1 = none)."""
 
     viscous: float = 1.0
@@ -30,10 +30,10 @@ class TemperatureFactors(NamedTuple):
     reference: Annotated[float, param("degC", "T0, where all factors are 1", low=-50, high=200)] = 20.0
 
 
-def heat(factors: TemperatureFactors, temperature: float) -> Heat:
+def scaling(factors: TemperatureFactors, temperature: float) -> TemperatureScaling:
     """Return the factors at a damper temperature in degC (Yu et al. 2019, eqs 9-11)."""
     rise = temperature - factors.reference
-    return Heat(
+    return TemperatureScaling(
         math.exp(factors.viscous * rise),
         math.exp(factors.stiffness * rise),
         math.exp(factors.yield_force * rise),

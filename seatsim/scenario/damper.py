@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from seatsim.rig.temperature import TemperatureFactors
-from seatsim.schema.registry import card_of
+from seatsim.schema.registry import specification_of
 from seatsim.schema.validation import build, check_keys, chosen_class, mapping
 from seatsim.schema.yaml_source import KeyPath, Source
 
@@ -23,11 +23,11 @@ def stated_damper(
     mapping(values, source, keys)
     check_keys(values, ("model", "parameters", "temperature_factors", *extra), source, keys)
     cls = chosen_class("damper", values, "model", source, keys)
-    card = card_of(cls)
-    required: tuple[str, ...] = getattr(cls, "_fields", ()) if card.complete else ()
-    hint = "; this model has no set of its own, state every parameter" if card.complete else ""
+    specification = specification_of(cls)
+    required: tuple[str, ...] = getattr(cls, "_fields", ()) if specification.complete else ()
+    hint = "; this model has no set of its own, state every parameter" if specification.complete else ""
     record = build(cls, values.get("parameters", {}), source, (*keys, "parameters"), required, hint)
     if "temperature_factors" not in values:
-        return record, card.factors
+        return record, specification.factors
     where = (*keys, "temperature_factors")
     return record, build(TemperatureFactors, values["temperature_factors"], source, where)

@@ -13,7 +13,7 @@ from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.scenario.scenario import Solver, Start
 from seatsim.schema import registry
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.fields import FieldCard
+from seatsim.schema.fields import FieldSpecification
 from seatsim.schema.fields import describe as fields_of
 
 KINDS = ("damper", "law", "excitation", "effect")
@@ -50,22 +50,21 @@ def describe(name: str = "") -> str:
 
 
 def _page(name: str, kind: str, cls: type) -> str:
-    card = None if kind == "section" else registry.card_of(cls)
+    specification = None if kind == "section" else registry.specification_of(cls)
     lines = [f"{name} ({kind})", "", inspect.getdoc(cls) or ""]
-    if card is not None and card.source:
-        lines += ["", f"Source: {card.source}"]
-    if card is not None and kind == "damper":
-        low, high = card.temperatures
-        lines += [
-            f"Range of the data: |v| <= {card.max_speed:g} m/s, 0 to {card.max_current:g} A, {low:g} to {high:g} degC"
-        ]
-        lines += [f"State: {card.state}"] if card.state else []
-        lines += [f"Confidence: {card.confidence}; {CONFIDENCE[card.confidence]}"]
-        lines += [f"Not fitted by an identification: {', '.join(card.held)}"] if card.held else []
+    if specification is not None and specification.source:
+        lines += ["", f"Source: {specification.source}"]
+    if specification is not None and kind == "damper":
+        low, high = specification.temperatures
+        speed, current = specification.max_speed, specification.max_current
+        lines += [f"Range of the data: |v| <= {speed:g} m/s, 0 to {current:g} A, {low:g} to {high:g} degC"]
+        lines += [f"State: {specification.state}"] if specification.state else []
+        lines += [f"Confidence: {specification.confidence}; {CONFIDENCE[specification.confidence]}"]
+        lines += [f"Not fitted by an identification: {', '.join(specification.fixed)}"] if specification.fixed else []
     return "\n".join([*lines, "", "Keys:", *(_line(field) for field in fields_of(cls))])
 
 
-def _line(field: FieldCard) -> str:
+def _line(field: FieldSpecification) -> str:
     unit = f" [{field.unit}]" if field.unit else ""
     default = "required" if field.required else f"default {_shown(field.default)}"
     return f"  {field.name}{unit}: {field.meaning} ({default})"

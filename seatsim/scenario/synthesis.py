@@ -10,7 +10,7 @@ from seatsim.schema.errors import InputError
 from seatsim.schema.registry import name_of
 
 
-def design_for(scenario: Scenario, told: Callable[[str], object] = lambda text: None) -> Any:
+def design_for(scenario: Scenario, progress: Callable[[str], object] = lambda text: None) -> Any:
     """Return the design of a law that has a synthesis, for the scenario's plant.
 
     Raises:
@@ -24,4 +24,4 @@ def design_for(scenario: Scenario, told: Callable[[str], object] = lambda text: 
         if not hasattr(law, "synthesis"):
             name = name_of("law", type(law))
             raise InputError(f"law '{name}' is not synthesised; use 'law: static_output_feedback' with 'weights'")
-        return law.synthesis(scenario.plant, told)
+        return law.synthesis(scenario.plant, progress)

@@ -33,7 +33,7 @@ def param(
     return Field(description=meaning, json_schema_extra={"unit": unit}, ge=low, le=high, gt=above, strict=True)
 
 
-class FieldCard(NamedTuple):
+class FieldSpecification(NamedTuple):
     """What is known of one field of a record."""
 
     name: str
@@ -49,17 +49,17 @@ def adapter(record: type) -> TypeAdapter[Any]:
     return TypeAdapter(record)
 
 
-def describe(record: type) -> list[FieldCard]:
+def describe(record: type) -> list[FieldSpecification]:
     """List name, unit, meaning and default of every field of a record class, in order."""
     defaults: dict[str, Any] = getattr(record, "_field_defaults", {})
-    cards = []
+    specifications = []
     for name, hint in _hints(record).items():
         info = _field_info(hint)
         extra = info.json_schema_extra if info else None
         unit = str(extra.get("unit", "")) if isinstance(extra, dict) else ""
         meaning = (info.description or "") if info else ""
-        cards.append(FieldCard(name, unit, meaning, defaults.get(name), name not in defaults))
-    return cards
+        specifications.append(FieldSpecification(name, unit, meaning, defaults.get(name), name not in defaults))
+    return specifications
 
 
 def bounds(record: type, name: str) -> tuple[float, float]:

@@ -19,23 +19,23 @@ from seatsim.schema.errors import InputError, nearest
 T = TypeVar("T", bound=type)
 
 _classes: dict[str, dict[str, type]] = {}
-_cards: dict[type, Any] = {}
+_specifications: dict[type, Any] = {}
 
 
-def register(kind: str, name: str, card: Any) -> Callable[[T], T]:
-    """Return a class decorator that enters a class of this `kind` under `name`, with its `card` of facts."""
+def register(kind: str, name: str, specification: Any) -> Callable[[T], T]:
+    """Return a class decorator that enters a class of this `kind` under `name`, with its `specification` of facts."""
 
     def enter(cls: T) -> T:
         _classes.setdefault(kind, {})[name] = cls
-        _cards[cls] = card
+        _specifications[cls] = specification
         return cls
 
     return enter
 
 
-def card_of(cls: type) -> Any:
+def specification_of(cls: type) -> Any:
     """Return the card that the class was registered with."""
-    return _cards[cls]
+    return _specifications[cls]
 
 
 def name_of(kind: str, cls: type) -> str:

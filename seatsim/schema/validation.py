@@ -24,7 +24,7 @@ def build(
     missing key. Raises InputError with place, value, what is permitted and the nearest valid name.
     """
     mapping(values, source, keys)
-    known = [card.name for card in describe(record)]
+    known = [specification.name for specification in describe(record)]
     check_keys(values, known, source, keys)
     _check_finite(values, source, keys)
     for name in required:
@@ -85,7 +85,7 @@ def _problem(record: type, error: ErrorDetails) -> str:
     """Translate pydantic's finding into what is wrong, what is permitted, and in which unit."""
     context, value = error.get("ctx") or {}, _shown(error["input"])
     name = error["loc"][0] if error["loc"] else ""
-    unit = next((card.unit for card in describe(record) if card.name == name), "")
+    unit = next((specification.unit for specification in describe(record) if specification.name == name), "")
     suffix = f" {unit}" if unit and unit != "-" else ""
     bounds = {"greater_than_equal": ("at least", "ge"), "less_than_equal": ("at most", "le")}
     bounds |= {"greater_than": ("greater than", "gt"), "less_than": ("less than", "lt")}

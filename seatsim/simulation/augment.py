@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.chain import Effects, state_of
-from seatsim.schema.registry import card_of, find, names
+from seatsim.schema.registry import find, names, specification_of
 
 Array = NDArray[np.float64]
 NONE = np.zeros(0)
@@ -62,7 +62,7 @@ def _acting(classes: tuple[Any, ...], hooks: tuple[str, ...]) -> list[Any]:
 
 def damper_with(record: Any, effects: Effects) -> tuple[Any, tuple[float, ...]]:
     """Return a damper's record with effects on it, and its state at rest."""
-    initial: tuple[float, ...] = card_of(type(record)).initial
+    initial: tuple[float, ...] = specification_of(type(record)).initial
     if not effects:
         return record, initial
     return AugmentedDamper(record, effects), initial + state_of([type(effect) for effect in effects])

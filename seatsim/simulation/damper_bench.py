@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from seatsim.compilation.cached import compiled
-from seatsim.dampers.base import DamperCard, State
+from seatsim.dampers.base import DamperSpecification, State
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError, RunError
-from seatsim.schema.registry import card_of
+from seatsim.schema.registry import specification_of
 
 Array = NDArray[np.float64]
 
@@ -121,15 +121,15 @@ def bench_force(
     if x.ndim != 1 or len(x) % 2 == 0:
         raise InputError(f"a bench needs two samples a step and one more, in one dimension, not {x.shape}")
     try:
-        v, i, heat = (np.array(np.broadcast_to(a, x.shape), float) for a in (velocity, current, temperature))
+        v, i, scaling = (np.array(np.broadcast_to(a, x.shape), float) for a in (velocity, current, temperature))
     except ValueError as error:
         raise InputError(f"the samples of a bench differ in number: {error}") from error
     out = np.full((len(x) + 1) // 2, math.nan)
     if state is None or factors is None:
-        card: DamperCard = card_of(type(damper))
-        state, factors = card.initial if state is None else state, factors or card.factors
+        specification: DamperSpecification = specification_of(type(damper))
+        state, factors = specification.initial if state is None else state, factors or specification.factors
     run = compiled(run_bench, classes_of(damper))
-    reached = run(damper, factors, x, v, i, heat, state, float(step), MOST_PARTS, TOLERANCE, out)
+    reached = run(damper, factors, x, v, i, scaling, state, float(step), MOST_PARTS, TOLERANCE, out)
     if reached < len(out) or not np.all(np.isfinite(out)):
         raise RunError(f"the force of {type(damper).__name__} is not finite after {reached * step:.3g} s")
     return out

@@ -46,11 +46,11 @@ def beaten(runs: Sequence[Run], found: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def brackets(runs: Sequence[Run], tell: Callable[[str], None]) -> Iterator[tuple[str, Any]]:
+def brackets(runs: Sequence[Run], progress: Callable[[str], None]) -> Iterator[tuple[str, Any]]:
     """Yield the bracket of each rig with its `Scenario.rig`, or the InputError that says why it has none."""
     kind: Any = find("bracket", "clairvoyant")
     for rig, scenario in {run.scenario.rig: run.scenario for run in runs}.items():
         try:
-            yield rig, kind.of(scenario, tell)
+            yield rig, kind.of(scenario, progress)
         except InputError as error:
             yield rig, error

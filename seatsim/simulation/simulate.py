@@ -23,7 +23,7 @@ from seatsim.rig.sensors import Direct, at_rest
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Control, Scenario
 from seatsim.schema.errors import InputError, RunError
-from seatsim.schema.registry import card_of
+from seatsim.schema.registry import specification_of
 from seatsim.simulation.augment import changed, damper_with, in_loop, pushes, undone
 
 Array = NDArray[np.float64]
@@ -77,7 +77,7 @@ def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | No
     out = np.empty((len(floor.acceleration), len(CHANNELS)))
     variable = setup.law, setup.belief.damper, setup.sensors
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
-    states = (initial, _believed(setup.belief), card_of(type(scenario.control.law)).initial)
+    states = (initial, _believed(setup.belief), specification_of(type(scenario.control.law)).initial)
     reached = compiled(run_loop, parts)(setup, inputs, *states, out)
     notes = setup.law.notes() if hasattr(setup.law, "notes") else ()
     if reached < len(out):
@@ -119,23 +119,25 @@ def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
     """Return what the inverse believes: the plant's damper, whose effects it does not know, unless stated otherwise."""
     if control.inverse is None:
         record = scenario.damper.record
-        order = card_of(type(record)).current_order
+        order = specification_of(type(record)).current_order
         if any(acts_on(type(effect), (*ON_DAMPER, "factors")) for effect in scenario.effects):
             return Belief(record, order, scenario.damper.factors, np.nan)
         return Truth(record, order)
     record, factors = control.inverse.damper.record, control.inverse.damper.factors
     temperature = control.inverse.temperature
-    return Belief(record, card_of(type(record)).current_order, factors, np.nan if temperature is None else temperature)
+    return Belief(
+        record, specification_of(type(record)).current_order, factors, np.nan if temperature is None else temperature
+    )
 
 
 def _believed(belief: Truth | Belief) -> tuple[float, ...]:
-    initial: tuple[float, ...] = card_of(type(belief.damper)).initial
+    initial: tuple[float, ...] = specification_of(type(belief.damper)).initial
     return initial
 
 
 def _sample_every(step: float, control: Control) -> int:
     if control.sample_time is None:
-        return 1 if card_of(type(control.law)).replays else max(1, round(DEFAULT_SAMPLE_TIME / step))
+        return 1 if specification_of(type(control.law)).replays else max(1, round(DEFAULT_SAMPLE_TIME / step))
     every = round(control.sample_time / step)
     if every < 1 or abs(every * step - control.sample_time) > 1e-9:
         raise InputError(
@@ -152,7 +154,7 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) 
     temperature = np.full(samples, fixed) if floor.temperature is None else floor.temperature
     temperature = changed(effects, "temperature", temperature, step)
     command = NONE if floor.command is None else undone(effects, floor.command, "current_command", step)
-    replays = card_of(type(control.law)).replays
+    replays = specification_of(type(control.law)).replays
     flowing = NONE
     if floor.coil_current is not None:
         flowing = undone(effects, floor.coil_current, "coil_current", step)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from seatsim.scenario.scenario import Scenario
-from seatsim.schema.registry import card_of, name_of
+from seatsim.schema.registry import name_of, specification_of
 from seatsim.simulation.damper_bench import centring
 from seatsim.simulation.simulate import History
 
@@ -16,18 +16,18 @@ SHARE = 0.01
 def warnings_of(scenario: Scenario, history: History) -> tuple[str, ...]:
     """Return a sentence for every range of the damper that the run leaves for more than 1 % of its time."""
     cls = type(scenario.damper.record)
-    card, model = card_of(cls), name_of("damper", cls)
+    specification, model = specification_of(cls), name_of("damper", cls)
     ratio = scenario.plant.damper_ratio if scenario.plant else 1.0
     speed = ratio * np.abs(history["suspension_velocity"])
     checks = [
         (
-            speed > card.max_speed,
-            f"faster than {card.max_speed:g} m/s",
+            speed > specification.max_speed,
+            f"faster than {specification.max_speed:g} m/s",
             "the force there is an extrapolation",
         ),
         (
-            history["coil_current"] > card.max_current * (1 + 1e-9),
-            f"above {card.max_current:g} A",
+            history["coil_current"] > specification.max_current * (1 + 1e-9),
+            f"above {specification.max_current:g} A",
             "its laws end there",
         ),
     ]
@@ -36,5 +36,7 @@ def warnings_of(scenario: Scenario, history: History) -> tuple[str, ...]:
         for outside, what, consequence in checks
         if np.mean(outside) > SHARE
     ]
-    drift = centring(history["suspension_displacement"], history["suspension_velocity"]) if card.centred else ""
+    drift = (
+        centring(history["suspension_displacement"], history["suspension_velocity"]) if specification.centred else ""
+    )
     return (*found, f"{model}: {drift}") if drift else tuple(found)

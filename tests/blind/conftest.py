@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from seatsim.blind.make.make import case
+from seatsim.blind.make import case
 
 
 @pytest.fixture

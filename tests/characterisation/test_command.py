@@ -116,7 +116,7 @@ def test_default_settings_keep_to_the_ranges_of_the_model():
         tested = specimen(name, None)
         chosen = settings_of(tested)
         speed = 2.0 * math.pi * max(chosen.amplitudes) * max(chosen.frequencies)
-        assert speed <= tested.card.max_speed and max(chosen.currents) == tested.card.max_current
+        assert speed <= tested.specification.max_speed and max(chosen.currents) == tested.specification.max_current
     assert settings_of(specimen("yu2019", None)).temperatures == [20.0, 50.0, 80.0]
     assert settings_of(specimen("yu2019", None), frequencies="0.7").amplitudes == [0.0035, 0.007]
 

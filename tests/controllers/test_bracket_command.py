@@ -22,8 +22,8 @@ class Made:
     """A kind of bracket that takes no time."""
 
     @staticmethod
-    def of(scenario, tell):
-        tell("at work")
+    def of(scenario, progress):
+        progress("at work")
         weights, travel = np.array([400.0, 3600.0]), np.array([0.012, 0.001])
         return Bracket(weights, np.array([0.08, 0.15]), np.array([0.2, 0.4]), travel, np.zeros((2, 0)), 0.005)
 
@@ -32,15 +32,15 @@ class Beaten:
     """A kind whose bound is too high."""
 
     @staticmethod
-    def of(scenario, tell):
-        return dataclasses.replace(Made.of(scenario, tell), lower=np.array([9.0, 0.15]))
+    def of(scenario, progress):
+        return dataclasses.replace(Made.of(scenario, progress), lower=np.array([9.0, 0.15]))
 
 
 class Refused:
     """A kind that has none."""
 
     @staticmethod
-    def of(scenario, tell):
+    def of(scenario, progress):
         raise InputError("the seat is bent")
 
 
@@ -48,7 +48,7 @@ class Interrupted:
     """A kind that is interrupted at work."""
 
     @staticmethod
-    def of(scenario, tell):
+    def of(scenario, progress):
         raise KeyboardInterrupt
 
 

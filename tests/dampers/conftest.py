@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatsim.schema.registry import card_of, find, names
+from seatsim.schema.registry import find, names, specification_of
 
 NAMES = names("damper")
 
@@ -20,6 +20,6 @@ def model(cls):
 
 
 @pytest.fixture
-def card(cls):
+def specification(cls):
     """What is stated of it."""
-    return card_of(cls)
+    return specification_of(cls)

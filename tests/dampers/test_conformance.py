@@ -11,42 +11,42 @@ import pytest
 from seatsim.dampers.base import CONFIDENCE, Confidence
 from seatsim.kernel import generic
 from seatsim.kernel.bench import FLOOR
-from seatsim.rig.temperature import Heat, TemperatureFactors
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.fields import adapter, describe
 from seatsim.schema.registry import find
 from seatsim.simulation.damper_bench import bench_force, sine_test
 
-COLD = Heat()
+COLD = TemperatureScaling()
 COARSEST, LEVELS, HALVINGS = 256, 6, 3
 """Steps in a cycle of the longest steps, how often they are halved at most, and over how many an order is measured."""
 
 
 @numba.njit
-def compiled_force(damper, x, v, i, heat, z):
-    return generic.force(damper, x, v, i, heat, z)
+def compiled_force(damper, x, v, i, scaling, z):
+    return generic.force(damper, x, v, i, scaling, z)
 
 
 @numba.njit
-def compiled_rates(damper, x, v, i, heat, z):
-    return generic.rates(damper, x, v, i, heat, z)
+def compiled_rates(damper, x, v, i, scaling, z):
+    return generic.rates(damper, x, v, i, scaling, z)
 
 
 @numba.njit
-def compiled_coulomb(damper, i, heat):
-    return generic.coulomb(damper, i, heat)
+def compiled_coulomb(damper, i, scaling):
+    return generic.coulomb(damper, i, scaling)
 
 
-def states(model, card, count=20):
+def states(model, specification, count=20):
     """States that the model takes on random motion: its own, at random instants of random bench runs."""
     rng = np.random.default_rng(7)
     found = []
     for _ in range(count):
         x, v, i = (
             rng.uniform(-0.02, 0.02),
-            rng.uniform(-1, 1) * card.max_speed,
-            rng.uniform(0, card.max_current),
+            rng.uniform(-1, 1) * specification.max_speed,
+            rng.uniform(0, specification.max_current),
         )
-        z = card.initial
+        z = specification.initial
         for _ in range(40):
             z = tuple(a + 2e-4 * b for a, b in zip(z, rates_of(model, x, v, i, z), strict=True))
             x += 2e-4 * v
@@ -58,9 +58,9 @@ def rates_of(model, x, v, i, z):
     return model.rates(x, v, i, COLD, z) if hasattr(model, "rates") else ()
 
 
-def whole_force(model, s, i, heat=COLD):
-    friction = model.coulomb(i, heat) if hasattr(model, "coulomb") else 0.0
-    return model.force(s.x, s.v, i, heat, s.z) + friction * math.copysign(1.0, s.v)
+def whole_force(model, s, i, scaling=COLD):
+    friction = model.coulomb(i, scaling) if hasattr(model, "coulomb") else 0.0
+    return model.force(s.x, s.v, i, scaling, s.z) + friction * math.copysign(1.0, s.v)
 
 
 def closed_motion(seed, frequency=1.0, samples=4000, cycles=6):
@@ -76,12 +76,12 @@ def closed_motion(seed, frequency=1.0, samples=4000, cycles=6):
     return scale * x, scale * v, 1.0 / (frequency * samples), samples
 
 
-def runge_kutta(model, card, x, v, step):
+def runge_kutta(model, specification, x, v, step):
     """Forces every `step` by the model's own rates, at half its greatest current; NaN from where it runs away."""
-    force, z, current = np.full((len(x) + 1) // 2, math.nan), card.initial, 0.5 * card.max_current
+    force, z, current = np.full((len(x) + 1) // 2, math.nan), specification.initial, 0.5 * specification.max_current
     x, v = x.tolist(), v.tolist()
 
-    def rates(j, h=0.0, slope=card.initial):
+    def rates(j, h=0.0, slope=specification.initial):
         return model.rates(x[j], v[j], current, COLD, tuple(a + h * b for a, b in zip(z, slope, strict=True)))
 
     for k in range(len(force)):
@@ -99,21 +99,21 @@ def runge_kutta(model, card, x, v, step):
     return force
 
 
-def conditions(card):
-    currents = np.linspace(0.0, card.max_current, 4)
-    return [(float(i), float(t)) for i in currents for t in card.temperatures]
+def conditions(specification):
+    currents = np.linspace(0.0, specification.max_current, 4)
+    return [(float(i), float(t)) for i in currents for t in specification.temperatures]
 
 
-def test_the_card_is_complete(cls, card):
-    assert card.source
-    assert card.current_order in (0, 1, 2)
-    assert card.max_speed > 0 and card.max_current > 0
-    assert card.temperatures[0] <= card.temperatures[1]
-    assert isinstance(card.factors, TemperatureFactors)
-    assert bool(card.initial) == bool(card.state) == hasattr(cls, "rates")
-    assert len([part for part in card.state.split(";") if part]) == len(card.initial)
-    assert card.confidence in get_args(Confidence) == tuple(CONFIDENCE)
-    assert set(card.held) <= set(cls._fields)
+def test_the_card_is_complete(cls, specification):
+    assert specification.source
+    assert specification.current_order in (0, 1, 2)
+    assert specification.max_speed > 0 and specification.max_current > 0
+    assert specification.temperatures[0] <= specification.temperatures[1]
+    assert isinstance(specification.factors, TemperatureFactors)
+    assert bool(specification.initial) == bool(specification.state) == hasattr(cls, "rates")
+    assert len([part for part in specification.state.split(";") if part]) == len(specification.initial)
+    assert specification.confidence in get_args(Confidence) == tuple(CONFIDENCE)
+    assert set(specification.fixed) <= set(cls._fields)
 
 
 def test_every_field_has_unit_meaning_and_default(cls):
@@ -129,57 +129,59 @@ def test_defaults_validate_in_a_round_trip(cls, model):
     assert adapter(cls).validate_python(model._asdict()) == model
 
 
-def test_force_and_rates_are_finite(model, card):
-    for s in states(model, card):
-        for current in (0.0, card.max_current, 3.0):
+def test_force_and_rates_are_finite(model, specification):
+    for s in states(model, specification):
+        for current in (0.0, specification.max_current, 3.0):
             assert math.isfinite(whole_force(model, s, current))
         assert all(math.isfinite(rate) for rate in rates_of(model, s.x, s.v, s.i, s.z))
 
 
-def test_the_compiled_model_is_the_python_model(model, card):
-    heat = Heat(0.8, 0.9, 0.7)
-    for s in states(model, card):
-        expected = model.force(s.x, s.v, s.i, heat, s.z)
-        assert compiled_force(model, s.x, s.v, s.i, heat, s.z) == pytest.approx(expected, rel=1e-10, abs=1e-9)
+def test_the_compiled_model_is_the_python_model(model, specification):
+    scaling = TemperatureScaling(0.8, 0.9, 0.7)
+    for s in states(model, specification):
+        expected = model.force(s.x, s.v, s.i, scaling, s.z)
+        assert compiled_force(model, s.x, s.v, s.i, scaling, s.z) == pytest.approx(expected, rel=1e-10, abs=1e-9)
         if hasattr(model, "rates"):
-            rates = model.rates(s.x, s.v, s.i, heat, s.z)
-            assert compiled_rates(model, s.x, s.v, s.i, heat, s.z) == pytest.approx(rates, rel=1e-10, abs=1e-12)
+            rates = model.rates(s.x, s.v, s.i, scaling, s.z)
+            assert compiled_rates(model, s.x, s.v, s.i, scaling, s.z) == pytest.approx(rates, rel=1e-10, abs=1e-12)
         if hasattr(model, "coulomb"):
-            assert compiled_coulomb(model, s.i, heat) == pytest.approx(model.coulomb(s.i, heat), rel=1e-12)
+            assert compiled_coulomb(model, s.i, scaling) == pytest.approx(model.coulomb(s.i, scaling), rel=1e-12)
 
 
-def test_the_force_is_the_polynomial_in_the_current_that_the_card_says(model, card):
-    order = card.current_order
+def test_the_force_is_the_polynomial_in_the_current_that_the_card_says(model, specification):
+    order = specification.current_order
     if order == 0:
         pytest.skip("no polynomial is claimed")
-    nodes = np.linspace(0.0, card.max_current, order + 1)
-    for s in states(model, card):
+    nodes = np.linspace(0.0, specification.max_current, order + 1)
+    for s in states(model, specification):
         law = np.polynomial.Polynomial.fit(nodes, [whole_force(model, s, float(i)) for i in nodes], order)
-        for i in np.linspace(0.0, card.max_current, 7):
+        for i in np.linspace(0.0, specification.max_current, 7):
             got = whole_force(model, s, float(i))
             assert law(i) == pytest.approx(got, rel=1e-10, abs=1e-9)
 
 
-def test_the_force_scales_with_all_temperature_factors_together(model, card):
-    for s in states(model, card):
+def test_the_force_scales_with_all_temperature_factors_together(model, specification):
+    for s in states(model, specification):
         whole = whole_force(model, s, s.i)
-        assert whole_force(model, s, s.i, Heat(0.6, 0.6, 0.6)) == pytest.approx(0.6 * whole, rel=1e-10, abs=1e-9)
+        assert whole_force(model, s, s.i, TemperatureScaling(0.6, 0.6, 0.6)) == pytest.approx(
+            0.6 * whole, rel=1e-10, abs=1e-9
+        )
 
 
-def test_steps_converge_at_the_order_of_the_model(model, card):
+def test_steps_converge_at_the_order_of_the_model(model, specification):
     """Halving the step divides the error by 2 where the rates switch, by 8 or more where they are smooth.
 
     On average over some halvings, from the longest steps that the model bears: an error below 1 % of the force.
     """
-    if not card.initial:
+    if not specification.initial:
         pytest.skip("has no state: exact at any step")
     motions = [closed_motion(seed, 2.0, 2**LEVELS * COARSEST, 1) for seed in range(2)]
     before, errors = None, []
     for level in reversed(range(LEVELS + 1)):
         thin, now = 2**level, []
         for x, v, step, _ in motions:
-            share = card.max_speed / np.max(np.abs(v))
-            force = runge_kutta(model, card, share * x[::thin], share * v[::thin], thin * step)
+            share = specification.max_speed / np.max(np.abs(v))
+            force = runge_kutta(model, specification, share * x[::thin], share * v[::thin], thin * step)
             now += [force[:: 2 ** (LEVELS - level)]]
         with np.errstate(over="ignore", invalid="ignore"):
             found = [(f - g) / (FLOOR + np.abs(f)) for f, g in zip(now, before or now, strict=True)]
@@ -189,7 +191,7 @@ def test_steps_converge_at_the_order_of_the_model(model, card):
             break
         before = now
     assert len(errors) > HALVINGS
-    assert errors[-1] < errors[0] / (8.0 if card.smooth else 2.0) ** HALVINGS
+    assert errors[-1] < errors[0] / (8.0 if specification.smooth else 2.0) ** HALVINGS
 
 
 def test_temperature_lowers_force_and_energy_as_the_factors_say(model):
@@ -201,38 +203,38 @@ def test_temperature_lowers_force_and_energy_as_the_factors_say(model):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_models_with_a_hysteretic_state_dissipate_over_closed_cycles(model, card, seed):
-    if card.centred:
+def test_models_with_a_hysteretic_state_dissipate_over_closed_cycles(model, specification, seed):
+    if specification.centred:
         pytest.skip("branches on the sign of the displacement: tested on centred sines")
     x, v, step, samples = closed_motion(seed)
-    for current, temperature in conditions(card):
+    for current, temperature in conditions(specification):
         force = bench_force(model, x, v, current, temperature, step)[-samples - 1 :]
         power = force * v[::2][-samples - 1 :]
         assert np.trapezoid(power, dx=step) > 0.0
 
 
 @pytest.mark.parametrize(("amplitude", "frequency"), [(0.002, 0.5), (0.005, 1.5), (0.02, 2.0), (0.002, 5.0)])
-def test_every_model_dissipates_over_centred_sines(model, card, amplitude, frequency):
-    for current, temperature in conditions(card):
+def test_every_model_dissipates_over_centred_sines(model, specification, amplitude, frequency):
+    for current, temperature in conditions(specification):
         test = sine_test(model, amplitude, frequency, current, temperature, cycles=4, samples=400)
         assert test.dissipated_energy > 0.0
         assert test.equivalent_damping > 0.0
 
 
 @pytest.mark.parametrize(("amplitude", "frequency"), [(0.004, 1.0), (0.005, 1.5), (0.01, 1.0)])
-def test_peak_force_grows_with_current(model, card, amplitude, frequency):
+def test_peak_force_grows_with_current(model, specification, amplitude, frequency):
     # Published cubic laws turn down just before the end of their range.
-    currents = np.linspace(0.0, 0.9 * card.max_current, 8)
+    currents = np.linspace(0.0, 0.9 * specification.max_current, 8)
     peaks = [sine_test(model, amplitude, frequency, float(i), 20.0, samples=400).peak_force for i in currents]
     assert np.all(np.diff(peaks) > -1e-9 * peaks[-1])
     assert peaks[-1] > 2.0 * peaks[0]
 
 
-def test_branches_follow_the_measured_rule(model, card):
+def test_branches_follow_the_measured_rule(model, specification):
     # A measured loop has a positive force at v = 0 where x > 0, a negative one where x < 0.
-    if not card.centred:
+    if not specification.centred:
         pytest.skip("has no branch")
-    for current in (0.0, 0.5, card.max_current):
+    for current in (0.0, 0.5, specification.max_current):
         test = sine_test(model, 0.005, 1.5, current, 20.0, cycles=6, samples=400)
         assert test.force[np.argmax(test.displacement)] > 0.0
         assert test.force[np.argmin(test.displacement)] < 0.0

@@ -12,11 +12,11 @@ from seatsim.dampers.hyperbolic_tangent import KwokTanh
 from seatsim.dampers.hysteresis_division import Yu2017
 from seatsim.dampers.pieces import branch, branch_rate
 from seatsim.dampers.sigmoid_gaussian import CURRENTS, TABLES, HongSigmoidGaussian, table_row
-from seatsim.rig.temperature import Heat
-from seatsim.schema.registry import card_of
+from seatsim.rig.temperature import TemperatureScaling
+from seatsim.schema.registry import specification_of
 from seatsim.simulation.damper_bench import bench_force, sine_test
 
-COLD = Heat()
+COLD = TemperatureScaling()
 POSITIVE, NEGATIVE = (1.0, 0.0), (-1.0, 0.0)
 
 
@@ -190,11 +190,11 @@ class TestYu2019:
         assert up == pytest.approx(down, rel=2e-3)
 
     def test_temperature_scales_viscous_elastic_and_yield_terms(self):
-        card = card_of(Yu2019)
-        assert card.factors[:3] == (-0.00667,) * 3
-        damper, heat = Yu2019(alpha=(0.0, 0.0, 0.0)), Heat(0.5, 0.25, 1.0)
-        assert damper.force(0.0, 0.1, 0.0, heat, POSITIVE) == pytest.approx(0.5 * 12.0)
-        assert damper.force(0.1, 0.0, 0.0, heat, POSITIVE) == pytest.approx(0.25 * 10.0)
+        specification = specification_of(Yu2019)
+        assert specification.factors[:3] == (-0.00667,) * 3
+        damper, scaling = Yu2019(alpha=(0.0, 0.0, 0.0)), TemperatureScaling(0.5, 0.25, 1.0)
+        assert damper.force(0.0, 0.1, 0.0, scaling, POSITIVE) == pytest.approx(0.5 * 12.0)
+        assert damper.force(0.1, 0.0, 0.0, scaling, POSITIVE) == pytest.approx(0.25 * 10.0)
 
 
 def test_motion_off_centre_is_better_predicted_by_the_recent_mean_than_by_the_sign(shared):

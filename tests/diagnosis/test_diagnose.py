@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import seatsim
-from seatsim.blind.make.make import absorbed, case, make
+from seatsim.blind.make import absorbed, case, make
 from seatsim.blind.sealed import unseal
 from seatsim.cli.app import app
 from seatsim.cli.outputs.diagnosis import write_diagnosis

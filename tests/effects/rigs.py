@@ -8,7 +8,7 @@ from seatsim.dampers.bingham import Bingham
 from seatsim.effects.base import off
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.loading import load
-from seatsim.schema.registry import card_of, find, names
+from seatsim.schema.registry import find, names, specification_of
 from seatsim.simulation.augment import changed, damper_with, in_loop, readings
 from seatsim.simulation.damper_bench import bench_force
 from seatsim.simulation.simulate import simulate
@@ -50,7 +50,7 @@ CARRIER = record("damper.gas_spring")
 def starts(name):
     """The effect at the start values of each of its forms."""
     cls = find("effect", name)
-    return [off(cls)._replace(**form.held, **form.free) for form in card_of(cls).forms]
+    return [off(cls)._replace(**form.fixed, **form.free) for form in specification_of(cls).forms]
 
 
 def shaken(scenario, *effects):

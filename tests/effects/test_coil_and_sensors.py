@@ -115,9 +115,9 @@ def test_a_skewed_log_says_late_what_was(shift):
 def test_a_held_command_moves_by_whole_rows():
     command = np.repeat([0.0, 1.0, 0.3, 0.8], 50)
     skew = record("sensor.clock_skew", shift=0.003, hold=1.0)
-    told = skew.truth("current_command", STEP, command)
-    assert told[:-3] == pytest.approx(command[3:])
-    assert set(told) <= set(command)
+    progress = skew.truth("current_command", STEP, command)
+    assert progress[:-3] == pytest.approx(command[3:])
+    assert set(progress) <= set(command)
 
 
 def test_a_sensor_changes_no_motion(bingham):

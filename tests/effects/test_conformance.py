@@ -8,7 +8,7 @@ import pytest
 from seatsim.effects.base import ON_DAMPER, acts_on, off
 from seatsim.scenario.scenario import Solver
 from seatsim.schema.fields import adapter, bounds, choices, describe
-from seatsim.schema.registry import card_of, find
+from seatsim.schema.registry import find, specification_of
 from seatsim.simulation.simulate import simulate
 
 from .rigs import NAMES, distance, shaken, starts
@@ -31,7 +31,7 @@ WITH_FORMS = [name for name in NAMES if starts(name)]
 def at_rest(name):
     """The effect with all its parameters off, on each channel where it acts on one."""
     cls = find("effect", name)
-    if card_of(cls).by_channel:
+    if specification_of(cls).by_channel:
         return [off(cls)._replace(channel=channel) for channel in choices(cls, "channel")]
     return [off(cls)]
 
@@ -45,7 +45,7 @@ def test_every_effect_of_the_contract_exists_and_lives_in_its_block():
 @pytest.mark.parametrize("name", NAMES)
 def test_every_field_has_unit_meaning_and_bounds(name):
     cls = find("effect", name)
-    assert card_of(cls).source or name.startswith("sensor.")
+    assert specification_of(cls).source or name.startswith("sensor.")
     for field in describe(cls):
         assert field.meaning and (field.unit or field.name == "channel"), field.name
         assert field.name == "channel" or all(map(math.isfinite, bounds(cls, field.name))), field.name
@@ -93,7 +93,7 @@ def test_all_effects_off_together_change_nothing(even, nominal):
 
 @pytest.mark.parametrize("name", WITH_FORMS)
 def test_each_form_moves_a_channel_at_its_start(even, nominal, name):
-    if not card_of(find("effect", name)).suits(even.damper.record):
+    if not specification_of(find("effect", name)).suits(even.damper.record):
         pytest.skip("the damper has this of its own")
     for effect in starts(name):
         placed = effect._replace(channel="damper_force") if "channel" in effect._fields else effect

@@ -10,7 +10,7 @@ from seatsim.excitations.periodic import Chirp, Sine, SteppedSine
 from seatsim.excitations.road import Road
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import adapter, describe
-from seatsim.schema.registry import card_of, name_of
+from seatsim.schema.registry import name_of, specification_of
 
 STEP = 0.001
 BUMP = {"height": 0.05, "length": 1.0, "speed": 8, "duration": 6.0, "number": 2, "spacing": 12.0}
@@ -97,9 +97,9 @@ def test_too_coarse_a_step_is_refused_with_the_permitted_one(made):
 
 @pytest.mark.parametrize("cls", dict.fromkeys(m[0] for m in MAPPINGS), ids=lambda c: c.__name__)
 def test_every_key_is_described_and_registered(cls):
-    assert all(card.meaning for card in describe(cls))
+    assert all(specification.meaning for specification in describe(cls))
     assert name_of("excitation", cls) in {"road", "iso7096", "sine", "stepped_sine", "chirp", "bumps"}
-    assert isinstance(card_of(cls).source, str)
+    assert isinstance(specification_of(cls).source, str)
 
 
 @pytest.mark.parametrize(

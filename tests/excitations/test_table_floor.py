@@ -122,7 +122,7 @@ def test_shipped_profile_shakes_like_class_c():
 
 
 def test_keys_are_described_and_read_from_a_mapping():
-    assert all(card.meaning for card in describe(Table))
+    assert all(specification.meaning for specification in describe(Table))
     made = adapter(Table).validate_python({"path": "x", "column": "z", "distance_column": "s", "speed": 10})
     assert made.speed == 10 and made.repeat == "none"
 

@@ -18,14 +18,14 @@ from seatsim.identification.coordinates import (
 )
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import bounds
-from seatsim.schema.registry import card_of, find, names
+from seatsim.schema.registry import find, names, specification_of
 
 MODELS = [name for name in names("damper") if find("damper", name).__module__.startswith("seatsim.dampers.")]
 SCALES = Scales(force=400.0, stroke=0.006, speed=0.06, current=1.0)
 
 
 def coordinates(record, scales=SCALES, **options):
-    return Coordinates(record, scales, card_of(type(record)).held, **options)
+    return Coordinates(record, scales, specification_of(type(record)).fixed, **options)
 
 
 def same(a, b):

@@ -12,7 +12,7 @@ class Wavy(NamedTuple):
     mean: float = 500.0
     swing: float = 400.0
 
-    def force(self, x: float, v: float, i: float, heat: Any, z: Any) -> float:
+    def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
         return v * (self.mean + self.swing * math.sin(3.0 * math.pi * i))
 
 
@@ -25,5 +25,5 @@ class Parabola(NamedTuple):
     b: float = 1200.0
     c: float = -1000.0
 
-    def force(self, x: float, v: float, i: float, heat: Any, z: Any) -> float:
+    def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
         return v * (self.a + self.b * i + self.c * i * i)

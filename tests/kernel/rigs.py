@@ -11,7 +11,7 @@ from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors, Thermal
-from seatsim.schema.registry import card_of
+from seatsim.schema.registry import specification_of
 
 STEP = 1e-3
 SEAT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
@@ -24,7 +24,7 @@ METRICS = (
 
 def truth(damper):
     """The inverse knows the damper."""
-    return Truth(damper, card_of(type(damper)).current_order)
+    return Truth(damper, specification_of(type(damper)).current_order)
 
 
 def rough(duration, step=STEP, rms=1.0, seed=0, low=1.0, high=12.0):
@@ -57,7 +57,7 @@ def run(
     )
     out = np.empty((rows, len(CHANNELS)))
     loop = compiled(run_loop, (type(damper), type(law), type(belief.damper), *map(type, effects)))
-    rest, believed = (card_of(type(part)).initial for part in (damper, belief.damper))
+    rest, believed = (specification_of(type(part)).initial for part in (damper, belief.damper))
     reached = loop(setup, inputs, rest + state_of([type(effect) for effect in effects]), believed, (), out)
     assert reached == rows, f"stopped at row {reached} of {rows}"
     return dict(zip(CHANNELS, out.T, strict=True)) | {"floor_velocity": velocity}

@@ -19,7 +19,7 @@ def doubled(v):
 
 class Model(NamedTuple):
     c: float
-    def force(self, x, v, i, heat, z):
+    def force(self, x, v, i, scaling, z):
         return 1.0 * doubled(self.c * slope(v)) + GAIN
 """
 SLOPE = """
@@ -143,7 +143,7 @@ def test_a_model_without_a_source_is_not_kept(model):
     inline = (
         "from typing import NamedTuple\n"
         "class Model(NamedTuple):\n    c: float\n"
-        "    def force(self, x, v, i, heat, z):\n        return self.c * {}.0 * v"
+        "    def force(self, x, v, i, scaling, z):\n        return self.c * {}.0 * v"
     )
     assert model(before=inline.format(1)) == (3.0, False)
     assert model(before=inline.format(2)) == (6.0, False)

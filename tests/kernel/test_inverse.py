@@ -8,13 +8,13 @@ from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
 from seatsim.kernel.belief import Belief
 from seatsim.kernel.inverse import CELLS, invert, total
-from seatsim.rig.temperature import Heat, TemperatureFactors
-from seatsim.schema.registry import card_of
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+from seatsim.schema.registry import specification_of
 
 from .dampers import Parabola, Wavy
 from .rigs import rms, rough, run
 
-HEAT = Heat(0.9, 1.0, 0.8)
+HEAT = TemperatureScaling(0.9, 1.0, 0.8)
 TOP = 1.2
 GRID = np.linspace(0.0, TOP, 5_001)
 CASES = {
@@ -37,7 +37,7 @@ def draw(bounds, count):
 
 
 def order(damper):
-    return damper.order if hasattr(damper, "order") else card_of(type(damper)).current_order
+    return damper.order if hasattr(damper, "order") else specification_of(type(damper)).current_order
 
 
 def ask(damper, wanted, x, v, z):

@@ -23,4 +23,4 @@ def ready(name, sample_time=0.005, plant=SEAT, **keys):
     """Return the compiled form of a law and its state at rest."""
     cls = registry.find("law", name)
     law = cls(**REQUIRED.get(name, {}), **keys)
-    return simulation._ready(law, plant, COIL, sample_time), registry.card_of(cls).initial
+    return simulation._ready(law, plant, COIL, sample_time), registry.specification_of(cls).initial

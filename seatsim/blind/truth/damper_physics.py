@@ -189,10 +189,10 @@ def damper_force(y: Array, dy: Array, mem: Array, x: float, speed: float, p: Par
         sticky = math.exp(-((v / p.seal_speed) ** 2))
         level = p.seal_force * (1.0 + p.seal_pressure * min(abs(force) / 300.0, 3.0))
         force += level * (y[s.SEAL] + 0.001 * sticky * rate)
-    heat = force * v
+    scaling = force * v
     force += gas_force(x, p)
     flow = p.h_gap * (y[s.T_FLUID] - y[s.T_BODY])
-    dy[s.T_FLUID] = (abs(heat) - flow) / p.heat_fluid
+    dy[s.T_FLUID] = (abs(scaling) - flow) / p.heat_fluid
     dy[s.T_BODY] = (flow - p.h_air * (y[s.T_BODY] - p.t_ambient)) / p.heat_body
     dy[s.T_THERMO] = (y[s.T_BODY] - y[s.T_THERMO]) / p.tau_thermo
     return force

@@ -77,15 +77,15 @@ def tables(found: Characterisation) -> list[Table]:
 
 def remarks(found: Characterisation) -> list[str]:
     """Return what the user has to know beside the tables, records with the same note together."""
-    told: dict[str, list[str]] = {}
+    progress: dict[str, list[str]] = {}
     for row in found.rows:
         for note in row.notes:
-            told.setdefault(note, []).append(row.record)
+            progress.setdefault(note, []).append(row.record)
     for answer in found.responses:
         if answer.note:
             who = f"step {answer.before:.2f} to {answer.after:.2f} A"
-            told.setdefault(answer.note, []).append(f"{answer.record}, {who}" if answer.record else who)
-    lines = [f"{_listed(names)}: {note}" for note, names in told.items()]
+            progress.setdefault(answer.note, []).append(f"{answer.record}, {who}" if answer.record else who)
+    lines = [f"{_listed(names)}: {note}" for note, names in progress.items()]
     return [*found.notes, *lines]
 
 

@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.dampers.base import DamperCard
+from seatsim.dampers.base import DamperSpecification
 from seatsim.metrics import rms
 from seatsim.plots import labels, style
 from seatsim.plots.style import Entry, Grid
 from seatsim.rig.temperature import TemperatureFactors, Thermal
-from seatsim.schema.registry import card_of, name_of
+from seatsim.schema.registry import name_of, specification_of
 from seatsim.simulation.damper_bench import SineTest, sine_test
 from seatsim.simulation.result import Run
 
@@ -128,8 +128,8 @@ def _temperatures(damper: Specimen) -> list[float]:
     used = sorted({temperature_of(run) for run in damper.runs})
     if len(used) > 1:
         return used
-    card: DamperCard = card_of(type(damper.record))
-    low, high = card.temperatures
+    specification: DamperSpecification = specification_of(type(damper.record))
+    low, high = specification.temperatures
     return [low, 0.5 * (low + high), high]
 
 
