@@ -2,41 +2,44 @@
 
 from __future__ import annotations
 
-import copy
-from typing import Any
-
-from seatsim.diagnosis.fit import Point
-from seatsim.diagnosis.problem import Problem
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem
 
 SECTIONS = {"plant": ("plant",), "damper": ("damper", "parameters"), "coil": ("actuator",)}
+"""Keys of the file under which the parameters of each section of a scenario stand."""
 
 
-def content(problem: Problem, point: Point) -> dict[str, Any]:
+def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[str, object]:
     """Return the content of `augmented.yaml`."""
     source = problem.scenario.source
     assert source is not None
-    values: dict[str, Any] = _plain(source.data)
-    for parameter, share in zip(problem.parameters, point.u, strict=True):
-        section = values
+    content = {str(key): _copy_plain(part) for key, part in source.data.items()}
+    for parameter, deviation in zip(problem.parameters, parameters.deviations, strict=True):
+        section = content
         for key in SECTIONS[parameter.section]:
-            section = section.setdefault(key, {})
-        section[parameter.name] = parameter.value + parameter.span * float(share)
+            inner = section.setdefault(key, {})
+            assert isinstance(inner, dict)
+            section = inner
+        section[parameter.name] = parameter.nominal + parameter.tolerance * float(deviation)
+    present = content.get("effects", [])
+    assert isinstance(present, list)
     added = [
-        {"effect": term.effect, "parameters": _parameters(term.record(found))}
-        for term, found in zip(point.terms, point.values, strict=True)
+        {"effect": term.effect, "parameters": _as_plain(term.record(values)._asdict())}
+        for term, values in zip(parameters.terms, parameters.values, strict=True)
     ]
-    values["effects"] = [*values.get("effects", []), *added]
-    return values
+    content["effects"] = [*present, *added]
+    return content
 
 
-def _parameters(record: Any) -> dict[str, Any]:
-    return {name: value if isinstance(value, str) else float(value) for name, value in record._asdict().items()}
+def _as_plain(values: dict[str, object]) -> dict[str, object]:
+    """Return the numbers of an effect's record as floats of Python, which a YAML file can hold; words stay."""
+    return {name: float(value) if isinstance(value, int | float) else value for name, value in values.items()}
 
 
-def _plain(value: Any) -> Any:
-    """Return plain lists and mappings of what a YAML file holds."""
+def _copy_plain(value: object) -> object:
+    """Return plain lists and mappings of what a YAML file holds, without the places that its reader keeps."""
     if isinstance(value, dict):
-        return {str(key): _plain(part) for key, part in value.items()}
+        return {str(key): _copy_plain(part) for key, part in value.items()}
     if isinstance(value, list):
-        return [_plain(part) for part in value]
-    return copy.copy(value)
+        return [_copy_plain(part) for part in value]
+    return value

@@ -1,4 +1,4 @@
-"""Candidate explanations: every effect in every functional form, on every channel it may act on."""
+"""Candidate explanations: every effect in every model structure, on every channel it may act on."""
 
 from __future__ import annotations
 
@@ -8,17 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.problem import Problem
+from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.effects.base import ON_SEAT, Form, acts_on
 from seatsim.schema.fields import bounds, choices
 from seatsim.schema.registry import find, names, specification_of
 
 Array = NDArray[np.float64]
-
-REACH = 8.0
-"""Factor by which a parameter of shape may leave its start."""
-LIMITS = (1.0, 0.5, 0.7, 1.4, 2.0)
-"""Factors on the start of a limit."""
 
 
 class Candidate(NamedTuple):
@@ -42,7 +37,7 @@ class Candidate(NamedTuple):
         return self.cls(**self.fixed, **dict(zip(self.free, map(float, values), strict=True)))
 
     @property
-    def wanes(self) -> bool:
+    def is_limit(self) -> bool:
         """Whether the effect falls as its first parameter grows in size, as with a limit or a clearance."""
         return self.limits[0]
 
@@ -53,7 +48,7 @@ class Candidate(NamedTuple):
         return [abs(off.get(name, 0.0)) > abs(start) for name, start in zip(self.free, self.start, strict=True)]
 
     @property
-    def form(self) -> tuple[Any, ...]:
+    def structure(self) -> tuple[Any, ...]:
         """What candidates share that differ in their start alone."""
         return self.effect, self.free, tuple(self.fixed.items())
 
@@ -63,8 +58,9 @@ class Candidate(NamedTuple):
         return self.effect.partition(".")[0]
 
 
-def candidates(problem: Problem, without: Sequence[str] = ()) -> list[Candidate]:
+def list_candidates(problem: DiagnosisProblem, without: Sequence[str] = ()) -> list[Candidate]:
     """List what could be missing in the nominal scenario of a recording, but for the effects named in `without`."""
+    settings = problem.settings.selection
     present = {type(effect) for effect in problem.scenario.effects}
     found = []
     for name in names("effect"):
@@ -77,19 +73,19 @@ def candidates(problem: Problem, without: Sequence[str] = ()) -> list[Candidate]
                 if specification_of(cls).by_channel
                 else [{}]
             )
-            placed = [_candidate(name, cls, form, place) for place in places]
-            found += [start for candidate in placed for start in _starts(candidate)]
+            placed = [_candidate(name, cls, form, place, settings.shape_reach) for place in places]
+            found += [start for each in placed for start in _starts(each, settings.limit_starts)]
     return found
 
 
-def _starts(candidate: Candidate) -> list[Candidate]:
+def _starts(candidate: Candidate, limit_starts: Sequence[float]) -> list[Candidate]:
     """Return the candidate from every start: a limit must be near where it acts for a fit to feel it."""
     starts = list(zip(candidate.start, candidate.limits, strict=True))
-    factors = LIMITS if candidate.wanes else (1.0,)
+    factors = limit_starts if candidate.is_limit else (1.0,)
     return [candidate._replace(start=tuple(f * x if limit else x for x, limit in starts)) for f in factors]
 
 
-def _fits(cls: Any, problem: Problem) -> bool:
+def _fits(cls: Any, problem: DiagnosisProblem) -> bool:
     """Whether the effect has something to act on in this recording."""
     if problem.bench and acts_on(cls, (*ON_SEAT, "plant", "push")):
         return False
@@ -100,23 +96,23 @@ def _fits(cls: Any, problem: Problem) -> bool:
     return bool(specification_of(cls).suits(problem.scenario.damper.record))
 
 
-def _channels(cls: Any, problem: Problem) -> list[str]:
+def _channels(cls: Any, problem: DiagnosisProblem) -> list[str]:
     known = choices(cls, "channel")
     named = [*problem.channels, "floor_acceleration"]
     return [name for name in named if name in problem.recording.channels and name in known]
 
 
-def _candidate(name: str, cls: Any, form: Form, place: dict[str, Any]) -> Candidate:
+def _candidate(name: str, cls: Any, form: Form, place: dict[str, Any], reach: float) -> Candidate:
     off = {field: 0.0 for field in cls._fields if field not in place} | dict(specification_of(cls).off)
     fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.fixed) | place
-    ranges = [form.within.get(f, _range(cls, f, value, k > 0)) for k, (f, value) in enumerate(form.free.items())]
+    ranges = [form.within.get(f, _range(cls, f, value, reach if k > 0 else None)) for k, (f, value) in enumerate(form.free.items())]
     low, high = zip(*ranges, strict=True)
     return Candidate(name, cls, fixed, tuple(form.free), tuple(form.free.values()), low, high)
 
 
-def _range(cls: Any, field: str, value: float, shape: bool) -> tuple[float, float]:
-    """Return the bounds of a free parameter; one of shape that has a sign stays within REACH of its start."""
+def _range(cls: Any, field: str, value: float, reach: float | None) -> tuple[float, float]:
+    """Return the bounds of a free parameter; one of shape that has a sign stays within a factor `reach` of its start."""
     low, high = bounds(cls, field)
-    if shape and low >= 0.0:
-        return max(low, value / REACH), min(high, value * REACH)
+    if reach is not None and low >= 0.0:
+        return max(low, value / reach), min(high, value * reach)
     return low, high

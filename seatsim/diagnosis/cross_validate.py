@@ -7,61 +7,46 @@ then: all frequencies weigh the same, and an effect counts by what it takes off 
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.decide import material
-from seatsim.diagnosis.fit import Engine, State
-from seatsim.diagnosis.noise import Whitening, even
-from seatsim.diagnosis.problem import Problem
-from seatsim.diagnosis.select import Search
-from seatsim.diagnosis.validate import sizes
+from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.movement import is_material
+from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.problem import normalise_rms_errors
+from seatsim.diagnosis.select import Selection
 
 Array = NDArray[np.float64]
 
-LEVEL = 0.1
-"""Share of the gap that counts as noise."""
-HELPS = 0.1
-"""Share of the gap of runs left out that an effect takes off, mean over the runs."""
-ALIKE = 0.02
-"""Difference of that share within which two sets help as much; of such sets that without an erring sensor is chosen."""
-TRIED = 5
-"""Sets of each size that are tried."""
-FOLDS = 3
-"""Parts of the runs that are left out in turn."""
 
-
-def plain(problem: Problem, state: State) -> Whitening:
-    """Return weights that are the same at all frequencies, those of the gap, so that a state leaves LEVEL^-2."""
-    level = LEVEL * np.sqrt(np.mean(sizes(problem, state) ** 2)) * problem.spread
-    return even(problem, {run: level[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()})
-
-
-def supported(engine: Engine, found: Search) -> tuple[State, list[State]]:
+def select_by_cross_validation(objective: Objective, selection: Selection) -> tuple[Evaluation, list[Evaluation]]:
     """Return the smallest set of effects that no larger one betters on runs left out, and sets that help as much."""
-    chosen, alike, before = found.calibrated, [], left_out(engine, found.calibrated)
-    for sets in found.sets[1:]:
-        tried = [(state, left_out(engine, state)) for state in sets[:TRIED] if material(engine, state)]
+    settings, problem = objective.settings.cross_validation, objective.problem
+    chosen, equivalent = selection.calibrated, list[Evaluation]()
+    before = cross_validate(objective, chosen)
+    for sets in selection.sets[1:]:
+        compared = sets[: settings.sets_compared]
+        tried = [(each, cross_validate(objective, each)) for each in compared if is_material(problem, each)]
         gains = [float(np.mean(1.0 - after / before)) for _, after in tried]
-        if max(gains, default=0.0) < HELPS:
+        if max(gains, default=0.0) < settings.least_gain:
             break
-        best = [each for each, gain in zip(tried, gains, strict=True) if gain > max(gains) - ALIKE]
-        best.sort(key=lambda each: sum(term.block == "sensor" for term in each[0].point.terms))
-        (chosen, before), alike = best[0], [state for state, _ in best[1:]]
-    return chosen, alike
+        best = [each for each, gain in zip(tried, gains, strict=True) if gain > max(gains) - settings.equivalent]
+        # Where a wrong sensor and a change of the rig help as much, the rig is the better guess to act on.
+        best.sort(key=lambda each: sum(term.block == "sensor" for term in each[0].parameters.terms))
+        (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
+    return chosen, equivalent
 
 
-def left_out(engine: Engine, state: State) -> Array:
+def cross_validate(objective: Objective, evaluation: Evaluation) -> Array:
     """Return the gap of each run under a set of effects fitted without it, in standard deviations, shape (runs,)."""
-    problem = engine.problem
+    problem = objective.problem
     if len(problem.runs) == 1:
-        return sizes(problem, state)
-    found = np.zeros(len(problem.runs))
-    for k in range(min(FOLDS, len(problem.runs))):
-        others = tuple(run for j, run in enumerate(problem.runs) if j % FOLDS != k)
-        part = Engine(dataclasses.replace(problem, runs=others), engine.white)
-        fitted = engine.states([part.refitted(state.point).point])[0]
-        found[k::FOLDS] = sizes(problem, fitted)[k::FOLDS]
-    return found
+        return normalise_rms_errors(problem, evaluation.residuals)
+    errors = np.zeros(len(problem.runs))
+    folds = objective.settings.cross_validation.folds
+    for k in range(min(folds, len(problem.runs))):
+        others = [run for j, run in enumerate(problem.runs) if j % folds != k]
+        fitted = refit(objective.on_runs(others), evaluation.parameters)
+        left_out = objective.evaluate([fitted.parameters])[0]
+        errors[k::folds] = normalise_rms_errors(problem, left_out.residuals)[k::folds]
+    return errors

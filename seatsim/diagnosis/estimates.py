@@ -1,110 +1,134 @@
-"""What a diagnosis rests on: every effect's own shrink and parameters, and the courses behind the pictures."""
+"""What a diagnosis rests on: every effect's own shrink and parameters, and the signals behind the pictures."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.decide import Judgement
-from seatsim.diagnosis.fit import SPREAD, Engine, Point, State
-from seatsim.diagnosis.localise import discrepancy as rest_of
-from seatsim.diagnosis.problem import Problem
-from seatsim.diagnosis.result import Cause, Estimate, Evidence, Trace
-from seatsim.diagnosis.select import Search
-from seatsim.diagnosis.validate import scenario_at
+from seatsim.diagnosis.decide import Decision
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.result import Cause, ComfortFigure, Estimate, Trace
+from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.validate import make_scenario
 from seatsim.recordings.gap import gap
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import describe
 
 Array = NDArray[np.float64]
 
+QUOTED = ("driver_acceleration", "frame_acceleration", "suspension_displacement")
+"""Channels whose RMS a seat engineer asks for."""
+SMOOTHED_ROWS = 5
+"""Rows over which a displacement is averaged before its slope is drawn."""
 
-def causes(
-    engine: Engine,
-    found: Search,
-    judgement: Judgement,
-    calibrated: State,
-    augmented: State,
-    nominal: Scenario,
-    run: str,
-) -> list[Cause]:
-    """Return every effect, ranked by probability, with its own shrink on a run and its parameters."""
-    problem = engine.problem
-    base = gap(scenario_at(problem, nominal, calibrated.point), problem.recording, [run]).overall
-    singles = {state.point.terms[0].effect: state for state in found.sets[1]} if len(found.sets) > 1 else {}
-    own = {term.effect: (term, k) for k, term in enumerate(augmented.point.terms)}
-    stated = []
-    for effect, probability in judgement.probabilities.items():
-        shrink, parameters = 0.0, {}
-        state = singles.get(effect)
-        if state is not None:
-            with_it = scenario_at(problem, nominal, state.point)
+
+def estimate_causes(
+    objective: Objective, selection: Selection, decision: Decision, calibrated: Evaluation, augmented: Evaluation,
+    nominal: Scenario, run: str,
+) -> list[Cause]:  # fmt: skip
+    """Return every effect, ranked by probability, with its own shrink on a held-out run and its parameters.
+
+    Args:
+        objective: over all runs.
+        selection: the fitted sets; those of one effect give each effect's own shrink and parameters.
+        decision: probabilities by effect.
+        calibrated: the rig with refitted parameters, fitted without the run.
+        augmented: the rig with the effects chosen, fitted without the run, which gives their parameters.
+        nominal: the owner's scenario.
+        run: held out of the fits.
+    """
+    problem = objective.problem
+    base = gap(make_scenario(problem, nominal, calibrated.parameters), problem.recording, [run]).overall
+    singles = {each.parameters.terms[0].effect: each for each in selection.sets[1]} if len(selection.sets) > 1 else {}
+    # Single effects share one linearisation of the nuisances, about the calibrated rig: one for each would take longer
+    # than the fits. The chosen ones, whose figures are acted on, have one of their own.
+    about_calibrated = objective.linearise_nuisances(selection.calibrated)
+    chosen = _estimate_chosen(objective.on_runs(list(augmented.whitened)), augmented)
+    causes = []
+    for effect, probability in decision.probabilities.items():
+        shrink, estimates = 0.0, dict[str, Estimate | str]()
+        single = singles.get(effect)
+        if single is not None:
+            with_it = make_scenario(problem, nominal, single.parameters)
             shrink = 1.0 - gap(with_it, problem.recording, [run]).overall / base
-            parameters = _parameters(engine, state, 0)
-        if effect in own:
-            parameters = _parameters(engine, augmented, own[effect][1])
-        stated.append(Cause(effect, probability, shrink, parameters))
-    return sorted(stated, key=lambda cause: (-cause.probability, -cause.shrink))
+            estimates = _estimate_parameters(objective, single, about_calibrated)[effect]
+        causes.append(Cause(effect, probability, shrink, chosen.get(effect, estimates)))
+    return sorted(causes, key=lambda cause: (-cause.probability, -cause.shrink))
 
 
-def _parameters(engine: Engine, state: State, index: int) -> dict[str, Estimate | str]:
-    """Return the free parameters of an effect with their standard deviations from the fit's normal matrix."""
-    term, values = state.point.terms[index], state.point.values[index]
-    units = {specification.name: specification.unit for specification in describe(term.cls)}
-    stds = _deviations(engine, state)
-    start = len(state.point.u) + sum(len(t.free) for t in state.point.terms[:index])
-    found: dict[str, Estimate | str] = {
-        name: Estimate(float(value), float(stds[start + k] * term.scale[k]), units[name])
-        for k, (name, value) in enumerate(zip(term.free, values, strict=True))
-    }
-    return ({"channel": term.fixed["channel"]} if "channel" in term.fixed else {}) | found
+def _estimate_chosen(objective: Objective, augmented: Evaluation) -> dict[str, dict[str, Estimate | str]]:
+    """Return the estimates of the effects chosen, with the nuisances linearised where they were fitted."""
+    if not augmented.parameters.terms:
+        return {}
+    return _estimate_parameters(objective, augmented, objective.linearise_nuisances(augmented))
 
 
-def _deviations(engine: Engine, state: State) -> Array:
-    """Return standard deviations of `vector`, scaled up by what the fit leaves beyond noise."""
-    grams = [engine.gram(run, own, state.whitened[run])[0] for run, own in engine.jacobian(state).items()]
-    matrix = np.sum(grams, axis=0)
-    index = np.arange(len(state.point.u))
-    matrix[index, index] += SPREAD**-2
-    rows = sum(values.size for values in state.whitened.values())
-    return np.asarray(np.sqrt(np.maximum(np.diag(np.linalg.pinv(matrix)), 0.0) * max(1.0, state.cost / rows)))
+def _estimate_parameters(
+    objective: Objective, evaluation: Evaluation, nuisances: Linearisation
+) -> dict[str, dict[str, Estimate | str]]:
+    """Return by effect its free parameters with their standard deviations, and the channel that it acts on."""
+    parameters, found = evaluation.parameters, {}
+    deviations = estimate_standard_deviations(objective, evaluation, nuisances)
+    start = len(parameters.deviations)
+    for term, values in zip(parameters.terms, parameters.values, strict=True):
+        units = {field.name: field.unit for field in describe(term.cls)}
+        estimates: dict[str, Estimate | str] = {}
+        if "channel" in term.fixed:
+            estimates["channel"] = str(term.fixed["channel"])
+        for k, (name, value) in enumerate(zip(term.free, values, strict=True)):
+            estimates[name] = Estimate(float(value), float(deviations[start + k] * term.scale[k]), units[name])
+        found[term.effect] = estimates
+        start += len(term.free)
+    return found
 
 
-def collected(
-    problem: Problem, points: Sequence[Point], run: str, rest: rest_of.Latent | None, alike: tuple[list[str], Array]
-) -> Evidence:
-    """Return the courses on a held-out run, measured and simulated at three points."""
-    simulated = [problem.simulated(run, point.u, point.effects) for point in points]
+def estimate_standard_deviations(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Array:
+    """Return the standard deviations of `vector`, scaled up by what the fit leaves beyond noise.
+
+    `sqrt(diag((J' J + P)^-1) max(1, cost / rows))`, with J the whitened Jacobian and P the prior's precision.
+    """
+    own = objective.linearise_effects(evaluation).jacobian
+    parts = [nuisances.normal_equations(run, own[run], evaluation.whitened[run])[0] for run in own]
+    matrix = np.sum(parts, axis=0)
+    index = np.arange(len(evaluation.parameters.deviations))
+    matrix[index, index] += objective.settings.fit.prior_std**-2
+    variances = np.maximum(np.diag(np.linalg.pinv(matrix)), 0.0)
+    return np.asarray(np.sqrt(variances * max(1.0, evaluation.cost / evaluation.rows)))
+
+
+def trace_run(problem: DiagnosisProblem, rigs: Sequence[Parameters], run: str) -> list[Trace]:
+    """Return the compared channels of a held-out run, measured and simulated with three rigs."""
+    simulated = [problem.simulated(run, rig.deviations, rig.effects) for rig in rigs]
     measured = problem.measured[run]
-    time = (problem.skip + np.arange(measured.shape[1])) / problem.recording.header.sample_rate
-    traces = [
+    time = (problem.skip + np.arange(measured.shape[1])) / problem.rate
+    return [
         Trace(run, name, problem.recording.channels[name].unit, float(problem.noise[k]), time, measured[k],
-              *(course[k] for course in simulated))
+              *(outputs[k] for outputs in simulated))
         for k, name in enumerate(problem.channels)
     ]  # fmt: skip
-    drawn = None if rest is None else rest_of.evidence(problem, rest, run)
-    return Evidence(traces, _motion(problem, run), drawn, alike, _comfort(traces))
 
 
-def _motion(problem: Problem, run: str) -> dict[str, Array]:
+def trace_motion(problem: DiagnosisProblem, run: str) -> dict[str, Array]:
+    """Return what a run visited: displacement and velocity of the suspension, coil current and temperature if known."""
     samples = problem.measured[run].shape[1]
     table = {k: v[problem.skip : problem.skip + samples] for k, v in problem.recording.table(run).items()}
     position = table.get("suspension_displacement", table.get("displacement"))
     motion: dict[str, Array] = {name: table[name] for name in ("coil_current", "damper_temperature") if name in table}
     if position is None:
         return motion
-    rate = problem.recording.header.sample_rate
-    smooth = np.convolve(position, np.ones(5) / 5.0, mode="same")
-    return motion | {"displacement": position, "velocity": np.gradient(smooth, 1.0 / rate)}
+    smooth = np.convolve(position, np.ones(SMOOTHED_ROWS) / SMOOTHED_ROWS, mode="same")
+    return motion | {"displacement": position, "velocity": np.gradient(smooth, 1.0 / problem.rate)}
 
 
-def _comfort(traces: Sequence[Trace]) -> list[tuple[str, str, float, float, float]]:
-    quoted = ("driver_acceleration", "frame_acceleration", "suspension_displacement")
+def compare_comfort(traces: Sequence[Trace]) -> list[ComfortFigure]:
+    """Return the RMS of the channels that are quoted: measured, of the nominal and of the augmented rig."""
     return [
-        ("RMS " + name.replace("_", " "), trace.unit, _rms(trace.measured), _rms(trace.nominal), _rms(trace.after))
-        for name in quoted for trace in traces if trace.channel == name
+        ComfortFigure("RMS " + name.replace("_", " "), t.unit, _rms(t.measured), _rms(t.nominal), _rms(t.after))
+        for name in QUOTED for t in traces if t.channel == name
     ]  # fmt: skip
 
 

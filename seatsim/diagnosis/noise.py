@@ -1,6 +1,6 @@
 """Weights by which residuals of all channels and frequencies become comparable, from what noise and model leave.
 
-    P(f) = noise^2 + input noise carried through the rig + (TRUST spectrum of the channel)^2
+    P(f) = noise^2 + input noise carried through the rig + (model_error * spectrum of the channel)^2
 
 is the power that a perfect model leaves: the stated noise; the noise of the recorded floor that drives the simulation,
 and of the coil current where no command is recorded, found by simulating it; and a small share of the signal for what
@@ -11,58 +11,51 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import rfft
 
-from seatsim.diagnosis.problem import POOL, Drive, Problem
+from seatsim.diagnosis.problem import DiagnosisProblem, Drive, normalise_rms_errors
+from seatsim.diagnosis.spectra import randomise_phases, smooth_spectrum
 from seatsim.excitations.base import Floor
 from seatsim.simulation.simulate import Forces
 
 Array = NDArray[np.float64]
 
-HIGHEST = 100.0
-"""Hz; content above it is left out."""
-TRUST = 0.01
-"""Share of a channel's local amplitude spectrum that a right model may miss."""
-SMOOTH = 0.15
-"""Half-width, relative to the frequency, over which spectra are averaged."""
-TWINS = 3
-"""Simulations with drawn floor noise per run."""
-
 
 @dataclass(frozen=True)
-class Whitening:
+class NoiseWeights:
     """Turns residuals into whitened numbers: `weights[run]` has shape (channels, frequencies)."""
 
     weights: dict[str, Array]
     bins: dict[str, int]
 
-    def __call__(self, residual: Array, run: str) -> Array:
-        """Return the whitened residual, shape (channels, 2 frequencies), mean square 1 where only noise is left."""
-        spectrum = rfft(residual, axis=1)[:, : self.bins[run]] * self.weights[run]
+    def __call__(self, residuals: Array, run: str) -> Array:
+        """Return whitened residuals, shape (channels, 2 frequencies), mean square 1 where only noise is left."""
+        spectrum = rfft(residuals, axis=1)[:, : self.bins[run]] * self.weights[run]
         return np.concatenate([spectrum.real, spectrum.imag], axis=1)
 
 
-def whitening(
-    problem: Problem, pushes: Mapping[str, Array] | None = None, errors: Mapping[str, Array] | None = None
-) -> Whitening:
+def weigh_noise(
+    problem: DiagnosisProblem, forces: Mapping[str, Array] | None = None, errors: Mapping[str, Array] | None = None
+) -> NoiseWeights:
     """Return the weights for a recording.
 
-    `pushes` are courses of a random force on the frame in N by run, shape (samples,), whose power counts as noise;
-    `errors` are power spectra of errors of the channels, shape (channels, frequencies) or (channels, 1).
+    Args:
+        problem: the recording beside its nominal scenario.
+        forces: signals of a random force on the frame in N by run, shape (samples,), whose power counts as noise.
+        errors: power spectra of errors of the channels, shape (channels, frequencies) or (channels, 1).
     """
-    rate = problem.recording.header.sample_rate
-    repeated = _unrepeatable(problem)
+    settings = problem.settings.noise
+    repeated = _measure_nonrepeatable(problem)
     weights, bins = {}, {}
     for run in problem.runs:
         measured = problem.measured[run]
         samples = measured.shape[1]
-        frequency = np.fft.rfftfreq(samples, 1.0 / rate)
-        bins[run] = _compared(frequency, rate)
-        power = problem.noise[:, None] ** 2 * samples + _carried(problem, run, (pushes or {}).get(run))
+        frequency = np.fft.rfftfreq(samples, 1.0 / problem.rate)
+        bins[run] = _count_compared(problem, samples)
+        power = problem.noise[:, None] ** 2 * samples + _carry_input_noise(problem, run, (forces or {}).get(run))
         if errors is not None:
             power = power + errors[run]
         if repeated is not None:
@@ -70,55 +63,71 @@ def whitening(
                 power, np.array([np.interp(frequency, repeated[0], row) for row in repeated[1]]) * samples
             )
         signal = np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True), axis=1)) ** 2
-        total = power + TRUST**2 * smoothed(signal)
-        total = np.maximum(total, 1e-6 * problem.spread[:, None] ** 2 * samples)
+        total = power + settings.model_error**2 * smooth_spectrum(signal, settings.smoothing)
+        total = np.maximum(total, settings.least_power * problem.spread[:, None] ** 2 * samples)
+        # A spectrum's real and imaginary part have half of its power each.
         weights[run] = np.sqrt(2.0 / total[:, : bins[run]])
-    return Whitening(weights, bins)
+    return NoiseWeights(weights, bins)
 
 
-def even(problem: Problem, power: Mapping[str, Array]) -> Whitening:
+def weigh_uniformly(problem: DiagnosisProblem, power: Mapping[str, Array]) -> NoiseWeights:
     """Return weights that are the same at all frequencies, from white power by run, shape (channels, 1)."""
-    rate = problem.recording.header.sample_rate
     weights, bins = {}, {}
     for run in problem.runs:
-        bins[run] = _compared(np.fft.rfftfreq(problem.measured[run].shape[1], 1.0 / rate), rate)
+        bins[run] = _count_compared(problem, problem.measured[run].shape[1])
         weights[run] = np.tile(np.sqrt(2.0 / power[run]), bins[run])
-    return Whitening(weights, bins)
+    return NoiseWeights(weights, bins)
 
 
-def _compared(frequency: NDArray[np.floating[Any]], rate: float) -> int:
-    """Return how many frequencies in Hz are compared: those below HIGHEST and below half the rate."""
-    return int(np.searchsorted(frequency, min(HIGHEST, 0.5 * rate)))
+def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> NoiseWeights:
+    """Return weights that are the same at all frequencies, those of the gap that residuals are, over all runs."""
+    errors = normalise_rms_errors(problem, residuals)
+    level = problem.settings.cross_validation.noise_level * np.sqrt(np.mean(errors**2)) * problem.spread
+    return weigh_uniformly(
+        problem, {run: level[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
+    )
 
 
-def _carried(problem: Problem, run: str, push: Array | None) -> Array:
-    """Return the power spectrum that the noise of the recorded inputs, and a random push, leave in the outputs."""
-    floor = problem.floors[run]
-    if floor is None:
-        return np.zeros((len(problem.channels), 1))
-    rng = np.random.default_rng(0)
-    drives = [Drive(_noisy(problem, floor, rng), _drawn(problem, floor, push, rng)) for _ in range(TWINS)]
-    clean = problem.simulated(run, problem.rest, ())
-    twins = list(POOL.map(lambda drive: problem.simulated(run, problem.rest, (), drive), drives))
-    return smoothed(np.mean([np.abs(np.fft.rfft(twin - clean, axis=1)) ** 2 for twin in twins], axis=0))
+def measure_broadband(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> dict[str, Array]:
+    """Return by run the white power, shape (channels, 1), of residuals that exceed the stated noise above all compared.
 
-
-def broadband(problem: Problem, residual: Mapping[str, Array]) -> dict[str, Array]:
-    """Return by run the white power, shape (channels, 1), of residuals that are twice the stated noise above HIGHEST.
-
-    A force that chatters between two values is sampled as white noise, which no model foretells.
+    A force that chatters between two values is sampled as white noise, which no model predicts.
     """
-    found = {}
-    for run, values in residual.items():
-        frequency = np.fft.rfftfreq(values.shape[1], 1.0 / problem.recording.header.sample_rate)
-        power = np.abs(np.fft.rfft(values, axis=1)[:, frequency > HIGHEST]) ** 2
+    settings, found = problem.settings.noise, {}
+    for run, values in residuals.items():
+        frequency = np.fft.rfftfreq(values.shape[1], 1.0 / problem.rate)
+        power = np.abs(np.fft.rfft(values, axis=1)[:, frequency > settings.highest_frequency]) ** 2
+        # The median of an exponential distribution, which powers of white noise follow, is its mean times log 2.
         level = np.median(power, axis=1) / np.log(2.0) if power.size else np.zeros(len(values))
         stated = problem.noise**2 * values.shape[1]
-        found[run] = np.where(level > 2.0 * stated, level - stated, 0.0)[:, None]
+        found[run] = np.where(level > settings.broadband_excess * stated, level - stated, 0.0)[:, None]
     return found
 
 
-def _noisy(problem: Problem, floor: Floor, rng: np.random.Generator) -> Floor:
+def _count_compared(problem: DiagnosisProblem, samples: int) -> int:
+    """Return how many frequencies of a run are compared: those below the highest one and below half the rate."""
+    frequency = np.fft.rfftfreq(samples, 1.0 / problem.rate)
+    return int(np.searchsorted(frequency, min(problem.settings.noise.highest_frequency, 0.5 * problem.rate)))
+
+
+def _carry_input_noise(problem: DiagnosisProblem, run: str, force: Array | None) -> Array:
+    """Return the power spectrum that the noise of the recorded inputs, and a random force, leave in the outputs."""
+    floor = problem.floors[run]
+    if floor is None:
+        return np.zeros((len(problem.channels), 1))
+    # The same draws for every recording: equal input gives equal output.
+    rng = np.random.default_rng(0)
+    drives = [
+        Drive(_add_sensor_noise(problem, floor, rng), _draw_force(problem, floor, force, rng))
+        for _ in range(problem.settings.noise.replicates)
+    ]
+    clean = problem.simulated(run, problem.nominal, ())
+    replicates = problem.pool.map(lambda drive: problem.simulated(run, problem.nominal, (), drive), drives)
+    power = np.mean([np.abs(np.fft.rfft(noisy - clean, axis=1)) ** 2 for noisy in replicates], axis=0)
+    return smooth_spectrum(power, problem.settings.noise.smoothing)
+
+
+def _add_sensor_noise(problem: DiagnosisProblem, floor: Floor, rng: np.random.Generator) -> Floor:
     """Return the inputs of a run with the noise of their sensors once more."""
     every, channels = np.arange(len(floor.acceleration)), problem.recording.channels
     rows = every[:: problem.parts]
@@ -132,32 +141,16 @@ def _noisy(problem: Problem, floor: Floor, rng: np.random.Generator) -> Floor:
     return noisy
 
 
-def _drawn(problem: Problem, floor: Floor, push: Array | None, rng: np.random.Generator) -> Forces | None:
-    """Return a random force like a push, on the simulation's steps."""
-    if push is None:
+def _draw_force(problem: DiagnosisProblem, floor: Floor, force: Array | None, rng: np.random.Generator) -> Forces | None:
+    """Return a random force on the frame with the spectrum of the one given, on the simulation's steps."""
+    if force is None:
         return None
     every = np.arange(len(floor.acceleration))
     rows = every[:: problem.parts]
-    return Forces(np.interp(every, rows[: len(push)], _shuffled(push, rng), right=0.0))
+    return Forces(np.interp(every, rows[: len(force)], randomise_phases(force, rng), right=0.0))
 
 
-def _shuffled(course: Array, rng: np.random.Generator) -> Array:
-    """Return a course with the same spectrum and random phases."""
-    spectrum = np.fft.rfft(course)
-    return np.fft.irfft(np.abs(spectrum) * np.exp(2j * np.pi * rng.random(len(spectrum))), len(course))
-
-
-def smoothed(power: Array) -> Array:
-    """Return a power spectrum, shape (channels, frequencies), averaged over a constant relative band."""
-    count = power.shape[1]
-    cumulated = np.concatenate([np.zeros((len(power), 1)), np.cumsum(power, axis=1)], axis=1)
-    index = np.arange(count)
-    half = np.maximum(4, (SMOOTH * index).astype(int))
-    low, high = np.maximum(0, index - half), np.minimum(count, index + half + 1)
-    return np.asarray((cumulated[:, high] - cumulated[:, low]) / (high - low))
-
-
-def _unrepeatable(problem: Problem) -> tuple[Array, Array] | None:
+def _measure_nonrepeatable(problem: DiagnosisProblem) -> tuple[Array, Array] | None:
     """Return frequencies and the power per sample by which runs differ from those that they repeat, None without any.
 
     The difference of two repeats holds twice the power that does not repeat.
@@ -169,8 +162,9 @@ def _unrepeatable(problem: Problem) -> tuple[Array, Array] | None:
         first, second = problem.measured[entry.repeat_of], problem.measured[run]
         samples = min(first.shape[1], second.shape[1])
         spectrum = np.fft.rfft(first[:, :samples] - second[:, :samples], axis=1)
-        frequency = np.arange(samples // 2 + 1) * problem.recording.header.sample_rate / samples
-        found.append((frequency, 0.5 * smoothed(np.abs(spectrum) ** 2) / samples))
+        frequency = np.arange(samples // 2 + 1) * problem.rate / samples
+        smoothed = smooth_spectrum(np.abs(spectrum) ** 2, problem.settings.noise.smoothing)
+        found.append((frequency, 0.5 * smoothed / samples))
     if not found:
         return None
     frequency = found[0][0]

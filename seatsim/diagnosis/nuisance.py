@@ -15,24 +15,24 @@ from seatsim.schema.fields import describe
 Array = NDArray[np.float64]
 
 SCALE_OF_FORCES = 100.0
-"""N; scale of the tolerance of forces that are nominally zero."""
+"""N; scale of the tolerance of forces that are nominally zero, as the recording's contract states it."""
 SCALE_OF_LENGTHS = 0.01
-"""m; scale of the tolerance of lengths that are nominally zero."""
-LEFT_OUT = ("damper_ratio", "travel", "v_ref", "n")
-"""Fields that are a convention, a geometry or an exponent of a model's form."""
+"""m; scale of the tolerance of lengths that are nominally zero, as the recording's contract states it."""
+NOT_UNCERTAIN = ("damper_ratio", "travel", "v_ref", "n", "resistance")
+"""Fields that are a convention, a geometry or an exponent of a model's form, or that move no compared channel."""
 
 
 class Nuisance(NamedTuple):
-    """One parameter: section and name in the scenario, nominal value, and the largest deviation from it."""
+    """One parameter: section and name in the scenario, nominal value, and the largest deviation from it (tolerance)."""
 
     section: str
     name: str
-    value: float
-    span: float
+    nominal: float
+    tolerance: float
 
 
-def nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
-    """List the parameters that the tolerance lets vary; those that are zero vary by a scale of their unit."""
+def list_nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
+    """List the parameters that a relative tolerance lets vary; those that are zero vary by a scale of their unit."""
     stiffness = scenario.plant.suspension_stiffness if scenario.plant else 0.0
     scales = {"N": SCALE_OF_FORCES, "N/m": stiffness, "m": SCALE_OF_LENGTHS}
     sections = {"plant": scenario.plant, "damper": scenario.damper.record, "coil": scenario.coil}
@@ -40,23 +40,21 @@ def nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
     for section, record in sections.items():
         for specification in describe(type(record)) if record is not None else []:
             value = getattr(record, specification.name)
-            if (
-                specification.name in LEFT_OUT
-                or not isinstance(value, float | int)
-                or (section == "coil" and value == 0.0)
-            ):
+            # A coil's lag, delay or limit of zero means that it has none, not that it is known to be small.
+            absent = section == "coil" and value == 0.0
+            if specification.name in NOT_UNCERTAIN or not isinstance(value, float | int) or absent:
                 continue
-            span = tolerance * (abs(value) if value else scales.get(specification.unit, 0.0))
-            if span > 0.0 and specification.name != "resistance":
-                found.append(Nuisance(section, specification.name, float(value), span))
+            largest = tolerance * (abs(value) if value else scales.get(specification.unit, 0.0))
+            if largest > 0.0:
+                found.append(Nuisance(section, specification.name, float(value), largest))
     return found
 
 
-def varied(scenario: Scenario, parameters: Sequence[Nuisance], u: Array) -> Scenario:
-    """Return the scenario with every parameter off by its span times u, shape (len(parameters),), -1 to 1."""
+def vary(scenario: Scenario, parameters: Sequence[Nuisance], deviations: Array) -> Scenario:
+    """Return the scenario with every parameter off by its tolerance times its deviation, shape (parameters,), -1 to 1."""
     records = {"plant": scenario.plant, "damper": scenario.damper.record, "coil": scenario.coil}
-    for parameter, share in zip(parameters, u, strict=True):
-        value = {parameter.name: parameter.value + parameter.span * float(share)}
+    for parameter, deviation in zip(parameters, deviations, strict=True):
+        value = {parameter.name: parameter.nominal + parameter.tolerance * float(deviation)}
         records[parameter.section] = records[parameter.section]._replace(**value)
     damper = dataclasses.replace(scenario.damper, record=records["damper"])
     return dataclasses.replace(scenario, plant=records["plant"], damper=damper, coil=records["coil"])

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Content = Mapping[str, object]
+"""What a YAML file holds: sections by key."""
 
 
 class Estimate(NamedTuple):
@@ -35,21 +38,35 @@ class Share(NamedTuple):
     share: float
 
 
+class GapFigures(NamedTuple):
+    """A gap in standard deviations of what was measured, overall and by channel."""
+
+    overall: float
+    channels: dict[str, float]
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the figures as they stand in `diagnosis.json`."""
+        return {"overall": self.overall, "channels": self.channels}
+
+
 @dataclass(frozen=True)
 class Gaps:
-    """Gaps on held-out runs, each `{"overall": ..., "channels": {...}}`: nominal, refitted, with the effects, noise."""
+    """Gaps on held-out runs: nominal, with refitted parameters, with the effects, and that of the noise alone.
 
-    before: dict[str, Any]
-    calibrated: dict[str, Any]
-    after: dict[str, Any]
-    floor: dict[str, Any]
+    `shrink` is from before to after; `shrink_interval` is its 90 % interval on other runs of the kind.
+    """
+
+    before: GapFigures
+    calibrated: GapFigures
+    after: GapFigures
+    floor: GapFigures
     shrink: float
     shrink_interval: tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Trace:
-    """A compared channel of a held-out run: time in s and four courses, shape (N,) each."""
+    """A compared channel of a held-out run: time in s, measured, and simulated three times, shape (N,) each."""
 
     run: str
     channel: str
@@ -62,22 +79,72 @@ class Trace:
     after: Array
 
 
+class DiscrepancySignal(NamedTuple):
+    """An unexplained signal on the held-out run, shape (N,) as `time` in s, with sentences on it."""
+
+    block: str
+    quantity: str
+    unit: str
+    time: Array
+    values: Array
+    description: list[str]
+
+
+class Collinearity(NamedTuple):
+    """Effects, and how collinear their sensitivities are, shape (effects, effects), 0 to 1.
+
+    Sensitivities are taken in this recording, about the rig found, once the nuisance parameters have taken their part.
+    """
+
+    effects: list[str]
+    matrix: Array
+
+
+class ComfortFigure(NamedTuple):
+    """An RMS figure on held-out runs: measured, of the nominal rig and of the augmented one."""
+
+    quantity: str
+    unit: str
+    measured: float
+    nominal: float
+    after: float
+
+
 @dataclass(frozen=True)
 class Evidence:
     """What the pictures show.
 
     `traces`: held-out signals. `motion`: of the measured rig on the held-out run, `velocity` and `displacement` of the
-    suspension, `coil_current` and `damper_temperature` where known, shape (N,) each. `latent`: block, what it is, unit,
-    and its course in time, where the verdict is unknown. `alikeness`: names of effects and the matrix of how alike
-    their traces in this recording are, 0 to 1, after the nuisance parameters are projected out. `comfort`: rows of
-    (quantity, unit, measured, nominal, after) on held-out runs, such as the RMS acceleration of the driver.
+    suspension, `coil_current` and `damper_temperature` where known, shape (N,) each. `discrepancy`: the unexplained
+    signal, where something is. `comfort`: such as the RMS acceleration of the driver.
     """
 
     traces: list[Trace]
     motion: dict[str, Array]
-    latent: dict[str, Any] | None
-    alikeness: tuple[list[str], Array]
-    comfort: list[tuple[str, str, float, float, float]]
+    discrepancy: DiscrepancySignal | None
+    collinearity: Collinearity
+    comfort: list[ComfortFigure]
+
+
+@dataclass(frozen=True)
+class ProposedExperiment:
+    """What would tell equivalent effects apart, with the likeness of their worst pair now and then, 0 to 1.
+
+    `scenario` is the content of a scenario that runs the excitation, where the rig is a seat.
+    """
+
+    kind: Literal["excitation", "intervention", "none"]
+    name: str
+    reason: str
+    likeness_now: float
+    likeness_then: float
+    scenario: Content | None = None
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the proposal as it stands in `diagnosis.json`."""
+        file = {"file": "experiment.yaml"} if self.scenario is not None else {}
+        likeness = {"alikeness_now": self.likeness_now, "alikeness_then": self.likeness_then}
+        return {"kind": self.kind, "name": self.name, "reason": self.reason, **likeness, **file}
 
 
 @dataclass(frozen=True)
@@ -85,25 +152,24 @@ class Diagnosis:
     """Where the gap between a recording and its nominal simulation lies, which effect causes it, how far it shrinks.
 
     `sentence` is the answer in one sentence, `notes` are sentences on the data, what the channels forbid, and what to
-    mind; `random` is the selected effect whose course is random, else empty; `augmented` is the content of
-    `augmented.yaml`, `experiment_scenario` that of a proposed experiment.
+    mind; `stochastic` is the selected effect whose signal is random, else empty; `augmented` is the content of
+    `augmented.yaml`.
     """
 
     name: str
-    verdict: str
+    verdict: Literal["none", "known", "ambiguous", "unknown"]
     sentence: str
     where: list[Share]
     causes: list[Cause]
     probability_none: float
     probability_unknown: float
     selected: list[str]
-    random: str
+    stochastic: str
     indistinguishable: list[list[str]]
-    experiment: dict[str, Any] | None
+    experiment: ProposedExperiment | None
     held_out: list[str]
     isolable: list[list[str]]
     gap: Gaps
     notes: list[str]
-    augmented: dict[str, Any]
-    experiment_scenario: dict[str, Any] | None
+    augmented: Content
     evidence: Evidence

@@ -1,196 +1,132 @@
-"""Search for the effects that explain a gap: screened by their sensitivities, fitted singly, then in sets."""
+"""Subset selection: candidates are screened by linear models, fitted singly, then in sets as long as they gain."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import islice
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.fit import Engine, Point, State, solved
-from seatsim.diagnosis.problem import POOL
-
-Array = NDArray[np.float64]
-Trace = tuple[Candidate, dict[str, Array]]
-"""A candidate and what it, as it starts, changes in the whitened outputs of each run."""
-
-SHORTLIST = 12
-"""Candidates whose fit is begun after the screening for a first effect."""
-SECONDS = 7
-"""Candidates whose fit is begun after the screening for a further effect."""
-FINALISTS = 4
-"""Begun fits that are carried to their end."""
-BEGUN = 2
-"""Steps after which a fit is judged."""
-BEAM = 2
-"""Sets of each size from which the next larger ones are made."""
-LARGEST = 3
-"""Most effects of a set."""
-STRETCH = 6.0
-"""Largest factor by which a start is stretched after the screening."""
-RIVAL = 1.5
-"""Factor on the cost of an effect, or of a set, within which another is tried in its place."""
-RIVALS = 3
-"""Effects that are tried in the place of each one."""
-AROUND = (0.6, 1.0, 1.6)
-"""Shares of that factor that are tried."""
-WEAKER = (1.08, 1.16, 1.27)
-"""Factors that are tried on a limit that acts too much, and their inverses on one that acts too little."""
-NOTHING = 0.15
-"""Excess below which nothing is left to explain."""
-SEEN = 1e-3
-"""Factor on a start from which its trace is in the data at all."""
-PROMISING = 0.9
-"""Share of the excess so far that a further effect may leave, as a linear model foresees it, for it to be tried."""
-ENLARGE = 0.45
-"""Share of the excess that a further effect must leave at most."""
-WORTHWHILE = 0.85
-"""A larger set is looked for while the last enlargement lowered the excess to below this share."""
+from seatsim.diagnosis.fit import fit
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.screen import Sensitivity, measure_sensitivities, screen_candidates
 
 
 @dataclass(frozen=True)
-class Search:
-    """Fitted sets by size, best first; `sets[0]` holds the calibrated nominal scenario alone."""
+class Selection:
+    """Fitted sets of effects by size, the best first; `sets[0]` holds the calibrated nominal scenario alone."""
 
-    nominal: State
-    sets: list[list[State]]
-    rows: int
+    nominal: Evaluation
+    sets: tuple[tuple[Evaluation, ...], ...]
 
     @property
-    def calibrated(self) -> State:
+    def calibrated(self) -> Evaluation:
         """The nominal scenario with its nuisance parameters refitted."""
         return self.sets[0][0]
 
-    def excess(self, state: State) -> float:
-        """Return the whitened cost beyond what noise leaves, per number compared."""
-        return max(state.cost / self.rows - 1.0, 0.0)
 
+def select_effects(
+    objective: Objective, candidates: Sequence[Candidate], progress: Callable[[str], None], largest: int | None = None
+) -> Selection:
+    """Fit the nuisance parameters alone, then single effects, then larger sets as long as they gain.
 
-def search(
-    engine: Engine, candidates: Sequence[Candidate], progress: Callable[[str], None], largest: int = LARGEST
-) -> Search:
-    """Fit the nuisance parameters alone, then single effects, then larger sets as long as they gain."""
-    problem = engine.problem
-    nominal = engine.states([Point(problem.rest)])[0]
-    engine.refresh(nominal)
-    calibrated = engine.fitted(nominal)
-    engine.refresh(calibrated)
-    calibrated = engine.fitted(calibrated)
-    rows = sum(values.size for values in calibrated.whitened.values())
-    traces = _traces(engine, calibrated, candidates)
-    found = Search(nominal, [[calibrated]], rows)
+    Args:
+        objective: what is minimised.
+        candidates: effects with the starts of their fits.
+        progress: called with what is being done.
+        largest: most effects of a set; that of the settings where absent.
+    """
+    settings = objective.settings.selection
+    largest = settings.largest_set if largest is None else largest
+    nominal, calibrated, nuisances = _calibrate(objective)
+    sensitivities = measure_sensitivities(objective, calibrated, candidates)
+    sets: list[list[Evaluation]] = [[calibrated]]
     for size in range(1, largest + 1):
         progress(f"fitting sets of {size}")
-        sets = _extended(engine, found, traces, SHORTLIST if size == 1 else SECONDS)
-        if not sets:
+        larger = _extend(objective, sets, sensitivities, nuisances)
+        if not larger:
             break
         if size > 1:
-            sets = _best_forms([*sets, *_exchanged(engine, sets[0], found.sets[1])])
-        engine.refresh(sets[0])
-        sets[0] = engine.fitted(sets[0])
-        found.sets.append(sets)
-        if not _gains(found):
+            larger = _best_of_each_set([*larger, *_swap_effects(objective, larger[0], sets[1], nuisances)])
+        # Sets are ranked under sensitivities of a smaller set; the best is fitted to its end under its own.
+        nuisances = objective.linearise_nuisances(larger[0])
+        larger[0] = fit(objective, larger[0], nuisances)
+        sets.append(larger)
+        if not _gains(objective, sets):
             break
-    if len(found.sets) > LARGEST and found.excess(found.sets[-1][0]) < ENLARGE * found.excess(found.sets[-2][0]):
-        progress("pruning")
-        found.sets[-2] = _best_forms([*found.sets[-2], *_pruned(engine, found.sets[-1][0])])
-    return found
+    if len(sets) > settings.largest_set and sets[-1][0].excess < settings.enlarge * sets[-2][0].excess:
+        progress("eliminating backwards")
+        sets[-2] = _best_of_each_set([*sets[-2], *_eliminate_backwards(objective, sets[-1][0], nuisances)])
+    return Selection(nominal, tuple(tuple(each) for each in sets))
 
 
-def _gains(found: Search) -> bool:
-    last, before = found.excess(found.sets[-1][0]), found.excess(found.sets[-2][0])
-    return last > NOTHING and last < WORTHWHILE * before
+def _calibrate(objective: Objective) -> tuple[Evaluation, Evaluation, Linearisation]:
+    """Return the nominal rig, the one with refitted nuisance parameters, and the linearisation of that last fit."""
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    calibrated = fit(objective, nominal, objective.linearise_nuisances(nominal))
+    nuisances = objective.linearise_nuisances(calibrated)
+    return nominal, fit(objective, calibrated, nuisances), nuisances
 
 
-def _traces(engine: Engine, calibrated: State, candidates: Sequence[Candidate]) -> list[Trace]:
-    """Return what each candidate, as it starts, changes in the calibrated scenario."""
-    starts = engine.states([calibrated.point.plus(c, np.array(c.start)) for c in candidates])
-    return [
-        (candidate, {run: base - start.whitened[run] for run, base in calibrated.whitened.items()})
-        for candidate, start in zip(candidates, starts, strict=True) if np.isfinite(start.cost)
-    ]  # fmt: skip
+def _gains(objective: Objective, sets: Sequence[Sequence[Evaluation]]) -> bool:
+    """Whether the last enlargement gained enough, and left enough, for a further one."""
+    settings = objective.settings.selection
+    last, before = sets[-1][0].excess, sets[-2][0].excess
+    return last > settings.nothing_left and last < settings.worthwhile * before
 
 
-def _extended(engine: Engine, found: Search, traces: Sequence[Trace], count: int) -> list[State]:
-    """Return the fitted enlargements of the best sets by one effect, best first, one form of each set of effects."""
-    bases, begun = found.sets[-1][:BEAM], []
+def _extend(
+    objective: Objective, sets: Sequence[Sequence[Evaluation]], sensitivities: Sequence[Sensitivity],
+    nuisances: Linearisation,
+) -> list[Evaluation]:  # fmt: skip
+    """Return the fitted enlargements of the best sets by one effect, best first, one structure of each set of effects."""
+    settings = objective.settings.selection
+    bases: Sequence[Evaluation] = sets[-1][: settings.beam]
+    begun = []
     for base in bases:
-        taken = {term.effect for term in base.point.terms}
-        offered = [trace for trace in traces if trace[0].effect not in taken]
-        bound = found.rows * (1.0 + PROMISING * found.excess(bases[0])) if taken else np.inf
-        begun += [engine.fitted(start, BEGUN) for start in _screened(engine, base, offered, bound, count)]
-    ranked = _best_forms(begun)
-    return _best_forms([engine.fitted(state) for state in ranked[:FINALISTS]] + ranked[FINALISTS:])
+        taken = base.parameters.names
+        offered = [each for each in sensitivities if each.candidate.effect not in taken]
+        count = settings.further_shortlist if taken else settings.first_shortlist
+        # A first effect is always tried; a further one only where a linear model predicts that it helps.
+        bound = base.rows * (1.0 + settings.promising * bases[0].excess) if taken else float("inf")
+        starts = screen_candidates(objective, base, offered, nuisances, bound, count)
+        begun += [fit(objective, start, nuisances, settings.begun_steps) for start in starts]
+    ranked, finalists = _best_of_each_set(begun), settings.finalists
+    finished = [fit(objective, evaluation, nuisances) for evaluation in ranked[:finalists]]
+    return _best_of_each_set(finished + ranked[finalists:])
 
 
-def _exchanged(engine: Engine, best: State, singles: Sequence[State]) -> list[State]:
+def _swap_effects(
+    objective: Objective, best: Evaluation, singles: Sequence[Evaluation], nuisances: Linearisation
+) -> list[Evaluation]:
     """Return fitted sets in which one effect of the best set gives way to one that did nearly as well alone."""
-    point = best.point
-    alone = {state.point.terms[0].effect: state for state in singles}
+    settings = objective.settings.selection
+    alone = {evaluation.parameters.terms[0].effect: evaluation for evaluation in singles}
     starts = []
-    for term in point.terms:
-        kept = point.without(term.effect)
-        taken = {term.effect for term in point.terms}
-        rivals = [state for name, state in alone.items() if name not in taken and term.effect in alone]
-        near = [state for state in rivals if state.cost < RIVAL * alone[term.effect].cost]
-        starts += [kept.plus(state.point.terms[0], state.point.values[0]) for state in near[:RIVALS]]
-    begun = [engine.fitted(state, BEGUN) for state in engine.states(starts)]
-    return [engine.fitted(state) if state.cost < RIVAL * best.cost else state for state in begun]
-
-
-def _pruned(engine: Engine, best: State) -> list[State]:
-    """Return fits of a set without each of its effects but the last, which smaller sets have been tried without."""
-    starts = [best.point.without(term.effect) for term in best.point.terms[:-1]]
-    return [engine.fitted(state) for state in engine.states(starts)]
-
-
-def _best_forms(states: Sequence[State]) -> list[State]:
-    """Return the states in the order of their cost, the best one of each set of effects."""
-    best: dict[frozenset[str], State] = {}
-    for state in sorted(states, key=lambda state: state.cost):
-        best.setdefault(frozenset(term.effect for term in state.point.terms), state)
-    return list(best.values())
-
-
-def _screened(engine: Engine, base: State, offered: Sequence[Trace], bound: float, count: int) -> list[State]:
-    """Return starts with candidates added to a base from which a linear model foresees low costs, below a bound."""
-    own = engine.jacobian(base)
-    foreseen = list(POOL.map(lambda trace: _foreseen(engine, base, trace, own), offered))
-    order: dict[tuple[Any, ...], int] = {}
-    for k in sorted(range(len(offered)), key=lambda k: foreseen[k][0]):
-        if foreseen[k][0] < bound:
-            order.setdefault(offered[k][0].form, k)
-    starts = [_around(base.point, offered[k][0], foreseen[k][1]) for k in list(order.values())[:count]]
-    states = iter(engine.states([point for points in starts for point in points]))
-    return [min(islice(states, len(points)), key=lambda state: state.cost) for points in starts]
-
-
-def _foreseen(engine: Engine, base: State, trace: Trace, own: dict[str, Array]) -> tuple[float, float]:
-    """Return the cost that a multiple of a candidate's trace foresees, and that multiple."""
-    candidate, changes = trace
-    vector = base.point.vector
-    low, high = base.point.limits
-    parts = [
-        engine.gram(run, np.vstack([own[run], changes[run].ravel()]), residual)
-        for run, residual in base.whitened.items()
+    for term in best.parameters.terms:
+        kept = best.parameters.remove(term.effect)
+        taken = best.parameters.names
+        others = [single for name, single in alone.items() if name not in taken and term.effect in alone]
+        near = [single for single in others if single.cost < settings.swap_within * alone[term.effect].cost]
+        starts += [
+            kept.add(single.parameters.terms[0], single.parameters.values[0]) for single in near[: settings.most_swaps]
+        ]
+    begun = [fit(objective, start, nuisances, settings.begun_steps) for start in objective.evaluate(starts)]
+    return [
+        fit(objective, evaluation, nuisances) if evaluation.cost < settings.swap_within * best.cost else evaluation
+        for evaluation in begun
     ]
-    matrix, right = np.sum([part[0] for part in parts], axis=0), np.sum([part[1] for part in parts], axis=0)
-    count = len(base.point.u)
-    bounds = np.append(low, 0.0 if candidate.low[0] >= 0.0 else -STRETCH), np.append(high, STRETCH)
-    step = solved(matrix, right, count, np.append(vector, 0.0), *bounds)
-    return base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step), float(step[-1])
 
 
-def _around(point: Point, candidate: Candidate, factor: float) -> list[Point]:
-    """Return the point with a candidate at its start and where it changes the rig by about a factor more."""
-    if candidate.wanes:
-        factors = WEAKER if factor < 1.0 else tuple(1.0 / weaker for weaker in WEAKER)
-    else:
-        factors = tuple(factor * share for share in AROUND if abs(factor) > SEEN)
-    starts = np.tile(candidate.start, (1 + len(factors), 1))
-    starts[1:, 0] = np.clip(starts[1:, 0] * factors, candidate.low[0], candidate.high[0])
-    return [point.plus(candidate, values) for values in starts]
+def _eliminate_backwards(objective: Objective, best: Evaluation, nuisances: Linearisation) -> list[Evaluation]:
+    """Return fits of a set without each of its effects but the last, which smaller sets have been tried without."""
+    starts = [best.parameters.remove(term.effect) for term in best.parameters.terms[:-1]]
+    return [fit(objective, start, nuisances) for start in objective.evaluate(starts)]
+
+
+def _best_of_each_set(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
+    """Return the evaluations in the order of their cost, the best one of each set of effects."""
+    best: dict[frozenset[str], Evaluation] = {}
+    for evaluation in sorted(evaluations, key=lambda evaluation: evaluation.cost):
+        best.setdefault(evaluation.parameters.names, evaluation)
+    return list(best.values())

@@ -1,116 +1,108 @@
-"""How far the gap shrinks, on a run that took no part in the fit."""
+"""Hold-out validation: how far the gap shrinks on a run that took no part in the fit."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.decide import movements
-from seatsim.diagnosis.fit import Engine, Point, State
-from seatsim.diagnosis.nuisance import varied
-from seatsim.diagnosis.problem import Problem
-from seatsim.diagnosis.result import Gaps
+from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.movement import measure_movements
+from seatsim.diagnosis.nuisance import vary
+from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
+from seatsim.diagnosis.result import GapFigures, Gaps
 from seatsim.recordings.gap import gap, pooled
 from seatsim.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
 
-BLOCK = 1.0
-"""s; length of the blocks that are drawn again and again."""
-DRAWS = 400
-"""Bootstrap samples."""
-LEVEL = (5.0, 95.0)
-"""Percentiles of the interval."""
-ELSEWHERE = 0.1
-"""Standard deviation by which the shrink differs between excitations that are alike."""
-SPARED, MOVED = 0.6, 0.05
-"""Share of what an effect moves in all runs that one held out may have at most, and has to have at least."""
+
+def shrink_by_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: Evaluation) -> Array:
+    """Return by how much the gap shrinks in each run from one rig to another, shape (runs,)."""
+    after, before = (normalise_rms_errors(problem, each.residuals) for each in (chosen, nominal))
+    return 1.0 - after / before
 
 
-def shrinks(problem: Problem, nominal: State, chosen: State) -> Array:
-    """Return by how much the gap shrinks in each run from one state to another."""
-    return 1.0 - sizes(problem, chosen) / sizes(problem, nominal)
-
-
-def sizes(problem: Problem, state: State) -> Array:
-    """Return the gap of each run in standard deviations of the channels, shape (runs,)."""
-    powers = [np.mean((state.residual[run] / problem.spread[:, None]) ** 2) for run in problem.runs]
-    return np.asarray(np.sqrt(powers))
-
-
-def held_out(engine: Engine, chosen: State, shrink: Array) -> str:
-    """Return the run to hold out: at the lower quartile of shrink among those that the effects move, as they do others.
+def choose_held_out_run(problem: DiagnosisProblem, chosen: Evaluation, shrink: Array) -> str:
+    """Return the run to hold out: at a low quantile of shrink among those that the effects move, as they do others.
 
     A run of another kind shrinks less than those that made an effect plain enough to be found.
     """
-    runs = engine.problem.runs
-    if not chosen.point.terms or len(runs) < 2:
+    settings, runs = problem.settings.validation, problem.runs
+    if not chosen.parameters.terms or len(runs) < 2:
         return runs[-1]
     shares = []
     for run in runs:
-        part = dataclasses.replace(engine.problem, runs=(run,))
-        moves = movements(Engine(part, engine.white), chosen)
+        moves = measure_movements(problem.on_runs([run]), chosen)
         shares.append([float(np.mean(move**2)) for move in moves])
     share = np.array(shares) / np.maximum(np.sum(shares, axis=0), 1e-12)
-    worst = share.max(axis=1)
-    spared = worst < max(SPARED, 1.001 * worst.min())
-    moved = spared & (share.min(axis=1) > MOVED)
-    good = sorted(np.flatnonzero(moved if moved.any() else spared), key=lambda k: shrink[k])
-    return runs[good[(len(good) - 1) // 4]]
+    largest = share.max(axis=1)
+    # Where every run has more than the permitted share of some effect, the one with the least is held out.
+    spared = largest < max(settings.most_share, 1.001 * largest.min())
+    moved = spared & (share.min(axis=1) > settings.least_share)
+    suitable = sorted(np.flatnonzero(moved if moved.any() else spared), key=lambda k: shrink[k])
+    return runs[suitable[int(settings.quantile * (len(suitable) - 1))]]
 
 
-def trained(engine: Engine, state: State, run: str) -> tuple[State, State]:
+def refit_without(objective: Objective, evaluation: Evaluation, run: str) -> tuple[Evaluation, Evaluation]:
     """Return the calibrated and the augmented rig, both fitted without a run."""
-    problem = engine.problem
-    rest = tuple(name for name in problem.runs if name != run) or problem.runs
-    part = Engine(dataclasses.replace(problem, runs=rest), engine.white)
-    calibrated = part.refitted(Point(problem.rest))
-    return calibrated, part.refitted(state.point) if state.point.terms else calibrated
+    others = tuple(name for name in objective.problem.runs if name != run) or objective.problem.runs
+    part = objective.on_runs(others)
+    calibrated = refit(part, Parameters(objective.problem.nominal))
+    return calibrated, refit(part, evaluation.parameters) if evaluation.parameters.terms else calibrated
 
 
-def scenario_at(problem: Problem, nominal: Scenario, point: Point) -> Scenario:
-    """Return the nominal scenario with the parameters and effects of a point."""
-    return dataclasses.replace(varied(nominal, problem.parameters, point.u), effects=(*nominal.effects, *point.effects))
+def make_scenario(problem: DiagnosisProblem, nominal: Scenario, parameters: Parameters) -> Scenario:
+    """Return the nominal scenario with some parameters and effects."""
+    varied = vary(nominal, problem.parameters, parameters.deviations)
+    return dataclasses.replace(varied, effects=(*nominal.effects, *parameters.effects))
 
 
-def gaps(problem: Problem, scenarios: Sequence[Scenario], runs: Sequence[str], spread: float) -> Gaps:
+def measure_gaps(
+    problem: DiagnosisProblem, scenarios: tuple[Scenario, Scenario, Scenario], runs: Sequence[str], spread: float
+) -> Gaps:
     """Return the gaps of the nominal, the calibrated and the augmented scenario on some runs.
 
-    `spread` is the standard deviation of the shrink from run to run; a scenario left as it is shrinks no gap anywhere.
+    Args:
+        problem: the recording.
+        scenarios: nominal, calibrated and augmented.
+        runs: held out of the fits.
+        spread: standard deviation of the shrink from run to run.
     """
     before, calibrated, after = (gap(scenario, problem.recording, runs) for scenario in scenarios)
     shrink = 1.0 - after.overall / before.overall
-    changed = (scenarios[0], scenarios[2])
-    interval = _interval(problem, changed, runs, shrink, spread) if shrink else (0.0, 0.0)
-    return Gaps(_stated(before), _stated(calibrated), _stated(after), before.floor, shrink, interval)
+    # A scenario left as it is shrinks no gap, on whatever data.
+    interval = _bootstrap_shrink(problem, (scenarios[0], scenarios[2]), runs, shrink, spread) if shrink else (0.0, 0.0)
+    figures = [GapFigures(each.overall, each.channels) for each in (before, calibrated, after)]
+    floor = GapFigures(before.floor["overall"], before.floor["channels"])
+    return Gaps(figures[0], figures[1], figures[2], floor, shrink, interval)
 
 
-def _stated(found: Any) -> dict[str, Any]:
-    return {"overall": found.overall, "channels": found.channels}
-
-
-def _interval(
-    problem: Problem, scenarios: tuple[Scenario, Scenario], runs: Sequence[str], shrink: float, spread: float
+def _bootstrap_shrink(
+    problem: DiagnosisProblem, scenarios: tuple[Scenario, Scenario], runs: Sequence[str], shrink: float, spread: float
 ) -> tuple[float, float]:
-    """Return the block bootstrap of the shrink, widened by what other excitations make of it."""
+    """Return the block bootstrap interval of the shrink, widened by what other excitations make of it."""
+    settings = problem.settings.validation
     measured, first = pooled(scenarios[0], problem.recording, runs)
     second = pooled(scenarios[1], problem.recording, runs)[1]
-    length = max(1, round(BLOCK * problem.recording.header.sample_rate))
+    length = max(1, round(settings.block_length * problem.rate))
     count = max(1, len(next(iter(measured.values()))) // length)
     powers = np.array([
-        [_blocks((measured[name] - course[name]) / np.std(measured[name]), count, length) for name in measured]
-        for course in (first, second)
+        [_block_powers((measured[name] - outputs[name]) / np.std(measured[name]), count, length) for name in measured]
+        for outputs in (first, second)
     ])  # fmt: skip
+    # The same draws for every recording: equal input gives equal output.
     rng = np.random.default_rng(0)
-    drawn = powers[:, :, rng.integers(0, count, (DRAWS, count))].mean(axis=(1, 3))
-    samples = 1.0 - np.sqrt(drawn[1] / drawn[0]) + np.hypot(ELSEWHERE, spread) * rng.standard_normal(DRAWS)
-    low, high = np.percentile(samples, LEVEL)
+    drawn = powers[:, :, rng.integers(0, count, (settings.draws, count))].mean(axis=(1, 3))
+    widened = np.hypot(settings.excitation_std, spread) * rng.standard_normal(settings.draws)
+    samples = 1.0 - np.sqrt(drawn[1] / drawn[0]) + widened
+    low, high = np.percentile(samples, settings.percentiles)
     return float(min(low, shrink)), float(min(1.0, max(high, shrink)))
 
 
-def _blocks(values: Array, count: int, length: int) -> Array:
+def _block_powers(values: Array, count: int, length: int) -> Array:
     return np.asarray(np.mean(values[: count * length].reshape(count, -1) ** 2, axis=1))

@@ -1,1 +1,4 @@
-"""What a recording, or the next experiment, can tell apart: isolability, collinearity, proposed experiments."""
+"""What a recording, or the next experiment, can tell apart: isolability, collinearity, proposed experiments.
+
+Nothing here changes a verdict.
+"""

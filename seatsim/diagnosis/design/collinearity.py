@@ -1,176 +1,120 @@
-"""How alike the traces of effects are in a recording, once the nuisance parameters have taken their part.
+"""How collinear the sensitivities of effects are in a recording, once the nuisance parameters have taken their part.
 
-With whitened changes a and b of two effects, sensitivities S of the nuisance parameters u and their prior standard
-deviation SPREAD, all components without unit, each change is projected,
-
-    p(a) = [a - S' u, -u / SPREAD],   u = (S S' + 1 / SPREAD^2)^-1 S a,
-
-and the alikeness is |cos(p(a), p(b))|: 0 for traces that share nothing, 1 where one could stand for the other.
+The collinearity of two effects is |cos(p(a), p(b))| of their projected changes (see `projection`): 0 where they share
+nothing, 1 where one could stand for the other.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import permutations
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.candidates import Candidate, candidates
-from seatsim.diagnosis.fit import NUDGE, SPREAD, Engine, Point, State
+from seatsim.diagnosis.candidates import Candidate, list_candidates
+from seatsim.diagnosis.design.projection import measure_cosines, project
+from seatsim.diagnosis.fit import fit
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.result import Collinearity
 
 Array = NDArray[np.float64]
 
-FAINT = 1e-9
-"""Length of a projected trace, in noise units, below which it is like nothing."""
-FAR = 10.0
-"""Standard deviation of an effect's parameter, in its natural size."""
-FORMS = 4
-"""Forms and channels of an effect that are fitted."""
-STRETCH = 8.0
-"""Largest factor by which a start is made larger or smaller."""
 
+def measure_collinearity(objective: Objective, nuisances: Linearisation, names: Sequence[str]) -> Collinearity:
+    """Return those effects that can act here, and how collinear they are.
 
-def alikeness(engine: Engine, state: State, names: Sequence[str]) -> tuple[list[str], Array]:
-    """Return those effects that can act here, and how alike their traces are, shape (effects, effects), 0 to 1.
+    Each change is what the effect alone adds to the rig without any of them: as fitted where the rig has it, else in
+    the first structure of a candidate, made about as large as the largest that is fitted, because what friction or a
+    gap does depends on its size. An effect that may act on several channels is as collinear as the channel that is most
+    so.
 
-    Each trace is what the effect alone adds to the state without any of them: as fitted where the state has it, else
-    in the first form of a candidate, made about as large as the largest that is fitted, because what friction or a gap
-    does depends on its size. An effect that may act on several channels is as alike as the channel that is most so.
+    Args:
+        objective: over all runs.
+        nuisances: the rig found, with its sensitivities to the nuisance parameters.
+        names: effects to compare.
     """
-    if not engine.slopes:
-        engine.refresh(state)
-    base = state.point.without(*names)
-    ends = {name: _ends(engine, state.point, base, name) for name in dict.fromkeys(names)}
-    known = [name for name, found in ends.items() if found]
-    points = [point for name in known for point in ends[name]]
-    fitted = {term.effect for term in state.point.terms}
-    held = [name in fitted for name in known for _ in ends[name]]
-    cosines = np.abs(cosine(projected(_traces(engine, base, points, held), beside(engine.slopes, engine))))
-    last = np.cumsum([len(ends[name]) for name in known])
-    spans = [slice(end - len(ends[name]), end) for name, end in zip(known, last, strict=True)]
+    rig = nuisances.evaluation.parameters
+    base = rig.remove(*names)
+    variants = {name: _list_variants(objective, rig, base, name) for name in dict.fromkeys(names)}
+    known = [name for name, found in variants.items() if found]
+    several = [parameters for name in known for parameters in variants[name]]
+    fitted = [name in rig.names for name in known for _ in variants[name]]
+    changes = _measure_changes(objective, base, several, fitted)
+    sensitivities = stack_jacobian(objective, nuisances)
+    deviations = np.full(len(sensitivities), objective.settings.fit.prior_std)
+    cosines = np.abs(measure_cosines(project(changes, sensitivities, deviations), objective.settings.design.faint))
+    last = np.cumsum([len(variants[name]) for name in known])
+    spans = [slice(end - len(variants[name]), end) for name, end in zip(known, last, strict=True)]
     matrix = np.array([[cosines[a, b].max() for b in spans] for a in spans]).reshape(len(known), len(known))
     np.fill_diagonal(matrix, 1.0)
-    return known, matrix
+    return Collinearity(known, matrix)
 
 
-def _traces(engine: Engine, base: Point, points: Sequence[Point], held: Sequence[bool]) -> Array:
-    """Return the whitened changes from a base to points, shape (points, rows), those not `held` made as large."""
-    origin, *states = engine.states([base, *points])
-    changes = _changes(engine, origin, states)
+def fit_member(
+    objective: Objective, nuisances: Linearisation, name: str, group: Sequence[str]
+) -> Evaluation:
+    """Return a rig with one member of a group instead of the others, its term last, fitted to the recording.
+
+    `nuisances` is the rig with its member of the group, and its sensitivities to the nuisance parameters.
+    """
+    rig = nuisances.evaluation.parameters
+    base = rig.remove(*group)
+    own = [(t, v) for t, v in zip(rig.terms, rig.values, strict=True) if t.effect == name]
+    starts = own or [(c, np.array(c.start)) for c in list_candidates(objective.problem) if c.effect == name]
+    evaluations = sorted(objective.evaluate([base.add(*start) for start in starts]), key=lambda found: found.cost)
+    begun = evaluations[: objective.settings.design.structures]
+    return min((fit(objective, start, nuisances) for start in begun), key=lambda found: found.cost)
+
+
+def stack_whitened(objective: Objective, whitened: dict[str, Array]) -> Array:
+    """Return whitened numbers of all runs, shape (channels, rows) each, on end."""
+    return np.concatenate([whitened[run].ravel() for run in objective.problem.runs])
+
+
+def stack_jacobian(objective: Objective, linearisation: Linearisation) -> Array:
+    """Return the Jacobians of all runs, shape (components, channels x rows) each, beside each other."""
+    return np.concatenate([linearisation.jacobian[run] for run in objective.problem.runs], axis=1)
+
+
+def _measure_changes(
+    objective: Objective, base: Parameters, several: Sequence[Parameters], fitted: Sequence[bool]
+) -> Array:
+    """Return the whitened changes from a base to rigs, shape (rigs, rows), those not `fitted` made as large."""
+    origin, *evaluations = objective.evaluate([base, *several])
+    changes = _subtract(objective, origin, evaluations)
     sizes = np.linalg.norm(changes, axis=1)
-    if any(held):
-        factors = max(sizes[k] for k, kept in enumerate(held) if kept) / np.maximum(sizes, FAINT)
-        moved = [p if kept else _sized(p, f) for p, kept, f in zip(points, held, factors, strict=True)]
-        changes = _changes(engine, origin, engine.states(moved))
+    if any(fitted):
+        largest = max(sizes[k] for k, kept in enumerate(fitted) if kept)
+        factors = largest / np.maximum(sizes, objective.settings.design.faint)
+        stretch = objective.settings.design.stretch
+        moved = [p if kept else _enlarge(p, f, stretch) for p, kept, f in zip(several, fitted, factors, strict=True)]
+        changes = _subtract(objective, origin, objective.evaluate(moved))
     return changes
 
 
-def _changes(engine: Engine, origin: State, states: Sequence[State]) -> Array:
-    start = stacked(origin.whitened, engine)
-    changes = np.array([stacked(moved.whitened, engine) - start for moved in states]).reshape(len(states), start.size)
+def _subtract(objective: Objective, origin: Evaluation, evaluations: Sequence[Evaluation]) -> Array:
+    start = stack_whitened(objective, origin.whitened)
+    changes = np.array([stack_whitened(objective, moved.whitened) - start for moved in evaluations])
+    changes = changes.reshape(len(evaluations), start.size)
     changes[~np.all(np.isfinite(changes), axis=1)] = 0.0
     return changes
 
 
-def _sized(point: Point, factor: float) -> Point:
-    """Return the point with the first parameter of its last effect larger by a factor, within reach and bounds."""
-    term, values = point.terms[-1], point.values[-1].copy()
-    values[0] = np.clip(values[0] * np.clip(factor, 1.0 / STRETCH, STRETCH), term.low[0], term.high[0])
-    return Point(point.u, point.terms, (*point.values[:-1], values))
+def _enlarge(parameters: Parameters, factor: float, stretch: float) -> Parameters:
+    """Return the rig with the first parameter of its last effect larger by a factor, within stretch and bounds."""
+    term, values = parameters.terms[-1], parameters.values[-1].copy()
+    values[0] = np.clip(values[0] * np.clip(factor, 1.0 / stretch, stretch), term.low[0], term.high[0])
+    return Parameters(parameters.deviations, parameters.terms, (*parameters.values[:-1], values))
 
 
-def stacked(values: dict[str, Array], engine: Engine) -> Array:
-    """Return whitened numbers of all runs, shape (channels, rows) each, on end."""
-    return np.concatenate([values[run].ravel() for run in engine.problem.runs])
-
-
-def beside(slopes: dict[str, Array], engine: Engine) -> Array:
-    """Return sensitivities in all runs, shape (parameters, channels x rows) each, beside each other."""
-    return np.concatenate([slopes[run] for run in engine.problem.runs], axis=1)
-
-
-def projected(changes: Array, basis: Array, loose: int = 0) -> Array:
-    """Return p(a) of the changes, shape (changes, rows + parameters), off the slopes of nuisances.
-
-    The last `loose` rows of `basis` belong to parameters of effects in their natural sizes, which may go far.
-    """
-    if not len(basis):
-        return changes
-    spread = np.concatenate([np.full(len(basis) - loose, SPREAD), np.full(loose, FAR)])
-    shares = np.linalg.solve(basis @ basis.T + np.diag(spread**-2.0), basis @ changes.T).T
-    return np.concatenate([changes - shares @ basis, -shares / spread], axis=1)
-
-
-def cosine(vectors: Array) -> Array:
-    """Return the cosine between each two rows; 0 where one of them is nothing."""
-    size = np.linalg.norm(vectors, axis=1)
-    unit = vectors / np.where(size > FAINT, size, np.inf)[:, None]
-    return np.clip(unit @ unit.T, -1.0, 1.0)
-
-
-def _ends(engine: Engine, point: Point, base: Point, name: str) -> list[Point]:
-    """Return the base with one effect, as the point has it or as a candidate starts, once for each of its channels."""
-    for term, values in zip(point.terms, point.values, strict=True):
+def _list_variants(objective: Objective, rig: Parameters, base: Parameters, name: str) -> list[Parameters]:
+    """Return the base with one effect, as the rig has it or as a candidate starts, once for each of its channels."""
+    for term, values in zip(rig.terms, rig.values, strict=True):
         if term.effect == name:
-            return [base.plus(term, values)]
+            return [base.add(term, values)]
     first: dict[str, Candidate] = {}
-    for candidate in candidates(engine.problem):
+    for candidate in list_candidates(objective.problem):
         if candidate.effect == name:
             first.setdefault(str(candidate.fixed.get("channel")), candidate)
-    return [base.plus(candidate, np.array(candidate.start)) for candidate in first.values()]
-
-
-class Side(NamedTuple):
-    """Outputs of rigs in noise units, shape (rigs, rows), slopes of the nuisances and of each rig's own parameters."""
-
-    outputs: Array
-    nuisances: Array
-    own: list[Array]
-
-
-def discrimination(old: Side, new: Side) -> float:
-    """Return what a new experiment adds to the distance of the nearest pair of rigs, in noise units.
-
-        d(a, b) = min over u, b of |y_a - y_b(u, b)|,    sqrt(d(old and new)^2 - d(old)^2),
-
-    with the nuisances u under their prior and the rig's own parameters b, both linearised.
-    """
-    gains = []
-    for a, b in permutations(range(len(old.outputs)), 2):
-        bases = [np.vstack([side.nuisances, side.own[b]]) for side in (old, new)]
-        gaps = [(side.outputs[b] - side.outputs[a])[None] for side in (old, new)]
-        loose = len(old.own[b])
-        both = projected(np.hstack(gaps), np.hstack(bases), loose)
-        gains.append(float(np.sum(both**2) - np.sum(projected(gaps[0], bases[0], loose) ** 2)))
-    return float(np.sqrt(max(min(gains), 0.0)))
-
-
-def resemblance(changes: Array, slopes: Array) -> float:
-    """Return `2 |p(a) p(b)| / (|p(a)|^2 + |p(b)|^2)` of the most alike pair: alikeness at the sizes that traces have.
-
-    Traces that are short beside the noise are alike.
-    """
-    traces = projected(changes, slopes)
-    power = traces @ traces.T
-    own = np.diag(power)
-    pairs = [(2.0 * abs(power[a, b]) + 1.0) / (own[a] + own[b] + 1.0) for a, b in permutations(range(len(own)), 2)]
-    return float(min(max(pairs), 1.0))
-
-
-def nudged(point: Point, first: int, last: int) -> list[tuple[Point, float]]:
-    """Return the point with each of some components of its vector moved a little, and by how much."""
-    vector, (_, high) = point.vector, point.limits
-    unit = np.eye(len(vector))
-    nudges = [NUDGE if vector[k] + NUDGE <= high[k] else -NUDGE for k in range(first, last)]
-    return [(point.moved(vector + nudge * unit[first + k]), nudge) for k, nudge in enumerate(nudges)]
-
-
-def with_member(engine: Engine, state: State, name: str, group: Sequence[str]) -> State:
-    """Return the state with one member of the group instead of the others, its term last, fitted to the recording."""
-    point, base = state.point, state.point.without(*group)
-    own = [(t, v) for t, v in zip(point.terms, point.values, strict=True) if t.effect == name]
-    starts = own or [(c, np.array(c.start)) for c in candidates(engine.problem) if c.effect == name]
-    states = sorted(engine.states([base.plus(*start) for start in starts]), key=lambda found: found.cost)
-    return min((engine.fitted(start) for start in states[:FORMS]), key=lambda found: found.cost)
+    return [base.add(candidate, np.array(candidate.start)) for candidate in first.values()]

@@ -1,8 +1,8 @@
-"""Which single block could hold what is left: an unknown input in each block in turn, and the evidence for it.
+"""Fault hypotheses: which single block could hold what is left, each with its evidence.
 
-Beside the inputs of `unknown_input` there is the error of one sensor. With r the whitened residuals without the input,
-h what a unit of it makes of the channels about the course found, p the power of that course and S the sensitivities to
-the nuisance parameters u, minus twice the log evidence is
+An unknown input acts in each block in turn, or one sensor errs. With r the whitened residuals without the input, h what
+a unit of it makes of the channels about the signal found, p the power of that signal and S the sensitivities to the
+deviations u of the nuisance parameters, minus twice the log evidence is
 
     min over u of  sum over f  (r - S u)* (I + h h* p / 2)^-1 (r - S u) + 2 log(1 + |h|^2 p / 2)  + prior(u).
 
@@ -16,89 +16,105 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.fit import Engine, State, solved
-from seatsim.diagnosis.localise.input_estimate import INPUTS, Answer, driven, driven_by_log, power, spectra, unit_error
-from seatsim.diagnosis.problem import POOL
+from seatsim.diagnosis.fit import solve_step
+from seatsim.diagnosis.localise.input_estimate import (
+    InputEstimate,
+    estimate_current,
+    estimate_error,
+    estimate_input,
+)
+from seatsim.diagnosis.localise.reconstruction import PORTS
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
+from seatsim.diagnosis.spectra import as_complex
 from seatsim.recordings.quality.floor import FLOOR, follows_floor
 
 Array = NDArray[np.float64]
 
-SLOW = 0.5
-"""Hz below which the zero of a sensor wanders, and no floor moves so much that it matters."""
+QUANTITIES = {"coil": ("current", "A"), "floor": ("acceleration", "m/s^2")}
+"""Quantity and unit of an unknown input by block, where it is not a force in N."""
 
 
-class Suspect(NamedTuple):
-    """A block that an unknown input may act in: minus twice the log evidence per number compared, less 1.
+class FaultHypothesis(NamedTuple):
+    """A block that an unknown input may act in, with its negative log evidence per sample.
 
-    `course[run]`, shape (samples,), is the input above its noise, a quantity in its unit; `channel` is the one that
-    errs, for a sensor.
+    `negative_log_evidence` is minus twice the log evidence per number compared, less 1. `signals[run]`, shape
+    (samples,), is the input above its noise, a quantity in its unit; `channel` is the one that errs, for a sensor.
     """
 
-    doubt: float
+    negative_log_evidence: float
     quantity: str
     unit: str
-    course: dict[str, Array]
+    signals: dict[str, Array]
     channel: str = ""
 
 
-def suspects(engine: Engine, state: State) -> dict[str, Suspect]:
-    """Return how an unknown input in each block would explain what a state leaves."""
-    problem = engine.problem
-    runs = dict(zip(problem.runs, POOL.map(lambda run: _answers(engine, state, run), problem.runs), strict=True))
-    found = {}
-    for name in next(iter(runs.values())):
-        answers = {run: of_run[name] for run, of_run in runs.items()}
-        courses = {run: answer.course for run, answer in answers.items()}
-        quantity, unit = {"coil": ("current", "A"), "floor": ("acceleration", "m/s^2")}.get(name, ("force", "N"))
-        found[name] = Suspect(_doubt(engine, state, answers), quantity, unit, courses)
+def evaluate_hypotheses(objective: Objective, nuisances: Linearisation) -> dict[str, FaultHypothesis]:
+    """Return, by block, how an unknown input would explain what a rig leaves.
+
+    `nuisances` is the rig's evaluation with its sensitivities to the nuisance parameters, which are refitted.
+    """
+    problem, evaluation = objective.problem, nuisances.evaluation
+    by_run = problem.pool.map(lambda run: _estimate_inputs(objective, evaluation, run), problem.runs)
+    runs = dict(zip(problem.runs, by_run, strict=True))
+    hypotheses = {}
+    for name in runs[problem.runs[0]]:
+        estimates = {run: of_run[name] for run, of_run in runs.items()}
+        signals = {run: estimate.signal for run, estimate in estimates.items()}
+        quantity, unit = QUANTITIES.get(name, ("force", "N"))
+        evidence = _negative_log_evidence(objective, nuisances, estimates)
+        hypotheses[name] = FaultHypothesis(evidence, quantity, unit, signals)
     errors = [
-        found.pop(name)._replace(quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name)
+        hypotheses.pop(name)._replace(
+            quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name
+        )
         for name in problem.channels
     ]
-    errors.append(_of_sensor(found.pop(FLOOR)))
+    errors.append(_as_sensor_error(hypotheses.pop(FLOOR)))
     if not follows_floor(problem.recording):
-        errors.append(_of_sensor(found.pop("floor")))
-    return found | {"sensor": min(errors, key=lambda suspect: suspect.doubt)}
+        errors.append(_as_sensor_error(hypotheses.pop("floor")))
+    return hypotheses | {"sensor": min(errors, key=lambda hypothesis: hypothesis.negative_log_evidence)}
 
 
-def _of_sensor(motion: Suspect) -> Suspect:
-    """Return a motion of the floor that its accelerometer does not see as the error of that."""
-    course = {run: -values for run, values in motion.course.items()}
-    return motion._replace(course=course, quantity=f"error of {FLOOR}", unit="m/s^2", channel=FLOOR)
+def _as_sensor_error(motion: FaultHypothesis) -> FaultHypothesis:
+    """Return a motion of the floor that its accelerometer does not see as the error of that accelerometer."""
+    signals = {run: -values for run, values in motion.signals.items()}
+    return motion._replace(signals=signals, quantity=f"error of {FLOOR}", unit="m/s^2", channel=FLOOR)
 
 
-def _answers(engine: Engine, state: State, run: str) -> dict[str, Answer]:
-    """Return the answer to an input in each block, and to an error of each channel's sensor."""
-    weights, left = engine.white.weights[run], state.whitened[run]
-    errors = spectra(left) / weights
-    found = {}
-    for k, name in enumerate(engine.problem.channels):
-        found[name] = Answer(left, unit_error(weights, k), power(errors[k]), state.residual[run][k])
-    merged = "damper_force" not in engine.problem.channels
-    for block, where in INPUTS.items():
+def _estimate_inputs(objective: Objective, evaluation: Evaluation, run: str) -> dict[str, InputEstimate]:
+    """Return the estimate of an input in each block, and of an error of each channel's sensor."""
+    channels = objective.problem.channels
+    estimates = {name: estimate_error(objective, evaluation, run, k) for k, name in enumerate(channels)}
+    # Without a load cell a force of the damper and one of the linkage are the same to every channel.
+    merged = "damper_force" not in channels
+    for block, port in PORTS.items():
         same = merged and block == "suspension"
-        found[block] = found["damper"] if same else driven(engine, state, run, where)
-    found[FLOOR] = driven(engine, state, run, INPUTS["floor"], SLOW)
-    if "coil_current" in engine.problem.channels:
-        found["coil"] = driven_by_log(engine, state, run)
-    return found
+        estimates[block] = estimates["damper"] if same else estimate_input(objective, evaluation, run, port)
+    # Below this frequency no floor moves so much that it matters: such a motion is the drift of its accelerometer.
+    slow = objective.settings.localisation.slow_frequency
+    estimates[FLOOR] = estimate_input(objective, evaluation, run, PORTS["floor"], slow)
+    if "coil_current" in channels:
+        estimates["coil"] = estimate_current(objective, evaluation, run)
+    return estimates
 
 
-def _doubt(engine: Engine, state: State, answers: dict[str, Answer]) -> float:
+def _negative_log_evidence(
+    objective: Objective, nuisances: Linearisation, estimates: dict[str, InputEstimate]
+) -> float:
     """Return minus twice the log evidence per number compared, less 1, the nuisances refitted to first order."""
-    count = len(state.point.u)
+    deviations = nuisances.evaluation.parameters.deviations
+    count = len(deviations)
     matrix, right, cost, rows = np.zeros((count, count)), np.zeros(count), 0.0, 0
-    for run, answer in answers.items():
-        shape = answer.left.shape
-        whole = spectra(np.concatenate([answer.left[None], engine.slopes[run].reshape(-1, *shape)]))
-        rest = whole
-        size = np.sum(np.abs(answer.way) ** 2, axis=0)
-        along = np.sum(answer.way.conj() * rest, axis=1, keepdims=True) / (size + 2.0 / answer.power)
-        rest = rest - answer.way * along
-        cost += float(np.sum(2.0 * np.log1p(0.5 * size * answer.power)))
-        gram = (whole.reshape(count + 1, -1) @ rest.reshape(count + 1, -1).conj().T).real
-        matrix, right, cost = matrix + gram[1:, 1:], right + gram[1:, 0], cost + gram[0, 0]
-        rows += answer.left.size
+    for run, estimate in estimates.items():
+        shape = estimate.residuals.shape
+        whole = as_complex(np.concatenate([estimate.residuals[None], nuisances.jacobian[run].reshape(-1, *shape)]))
+        size = np.sum(np.abs(estimate.response) ** 2, axis=0)
+        along = np.sum(estimate.response.conj() * whole, axis=1, keepdims=True) / (size + 2.0 / estimate.power)
+        beyond = whole - estimate.response * along
+        cost += float(np.sum(2.0 * np.log1p(0.5 * size * estimate.power)))
+        products = (whole.reshape(count + 1, -1) @ beyond.reshape(count + 1, -1).conj().T).real
+        matrix, right, cost = matrix + products[1:, 1:], right + products[1:, 0], cost + products[0, 0]
+        rows += estimate.residuals.size
     ones = np.ones(count)
-    step = solved(matrix, right, count, state.point.u, -ones, ones)
+    step = solve_step(matrix, right, count, deviations, -ones, ones, objective.settings.fit.prior_std)
     return float(cost - 2.0 * step @ right + step @ matrix @ step) / rows - 1.0

@@ -1,4 +1,7 @@
-"""Effects whose course is random: found in what no other effect explains, never simulated, counted as noise."""
+"""Effects whose signal is a stochastic disturbance: found in what no other effect explains, counted as noise.
+
+Their signal is never simulated: that of another run is another one.
+"""
 
 from __future__ import annotations
 
@@ -8,76 +11,88 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.decide import MATERIAL, Judgement, rests_of
-from seatsim.diagnosis.fit import Engine, Point, State
-from seatsim.diagnosis.localise.discrepancy import Latent, latent, rms
-from seatsim.diagnosis.localise.hypotheses import Suspect
-from seatsim.diagnosis.localise.input_estimate import INPUTS, Driven, power
-from seatsim.diagnosis.noise import Whitening, smoothed, whitening
-from seatsim.diagnosis.problem import Problem
+from seatsim.diagnosis.decide import Decision
+from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy, is_bias_drift, is_from_outside
+from seatsim.diagnosis.localise.hypotheses import FaultHypothesis
+from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
+from seatsim.diagnosis.movement import measure_remainders
+from seatsim.diagnosis.noise import NoiseWeights, weigh_noise
+from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Cause, Estimate, Share
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.spectra import measure_power, smooth_spectrum
 
 Array = NDArray[np.float64]
 
-OUTSIDE, WANDER = "floor.unmeasured_input", "sensor.bias"
-OWN = 0.6
-"""Share of the gap that it is said to make beside other effects."""
-ALONE = 2.0
-"""Factor by which the gap that is left of a channel exceeds those of all others where its zero wanders."""
+FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
 
 
-def wandering(problem: Problem, state: State) -> Latent | None:
-    """Return the error of the one channel, not the travel, that stays materially open by a slow course, None without.
+def find_bias_drift(problem: DiagnosisProblem, evaluation: Evaluation) -> Discrepancy | None:
+    """Return the error of the one channel, not the travel, that stays materially open by a slow signal, None without.
 
     A slow force on the rig would move the travel, and creep moves the travel alone.
     """
-    rests = rests_of(problem, state)
-    k = int(np.argmax(rests))
-    name, others = problem.channels[k], np.delete(rests, k)
-    if rests[k] < MATERIAL or np.any(others > rests[k] / ALONE) or name == "suspension_displacement":
+    settings = problem.settings
+    gaps = measure_remainders(problem, evaluation)
+    k = int(np.argmax(gaps))
+    name, others = problem.channels[k], np.delete(gaps, k)
+    is_alone = not np.any(others > gaps[k] / settings.localisation.drift_alone)
+    if gaps[k] < settings.decision.material or not is_alone or name == "suspension_displacement":
         return None
-    course = {run: values[k] for run, values in state.residual.items()}
-    error = Suspect(0.0, f"error of {name}", problem.recording.channels[name].unit, course, name)
-    return latent(problem, state.point, "sensor", error)
+    signals = {run: values[k] for run, values in evaluation.residuals.items()}
+    error = FaultHypothesis(0.0, f"error of {name}", problem.recording.channels[name].unit, signals, name)
+    return describe_discrepancy(problem, evaluation.parameters, "sensor", error)
 
 
-def random_cause(problem: Problem, rest: Latent) -> str:
-    """Return the effect that an unexplained rest may be; an empty word for none."""
+def name_stochastic_effect(problem: DiagnosisProblem, found: Discrepancy) -> str:
+    """Return the effect that an unexplained discrepancy may be; an empty word for none."""
+    settings = problem.settings.localisation
+    # Without a load cell a force of the damper and one from outside are the same to every channel.
     merged = () if "damper_force" in problem.channels else ("damper",)
-    if rest.block in ("suspension", *merged) and rest.from_outside:
-        return OUTSIDE
-    return WANDER if rest.wanders(problem.recording.header.sample_rate) else ""
+    if found.block in ("suspension", *merged) and is_from_outside(settings, found):
+        return FORCE_FROM_OUTSIDE
+    return BIAS_DRIFT if is_bias_drift(settings, found, problem.rate) else ""
 
 
-def counted(engine: Engine, effect: str, rest: Latent) -> Whitening:
-    """Return weights in which the course counts as noise."""
-    problem = engine.problem
-    if effect == OUTSIDE:
-        return whitening(problem, rest.course)
-    if rest.channel not in problem.channels:
-        return whitening(problem, errors={run: _carried(engine, run, course) for run, course in rest.course.items()})
-    row = np.array([[name == rest.channel] for name in problem.channels], dtype=float)
-    return whitening(problem, errors={run: row * power(np.fft.rfft(course)) for run, course in rest.course.items()})
+def add_to_noise(problem: DiagnosisProblem, weights: NoiseWeights, effect: str, found: Discrepancy) -> NoiseWeights:
+    """Return weights in which the signal counts as noise, beside the noise of the recording; `weights` held before."""
+    smoothing = problem.settings.noise.smoothing
+    if effect == FORCE_FROM_OUTSIDE:
+        return weigh_noise(problem, found.signals)
+    if found.channel not in problem.channels:
+        objective = Objective(problem, weights)
+        errors = {run: _carry_floor_motion(objective, run, signal) for run, signal in found.signals.items()}
+        return weigh_noise(problem, errors=errors)
+    row = np.array([[name == found.channel] for name in problem.channels], dtype=float)
+    powers = {run: row * measure_power(np.fft.rfft(signal), smoothing) for run, signal in found.signals.items()}
+    return weigh_noise(problem, errors=powers)
 
 
-def _carried(engine: Engine, run: str, course: Array) -> Array:
+def _carry_floor_motion(objective: Objective, run: str, signal: Array) -> Array:
     """Return the power that a motion of the floor leaves in the channels, shape (channels, frequencies)."""
-    problem = engine.problem
-    rig = Driven(problem, engine.white, Point(problem.rest), run, INPUTS["floor"], np.zeros(0))
-    return smoothed(np.abs(np.fft.rfft(rig.channels(course) - problem.simulated(run, problem.rest, ()))) ** 2)
+    problem = objective.problem
+    rig = reconstruct(objective, Parameters(problem.nominal), run, PORTS["floor"])
+    change = rig.simulate_with(signal) - problem.simulated(run, problem.nominal, ())
+    return smooth_spectrum(np.abs(np.fft.rfft(change)) ** 2, problem.settings.noise.smoothing)
 
 
-def joined(judgement: Judgement, where: Sequence[Share], effect: str) -> tuple[Judgement, list[Share]]:
-    """Return judgement and places of what was found beside it, with the effect itself among them."""
-    probabilities = judgement.probabilities | {effect: 0.9}
-    verdict = "ambiguous" if judgement.groups else "known"
-    judgement = dataclasses.replace(judgement, verdict=verdict, probabilities=probabilities, none=0.01, unknown=0.1)
-    block, own = effect.partition(".")[0], OWN if where else 1.0
+def merge_effect(
+    settings: DiagnosisSettings, decision: Decision, where: Sequence[Share], effect: str
+) -> tuple[Decision, list[Share]]:
+    """Return decision and shares of what was found beside it, with the stochastic effect itself among them."""
+    probability, none, unknown = settings.decision.stochastic
+    decision = dataclasses.replace(
+        decision, verdict="ambiguous" if decision.groups else "known",
+        probabilities=decision.probabilities | {effect: probability}, none=none, unknown=unknown,
+    )  # fmt: skip
+    block, own = effect.partition(".")[0], settings.localisation.stochastic_share if where else 1.0
     others = [Share(s.block, s.share * (1.0 - own)) for s in where if s.block != block]
-    return judgement, [Share(block, 1.0 - sum(share for _, share in others)), *others]
+    return decision, [Share(block, 1.0 - sum(share for _, share in others)), *others]
 
 
-def with_strength(cause: Cause, rest: Latent) -> Cause:
-    """Return the cause with the RMS of its course, and the channel that errs."""
-    place: dict[str, Estimate | str] = {"channel": rest.channel} if rest.channel else {}
-    return cause._replace(parameters=place | {"rms": Estimate(rms(rest), 0.0, rest.unit)})
+def add_strength(cause: Cause, found: Discrepancy) -> Cause:
+    """Return the cause with the RMS of its signal, and the channel that errs."""
+    place: dict[str, Estimate | str] = {"channel": found.channel} if found.channel else {}
+    return cause._replace(parameters=place | {"rms": Estimate(found.rms, 0.0, found.unit)})

@@ -1,0 +1,86 @@
+"""Which block the gap lies in: from the causes found, or from what an unknown input in each block would explain."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.diagnosis.localise.hypotheses import FaultHypothesis, evaluate_hypotheses
+from seatsim.diagnosis.movement import measure_movements
+from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.result import Share
+
+ON_FRAME = ("damper", "suspension", "floor")
+"""Blocks whose unknown input is a force on the frame."""
+LEAST_DIFFERENCE = 1e-6
+"""Least difference in evidence that counts as explained, where no block explains anything."""
+
+
+class Remainder(NamedTuple):
+    """What is unexplained: a hypothesis for each block that could hold it, and each block's share, likeliest first."""
+
+    hypotheses: dict[str, FaultHypothesis]
+    shares: dict[str, float]
+
+    @property
+    def block(self) -> str:
+        """The likeliest block."""
+        return next(iter(self.shares))
+
+    @property
+    def likeliest(self) -> FaultHypothesis:
+        """The hypothesis of the likeliest block."""
+        return self.hypotheses[self.block]
+
+
+def share_gap(objective: Objective, chosen: Evaluation, remainder: Remainder | None) -> list[Share]:
+    """Return the blocks, ranked by their share of the gap; with an unexplained remainder its block comes first."""
+    shares: dict[str, float] = {}
+    for term, move in zip(chosen.parameters.terms, measure_movements(objective.problem, chosen), strict=True):
+        shares[term.block] = shares.get(term.block, 0.0) + float(np.mean(move**2))
+    if remainder is not None:
+        factor = objective.settings.localisation.remainder_factor
+        scale = factor * max(shares.values(), default=1.0) / remainder.shares[remainder.block]
+        for block, share in remainder.shares.items():
+            shares[block] = shares.get(block, 0.0) + share * scale
+    total = sum(shares.values())
+    ranked = sorted(shares.items(), key=lambda item: -item[1])
+    return [Share(block, size / total) for block, size in ranked if size > 0.0]
+
+
+def localise_remainder(
+    objective: Objective, calibrated: Evaluation, chosen: Evaluation
+) -> tuple[Remainder, Evaluation]:
+    """Return what is unexplained, and the rig that it is missing from: the calibrated one where one block will do.
+
+    Effects that were chosen and do not explain the gap are given up for one unknown input, unless that leaves more.
+    """
+    alone = _weigh_blocks(objective, calibrated)
+    if not chosen.parameters.terms:
+        return alone, chosen
+    beside = _weigh_blocks(objective, chosen)
+    slight = objective.settings.localisation.slight * calibrated.excess
+    if alone.likeliest.negative_log_evidence < beside.likeliest.negative_log_evidence + slight:
+        return alone, calibrated
+    return beside, chosen
+
+
+def _weigh_blocks(objective: Objective, evaluation: Evaluation) -> Remainder:
+    """Return the blocks that could hold what a rig leaves.
+
+    A slow force on the driver is one on the frame, since the two move as one: where both explain nearly the same, it is
+    the frame's.
+    """
+    hypotheses = evaluate_hypotheses(objective, objective.linearise_nuisances(evaluation))
+    before = evaluation.cost / evaluation.rows - 1.0
+    best = min(hypothesis.negative_log_evidence for hypothesis in hypotheses.values())
+    width = objective.settings.localisation.decisive * max(before - best, LEAST_DIFFERENCE)
+    driver = hypotheses["driver"].negative_log_evidence + width
+    if min(hypotheses[block].negative_log_evidence for block in ON_FRAME if block in hypotheses) < driver:
+        hypotheses["driver"] = hypotheses["driver"]._replace(negative_log_evidence=driver)
+    best = min(hypothesis.negative_log_evidence for hypothesis in hypotheses.values())
+    weights = {block: math.exp(-(h.negative_log_evidence - best) / width) for block, h in hypotheses.items()}
+    ranked = sorted(weights.items(), key=lambda item: -item[1])
+    return Remainder(hypotheses, {block: weight / sum(weights.values()) for block, weight in ranked})

@@ -1,0 +1,76 @@
+"""How much effects and gaps matter: movements of the channels in their standard deviations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.problem import DiagnosisProblem
+
+Array = NDArray[np.float64]
+
+
+def measure_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list[Array]:
+    """Return by how much each effect of a set moves each channel, in the channel's standard deviations.
+
+    An effect moves what the simulation changes by, RMS over all runs, once it alone is taken out.
+    """
+    parameters = evaluation.parameters
+    without = [parameters.remove(term.effect) for term in parameters.terms]
+    others = problem.residuals([(other.deviations, other.effects) for other in without])
+    moves = []
+    for other in others:
+        change = np.concatenate([other[run] - evaluation.residuals[run] for run in problem.runs], axis=1)
+        moves.append(np.sqrt(np.mean(change**2, axis=1)) / problem.spread)
+    return moves
+
+
+def is_material(problem: DiagnosisProblem, evaluation: Evaluation) -> bool:
+    """Whether every effect of a set moves some channel by a material size and by more than its noise."""
+    settings = problem.settings.decision
+    noise = settings.above_noise * (problem.noise / problem.spread)
+    moves = measure_movements(problem, evaluation)
+    return all(bool(np.any((move > settings.material) & (move > noise))) for move in moves)
+
+
+def measure_remainders(problem: DiagnosisProblem, evaluation: Evaluation) -> Array:
+    """Return the gap of every channel beyond its noise, in the channel's standard deviations, shape (channels,)."""
+    residuals = np.concatenate([evaluation.residuals[run] for run in problem.runs], axis=1)
+    power = np.mean(residuals**2, axis=1) - problem.noise**2
+    return np.asarray(np.sqrt(np.maximum(power, 0.0)) / problem.spread)
+
+
+def measure_channel_excess(evaluation: Evaluation) -> Array:
+    """Return the whitened excess (reduced chi-square less 1) of every channel, shape (channels,)."""
+    by_run = [np.mean(values**2, axis=1) for values in evaluation.whitened.values()]
+    return np.asarray(np.mean(by_run, axis=0) - 1.0)
+
+
+def measure_shares_left(problem: DiagnosisProblem, before: Evaluation, after: Evaluation) -> list[float]:
+    """Return the share of the excess that is left of every channel with a material gap before."""
+    gaps = measure_remainders(problem, before)
+    excess, left = measure_channel_excess(before), measure_channel_excess(after)
+    settings = problem.settings
+    channels = np.flatnonzero((gaps > settings.decision.material) & (excess > settings.selection.nothing_left))
+    return [float(left[k] / excess[k]) for k in channels]
+
+
+def group_equivalent(chosen: Evaluation, equivalent: Sequence[Evaluation]) -> list[list[str]]:
+    """Return groups of effects that could stand for each other: equivalent sets that differ in one effect.
+
+    An effect that stands for one of the chosen counts as that one in the other sets.
+    """
+    names = set(chosen.parameters.names)
+    groups: dict[str, list[str]] = {}
+    others = [set(evaluation.parameters.names) for evaluation in equivalent]
+    # Sets that differ least come first, so that what stands for what is known where sets differ in more.
+    for other in sorted(others, key=lambda other: len(other - names)):
+        stands_for = {member: name for name, group in groups.items() for member in group}
+        missing, added = names - {stands_for.get(name, name) for name in other}, other - names - set(stands_for)
+        if len(other) == len(names) and len(missing) == len(added) == 1:
+            (replaced,), (stand_in,) = missing, added
+            groups.setdefault(replaced, [replaced]).append(stand_in)
+    return list(groups.values())

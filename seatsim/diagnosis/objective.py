@@ -1,0 +1,120 @@
+"""What a fit minimises, its evaluations, and its linearisation, as immutable values.
+
+The rig is driven by the measured floor and command alone, so that no measured motion enters a regressor: feeding
+measured signals into a closed loop would manufacture causes (endogeneity). Minimised is
+
+    sum |whitened residual|^2 + sum (deviation / prior_std)^2,   -1 <= deviation <= 1,
+
+over the deviations of the nuisance parameters and the free parameters of the effects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.diagnosis.noise import NoiseWeights
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Parameters with their residuals by run, shape (channels, samples), these whitened, and the cost with the prior."""
+
+    parameters: Parameters
+    residuals: dict[str, Array]
+    whitened: dict[str, Array]
+    cost: float
+
+    @property
+    def rows(self) -> int:
+        """How many whitened numbers are compared."""
+        return sum(values.size for values in self.whitened.values())
+
+    @property
+    def excess(self) -> float:
+        """Reduced chi-square less 1, at least 0: what is left beyond noise, per number compared."""
+        return max(self.cost / self.rows - 1.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Linearisation:
+    """An evaluation with the whitened Jacobian about it, d(simulated)/d(vector), of some components.
+
+    `jacobian[run]` has shape (components, channels x rows).
+    """
+
+    evaluation: Evaluation
+    jacobian: dict[str, Array]
+
+    @cached_property
+    def normal_matrices(self) -> dict[str, Array]:
+        """`J J'` of each run, shape (components, components)."""
+        return {run: jacobian @ jacobian.T for run, jacobian in self.jacobian.items()}
+
+    def normal_equations(self, run: str, own: Array, whitened: Array) -> tuple[Array, Array]:
+        """Return normal matrix and right-hand side of a run, for these components and then for those of `own`."""
+        mixed, flat = self.jacobian[run] @ own.T, whitened.ravel()
+        matrix = np.block([[self.normal_matrices[run], mixed], [mixed.T, own @ own.T]])
+        return matrix, np.concatenate([self.jacobian[run] @ flat, own @ flat])
+
+
+@dataclass(frozen=True)
+class Objective:
+    """A problem with the weights that make its residuals comparable."""
+
+    problem: DiagnosisProblem
+    weights: NoiseWeights
+
+    @property
+    def settings(self) -> DiagnosisSettings:
+        """Thresholds of the diagnosis."""
+        return self.problem.settings
+
+    def on_runs(self, runs: Sequence[str]) -> Objective:
+        """Return the objective over some of the runs, under the same weights."""
+        return Objective(self.problem.on_runs(runs), self.weights)
+
+    def evaluate(self, several: Sequence[Parameters]) -> list[Evaluation]:
+        """Simulate and weigh several rigs at once."""
+        residuals = self.problem.residuals([(each.deviations, each.effects) for each in several])
+        return list(self.problem.pool.map(self._weigh, several, residuals))
+
+    def _weigh(self, parameters: Parameters, residuals: dict[str, Array]) -> Evaluation:
+        finite = all(np.all(np.isfinite(values)) for values in residuals.values())
+        whitened = {
+            run: self.weights(values if finite else np.zeros_like(values), run) for run, values in residuals.items()
+        }
+        cost = sum(float(np.sum(values**2)) for values in whitened.values())
+        if not finite:
+            cost = np.inf
+        prior = float(np.sum((parameters.deviations / self.settings.fit.prior_std) ** 2))
+        return Evaluation(parameters, residuals, whitened, cost + prior)
+
+    def linearise(self, evaluation: Evaluation, components: Sequence[int]) -> Linearisation:
+        """Return the sensitivities of the whitened outputs to some components of the vector, by finite differences."""
+        shifts = [evaluation.parameters.shift(k, self.settings.fit.difference_step) for k in components]
+        moved = self.evaluate([parameters for parameters, _ in shifts])
+        jacobian = {
+            run: np.array(
+                [(base - m.whitened[run]).ravel() / step for m, (_, step) in zip(moved, shifts, strict=True)]
+            ).reshape(len(shifts), base.size)
+            for run, base in evaluation.whitened.items()
+        }
+        return Linearisation(evaluation, jacobian)
+
+    def linearise_nuisances(self, evaluation: Evaluation) -> Linearisation:
+        """Return the sensitivities to the nuisance parameters."""
+        return self.linearise(evaluation, evaluation.parameters.nuisance_components)
+
+    def linearise_effects(self, evaluation: Evaluation) -> Linearisation:
+        """Return the sensitivities to the effects' free parameters."""
+        return self.linearise(evaluation, evaluation.parameters.effect_components)

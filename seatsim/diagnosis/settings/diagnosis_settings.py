@@ -1,0 +1,24 @@
+"""All settings of a diagnosis."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from seatsim.diagnosis.settings.designing import DesignSettings
+from seatsim.diagnosis.settings.fitting import FitSettings, NoiseSettings, SelectionSettings
+from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
+from seatsim.diagnosis.settings.localising import LocalisationSettings, ReconstructionSettings
+
+
+class DiagnosisSettings(NamedTuple):
+    """The thresholds of every stage; `settings._replace(fit=settings.fit._replace(most_steps=3))` changes one."""
+
+    noise: NoiseSettings = NoiseSettings()
+    fit: FitSettings = FitSettings()
+    selection: SelectionSettings = SelectionSettings()
+    decision: DecisionSettings = DecisionSettings()
+    cross_validation: CrossValidationSettings = CrossValidationSettings()
+    validation: ValidationSettings = ValidationSettings()
+    reconstruction: ReconstructionSettings = ReconstructionSettings()
+    localisation: LocalisationSettings = LocalisationSettings()
+    design: DesignSettings = DesignSettings()

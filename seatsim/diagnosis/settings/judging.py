@@ -1,0 +1,241 @@
+"""Settings of the decision, of the cross-validation and of the hold-out validation."""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+from seatsim.diagnosis.settings.threshold import CONVENTION, NUMERICAL, SIMULATED_RIGS, Threshold
+
+
+class DecisionSettings(NamedTuple):
+    """From fitted sets to none, known, ambiguous or unknown, with probabilities."""
+
+    material: Annotated[
+        float,
+        Threshold(
+            "-",
+            "movement of a channel, in its standard deviations, from which an effect is material",
+            "lower: false alarms; higher: weak second effects are missed",
+            "the 5 % of the recording's contract with a margin for the fit's error",
+        ),
+    ] = 0.04
+    above_noise: Annotated[
+        float,
+        Threshold(
+            "-",
+            "movement of a channel, in its noise, from which an effect is material",
+            "as `material`",
+            "a little below 1, for the fit's error",
+        ),
+    ] = 0.9
+    explained: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the calibrated excess that a known set leaves at most",
+            "lower: right sets are called unknown; higher: wrong ones known",
+            "right explanations leave up to 0.06 (one 0.14), wrong ones 0.15 to 1, on simulated and sealed rigs",
+        ),
+    ] = 0.12
+    left_in_channel: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the excess of a channel with a material gap that a known set leaves at most",
+            "lower: one badly modelled channel makes everything unknown",
+            SIMULATED_RIGS,
+        ),
+    ] = 0.5
+    equivalent: Annotated[
+        float,
+        Threshold(
+            "-",
+            "factor on the excess within which two sets explain a recording equally well",
+            "higher: larger groups of equivalent effects; lower: a confident wrong one",
+            SIMULATED_RIGS,
+        ),
+    ] = 1.2
+    equivalent_floor: Annotated[
+        float,
+        Threshold("-", "excess added to it, for sets that leave almost nothing", "as `equivalent`", SIMULATED_RIGS),
+    ] = 0.02
+    first_effect_helps: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the excess above which a first effect that does not enlarge the set is passed over",
+            "higher: an effect that hardly helps is chosen beside an unknown cause",
+            SIMULATED_RIGS,
+        ),
+    ] = 0.9
+    sets_compared: Annotated[
+        int,
+        Threshold(
+            "-", "sets of each size among which the best material one is taken", "more: weaker sets", SIMULATED_RIGS
+        ),
+    ] = 3
+    equivalent_members: Annotated[
+        int,
+        Threshold(
+            "-",
+            "most members of a group for which a small remainder suffices to be known",
+            "more: long lists of effects that stand for each other are called an explanation",
+            SIMULATED_RIGS,
+        ),
+    ] = 2
+    none_width: Annotated[
+        float,
+        Threshold("-", "excess over which the probability of `none` falls from sure to unsure", "-", SIMULATED_RIGS),
+    ] = 0.05
+    none_offset: Annotated[
+        float, Threshold("-", "log odds of `none` at the limit of `nothing_left`", "-", SIMULATED_RIGS)
+    ] = 2.0
+    none_least: Annotated[
+        float, Threshold("-", "least probability of `none` where it is the verdict", "-", CONVENTION)
+    ] = 0.6
+    unknown_width: Annotated[
+        float,
+        Threshold(
+            "-",
+            "width, in the logarithm of the share left, of the step of the probability of `unknown`",
+            "wider: less sure verdicts",
+            "calibrated on simulated rigs",
+        ),
+    ] = 0.4
+    least_share: Annotated[float, Threshold("-", "least share left whose logarithm is taken", "-", NUMERICAL)] = 1e-4
+    unknown_if_known: Annotated[
+        tuple[float, float],
+        Threshold(
+            "-",
+            "least and greatest probability of `unknown` beside a known set",
+            "-",
+            "calibrated on simulated rigs",
+        ),
+    ] = (0.02, 0.45)
+    unknown_if_unknown: Annotated[
+        float, Threshold("-", "least probability of `unknown` where it is the verdict", "-", CONVENTION)
+    ] = 0.55
+    unknown_if_none: Annotated[
+        float, Threshold("-", "probability of `unknown` where there is no gap", "-", "calibrated on simulated rigs")
+    ] = 0.02
+    none_if_gap: Annotated[
+        float, Threshold("-", "probability of `none` where there is a gap", "-", "calibrated on simulated rigs")
+    ] = 0.01
+    effect_if_none: Annotated[
+        float, Threshold("-", "probability of every effect where there is no gap", "-", "calibrated on simulated rigs")
+    ] = 0.004
+    effect_if_not_chosen: Annotated[
+        float, Threshold("-", "probability of an effect that was not chosen", "-", "calibrated on simulated rigs")
+    ] = 0.006
+    beside_unknown: Annotated[
+        float,
+        Threshold(
+            "-",
+            "probability of an effect that runs left out support beside an unknown cause",
+            "-",
+            "calibrated on simulated rigs",
+        ),
+    ] = 0.3
+    chosen_weight: Annotated[
+        float,
+        Threshold(
+            "-",
+            "weight of the chosen member of a group of equivalent effects beside each other member",
+            "-",
+            CONVENTION,
+        ),
+    ] = 2.0
+    stochastic: Annotated[
+        tuple[float, float, float],
+        Threshold(
+            "-",
+            "probability of an effect with a stochastic signal, and then of `none` and of `unknown`",
+            "-",
+            "calibrated on simulated rigs",
+        ),
+    ] = (0.9, 0.01, 0.1)
+
+
+class CrossValidationSettings(NamedTuple):
+    """Selection by the gap of runs left out, where no set explains the gap."""
+
+    noise_level: Annotated[
+        float,
+        Threshold(
+            "-", "share of the gap that counts as noise under uniform weights", "only scales the cost", CONVENTION
+        ),
+    ] = 0.1
+    least_gain: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the gap of runs left out that an effect must take off, mean over the runs",
+            "lower: effects of chance; higher: true ones are not stated",
+            "on measured rigs",
+        ),
+    ] = 0.1
+    equivalent: Annotated[
+        float,
+        Threshold(
+            "-",
+            "difference of that share within which two sets help as much",
+            "higher: larger groups",
+            "on measured rigs",
+        ),
+    ] = 0.02
+    sets_compared: Annotated[
+        int, Threshold("-", "sets of each size that are cross-validated", "more: time", "on measured rigs")
+    ] = 5
+    folds: Annotated[int, Threshold("-", "parts of the runs that are left out in turn", "more: time", CONVENTION)] = 3
+
+
+class ValidationSettings(NamedTuple):
+    """Claim of the shrink on a run held out of the fit, with its interval."""
+
+    block_length: Annotated[
+        float,
+        Threshold(
+            "s",
+            "length of the blocks of the bootstrap",
+            "shorter than the rig's memory: intervals too narrow; longer: too few blocks",
+            "several periods of the seat's resonance",
+        ),
+    ] = 1.0
+    draws: Annotated[int, Threshold("-", "bootstrap samples", "more: time", NUMERICAL)] = 400
+    percentiles: Annotated[tuple[float, float], Threshold("%", "ends of the interval", "-", CONVENTION)] = (5.0, 95.0)
+    excitation_std: Annotated[
+        float,
+        Threshold(
+            "-",
+            "standard deviation by which the shrink differs between excitations of one kind",
+            "lower: intervals that do not cover",
+            "on sealed rigs with an unseen run",
+        ),
+    ] = 0.1
+    most_share: Annotated[
+        float,
+        Threshold(
+            "-",
+            "largest share of what an effect moves in all runs that the held-out run may have",
+            "higher: the fit loses the run that shows the effect",
+            SIMULATED_RIGS,
+        ),
+    ] = 0.6
+    least_share: Annotated[
+        float,
+        Threshold(
+            "-",
+            "least share of it that the held-out run must have",
+            "lower: a run that the effect does not touch checks nothing",
+            SIMULATED_RIGS,
+        ),
+    ] = 0.05
+    quantile: Annotated[
+        float,
+        Threshold(
+            "-",
+            "quantile of the shrink over the suitable runs at which the held-out run lies",
+            "higher: claims that another excitation does not keep",
+            "least biased claims on sealed rigs",
+        ),
+    ] = 0.25

@@ -1,0 +1,63 @@
+"""Spectra of whole runs: whitened numbers as complex ones, smoothed powers, and frequency responses."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Spectra = NDArray[np.complex128]
+
+FEWEST_BINS = 4
+"""Least half-width of the average in bins, so that the lowest frequencies are averaged at all."""
+TINY = 1e-30
+"""Least power, by which a silent channel may be divided."""
+
+
+def smooth_spectrum(power: Array, half_width: float) -> Array:
+    """Return a power spectrum, shape (channels, frequencies), averaged over a constant relative band.
+
+    Args:
+        power: powers from frequency 0 on.
+        half_width: half-width of the band, relative to its frequency.
+    """
+    count = power.shape[1]
+    cumulated = np.concatenate([np.zeros((len(power), 1)), np.cumsum(power, axis=1)], axis=1)
+    index = np.arange(count)
+    half = np.maximum(FEWEST_BINS, (half_width * index).astype(int))
+    low, high = np.maximum(0, index - half), np.minimum(count, index + half + 1)
+    return np.asarray((cumulated[:, high] - cumulated[:, low]) / (high - low))
+
+
+def measure_power(spectrum: Spectra, half_width: float) -> Array:
+    """Return the smoothed power of a spectrum, shape (frequencies,), never zero."""
+    return np.asarray(smooth_spectrum(np.abs(spectrum[None]) ** 2, half_width)[0] + TINY)
+
+
+def estimate_response(outputs: Spectra, cause: Spectra, half_width: float) -> Spectra:
+    """Return the best linear approximation of what turns the spectrum of a cause into those of outputs.
+
+    `H = smoothed(Y X*) / smoothed(|X|^2)`, the H1 estimate; shape (channels, frequencies).
+    """
+    crossed = outputs * cause.conj()
+    power = smooth_spectrum(np.abs(cause[None]) ** 2, half_width)
+    return np.asarray(
+        (smooth_spectrum(crossed.real, half_width) + 1j * smooth_spectrum(crossed.imag, half_width)) / power
+    )
+
+
+def as_complex(whitened: Array) -> Spectra:
+    """Return whitened numbers, shape (..., 2 frequencies), as complex ones, shape (..., frequencies)."""
+    half = whitened.shape[-1] // 2
+    return np.asarray(whitened[..., :half] + 1j * whitened[..., half:])
+
+
+def wiener_share(power: Array) -> Array:
+    """Return Wiener's filter for a whitened power spectrum, in which noise has the power 2 (real and imaginary part)."""
+    return np.maximum(0.0, 1.0 - 2.0 / power)
+
+
+def randomise_phases(signal: Array, rng: np.random.Generator) -> Array:
+    """Return a signal with the same spectrum and random phases, shape as `signal`."""
+    spectrum = np.fft.rfft(signal)
+    return np.fft.irfft(np.abs(spectrum) * np.exp(2j * np.pi * rng.random(len(spectrum))), len(signal))
