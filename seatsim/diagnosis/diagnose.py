@@ -29,7 +29,7 @@ from seatsim.diagnosis.result import Array, Diagnosis, Share
 from seatsim.diagnosis.select import Search, search
 from seatsim.diagnosis.sentences import answer
 from seatsim.diagnosis.validate import gaps, held_out, scenario_at, shrinks, trained
-from seatsim.recordings.quality.coverage import coverage
+from seatsim.recordings.quality.coverage import measure_coverage
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.scenario.loading import single
@@ -71,7 +71,7 @@ def diagnose(
     refuse(examination)
     with threadpool_limits(1):
         solution = solved(problem(recording), without, progress)
-        return _stated(recording, solution, [finding.sentence for finding in examination.findings], progress)
+        return _stated(recording, solution, examination.sentences, progress)
 
 
 def solved(posed: Problem, without: Sequence[str], progress: Callable[[str], None]) -> Solution:
@@ -190,7 +190,7 @@ def _stated(recording: Recording, solution: Solution, notes: list[str], progress
         selected=[name for name in judgement.probabilities if name in at_work], random=solution.random,
         indistinguishable=judgement.groups, experiment=asked, held_out=[run],
         isolable=isolable(recording.header.rig, recording.channels), gap=found,
-        notes=[*notes, *losses(recording.header.rig, recording.channels), *coverage(recording).missing],
+        notes=[*notes, *losses(recording.header.rig, recording.channels), *measure_coverage(recording).missing],
         augmented=content(posed, augmented.point), experiment_scenario=scenario,
         evidence=collected(posed, points, run, solution.rest, alikeness(engine, chosen, relevant)),
     )  # fmt: skip

@@ -14,7 +14,8 @@ from seatsim.diagnosis.problem import Problem
 from seatsim.diagnosis.result import Cause, Estimate, Evidence, Trace
 from seatsim.diagnosis.select import Search
 from seatsim.diagnosis.validate import scenario_at
-from seatsim.recordings.gap import gap
+from seatsim.metrics.motion import rms
+from seatsim.recordings.gap import measure_gap
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import describe
 
@@ -32,7 +33,7 @@ def causes(
 ) -> list[Cause]:
     """Return every effect, ranked by probability, with its own shrink on a run and its parameters."""
     problem = engine.problem
-    base = gap(scenario_at(problem, nominal, calibrated.point), problem.recording, [run]).overall
+    base = measure_gap(scenario_at(problem, nominal, calibrated.point), problem.recording, [run]).overall
     singles = {state.point.terms[0].effect: state for state in found.sets[1]} if len(found.sets) > 1 else {}
     own = {term.effect: (term, k) for k, term in enumerate(augmented.point.terms)}
     stated = []
@@ -41,7 +42,7 @@ def causes(
         state = singles.get(effect)
         if state is not None:
             with_it = scenario_at(problem, nominal, state.point)
-            shrink = 1.0 - gap(with_it, problem.recording, [run]).overall / base
+            shrink = 1.0 - measure_gap(with_it, problem.recording, [run]).overall / base
             parameters = _parameters(engine, state, 0)
         if effect in own:
             parameters = _parameters(engine, augmented, own[effect][1])
@@ -103,10 +104,6 @@ def _motion(problem: Problem, run: str) -> dict[str, Array]:
 def _comfort(traces: Sequence[Trace]) -> list[tuple[str, str, float, float, float]]:
     quoted = ("driver_acceleration", "frame_acceleration", "suspension_displacement")
     return [
-        ("RMS " + name.replace("_", " "), trace.unit, _rms(trace.measured), _rms(trace.nominal), _rms(trace.after))
+        ("RMS " + name.replace("_", " "), trace.unit, rms(trace.measured), rms(trace.nominal), rms(trace.after))
         for name in quoted for trace in traces if trace.channel == name
     ]  # fmt: skip
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))

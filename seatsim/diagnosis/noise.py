@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import rfft
 
-from seatsim.diagnosis.problem import POOL, Drive, Problem
+from seatsim.diagnosis.problem import POOL, Problem
 from seatsim.excitations.base import Floor
-from seatsim.simulation.simulate import Forces
+from seatsim.simulation.inputs import BenchInputs, Forces
 
 Array = NDArray[np.float64]
 
@@ -93,13 +93,17 @@ def _compared(frequency: NDArray[np.floating[Any]], rate: float) -> int:
 
 def _carried(problem: Problem, run: str, push: Array | None) -> Array:
     """Return the power spectrum that the noise of the recorded inputs, and a random push, leave in the outputs."""
-    floor = problem.floors[run]
-    if floor is None:
+    inputs = problem.inputs[run]
+    if isinstance(inputs, BenchInputs):
         return np.zeros((len(problem.channels), 1))
     rng = np.random.default_rng(0)
-    drives = [Drive(_noisy(problem, floor, rng), _drawn(problem, floor, push, rng)) for _ in range(TWINS)]
+    floor = inputs.floor
+    drawn = [
+        inputs._replace(floor=_noisy(problem, floor, rng), forces=_drawn(problem, floor, push, rng))
+        for _ in range(TWINS)
+    ]
     clean = problem.simulated(run, problem.rest, ())
-    twins = list(POOL.map(lambda drive: problem.simulated(run, problem.rest, (), drive), drives))
+    twins = list(POOL.map(lambda noisy: problem.simulated(run, problem.rest, (), noisy), drawn))
     return smoothed(np.mean([np.abs(np.fft.rfft(twin - clean, axis=1)) ** 2 for twin in twins], axis=0))
 
 
@@ -132,10 +136,10 @@ def _noisy(problem: Problem, floor: Floor, rng: np.random.Generator) -> Floor:
     return noisy
 
 
-def _drawn(problem: Problem, floor: Floor, push: Array | None, rng: np.random.Generator) -> Forces | None:
+def _drawn(problem: Problem, floor: Floor, push: Array | None, rng: np.random.Generator) -> Forces:
     """Return a random force like a push, on the simulation's steps."""
     if push is None:
-        return None
+        return Forces()
     every = np.arange(len(floor.acceleration))
     rows = every[:: problem.parts]
     return Forces(np.interp(every, rows[: len(push)], _shuffled(push, rng), right=0.0))

@@ -8,37 +8,24 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import prev_fast_len
 
 from seatsim.diagnosis.nuisance import Nuisance, nuisances, varied
-from seatsim.effects.base import off
-from seatsim.effects.damper import SealFriction
-from seatsim.excitations.base import Floor
-from seatsim.excitations.recording import RecordedRun
 from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
+from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.errors import InputError, RunError
-from seatsim.simulation.augment import readings
-from seatsim.simulation.bench_replay import replay_bench
-from seatsim.simulation.simulate import Forces, simulate
+from seatsim.simulation.inputs import RigInputs
+from seatsim.simulation.respond import respond
 
 Array = NDArray[np.float64]
-CARRIER: Any = SealFriction
-"""An effect that every simulation carries, off, so that all candidates share one compiled loop."""
 POOL = ThreadPoolExecutor()
-
-
-class Drive(NamedTuple):
-    """What drives a simulation instead of the recorded floor alone."""
-
-    floor: Floor | None = None
-    forces: Forces | None = None
 
 
 @dataclass(frozen=True)
@@ -53,7 +40,7 @@ class Problem:
     runs: tuple[str, ...]
     channels: tuple[str, ...]
     measured: dict[str, Array]
-    floors: dict[str, Floor | None]
+    inputs: dict[str, RigInputs]
     parameters: tuple[Nuisance, ...]
 
     @property
@@ -88,20 +75,17 @@ class Problem:
 
     def augmented(self, u: Array, effects: Sequence[Any]) -> Scenario:
         """Return the nominal scenario with other parameters and with effects."""
-        chosen = [*self.scenario.effects, *effects]
-        carrier = [] if any(isinstance(effect, CARRIER) for effect in chosen) else [off(CARRIER)]
-        return dataclasses.replace(varied(self.scenario, self.parameters, u), effects=(*chosen, *carrier))
+        chosen = (*self.scenario.effects, *effects)
+        return dataclasses.replace(varied(self.scenario, self.parameters, u), effects=chosen)
 
-    def simulated(self, run: str, u: Array, effects: Sequence[Any], drive: Drive | None = None) -> Array:
-        """Return the compared channels of a run, shape (channels, samples), as `measured` has them."""
-        scenario = self.augmented(u, effects)
-        if self.bench:
-            answer = replay_bench(scenario, self.recording, run)
-        else:
-            step = 1.0 / self.recording.header.sample_rate
-            drive = drive or Drive()
-            history = simulate(scenario, drive.floor or self.floors[run], drive.forces)
-            answer = readings(scenario.effects, step, {name: history[name][:: self.parts] for name in self.channels})
+    def simulated(self, run: str, u: Array, effects: Sequence[Any], inputs: RigInputs | None = None) -> Array:
+        """Return the compared channels of a run, shape (channels, samples), as `measured` has them.
+
+        `inputs` drive the rig instead of the recorded ones.
+        """
+        driven_by = self.inputs[run] if inputs is None else inputs
+        # Thousands of candidates are simulated, so that they have to share one compiled loop.
+        answer = respond(self.augmented(u, effects), driven_by, carry_all_effects=True)
         return np.array([answer[name][self.skip : self.skip + self.measured[run].shape[1]] for name in self.channels])
 
     def _attempted(self, run: str, u: Array, effects: Sequence[Any]) -> Array:
@@ -143,10 +127,6 @@ def problem(recording: Recording) -> Problem:
     skip = round(LEFT_OUT * recording.header.sample_rate)
     ends = {run: skip + prev_fast_len(len(table[loud[0]]) - skip, real=True) for run, table in tables.items()}
     measured = {run: np.array([table[name][skip : ends[run]] for name in loud]) for run, table in tables.items()}
-    floors = {run: None if scenario.plant is None else _floor(recording, run, solver.step) for run in tables}
+    inputs = {run: recorded_inputs(recording, table, solver.step) for run, table in tables.items()}
     found = tuple(nuisances(scenario, recording.header.parameter_tolerance))
-    return Problem(recording, scenario, tuple(tables), tuple(loud), measured, floors, found)
-
-
-def _floor(recording: Recording, run: str, step: float) -> Floor:
-    return RecordedRun(str(recording.folder), run).floor(step, seed=0)
+    return Problem(recording, scenario, tuple(tables), tuple(loud), measured, inputs, found)

@@ -14,7 +14,7 @@ from seatsim.diagnosis.fit import Engine, Point, State
 from seatsim.diagnosis.nuisance import varied
 from seatsim.diagnosis.problem import Problem
 from seatsim.diagnosis.result import Gaps
-from seatsim.recordings.gap import gap, pooled
+from seatsim.recordings.gap import measure_gap, pool_runs
 from seatsim.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
@@ -82,11 +82,11 @@ def gaps(problem: Problem, scenarios: Sequence[Scenario], runs: Sequence[str], s
 
     `spread` is the standard deviation of the shrink from run to run; a scenario left as it is shrinks no gap anywhere.
     """
-    before, calibrated, after = (gap(scenario, problem.recording, runs) for scenario in scenarios)
+    before, calibrated, after = (measure_gap(scenario, problem.recording, runs) for scenario in scenarios)
     shrink = 1.0 - after.overall / before.overall
     changed = (scenarios[0], scenarios[2])
     interval = _interval(problem, changed, runs, shrink, spread) if shrink else (0.0, 0.0)
-    return Gaps(_stated(before), _stated(calibrated), _stated(after), before.floor, shrink, interval)
+    return Gaps(_stated(before), _stated(calibrated), _stated(after), dict(before.floor), shrink, interval)
 
 
 def _stated(found: Any) -> dict[str, Any]:
@@ -97,8 +97,8 @@ def _interval(
     problem: Problem, scenarios: tuple[Scenario, Scenario], runs: Sequence[str], shrink: float, spread: float
 ) -> tuple[float, float]:
     """Return the block bootstrap of the shrink, widened by what other excitations make of it."""
-    measured, first = pooled(scenarios[0], problem.recording, runs)
-    second = pooled(scenarios[1], problem.recording, runs)[1]
+    measured, first = pool_runs(scenarios[0], problem.recording, runs)
+    second = pool_runs(scenarios[1], problem.recording, runs)[1]
     length = max(1, round(BLOCK * problem.recording.header.sample_rate))
     count = max(1, len(next(iter(measured.values()))) // length)
     powers = np.array([

@@ -26,16 +26,12 @@ from seatsim.diagnosis.design.collinearity import (
 )
 from seatsim.diagnosis.fit import Engine, Point, State
 from seatsim.diagnosis.noise import TRUST
-from seatsim.diagnosis.nuisance import varied
-from seatsim.diagnosis.problem import CARRIER, POOL, Problem
-from seatsim.effects.base import off
+from seatsim.diagnosis.problem import POOL, Problem
 from seatsim.excitations.base import Floor
 from seatsim.recordings.compared import COMPARED
-from seatsim.recordings.recording import Recording
 from seatsim.schema.registry import find
-from seatsim.simulation.augment import readings
-from seatsim.simulation.bench_replay import replay_bench
-from seatsim.simulation.simulate import simulate
+from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
+from seatsim.simulation.respond import respond
 
 Array = NDArray[np.float64]
 
@@ -74,20 +70,6 @@ class Trial(NamedTuple):
     extra: tuple[str, ...] = ()
     mass: float = 0.0
     scenario: dict[str, Any] | None = None
-
-
-@dataclasses.dataclass(frozen=True)
-class Played(Recording):
-    """A recording of a bench whose runs all are a motion that is at hand."""
-
-    floor: Floor
-
-    def table(self, run: str) -> dict[str, Array]:
-        """Return the motion, shape (N,) each."""
-        parts, floor = round(1.0 / self.header.sample_rate / self.floor.step), self.floor
-        names = {"displacement": floor.displacement, "current_command": floor.command,
-                 "coil_current": floor.coil_current, "damper_temperature": floor.temperature}  # fmt: skip
-        return {name: values[::parts] for name, values in names.items() if values is not None}
 
 
 def experiment(engine: Engine, state: State, group: Sequence[str]) -> dict[str, Any]:
@@ -193,30 +175,39 @@ def _interventions(problem: Problem, floor: Floor) -> Iterator[Trial]:
 def _recorded(problem: Problem) -> Floor:
     """Return what drove the first run."""
     run = problem.runs[0]
-    floor, table = problem.floors[run], problem.recording.table(run)
-    if floor is not None:
-        return floor
-    zero, current = np.zeros(len(table["displacement"])), table.get("current_command")
-    position, step = table["displacement"], 1.0 / problem.recording.header.sample_rate
-    return Floor(step, zero, zero, position, current, table.get("coil_current"), table.get("damper_temperature"))
+    inputs, step = problem.inputs[run], 1.0 / problem.recording.header.sample_rate
+    if isinstance(inputs, SeatInputs):
+        return inputs.floor
+    zero = np.zeros(len(inputs.displacement))
+    return Floor(
+        step, zero, zero, inputs.displacement, inputs.current_command, inputs.coil_current, inputs.damper_temperature
+    )
+
+
+def _inputs(problem: Problem, floor: Floor) -> RigInputs:
+    """Return what drives the rig in a trial: its floor or, on a bench, the damper moved and fed as that says."""
+    interval = 1.0 / problem.recording.header.sample_rate
+    if not problem.bench:
+        return SeatInputs(floor, interval)
+    every = round(interval / floor.step)
+    return BenchInputs(
+        interval,
+        floor.displacement[::every],
+        problem.recording.channels["displacement"].noise_rms,
+        current_command=None if floor.command is None else floor.command[::every],
+        coil_current=None if floor.coil_current is None else floor.coil_current[::every],
+        damper_temperature=None if floor.temperature is None else floor.temperature[::every],
+    )
 
 
 def _simulated(problem: Problem, trial: Trial, point: Point) -> Array:
     """Return what the sensors say in a trial, shape (channels, rows), without its first second."""
-    scenario = varied(problem.scenario, problem.parameters, point.u)
-    effects = [*scenario.effects, *point.effects]
-    effects += [] if any(isinstance(effect, CARRIER) for effect in effects) else [off(CARRIER)]
-    scenario = dataclasses.replace(scenario, effects=tuple(effects))
-    step, names = 1.0 / problem.recording.header.sample_rate, (*problem.channels, *trial.extra)
-    if scenario.plant is None:
-        parts = {f.name: getattr(problem.recording, f.name) for f in dataclasses.fields(Recording)}
-        answer = replay_bench(scenario, Played(**parts, floor=trial.floor), problem.runs[0])
-    else:
+    scenario = problem.augmented(point.u, point.effects)
+    if scenario.plant is not None:
         plant = scenario.plant._replace(driver_mass=scenario.plant.driver_mass + trial.mass)
-        history = simulate(dataclasses.replace(scenario, plant=plant), trial.floor)
-        every = round(step / trial.floor.step)
-        answer = readings(scenario.effects, step, {name: history[name][::every] for name in names})
-    return np.array([answer[name][problem.skip :] for name in names])
+        scenario = dataclasses.replace(scenario, plant=plant)
+    answer = respond(scenario, _inputs(problem, trial.floor), carry_all_effects=True)
+    return np.array([answer[name][problem.skip :] for name in (*problem.channels, *trial.extra)])
 
 
 def _weights(problem: Problem, trial: Trial, course: Array) -> Array:

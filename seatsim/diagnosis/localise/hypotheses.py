@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from seatsim.diagnosis.fit import Engine, State, solved
 from seatsim.diagnosis.localise.input_estimate import INPUTS, Answer, driven, driven_by_log, power, spectra, unit_error
 from seatsim.diagnosis.problem import POOL
-from seatsim.recordings.quality.floor import FLOOR, follows_floor
+from seatsim.recordings.quality.floor_sensor import FLOOR, follows_floor
 
 Array = NDArray[np.float64]
 

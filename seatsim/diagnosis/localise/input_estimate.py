@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.fit import Engine, Point, State
 from seatsim.diagnosis.noise import Whitening, smoothed
-from seatsim.diagnosis.problem import Drive, Problem
+from seatsim.diagnosis.problem import Problem
 from seatsim.schema.errors import RunError
-from seatsim.simulation.augment import readings
-from seatsim.simulation.simulate import Forces, simulate
+from seatsim.simulation.inputs import Forces, SeatInputs
+from seatsim.simulation.respond import respond
 
 Array = NDArray[np.float64]
 Spectra = NDArray[np.complex128]
@@ -91,16 +91,17 @@ class Driven:
 
     def channels(self, course: Array) -> Array:
         """Return the channels with a course, shape (channels, samples)."""
-        problem, where, floor = self.problem, self.where, self.problem.floors[self.run]
-        assert floor is not None
+        problem, where, inputs = self.problem, self.where, self.problem.inputs[self.run]
+        assert isinstance(inputs, SeatInputs)
+        floor = inputs.floor
         rows = np.arange(len(floor.acceleration)) / problem.parts
         full = np.interp(rows, problem.skip + np.arange(self.samples), course, left=0.0, right=0.0)
         floor = floor._replace(acceleration=floor.acceleration + where.ground * full)
         if where.current:
             floor = floor._replace(command=None, coil_current=np.maximum(self.current + where.current * full, 0.0))
-        drive = Drive(floor, Forces(where.push * full, where.lift * full))
+        inputs = inputs._replace(floor=floor, forces=Forces(where.push * full, where.lift * full))
         try:
-            answer = problem.simulated(self.run, self.point.u, self.point.effects, drive)
+            answer = problem.simulated(self.run, self.point.u, self.point.effects, inputs)
         except RunError:
             return np.full(problem.measured[self.run].shape, 1e6 * problem.spread[:, None])
         if where.cell and "damper_force" in problem.channels:
@@ -109,10 +110,10 @@ class Driven:
 
     def random(self, corner: float, seed: int) -> Array:
         """Return a small random course whose spectrum falls above a corner in Hz."""
-        floor, plant = self.problem.floors[self.run], self.problem.scenario.plant
-        assert floor is not None
+        inputs, plant = self.problem.inputs[self.run], self.problem.scenario.plant
+        assert isinstance(inputs, SeatInputs)
         assert plant is not None
-        scale = SIZE * float(np.std(floor.acceleration)) * (1.0 if self.where.ground else plant.driver_mass)
+        scale = SIZE * float(np.std(inputs.floor.acceleration)) * (1.0 if self.where.ground else plant.driver_mass)
         return scale * _red(self.samples, self.problem.recording.header.sample_rate, corner, seed)
 
     def plausible(self) -> Array:
@@ -216,9 +217,11 @@ def _driven(engine: Engine, state: State, run: str, where: Input) -> Driven:
     problem, point = engine.problem, state.point
     current = np.zeros(0)
     if where.current:
+        inputs = problem.inputs[run]
+        assert isinstance(inputs, SeatInputs)
+        every_step = inputs._replace(interval=inputs.floor.step)
         scenario = problem.augmented(point.u, point.effects)
-        flowing = simulate(scenario, problem.floors[run])["coil_current"]
-        current = readings(scenario.effects, scenario.solver.step, {"coil_current": flowing})["coil_current"]
+        current = respond(scenario, every_step, carry_all_effects=True)["coil_current"]
     return Driven(problem, engine.white, point, run, where, current)
 
 
