@@ -24,13 +24,13 @@ from seatsim.blind.score.verdicts import read_verdict
 from seatsim.blind.sealed import unseal
 from seatsim.diagnosis.noise import Whitening, even
 from seatsim.diagnosis.nuisance import varied
-from seatsim.diagnosis.problem import Drive, Problem
+from seatsim.diagnosis.problem import Problem
 from seatsim.excitations.base import Floor
 from seatsim.rig.plant import Plant
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import write_json
-from seatsim.simulation.augment import readings, undone
-from seatsim.simulation.simulate import Forces
+from seatsim.simulation.augment import read_sensors, undo_reading
+from seatsim.simulation.inputs import Forces, SeatInputs
 
 Array = NDArray[np.float64]
 Labels = dict[str, dict[str, Any]]
@@ -156,18 +156,21 @@ def fed(problem: Problem, run: str, u: Array, effects: Sequence[Any]) -> Array:
     before it is fed. The recorded floor enters no equation. Over a first second, while what is fed settles, the answer
     goes over from the measured channels.
     """
-    step, floor = 1.0 / problem.recording.header.sample_rate, problem.floors[run]
-    assert floor is not None
+    step, inputs = 1.0 / problem.recording.header.sample_rate, problem.inputs[run]
+    assert isinstance(inputs, SeatInputs)
+    floor = inputs.floor
     sensors = [effect for effect in effects if hasattr(effect, "channel")]
     others = [effect for effect in effects if not hasattr(effect, "channel")]
-    true = {name: undone(sensors, problem.measured[run][k], name, step) for k, name in enumerate(problem.channels)}
+    true = {
+        name: undo_reading(sensors, problem.measured[run][k], name, step) for k, name in enumerate(problem.channels)
+    }
     motion, position = (_led_in(problem, true[name], floor) for name in (FRAME, TRAVEL))
     position = sosfiltfilt(butter(4, CORNER, fs=1.0 / floor.step, output="sos"), position)
     base = floor._replace(acceleration=motion - np.gradient(np.gradient(position, floor.step), floor.step))
 
     def answer(base: Floor) -> dict[str, Array]:
-        drive = Drive(base, Forces(HEAVY * motion))
-        return dict(zip(problem.channels, problem.simulated(run, u, [*others, Clamp()], drive), strict=True))
+        held = inputs._replace(floor=base, forces=Forces(HEAVY * motion))
+        return dict(zip(problem.channels, problem.simulated(run, u, [*others, Clamp()], held), strict=True))
 
     found = answer(base)
     if CURRENT in true and floor.command is not None:
@@ -179,7 +182,7 @@ def fed(problem: Problem, run: str, u: Array, effects: Sequence[Any]) -> Array:
     forces = HEAVY * (found[FRAME] - motion[problem.skip * parts :: parts][: len(found[FRAME])])
     if FORCE in found:
         forces = forces + found[FORCE] - true[FORCE]
-    said = np.array(list(readings(sensors, step, found | {FRAME: forces / plant.frame_mass}).values()))
+    said = np.array(list(read_sensors(sensors, step, found | {FRAME: forces / plant.frame_mass}).values()))
     settled = np.clip(2.0 * np.arange(said.shape[1]) * step - 1.0, 0.0, 1.0)
     return problem.measured[run] + settled * (said - problem.measured[run])
 
@@ -202,9 +205,10 @@ def twin(problem: Problem) -> Problem:
     level = problem.recording.channels["floor_acceleration"].noise_rms
     measured = {}
     for run in problem.runs:
-        floor = problem.floors[run]
-        assert floor is not None
+        inputs = problem.inputs[run]
+        assert isinstance(inputs, SeatInputs)
+        floor = inputs.floor
         shaken = floor._replace(acceleration=floor.acceleration + level * rng.standard_normal(len(floor.time)))
-        true = problem.simulated(run, problem.rest, (), Drive(shaken))
+        true = problem.simulated(run, problem.rest, (), inputs._replace(floor=shaken))
         measured[run] = true + problem.noise[:, None] * rng.standard_normal(true.shape)
     return dataclasses.replace(problem, measured=measured)

@@ -30,7 +30,7 @@ from scipy.optimize import least_squares
 
 import seatsim
 from seatsim.recordings.compared import LEFT_OUT
-from seatsim.recordings.gap import pooled
+from seatsim.recordings.gap import pool_runs
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Recording, load_recording
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
@@ -126,7 +126,7 @@ def fitted(rig: Rig, recording: Recording) -> dict[str, Any]:
 
 def misfit(scenario: Scenario, recording: Recording, runs: Sequence[str], kept: Any = slice(None)) -> Any:
     """Return simulated minus measured at the rows kept, in standard deviations of each channel, end to end."""
-    measured, simulated = pooled(scenario, recording, runs)
+    measured, simulated = pool_runs(scenario, recording, runs)
     return np.concatenate([(simulated[name] - measured[name])[kept] / np.std(measured[name]) for name in measured])
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from seatsim.characterisation.cycles import Cycle, loops_of, mean_loop, steady_cycles, whole_cycles
+from seatsim.metrics.motion import rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.simulation.damper_bench import SineTest
 
@@ -129,8 +130,8 @@ def row_of_loops(
         temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
         amplitude=0.5 * float(np.ptp(loop.displacement)), frequency=1.0 / float(loop.time[-1]),
         peak_speed=float(np.max(np.abs(loop.velocity))), centre=0.5 * (mean["peak_rebound"] + mean["peak_compression"]),
-        force_rms=_rms(force), asymmetry=_ratio(_rms(part), _rms(force)), asymmetry_peak=float(np.max(np.abs(part))),
-        asymmetry_of_shape=_ratio(_rms(part - offset), _rms(force - offset)), notes=tuple(notes), loop=loop,
+        force_rms=rms(force), asymmetry=_ratio(rms(part), rms(force)), asymmetry_peak=float(np.max(np.abs(part))),
+        asymmetry_of_shape=_ratio(rms(part - offset), rms(force - offset)), notes=tuple(notes), loop=loop,
         cycle_values={name: list(map(float, v)) for name, v in values.items()}, **mean, **sd,
     )  # fmt: skip
 
@@ -161,7 +162,7 @@ def row_without_cycles(record: BenchRecord, found: Sequence[Cycle]) -> Row:
         temperature=float(np.mean(warmth)), temperature_range=float(np.ptp(warmth)),
         amplitude=0.5 * float(np.ptp(record.displacement)), peak_speed=float(np.max(np.abs(record.velocity))),
         peak_rebound=float(np.max(record.force)), peak_compression=float(np.min(record.force)),
-        offset=float(np.mean(record.force)), force_rms=_rms(record.force), cloud=cloud,
+        offset=float(np.mean(record.force)), force_rms=rms(record.force), cloud=cloud,
         notes=(_motion(record, found), *_of_current(record), *_of_sign(record)),
     )  # fmt: skip
 
@@ -192,7 +193,7 @@ def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     if abs(over_stroke - energy) > DISAGREE * abs(energy):
         notes.append(f"velocity and displacement disagree: the area over displacement is {over_stroke:.3g} J")
     moved = loop._replace(force=loop.displacement - np.mean(loop.displacement[:-1]))
-    uneven = _ratio(_rms(moved.asymmetric_part), _rms(moved.force))
+    uneven = _ratio(rms(moved.asymmetric_part), rms(moved.force))
     if uneven > UNEVEN:
         notes.append(f"the motion itself is asymmetric by {uneven:.0%}")
     if len(loops) > 2:
@@ -207,10 +208,6 @@ def _temperatures(record: BenchRecord, cycles: Sequence[Cycle]) -> Array:
     if record.temperature is None:
         return np.full(len(cycles), math.nan)
     return np.array([float(np.mean(record.temperature[cycle.rows])) for cycle in cycles])
-
-
-def _rms(values: Array) -> float:
-    return math.sqrt(float(np.mean(np.square(values))))
 
 
 def _ratio(part: float, whole: float) -> float:

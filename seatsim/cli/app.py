@@ -89,6 +89,7 @@ def gap(scenario: OneScenario, recording: Path, out_folder: Out = None) -> None:
 
     found = find_gap(scenario, recording)
     out.print(gap_table(found))
+    warn(found.notes)
     path = write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", found.as_dict())
     out.print(f"written: {path}", markup=False, highlight=False)
 

@@ -105,13 +105,16 @@ def _channels(cls: Any, problem: DiagnosisProblem) -> list[str]:
 def _candidate(name: str, cls: Any, form: Form, place: dict[str, Any], reach: float) -> Candidate:
     off = {field: 0.0 for field in cls._fields if field not in place} | dict(specification_of(cls).off)
     fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.fixed) | place
-    ranges = [form.within.get(f, _range(cls, f, value, reach if k > 0 else None)) for k, (f, value) in enumerate(form.free.items())]
+    ranges = [
+        form.within.get(f, _range(cls, f, value, reach if k > 0 else None))
+        for k, (f, value) in enumerate(form.free.items())
+    ]
     low, high = zip(*ranges, strict=True)
     return Candidate(name, cls, fixed, tuple(form.free), tuple(form.free.values()), low, high)
 
 
 def _range(cls: Any, field: str, value: float, reach: float | None) -> tuple[float, float]:
-    """Return the bounds of a free parameter; one of shape that has a sign stays within a factor `reach` of its start."""
+    """Return the bounds of a free parameter; one of shape, if it has a sign, stays within `reach` times its start."""
     low, high = bounds(cls, field)
     if reach is not None and low >= 0.0:
         return max(low, value / reach), min(high, value * reach)

@@ -44,7 +44,9 @@ def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Seq
     groups = group_equivalent(chosen, _list_equivalent(settings, selection, chosen))
     share = chosen.excess / before
     explained = bool(chosen.parameters.terms) and _explains(problem, selection.calibrated, chosen, groups)
-    unknown = _logistic((math.log(max(share, settings.least_share)) - math.log(settings.explained)) / settings.unknown_width)
+    unknown = _logistic(
+        (math.log(max(share, settings.least_share)) - math.log(settings.explained)) / settings.unknown_width
+    )
     least, most = settings.unknown_if_known
     unknown = min(max(unknown, least), most) if explained else max(unknown, settings.unknown_if_unknown)
     groups = groups if explained else []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,8 @@ from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Cause, ComfortFigure, Estimate, Trace
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.validate import make_scenario
-from seatsim.recordings.gap import gap
+from seatsim.metrics.motion import rms
+from seatsim.recordings.gap import measure_gap
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import describe
 
@@ -42,7 +43,7 @@ def estimate_causes(
         run: held out of the fits.
     """
     problem = objective.problem
-    base = gap(make_scenario(problem, nominal, calibrated.parameters), problem.recording, [run]).overall
+    base = measure_gap(make_scenario(problem, nominal, calibrated.parameters), problem.recording, [run]).overall
     singles = {each.parameters.terms[0].effect: each for each in selection.sets[1]} if len(selection.sets) > 1 else {}
     # Single effects share one linearisation of the nuisances, about the calibrated rig: one for each would take longer
     # than the fits. The chosen ones, whose figures are acted on, have one of their own.
@@ -54,7 +55,7 @@ def estimate_causes(
         single = singles.get(effect)
         if single is not None:
             with_it = make_scenario(problem, nominal, single.parameters)
-            shrink = 1.0 - gap(with_it, problem.recording, [run]).overall / base
+            shrink = 1.0 - measure_gap(with_it, problem.recording, [run]).overall / base
             estimates = _estimate_parameters(objective, single, about_calibrated)[effect]
         causes.append(Cause(effect, probability, shrink, chosen.get(effect, estimates)))
     return sorted(causes, key=lambda cause: (-cause.probability, -cause.shrink))
@@ -127,10 +128,6 @@ def trace_motion(problem: DiagnosisProblem, run: str) -> dict[str, Array]:
 def compare_comfort(traces: Sequence[Trace]) -> list[ComfortFigure]:
     """Return the RMS of the channels that are quoted: measured, of the nominal and of the augmented rig."""
     return [
-        ComfortFigure("RMS " + name.replace("_", " "), t.unit, _rms(t.measured), _rms(t.nominal), _rms(t.after))
+        ComfortFigure("RMS " + name.replace("_", " "), t.unit, rms(t.measured), rms(t.nominal), rms(t.after))
         for name in QUOTED for t in traces if t.channel == name
     ]  # fmt: skip
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))

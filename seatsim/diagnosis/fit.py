@@ -25,7 +25,9 @@ def fit(objective: Objective, start: Evaluation, nuisances: Linearisation, steps
         step = _gauss_newton_step(objective, evaluation, nuisances)
         before = evaluation.cost
         for fraction in settings.backtracking:
-            tried = objective.evaluate([evaluation.parameters.move_to(evaluation.parameters.vector + fraction * step)])[0]
+            tried = objective.evaluate([evaluation.parameters.move_to(evaluation.parameters.vector + fraction * step)])[
+                0
+            ]
             if tried.cost < evaluation.cost:
                 evaluation = tried
                 break

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import rfft
 
-from seatsim.diagnosis.problem import DiagnosisProblem, Drive, normalise_rms_errors
+from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.spectra import randomise_phases, smooth_spectrum
 from seatsim.excitations.base import Floor
-from seatsim.simulation.simulate import Forces
+from seatsim.simulation.inputs import BenchInputs, Forces
 
 Array = NDArray[np.float64]
 
@@ -112,17 +112,18 @@ def _count_compared(problem: DiagnosisProblem, samples: int) -> int:
 
 def _carry_input_noise(problem: DiagnosisProblem, run: str, force: Array | None) -> Array:
     """Return the power spectrum that the noise of the recorded inputs, and a random force, leave in the outputs."""
-    floor = problem.floors[run]
-    if floor is None:
+    inputs = problem.inputs[run]
+    if isinstance(inputs, BenchInputs):
         return np.zeros((len(problem.channels), 1))
     # The same draws for every recording: equal input gives equal output.
     rng = np.random.default_rng(0)
-    drives = [
-        Drive(_add_sensor_noise(problem, floor, rng), _draw_force(problem, floor, force, rng))
+    floor = inputs.floor
+    drawn = [
+        inputs._replace(floor=_add_sensor_noise(problem, floor, rng), forces=_draw_force(problem, floor, force, rng))
         for _ in range(problem.settings.noise.replicates)
     ]
     clean = problem.simulated(run, problem.nominal, ())
-    replicates = problem.pool.map(lambda drive: problem.simulated(run, problem.nominal, (), drive), drives)
+    replicates = problem.pool.map(lambda noisy: problem.simulated(run, problem.nominal, (), noisy), drawn)
     power = np.mean([np.abs(np.fft.rfft(noisy - clean, axis=1)) ** 2 for noisy in replicates], axis=0)
     return smooth_spectrum(power, problem.settings.noise.smoothing)
 
@@ -141,10 +142,10 @@ def _add_sensor_noise(problem: DiagnosisProblem, floor: Floor, rng: np.random.Ge
     return noisy
 
 
-def _draw_force(problem: DiagnosisProblem, floor: Floor, force: Array | None, rng: np.random.Generator) -> Forces | None:
+def _draw_force(problem: DiagnosisProblem, floor: Floor, force: Array | None, rng: np.random.Generator) -> Forces:
     """Return a random force on the frame with the spectrum of the one given, on the simulation's steps."""
     if force is None:
-        return None
+        return Forces()
     every = np.arange(len(floor.acceleration))
     rows = every[:: problem.parts]
     return Forces(np.interp(every, rows[: len(force)], randomise_phases(force, rng), right=0.0))

@@ -51,7 +51,7 @@ def list_nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
 
 
 def vary(scenario: Scenario, parameters: Sequence[Nuisance], deviations: Array) -> Scenario:
-    """Return the scenario with every parameter off by its tolerance times its deviation, shape (parameters,), -1 to 1."""
+    """Return the scenario with every parameter off by tolerance times deviation, shape (parameters,), -1 to 1."""
     records = {"plant": scenario.plant, "damper": scenario.damper.record, "coil": scenario.coil}
     for parameter, deviation in zip(parameters, deviations, strict=True):
         value = {parameter.name: parameter.nominal + parameter.tolerance * float(deviation)}

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Parameters with their residuals by run, shape (channels, samples), these whitened, and the cost with the prior."""
+    """Parameters, residuals by run of shape (channels, samples), whitened residuals, and the cost with the prior."""
 
     parameters: Parameters
     residuals: dict[str, Array]

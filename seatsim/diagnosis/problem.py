@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,40 +16,26 @@ from scipy.fft import prev_fast_len
 
 from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.effects.base import off
-from seatsim.effects.damper import SealFriction
-from seatsim.excitations.base import Floor
-from seatsim.excitations.recording import RecordedRun
 from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
+from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.errors import InputError, RunError
-from seatsim.simulation.augment import readings
-from seatsim.simulation.bench_replay import replay_bench
-from seatsim.simulation.simulate import Forces, simulate
+from seatsim.simulation.inputs import RigInputs
+from seatsim.simulation.respond import respond
 
 Array = NDArray[np.float64]
 COARSEST_STEP = 0.002
 """s; longest step of the simulation: with its adaptive sub-steps a shorter one moves no figure of a diagnosis."""
-CARRIER: Any = SealFriction
-"""An effect that every simulation carries, off, so that all candidates share one compiled loop."""
-
-
-class Drive(NamedTuple):
-    """What drives a simulation instead of the recorded floor alone."""
-
-    floor: Floor | None = None
-    forces: Forces | None = None
 
 
 @dataclass(frozen=True)
 class DiagnosisProblem:
     """A recording, its nominal scenario, and what is compared: channels, in order, and runs.
 
-    `measured` holds the compared channels of each run without its first second, shape (channels, samples); `floors` the
-    recorded inputs of each run (None on a bench); `parameters` what the owner's tolerance lets vary; simulations are
-    shared out over `pool`.
+    `measured` holds the compared channels of each run without its first second, shape (channels, samples); `inputs`
+    what drove each; `parameters` what the owner's tolerance lets vary; simulations are shared out over `pool`.
     """
 
     recording: Recording
@@ -57,7 +43,7 @@ class DiagnosisProblem:
     runs: tuple[str, ...]
     channels: tuple[str, ...]
     measured: dict[str, Array]
-    floors: dict[str, Floor | None]
+    inputs: dict[str, RigInputs]
     parameters: tuple[Nuisance, ...]
     settings: DiagnosisSettings
     pool: Executor
@@ -98,26 +84,24 @@ class DiagnosisProblem:
         return np.zeros(len(self.parameters))
 
     def on_runs(self, runs: Sequence[str]) -> DiagnosisProblem:
-        """Return the problem with some of its runs only; channels and their spreads are those of all runs."""
+        """Return the problem with some of its runs; the channels stay, their spreads are those of the runs kept."""
         return dataclasses.replace(self, runs=tuple(runs))
 
     def augmented(self, deviations: Array, effects: Sequence[Any]) -> Scenario:
         """Return the nominal scenario with other parameters and with effects."""
-        chosen = [*self.scenario.effects, *effects]
-        carrier = [] if any(isinstance(effect, CARRIER) for effect in chosen) else [off(CARRIER)]
-        return dataclasses.replace(vary(self.scenario, self.parameters, deviations), effects=(*chosen, *carrier))
+        varied = vary(self.scenario, self.parameters, deviations)
+        return dataclasses.replace(varied, effects=(*self.scenario.effects, *effects))
 
-    def simulated(self, run: str, deviations: Array, effects: Sequence[Any], drive: Drive | None = None) -> Array:
-        """Return the compared channels of a run, shape (channels, samples), as `measured` has them."""
-        scenario = self.augmented(deviations, effects)
-        if self.bench:
-            answer = replay_bench(scenario, self.recording, run)
-        else:
-            step = 1.0 / self.recording.header.sample_rate
-            drive = drive or Drive()
-            history = simulate(scenario, drive.floor or self.floors[run], drive.forces)
-            answer = readings(scenario.effects, step, {name: history[name][:: self.parts] for name in self.channels})
-        return np.array([answer[name][self.skip : self.skip + self.measured[run].shape[1]] for name in self.channels])
+    def simulated(self, run: str, deviations: Array, effects: Sequence[Any], inputs: RigInputs | None = None) -> Array:
+        """Return the compared channels of a run, shape (channels, samples), as `measured` has them.
+
+        `inputs` drive the rig instead of the recorded ones.
+        """
+        driven_by = self.inputs[run] if inputs is None else inputs
+        # Thousands of candidates are simulated, so that they have to share one compiled loop.
+        outputs = respond(self.augmented(deviations, effects), driven_by, carry_all_effects=True)
+        end = self.skip + self.measured[run].shape[1]
+        return np.array([outputs[name][self.skip : end] for name in self.channels])
 
     def _attempted(self, run: str, deviations: Array, effects: Sequence[Any]) -> Array:
         """Return the simulated channels of a run, infinite where the rig leaves all bounds."""
@@ -159,10 +143,10 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     # Spectra of a few rows less are many times faster where the number of rows has only small prime factors.
     ends = {run: skip + prev_fast_len(len(table[loud[0]]) - skip, real=True) for run, table in tables.items()}
     measured = {run: np.array([table[name][skip : ends[run]] for name in loud]) for run, table in tables.items()}
-    floors = {run: None if scenario.plant is None else _recorded_floor(recording, run, solver.step) for run in tables}
+    inputs = {run: recorded_inputs(recording, table, solver.step) for run, table in tables.items()}
     parameters = tuple(list_nuisances(scenario, recording.header.parameter_tolerance))
     return DiagnosisProblem(
-        recording, scenario, tuple(tables), tuple(loud), measured, floors, parameters, settings or DiagnosisSettings(),
+        recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings or DiagnosisSettings(),
         pool,
     )  # fmt: skip
 
@@ -171,7 +155,3 @@ def normalise_rms_errors(problem: DiagnosisProblem, residuals: Mapping[str, Arra
     """Return the RMS error of each run in standard deviations of the channels, shape (runs,)."""
     powers = [np.mean((residuals[run] / problem.spread[:, None]) ** 2) for run in problem.runs]
     return np.asarray(np.sqrt(powers))
-
-
-def _recorded_floor(recording: Recording, run: str, step: float) -> Floor:
-    return RecordedRun(str(recording.folder), run).floor(step, seed=0)

@@ -34,7 +34,7 @@ class Prediction(NamedTuple):
 def measure_sensitivities(
     objective: Objective, calibrated: Evaluation, candidates: Sequence[Candidate]
 ) -> list[Sensitivity]:
-    """Return what each candidate, at its start, changes in the calibrated rig; those that leave all bounds are left out."""
+    """Return what each candidate, at its start, changes in the calibrated rig, but for those that leave all bounds."""
     starts = objective.evaluate([calibrated.parameters.add(c, np.array(c.start)) for c in candidates])
     return [
         Sensitivity(candidate, {run: base - start.whitened[run] for run, base in calibrated.whitened.items()})
@@ -57,9 +57,7 @@ def screen_candidates(
         count: most candidates that are tried, each in one structure.
     """
     own = objective.linearise_effects(base)
-    predicted = list(
-        objective.problem.pool.map(lambda each: _predict(objective, base, each, nuisances, own), offered)
-    )
+    predicted = list(objective.problem.pool.map(lambda each: _predict(objective, base, each, nuisances, own), offered))
     first: dict[Hashable, int] = {}
     for k in sorted(range(len(offered)), key=lambda k: predicted[k].cost):
         if predicted[k].cost < bound:

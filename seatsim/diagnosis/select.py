@@ -79,7 +79,7 @@ def _extend(
     objective: Objective, sets: Sequence[Sequence[Evaluation]], sensitivities: Sequence[Sensitivity],
     nuisances: Linearisation,
 ) -> list[Evaluation]:  # fmt: skip
-    """Return the fitted enlargements of the best sets by one effect, best first, one structure of each set of effects."""
+    """Return the fitted enlargements of the best sets by one effect, best first, one structure of each set."""
     settings = objective.settings.selection
     bases: Sequence[Evaluation] = sets[-1][: settings.beam]
     begun = []

@@ -6,27 +6,27 @@ from seatsim.diagnosis.result import Cause, Diagnosis, Estimate
 from seatsim.schema.registry import find
 
 
-def answer(diagnosis: Diagnosis) -> str:
+def write_answer(diagnosis: Diagnosis) -> str:
     """Return what a diagnosis comes to, in one sentence."""
     gap = diagnosis.gap
-    size = f"{gap.before['overall']:.3f}"
+    size = f"{gap.before.overall:.3f}"
     if diagnosis.verdict == "none":
         return (
             f"There is no gap beyond noise and the stated tolerance of the parameters: {size} nominal,"
-            f" {gap.calibrated['overall']:.3f} refitted, noise {gap.floor['overall']:.3f} (in standard deviations)."
+            f" {gap.calibrated.overall:.3f} refitted, noise {gap.floor.overall:.3f} (in standard deviations)."
         )
     if diagnosis.verdict == "unknown":
         if diagnosis.selected:
-            rest = f" beside {_listed(diagnosis.selected)}: {gap.after['overall']:.3f} of {size} remain"
+            rest = f" beside {_listed(diagnosis.selected)}: {gap.after.overall:.3f} of {size} remain"
         else:
-            rest = f": {size} nominal, noise {gap.floor['overall']:.3f} (in standard deviations)"
+            rest = f": {size} nominal, noise {gap.floor.overall:.3f} (in standard deviations)"
         where = f"Something in the {_unexplained(diagnosis)} that no effect of the library explains makes the gap"
         return where + rest + _alike(diagnosis) + "."
     named = "; ".join(_cause(diagnosis, name) for name in diagnosis.selected)
-    credit = 1.0 - gap.after["overall"] / gap.calibrated["overall"]
+    credit = 1.0 - gap.after.overall / gap.calibrated.overall
     sentence = f"{named}: it takes {credit:.0%} off the gap that refitted parameters leave ({size} to"
-    sentence += f" {gap.after['overall']:.3f}, noise {gap.floor['overall']:.3f})"
-    if diagnosis.random:
+    sentence += f" {gap.after.overall:.3f}, noise {gap.floor.overall:.3f})"
+    if diagnosis.stochastic:
         sentence += "; its random course cannot be foretold, so that its share of the gap stays"
     return sentence + _alike(diagnosis) + "."
 

@@ -53,7 +53,7 @@ def as_complex(whitened: Array) -> Spectra:
 
 
 def wiener_share(power: Array) -> Array:
-    """Return Wiener's filter for a whitened power spectrum, in which noise has the power 2 (real and imaginary part)."""
+    """Return Wiener's filter for a whitened power spectrum; noise has the power 2, of real and imaginary part."""
     return np.maximum(0.0, 1.0 - 2.0 / power)
 
 

@@ -15,7 +15,7 @@ from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import GapFigures, Gaps
-from seatsim.recordings.gap import gap, pooled
+from seatsim.recordings.gap import measure_gap, pool_runs
 from seatsim.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
@@ -73,7 +73,7 @@ def measure_gaps(
         runs: held out of the fits.
         spread: standard deviation of the shrink from run to run.
     """
-    before, calibrated, after = (gap(scenario, problem.recording, runs) for scenario in scenarios)
+    before, calibrated, after = (measure_gap(scenario, problem.recording, runs) for scenario in scenarios)
     shrink = 1.0 - after.overall / before.overall
     # A scenario left as it is shrinks no gap, on whatever data.
     interval = _bootstrap_shrink(problem, (scenarios[0], scenarios[2]), runs, shrink, spread) if shrink else (0.0, 0.0)
@@ -87,8 +87,8 @@ def _bootstrap_shrink(
 ) -> tuple[float, float]:
     """Return the block bootstrap interval of the shrink, widened by what other excitations make of it."""
     settings = problem.settings.validation
-    measured, first = pooled(scenarios[0], problem.recording, runs)
-    second = pooled(scenarios[1], problem.recording, runs)[1]
+    measured, first = pool_runs(scenarios[0], problem.recording, runs)
+    second = pool_runs(scenarios[1], problem.recording, runs)[1]
     length = max(1, round(settings.block_length * problem.rate))
     count = max(1, len(next(iter(measured.values()))) // length)
     powers = np.array([

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -47,19 +48,23 @@ class RecordedRun(NamedTuple):
             raise InputError(
                 f"{self.path}: rows every {interval:g} s are no multiple of solver.step {step:g}; set it to {best:.9g}"
             )
-        finer = {name: _linear(values, parts) for name, values in table.items()}
-        acceleration = finer["floor_acceleration"]
-        velocity = _leaky_integral(acceleration, step)
-        command = table.get("current_command")
-        return Floor(
-            step,
-            acceleration,
-            velocity,
-            _leaky_integral(velocity, step),
-            None if command is None else np.append(np.repeat(command[:-1], parts), command[-1]),
-            finer.get("coil_current"),
-            finer.get("damper_temperature"),
-        )
+        return interpolate_floor(table, parts, step)
+
+
+def interpolate_floor(table: Mapping[str, Array], parts: int, step: float) -> Floor:
+    """Return the recorded inputs of a seat, sampled every `step` seconds, `parts` of which are a row of the table."""
+    floor, command = _linear(table["floor_acceleration"], parts), table.get("current_command")
+    velocity = _leaky_integral(floor, step)
+    finer = {name: _linear(table[name], parts) for name in ("coil_current", "damper_temperature") if name in table}
+    return Floor(
+        step,
+        floor,
+        velocity,
+        _leaky_integral(velocity, step),
+        None if command is None else np.append(np.repeat(command[:-1], parts), command[-1]),
+        finer.get("coil_current"),
+        finer.get("damper_temperature"),
+    )
 
 
 def _linear(values: Array, parts: int) -> Array:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.metrics.motion import rms
 from seatsim.recordings.compared import COMPARED, stands_out
+from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import replay
 from seatsim.scenario.loading import single
@@ -20,42 +22,70 @@ from seatsim.schema.errors import InputError
 Array = NDArray[np.float64]
 
 
+class NoiseFloor(TypedDict):
+    """The gap that noise alone leaves, in standard deviations of what was measured."""
+
+    overall: float
+    channels: dict[str, float]
+
+
 @dataclass(frozen=True)
 class Gap:
     """The gap of a simulation, in standard deviations of what was measured.
 
     `channels` holds `rms(measured - simulated) / std(measured)` by channel, `overall` is `sqrt(mean of its squares)`;
-    `floor` holds the same two for the stated noise alone.
+    `floor` holds the same two for the stated noise alone, `notes` a sentence for each warning about the recording.
     """
 
     overall: float
     channels: dict[str, float]
-    floor: dict[str, Any]
+    floor: NoiseFloor
+    notes: tuple[str, ...] = ()
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return the gap as it stands in `gap.json`."""
-        return {"overall": self.overall, "channels": self.channels, "floor": self.floor}
+        return {"overall": self.overall, "channels": self.channels, "floor": self.floor, "notes": list(self.notes)}
 
 
 def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:
     """Replay a scenario against the runs of a recording (all of them where none are named) and return their gap.
 
+    The recording is examined first, as for a diagnosis: a gap to faulty data says nothing about the scenario.
+
     Raises:
-        InputError: the scenario holds several runs, does not fit the rig, or the recording has nothing to compare.
+        InputError: the scenario holds several runs, does not fit the rig, or the recording has a fault or nothing to
+            compare.
         RunError: a replay could not be carried to its end.
     """
-    if not isinstance(recording, Recording):
-        recording = load_recording(recording)
-    if not isinstance(scenario, Scenario):
-        scenario = single(scenario)
-    names = list(runs) or list(recording.runs)
-    measured, simulated = pooled(scenario, recording, names)
-    channels = {name: _rms(measured[name] - simulated[name]) / float(np.std(measured[name])) for name in measured}
+    scenario, recording = _load(scenario, recording)
+    examination = examine(recording)
+    refuse(examination)
+    return replace(measure_gap(scenario, recording, runs), notes=tuple(examination.sentences))
+
+
+def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:
+    """Return the gap as `gap` does, of a recording that is known to be sound: it is not examined.
+
+    Raises:
+        InputError: the scenario does not fit the rig, or the recording has nothing to compare.
+        RunError: a replay could not be carried to its end.
+    """
+    scenario, recording = _load(scenario, recording)
+    measured, simulated = pool_runs(scenario, recording, list(runs) or list(recording.runs))
+    channels = {name: rms(measured[name] - simulated[name]) / float(np.std(measured[name])) for name in measured}
     floors = {name: recording.channels[name].noise_rms / float(np.std(measured[name])) for name in measured}
-    return Gap(_overall(channels), channels, {"overall": _overall(floors), "channels": floors})
+    return Gap(_overall(channels), channels, NoiseFloor(overall=_overall(floors), channels=floors))
 
 
-def pooled(scenario: Scenario, recording: Recording, runs: Sequence[str]) -> tuple[dict[str, Array], dict[str, Array]]:
+def _load(scenario: str | Path | Scenario, recording: str | Path | Recording) -> tuple[Scenario, Recording]:
+    """Return what is named by a path, read."""
+    read = recording if isinstance(recording, Recording) else load_recording(recording)
+    return scenario if isinstance(scenario, Scenario) else single(scenario), read
+
+
+def pool_runs(
+    scenario: Scenario, recording: Recording, runs: Sequence[str]
+) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return measured and simulated channels that are compared, over all samples of the runs, shape (N,) each."""
     pairs = [replay(scenario, recording, run) for run in runs]
     names = [name for name in COMPARED[recording.header.rig] if name in recording.channels]
@@ -65,10 +95,6 @@ def pooled(scenario: Scenario, recording: Recording, runs: Sequence[str]) -> tup
     if not loud:
         raise InputError(f"{recording.folder}: no recorded output stands above its noise; there is nothing to compare")
     return {n: measured[n] for n in loud}, {n: simulated[n] for n in loud}
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def _overall(values: dict[str, float]) -> float:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,41 +11,81 @@ from numpy.typing import NDArray
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.chain import Effects, state_of
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
+from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.registry import find, names, specification_of
+from seatsim.simulation.effect_hooks import COIL, FACTORS, PLANT, PUSH, READING, TEMPERATURE, TRUTH
 
 Array = NDArray[np.float64]
 NONE = np.zeros(0)
 
 
-def having(effects: Sequence[Any], method: str) -> Iterator[Callable[..., Any]]:
-    """Yield that method of every effect that has it."""
-    return (getattr(effect, method) for effect in effects if hasattr(effect, method))
+def augment_plant(effects: Sequence[object], plant: Plant) -> Plant:
+    """Return the parameters of the seat as the effects leave them."""
+    for effect in PLANT.of(effects):
+        plant = effect.plant(plant)
+    return plant
 
 
-def changed(effects: Sequence[Any], method: str, value: Any, *args: Any) -> Any:
-    """Return `value` handed through that method of every effect that has it, as its last argument."""
-    for change in having(effects, method):
-        value = change(*args, value)
-    return value
+def augment_coil(effects: Sequence[object], coil: Coil) -> Coil:
+    """Return the parameters of the coil as the effects leave them."""
+    for effect in COIL.of(effects):
+        coil = effect.coil(coil)
+    return coil
 
 
-def undone(effects: Sequence[Any], value: Any, channel: str, step: float) -> Any:
-    """Return what is true out of what a sensor says: the effects' readings undone, the last one first."""
-    return changed(effects[::-1], "truth", value, channel, step)
+def augment_factors(effects: Sequence[object], factors: TemperatureFactors) -> TemperatureFactors:
+    """Return the temperature factors of the damper as the effects leave them."""
+    for effect in FACTORS.of(effects):
+        factors = effect.factors(factors)
+    return factors
 
 
-def in_loop(effects: Sequence[Any]) -> tuple[Effects, Effects]:
+def augment_temperature(effects: Sequence[object], step: float, temperature: Array) -> Array:
+    """Return the temperature of the fluid in degC out of that of the thermocouple, shape (N,), every `step` seconds."""
+    for effect in TEMPERATURE.of(effects):
+        temperature = effect.temperature(step, temperature)
+    return temperature
+
+
+def undo_reading(effects: Sequence[object], values: Array, channel: str, step: float) -> Array:
+    """Return what is true out of what a sensor says, shape (N,): the effects on it undone, the last one first."""
+    for effect in TRUTH.of(effects[::-1]):
+        values = effect.truth(channel, step, values)
+    return values
+
+
+def read_sensor(effects: Sequence[object], values: Array, channel: str, step: float) -> Array:
+    """Return what a sensor says out of what is true, shape (N,), sampled every `step` seconds."""
+    for effect in READING.of(effects):
+        values = effect.reading(channel, step, values)
+    return values
+
+
+def read_sensors(effects: Sequence[object], step: float, true: Mapping[str, Array]) -> dict[str, Array]:
+    """Return what the sensors say of true channels that are sampled every `step` seconds, shape (N,) each."""
+    return {name: read_sensor(effects, values, name, step) for name, values in true.items()}
+
+
+def sum_frame_forces(effects: Sequence[object], time: Array, seed: int) -> Array:
+    """Return the force on the frame in N that effects add, shape (N,), or of length 0 where none does."""
+    forces = [effect.push(time, seed) for effect in PUSH.of(effects)]
+    return np.asarray(np.sum(forces, axis=0)) if forces else NONE
+
+
+def select_in_loop(effects: Sequence[object], carry_all: bool = False) -> tuple[Effects, Effects]:
     """Return the effects on the damper and on the seat that the time loop is compiled with.
 
-    Where any is at work all registered ones are carried, off where they are not chosen, so that every subset shares
-    one compiled loop; where none is, none are.
+    Where any is at work, or with `carry_all`, all registered ones are carried, off where they are not chosen, so that
+    every subset shares one compiled loop; otherwise none are.
     """
-    if not any(acts_on(type(effect), ON_DAMPER + ON_SEAT) for effect in effects):
+    if not carry_all and not any(acts_on(type(effect), ON_DAMPER + ON_SEAT) for effect in effects):
         return (), ()
     return _carried(effects, ON_DAMPER), _carried(effects, ON_SEAT)
 
 
-def _carried(effects: Sequence[Any], hooks: tuple[str, ...]) -> Effects:
+def _carried(effects: Sequence[object], hooks: tuple[str, ...]) -> Effects:
     registered = _acting(tuple(find("effect", name) for name in names("effect")), hooks)
     chosen = [effect for effect in effects if acts_on(type(effect), hooks)]
     first = {type(effect): effect for effect in reversed(chosen)}
@@ -55,25 +94,14 @@ def _carried(effects: Sequence[Any], hooks: tuple[str, ...]) -> Effects:
 
 
 @cache
-def _acting(classes: tuple[Any, ...], hooks: tuple[str, ...]) -> list[Any]:
+def _acting(classes: tuple[type, ...], hooks: tuple[str, ...]) -> list[type]:
     """Return the effects that have one of the hooks."""
     return [cls for cls in classes if acts_on(cls, hooks)]
 
 
-def damper_with(record: Any, effects: Effects) -> tuple[Any, tuple[float, ...]]:
+def augment_damper(record: tuple[object, ...], effects: Effects) -> tuple[tuple[object, ...], tuple[float, ...]]:
     """Return a damper's record with effects on it, and its state at rest."""
     initial: tuple[float, ...] = specification_of(type(record)).initial
     if not effects:
         return record, initial
     return AugmentedDamper(record, effects), initial + state_of([type(effect) for effect in effects])
-
-
-def pushes(effects: Sequence[Any], time: Array, seed: int) -> Array:
-    """Return the force on the frame in N that effects add, shape (N,), or of length 0 where none does."""
-    found = [push(time, seed) for push in having(effects, "push")]
-    return np.sum(found, axis=0) if found else NONE
-
-
-def readings(effects: Sequence[Any], step: float, true: Mapping[str, Array]) -> dict[str, Array]:
-    """Return what the sensors say of true channels that are sampled every `step` seconds, shape (N,) each."""
-    return {name: changed(effects, "reading", values, name, step) for name, values in true.items()}

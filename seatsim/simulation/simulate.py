@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,18 +16,30 @@ from seatsim.kernel.belief import Belief, Truth
 from seatsim.kernel.chain import state_of
 from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
 from seatsim.kernel.rig import Rig
-from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, at_rest
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Control, Scenario
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
-from seatsim.simulation.augment import changed, damper_with, in_loop, pushes, undone
+from seatsim.simulation.augment import (
+    augment_coil,
+    augment_damper,
+    augment_factors,
+    augment_plant,
+    augment_temperature,
+    select_in_loop,
+    sum_frame_forces,
+    undo_reading,
+)
+from seatsim.simulation.inputs import NONE, Forces
+from seatsim.simulation.law import collect_notes, prepare_law
 
 Array = NDArray[np.float64]
-NONE = np.zeros(0)
 DEFAULT_SAMPLE_TIME = 0.001
+"""Seconds between two samples of a law that states none, as common for embedded controllers of such seats."""
+SAME_TIME = 1e-9
+"""Seconds by which a sample time may differ from a whole number of steps, for the sake of rounding."""
 
 
 @dataclass(frozen=True)
@@ -47,17 +58,13 @@ class History:
         return self.channels[name]
 
 
-class Forces(NamedTuple):
-    """Forces on frame and driver in N, sampled every step, shape (N,) each; of length 0 where there is none."""
+def simulate(
+    scenario: Scenario, floor: Floor | None = None, forces: Forces | None = None, carry_all_effects: bool = False
+) -> History:
+    """Simulate one run, shaken as the scenario's excitation says, or by a `floor` that is at hand.
 
-    push: Array = NONE
-    lift: Array = NONE
-
-
-def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | None = None) -> History:
-    """Simulate one run from rest, shaken as the scenario's excitation says, or by a `floor` that is at hand.
-
-    `forces` are added to what the effects push.
+    `forces` are added to those of the effects. With `carry_all_effects` the loop is compiled with every registered
+    effect, off where it is not chosen, so that runs with different effects share it.
 
     Raises:
         InputError: the scenario has no plant, or its times do not fit each other.
@@ -69,7 +76,8 @@ def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | No
     if floor is None:
         with scenario.placed("excitation"):
             floor = scenario.excitation.floor(step, scenario.seed)
-    setup, initial = _setup(scenario, scenario.plant, scenario.control, floor.temperature is not None)
+    is_recorded = floor.temperature is not None
+    setup, initial = _setup(scenario, scenario.plant, scenario.control, is_recorded, carry_all_effects)
     inputs = _inputs(scenario, scenario.control, floor, forces or Forces())
     if scenario.control.sensors:
         noise = scenario.control.sensors.noise(-(-len(floor.acceleration) // setup.timing.sample_every), scenario.seed)
@@ -77,50 +85,46 @@ def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | No
     out = np.empty((len(floor.acceleration), len(CHANNELS)))
     variable = setup.law, setup.belief.damper, setup.sensors
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
-    states = (initial, _believed(setup.belief), specification_of(type(scenario.control.law)).initial)
+    states = (initial, _initial_state(setup.belief), specification_of(type(scenario.control.law)).initial)
     reached = compiled(run_loop, parts)(setup, inputs, *states, out)
-    notes = setup.law.notes() if hasattr(setup.law, "notes") else ()
     if reached < len(out):
         raise RunError(
             f"{scenario.title}: no solution beyond {reached * step:.3f} s, where it leaves all bounds; check the signs"
             " of gains and stiffnesses, and the damper's parameters"
         )
-    return _history(setup.rig.plant, step, out, notes)
+    return _history(setup.rig.plant, step, out, collect_notes(setup.law))
 
 
-def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -> tuple[Setup, tuple[float, ...]]:
-    """Return the constant parts and the rig's state at rest; with a `recorded` temperature none is simulated."""
-    on_damper, on_seat = in_loop(scenario.effects)
-    damper, initial = damper_with(scenario.damper.record, on_damper)
-    rig = Rig(changed(scenario.effects, "plant", plant), damper, on_seat)
+def _setup(
+    scenario: Scenario, plant: Plant, control: Control, is_recorded: bool, carry_all_effects: bool
+) -> tuple[Setup, tuple[float, ...]]:
+    """Return the constant parts and the rig's state at rest; where its temperature is recorded none is simulated."""
+    on_damper, on_seat = select_in_loop(scenario.effects, carry_all_effects)
+    damper, initial = augment_damper(scenario.damper.record, on_damper)
+    rig = Rig(augment_plant(scenario.effects, plant), damper, on_seat)
     with scenario.placed("controller"):
-        sample_every = _sample_every(scenario.solver.step, control)
+        sample_every = _count_steps(scenario.solver.step, control)
         period = sample_every * scenario.solver.step
-        law = _ready(control.law, plant, scenario.coil, period)
-    heated = isinstance(scenario.temperature, Thermal) and not recorded
+        # The law is designed for the nominal plant and coil: its designer knows no effects.
+        law = prepare_law(control.law, plant, scenario.coil, period)
+    heated = isinstance(scenario.temperature, Thermal) and not is_recorded
     thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal()
     timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
-    coil = changed(scenario.effects, "coil", scenario.coil)
-    factors = changed(scenario.effects, "factors", scenario.damper.factors)
+    coil = augment_coil(scenario.effects, scenario.coil)
+    factors = augment_factors(scenario.effects, scenario.damper.factors)
     sensors = control.sensors.instruments(scenario.solver.step, period) if control.sensors else Direct()
-    belief = _belief(scenario, control)
+    belief = _assume_damper(scenario, control, carry_all_effects)
     setup = Setup(rig, coil, factors, thermal, law, belief, timing, scenario.coil.max_current, sensors)
     return setup, initial + state_of([type(effect) for effect in on_seat])
 
 
-def _ready(law: Any, plant: Plant, coil: Coil, sample_time: float) -> Any:
-    """Return the compiled form of a law, designed for the nominal rig where the law asks for it."""
-    if hasattr(law, "sampled"):
-        return law.sampled(plant, coil, sample_time)
-    return law.prepared(plant) if hasattr(law, "prepared") else law
-
-
-def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
-    """Return what the inverse believes: the plant's damper, whose effects it does not know, unless stated otherwise."""
+def _assume_damper(scenario: Scenario, control: Control, carry_all_effects: bool) -> Truth | Belief:
+    """Return the damper that the inverse assumes: the plant's without its effects, unless stated otherwise."""
     if control.inverse is None:
         record = scenario.damper.record
         order = specification_of(type(record)).current_order
-        if any(acts_on(type(effect), (*ON_DAMPER, "factors")) for effect in scenario.effects):
+        # Where all effects are carried the kind of belief must not hang on those chosen: the loop is compiled for it.
+        if carry_all_effects or any(acts_on(type(effect), (*ON_DAMPER, "factors")) for effect in scenario.effects):
             return Belief(record, order, scenario.damper.factors, np.nan)
         return Truth(record, order)
     record, factors = control.inverse.damper.record, control.inverse.damper.factors
@@ -130,16 +134,17 @@ def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
     )
 
 
-def _believed(belief: Truth | Belief) -> tuple[float, ...]:
+def _initial_state(belief: Truth | Belief) -> tuple[float, ...]:
     initial: tuple[float, ...] = specification_of(type(belief.damper)).initial
     return initial
 
 
-def _sample_every(step: float, control: Control) -> int:
+def _count_steps(step: float, control: Control) -> int:
+    """Return how many steps of the simulation lie between two samples of the law."""
     if control.sample_time is None:
         return 1 if specification_of(type(control.law)).replays else max(1, round(DEFAULT_SAMPLE_TIME / step))
     every = round(control.sample_time / step)
-    if every < 1 or abs(every * step - control.sample_time) > 1e-9:
+    if every < 1 or abs(every * step - control.sample_time) > SAME_TIME:
         raise InputError(
             f"sample_time {control.sample_time:g} s is not a multiple of solver.step"
             f" {step:g} s; choose {max(1, every) * step:g} s"
@@ -149,28 +154,28 @@ def _sample_every(step: float, control: Control) -> int:
 
 def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> Inputs:
     step, effects, samples = scenario.solver.step, scenario.effects, len(floor.acceleration)
-    acceleration = undone(effects, floor.acceleration, "floor_acceleration", step)
+    acceleration = undo_reading(effects, floor.acceleration, "floor_acceleration", step)
     fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
     temperature = np.full(samples, fixed) if floor.temperature is None else floor.temperature
-    temperature = changed(effects, "temperature", temperature, step)
-    command = NONE if floor.command is None else undone(effects, floor.command, "current_command", step)
+    temperature = augment_temperature(effects, step, temperature)
+    command = NONE if floor.command is None else undo_reading(effects, floor.command, "current_command", step)
     replays = specification_of(type(control.law)).replays
     flowing = NONE
     if floor.coil_current is not None:
-        flowing = undone(effects, floor.coil_current, "coil_current", step)
+        flowing = undo_reading(effects, floor.coil_current, "coil_current", step)
     start = float(flowing[0]) if flowing.size else 0.0
     prescribed = flowing if replays and floor.command is None else NONE
-    push = pushes(effects, floor.time, scenario.seed)
-    if len(forces.push):
-        push = push + forces.push if len(push) else forces.push
+    push = sum_frame_forces(effects, floor.time, scenario.seed)
+    if len(forces.frame):
+        push = push + forces.frame if len(push) else forces.frame
     return Inputs(
-        acceleration, floor.velocity, temperature, command, prescribed, push, forces.lift, start, *scenario.start
+        acceleration, floor.velocity, temperature, command, prescribed, push, forces.driver, start, *scenario.start
     )
 
 
 def _history(plant: Plant, step: float, out: Array, notes: tuple[str, ...]) -> History:
     """Return the recorded channels with the time and the energy stored in masses, suspension and cushion springs."""
-    channels: dict[str, Any] = {"time": np.arange(len(out)) * step}
+    channels: dict[str, Array] = {"time": step * np.arange(len(out), dtype=np.float64)}
     channels |= dict(zip(CHANNELS, np.ascontiguousarray(out.T), strict=True))
     v, driver = (
         channels["suspension_velocity"],

@@ -14,7 +14,8 @@ from controllers.clairvoyant.problem import Problem
 from controllers.clairvoyant.recursion import Lines
 from controllers.clairvoyant.transcription import transcribe
 from seatsim.schema.errors import InputError
-from seatsim.simulation.simulate import Forces, simulate
+from seatsim.simulation.inputs import Forces
+from seatsim.simulation.simulate import simulate
 
 LAWS = {
     "H-infinity": {"controller": {"law": "static_output_feedback", "gain": [2.0, 2147.6], "sample_time": 0.005}},
@@ -73,7 +74,7 @@ def test_run_is_what_the_simulation_makes_of_its_force(scenarios, bracket):
     force = np.repeat(bracket.force[0], 5)
     # The simulation takes forces as linear between samples: a step in the middle of one has the held force's impulse.
     push = -np.pad(0.5 * (force[1:] + force[:-1]), 1, mode="edge")
-    history = simulate(free, floor, Forces(push=push))
+    history = simulate(free, floor, Forces(frame=push))
     aw = seatsim.metrics.weighted_rms(history["driver_acceleration"], 1000.0)
     assert aw == pytest.approx(bracket.acceleration[0], rel=5e-3)
     assert np.sqrt(np.mean(history["suspension_displacement"] ** 2)) == pytest.approx(bracket.travel[0], rel=5e-3)

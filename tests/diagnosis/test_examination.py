@@ -10,7 +10,7 @@ from ruamel.yaml import YAML
 import seatsim
 from seatsim.recordings.quality.coverage import coverage
 from seatsim.recordings.quality.examination import examine, refuse
-from seatsim.recordings.quality.floor import follows_floor
+from seatsim.recordings.quality.floor_sensor import follows_floor
 from seatsim.recordings.recording import load_recording
 
 from .damaged import DAMAGES, DOUBTS, FEEDBACK, GAPS, RATE, at_rest, blurred, edit, rewrite, scaled

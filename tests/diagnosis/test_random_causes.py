@@ -11,10 +11,10 @@ from seatsim.diagnosis.fit import Point, State
 from seatsim.diagnosis.localise.discrepancy import Latent, foretold
 from seatsim.diagnosis.localise.stochastic import wandering
 from seatsim.diagnosis.noise import broadband
-from seatsim.diagnosis.problem import Drive, problem
+from seatsim.diagnosis.problem import problem
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.registry import find
-from seatsim.simulation.simulate import Forces
+from seatsim.simulation.inputs import Forces
 
 RATE = 500.0
 
@@ -74,10 +74,10 @@ def test_a_wandering_zero_is_named_with_its_channel(posed):
 def test_a_wandering_zero_of_the_floor_is_told_from_a_motion_of_it(posed):
     measured = {}
     for seed, run in enumerate(posed.runs):
-        floor = posed.floors[run]
+        floor = posed.inputs[run].floor
         wander = 0.03 * coloured(len(floor.acceleration), 0.05, 0.2, seed, 1.0 / floor.step)
         moving = floor._replace(acceleration=floor.acceleration + wander)
-        measured[run] = noisy(posed, posed.simulated(run, posed.rest, (), Drive(moving)))
+        measured[run] = noisy(posed, posed.simulated(run, posed.rest, (), posed.inputs[run]._replace(floor=moving)))
     solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
     assert (solution.random, solution.rest.channel) == ("sensor.bias", "floor_acceleration")
 
@@ -115,9 +115,9 @@ def test_one_channel_that_stays_open_has_a_wandering_zero_unless_it_is_the_trave
 def test_a_random_force_is_named_unless_it_is_withheld(posed):
     measured = {}
     for seed, run in enumerate(posed.runs):
-        floor = posed.floors[run]
+        floor = posed.inputs[run].floor
         push = 15.0 * coloured(len(floor.acceleration), 1.0, 15.0, seed, 1.0 / floor.step)
-        true = posed.simulated(run, posed.rest, (), Drive(None, Forces(push)))
+        true = posed.simulated(run, posed.rest, (), posed.inputs[run]._replace(forces=Forces(push)))
         measured[run] = noisy(posed, true)
     shaken = dataclasses.replace(posed, measured=measured)
     assert solved(shaken, (), lambda _: None).random == "floor.unmeasured_input"

@@ -10,9 +10,10 @@ from seatsim.diagnosis.fit import Engine, Point
 from seatsim.diagnosis.localise.hypotheses import suspects
 from seatsim.diagnosis.localise.input_estimate import INPUTS, unrepeated
 from seatsim.diagnosis.noise import whitening
-from seatsim.diagnosis.problem import Drive, problem
+from seatsim.diagnosis.problem import problem
 from seatsim.recordings.recording import load_recording
-from seatsim.simulation.simulate import Forces, simulate
+from seatsim.simulation.inputs import Forces
+from seatsim.simulation.simulate import simulate
 
 from .damaged import blurred, limited, rewrite, stepped, with_play
 
@@ -31,10 +32,10 @@ def with_input(posed, block, course=course):
     """Return the problem with the recording of a rig that has an input more, and the stated noise."""
     where, rng, measured = INPUTS[block], np.random.default_rng(3), {}
     for run in posed.runs:
-        floor = posed.floors[run]
+        floor = posed.inputs[run].floor
         extra = 20.0 * course(len(floor.acceleration), 1.0 / floor.step)
         forces = Forces(where.push * extra, where.lift * extra)
-        true = posed.simulated(run, posed.rest, (), Drive(None, forces))
+        true = posed.simulated(run, posed.rest, (), posed.inputs[run]._replace(forces=forces))
         parts = round(1.0 / posed.recording.header.sample_rate / floor.step)
         cell = extra[::parts][posed.skip : posed.skip + true.shape[1]]
         true[posed.channels.index("damper_force")] += where.cell * cell
@@ -63,10 +64,11 @@ def test_a_slow_force_is_no_wandering_zero_of_the_floor(posed):
 def test_a_current_that_the_command_does_not_foretell_is_the_coils(posed):
     rng, measured = np.random.default_rng(3), {}
     for run in posed.runs:
-        floor = posed.floors[run]
-        flowing = simulate(posed.augmented(posed.rest, ()), floor)["coil_current"]
+        floor = posed.inputs[run].floor
+        flowing = simulate(posed.augmented(posed.rest, ()), floor, carry_all_effects=True)["coil_current"]
         without_small = np.where(flowing > 0.3, flowing - 0.2, 0.0)
-        true = posed.simulated(run, posed.rest, (), Drive(floor._replace(command=None, coil_current=without_small)))
+        logged = posed.inputs[run]._replace(floor=floor._replace(command=None, coil_current=without_small))
+        true = posed.simulated(run, posed.rest, (), logged)
         measured[run] = true + posed.noise[:, None] * rng.standard_normal(true.shape)
     assert likeliest(dataclasses.replace(posed, measured=measured))[0] == "coil"
 
@@ -113,8 +115,8 @@ def repeated(posed, newtons):
     first, second = posed.runs
     rng, measured = np.random.default_rng(5), {}
     for run in posed.runs:
-        push = Forces(newtons * rng.standard_normal(len(posed.floors[first].acceleration)))
-        true = posed.simulated(first, posed.rest, (), Drive(None, push))
+        push = Forces(newtons * rng.standard_normal(len(posed.inputs[first].floor.acceleration)))
+        true = posed.simulated(first, posed.rest, (), posed.inputs[first]._replace(forces=push))
         measured[run] = true + posed.noise[:, None] * rng.standard_normal(true.shape)
     runs = posed.recording.runs | {second: posed.recording.runs[second]._replace(repeat_of=first)}
     return dataclasses.replace(posed, measured=measured, recording=dataclasses.replace(posed.recording, runs=runs))

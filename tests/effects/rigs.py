@@ -9,7 +9,7 @@ from seatsim.effects.base import off
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.loading import load
 from seatsim.schema.registry import find, names, specification_of
-from seatsim.simulation.augment import changed, damper_with, in_loop, readings
+from seatsim.simulation.augment import augment_damper, augment_factors, read_sensors, select_in_loop
 from seatsim.simulation.damper_bench import bench_force
 from seatsim.simulation.simulate import simulate
 
@@ -56,7 +56,7 @@ def starts(name):
 def shaken(scenario, *effects):
     """The history of a scenario with effects, as its sensors tell it."""
     history = simulate(replace(scenario, effects=effects))
-    return readings(effects, scenario.solver.step, history.channels)
+    return read_sensors(effects, scenario.solver.step, history.channels)
 
 
 def carried(scenario):
@@ -74,8 +74,8 @@ def distance(history, reference):
 def bench(effects, x, v, current=0.5, temperature=20.0, damper=BINGHAM, step=STEP, factors=TemperatureFactors()):  # noqa: B008 - immutable
     """The force in N of a damper with effects on it, every step; motion and current every half step."""
     carrier = [] if any(isinstance(effect, type(CARRIER)) for effect in effects) else [CARRIER]
-    augmented, rest = damper_with(damper, in_loop((*effects, *carrier))[0])
-    return bench_force(augmented, x, v, current, temperature, step, changed(effects, "factors", factors), rest)
+    augmented, rest = augment_damper(damper, select_in_loop((*effects, *carrier))[0])
+    return bench_force(augmented, x, v, current, temperature, step, augment_factors(effects, factors), rest)
 
 
 def strokes(speed=0.1, length=0.01, count=3, step=STEP):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.rig.temperature import TemperatureFactors
-from seatsim.simulation.augment import changed
+from seatsim.simulation.augment import augment_factors
 
 from .rigs import BINGHAM, INERT, STEP, bench, cycles, record, strokes, work
 
@@ -189,7 +189,7 @@ def test_thermal_fade_lowers_the_force_of_a_warm_damper_and_does_nothing_at_the_
 
 def test_the_fade_is_added_to_the_factors_that_the_damper_has():
     factors = TemperatureFactors(viscous=-0.002, yield_force=-0.003, reference=25.0)
-    got = changed([record("damper.thermal_fade", viscous=0.004, yielding=0.001)], "factors", factors)
+    got = augment_factors([record("damper.thermal_fade", viscous=0.004, yielding=0.001)], factors)
     assert got == pytest.approx(TemperatureFactors(-0.006, 0.0, -0.004, 25.0))
 
 

@@ -16,7 +16,7 @@ from seatsim.rig.sensors import Sensors
 from seatsim.scenario.loading import load
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import name_of, specification_of
-from seatsim.simulation.simulate import _ready
+from seatsim.simulation.law import prepare_law
 
 from .records import COIL, LINEAR, SEAT, ready
 
@@ -77,7 +77,7 @@ def test_a_law_that_is_unstable_as_sampled_has_no_margin():
 @pytest.mark.parametrize("scenario", SHIPPED, ids=lambda one: one.title)
 def test_every_shipped_design_is_stable_on_its_sensors_with_a_sample_of_delay(scenario):
     control, initial = scenario.control, specification_of(type(scenario.control.law)).initial
-    law = _ready(control.law, scenario.plant, scenario.coil, control.sample_time)
+    law = prepare_law(control.law, scenario.plant, scenario.coil, control.sample_time)
     if isinstance(law, SwitchedFeedback):  # whose linear design is that of the LQG it is clipped from
         law = EstimateFeedback(law.gain, law.estimator)
     found = sampled_loop(law, initial, scenario.plant, scenario.coil, control.sample_time, control.sensors)

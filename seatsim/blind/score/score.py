@@ -228,11 +228,11 @@ def _map(jobs: list[tuple[Path, Path | None, Path]], progress: Progress | None, 
 
 def true_shrink(nominal: Path, augmented: Path | None, unseen: Path) -> float | None:
     """Return `1 - after / before` of the overall gap on the unseen recording; None where it cannot be replayed."""
-    from seatsim.recordings.gap import gap
+    from seatsim.recordings.gap import measure_gap
 
     try:
-        before = gap(nominal, unseen).overall
-        after = gap(augmented or nominal, unseen).overall
+        before = measure_gap(nominal, unseen).overall
+        after = measure_gap(augmented or nominal, unseen).overall
     except SeatsimError:
         return None
     return 1.0 - after / before

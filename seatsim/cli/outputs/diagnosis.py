@@ -28,8 +28,8 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     """Write `diagnosis.json`, `augmented.yaml`, `report.html`, and `experiment.yaml` where one is proposed."""
     dump = YAML(typ="safe").dump
     paths = [write_whole(folder / "augmented.yaml", partial(dump, diagnosis.augmented))]
-    if diagnosis.experiment_scenario is not None:
-        paths.append(write_whole(folder / "experiment.yaml", partial(dump, diagnosis.experiment_scenario)))
+    if diagnosis.experiment is not None and diagnosis.experiment.scenario is not None:
+        paths.append(write_whole(folder / "experiment.yaml", partial(dump, dict(diagnosis.experiment.scenario))))
     paths.append(write_report(diagnosis, folder / "report.html"))
     paths.append(write_json(folder / "diagnosis.json", contents(diagnosis)))
     return paths
@@ -38,9 +38,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
 def contents(diagnosis: Diagnosis) -> dict[str, Any]:
     """Return a diagnosis as it stands in `diagnosis.json`."""
     gap = diagnosis.gap
-    experiment = diagnosis.experiment
-    if experiment is not None and diagnosis.experiment_scenario is not None:
-        experiment = experiment | {"file": "experiment.yaml"}
+    experiment = None if diagnosis.experiment is None else diagnosis.experiment.as_dict()
     fields = {
         "verdict": diagnosis.verdict, "sentence": diagnosis.sentence, "where": diagnosis.where,
         "causes": diagnosis.causes, "probability_none": diagnosis.probability_none,
@@ -48,7 +46,8 @@ def contents(diagnosis: Diagnosis) -> dict[str, Any]:
         "indistinguishable": diagnosis.indistinguishable, "experiment": experiment,
         "held_out": diagnosis.held_out, "isolable": diagnosis.isolable,
         "gap": {
-            "before": gap.before, "calibrated": gap.calibrated, "after": gap.after, "floor": gap.floor,
+            "before": gap.before.as_dict(), "calibrated": gap.calibrated.as_dict(), "after": gap.after.as_dict(),
+            "floor": gap.floor.as_dict(),
             "shrink": gap.shrink, "shrink_interval": list(gap.shrink_interval),
         },
         "notes": diagnosis.notes, "augmented": "augmented.yaml",
@@ -64,10 +63,10 @@ def tables(diagnosis: Diagnosis) -> list[Table]:
     for heading in ("channel", "nominal", "refitted", "with effects", "noise floor"):
         gaps.add_column(heading, justify="left" if heading == "channel" else "right")
     columns = (gap.before, gap.calibrated, gap.after, gap.floor)
-    for name in gap.before["channels"]:
-        gaps.add_row(name, *(f"{column['channels'][name]:.4f}" for column in columns))
+    for name in gap.before.channels:
+        gaps.add_row(name, *(f"{column.channels[name]:.4f}" for column in columns))
     gaps.add_section()
-    gaps.add_row("overall", *(f"{column['overall']:.4f}" for column in columns))
+    gaps.add_row("overall", *(f"{column.overall:.4f}" for column in columns))
     ranked = Table(title=f"verdict: {diagnosis.verdict}", title_justify="left")
     for heading in ("effect", "probability", "own shrink"):
         ranked.add_column(heading, justify="left" if heading == "effect" else "right")

@@ -51,9 +51,7 @@ def measure_collinearity(objective: Objective, nuisances: Linearisation, names: 
     return Collinearity(known, matrix)
 
 
-def fit_member(
-    objective: Objective, nuisances: Linearisation, name: str, group: Sequence[str]
-) -> Evaluation:
+def fit_member(objective: Objective, nuisances: Linearisation, name: str, group: Sequence[str]) -> Evaluation:
     """Return a rig with one member of a group instead of the others, its term last, fitted to the recording.
 
     `nuisances` is the rig with its member of the group, and its sensitivities to the nuisance parameters.

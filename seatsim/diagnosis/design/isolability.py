@@ -80,7 +80,7 @@ FOR_RIG = {
 }
 
 
-def isolable(rig: str, channels: Collection[str]) -> list[list[str]]:
+def find_isolable_groups(rig: str, channels: Collection[str]) -> list[list[str]]:
     """Return the groups of blocks that these channels can tell apart, in the order of `BLOCKS`.
 
     Blocks of one group cannot be told from each other by structure. A block in no group is in no test at all: its
@@ -88,7 +88,7 @@ def isolable(rig: str, channels: Collection[str]) -> list[list[str]]:
     could be taken for.
     """
     equations = _equations(rig, channels)
-    tested = [k for k in sorted(overdetermined(equations)) if equations[k].fault is not None]
+    tested = [k for k in sorted(find_overdetermined(equations)) if equations[k].fault is not None]
     classes: list[set[int]] = []
     for k in tested:
         home = next((c for c in classes if not _is_isolable(equations, min(c), k)), None)
@@ -99,7 +99,7 @@ def isolable(rig: str, channels: Collection[str]) -> list[list[str]]:
     return _ordered(rig, [{_block(equations[k].fault) for k in c} for c in classes])
 
 
-def overdetermined(equations: Collection[Equation]) -> set[int]:
+def find_overdetermined(equations: Collection[Equation]) -> set[int]:
     """Return the indices of the equations in M+, which hold more equations than unknowns."""
     rows = list(equations)
     if not rows:
@@ -115,14 +115,14 @@ def overdetermined(equations: Collection[Equation]) -> set[int]:
     return reached
 
 
-def losses(rig: str, channels: Collection[str]) -> list[str]:
+def describe_missing_sensors(rig: str, channels: Collection[str]) -> list[str]:
     """Return a sentence for each thing that these channels cannot tell, with the channel that would tell it."""
-    groups = isolable(rig, channels)
+    groups = find_isolable_groups(rig, channels)
     sentences = [_loss(rig, channels, groups, name) for name in FOR_RIG[rig] if not _is_recorded(name, channels)]
     everything = {*channels, *(name for name in FOR_RIG[rig] if not _is_recorded(name, channels))}
     sentences += [
         f"{_listed(group)} cannot be told apart by any channel: only the form of an effect, or a repeat of a run, can"
-        for group in isolable(rig, everything)
+        for group in find_isolable_groups(rig, everything)
         if len(group) > 1
     ]
     return [sentence for sentence in sentences if sentence]
@@ -143,7 +143,7 @@ def _is_recorded(name: str, channels: Collection[str]) -> bool:
 def _is_isolable(equations: list[Equation], first: int, second: int) -> bool:
     """Say whether the fault in equation `first` stays in a test once equation `second` is taken away."""
     others = equations[:second] + equations[second + 1 :]
-    return first - (first > second) in overdetermined(others)
+    return first - (first > second) in find_overdetermined(others)
 
 
 def _matching(rows: list[Equation]) -> dict[int, str]:
@@ -172,7 +172,7 @@ def _ordered(rig: str, classes: Iterable[set[str]]) -> list[list[str]]:
 
 def _loss(rig: str, channels: Collection[str], groups: list[list[str]], absent: str) -> str:
     """Return what the absence of one channel costs, or nothing where it alone changes nothing."""
-    better = isolable(rig, {*channels, absent})
+    better = find_isolable_groups(rig, {*channels, absent})
     unseen = [block for block in itertools.chain(*better) if not any(block in group for group in groups)]
     parts = [[[b for b in group if b in new] for new in better] for group in groups]
     split = [[part for part in found if part] for found in parts]

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 class PredictedExperiment(NamedTuple):
-    """Outputs of rigs in noise units, shape (rigs, rows), Jacobians of the nuisances and of each rig's own parameters."""
+    """Outputs of rigs in noise units, shape (rigs, rows); Jacobians of the nuisances and of each rig's own effects."""
 
     outputs: Array
     nuisances: Array

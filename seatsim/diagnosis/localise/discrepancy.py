@@ -45,9 +45,7 @@ def describe_discrepancy(
 ) -> Discrepancy:
     """Return the unexplained signal in a block of the seat and what predicts it."""
     shares = explain_signal(problem, parameters, hypothesis.signals)
-    return Discrepancy(
-        block, hypothesis.quantity, hypothesis.unit, hypothesis.signals, shares, hypothesis.channel
-    )
+    return Discrepancy(block, hypothesis.quantity, hypothesis.unit, hypothesis.signals, shares, hypothesis.channel)
 
 
 def is_from_outside(settings: LocalisationSettings, found: Discrepancy) -> bool:

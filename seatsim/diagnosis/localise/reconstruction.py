@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from seatsim.diagnosis.noise import NoiseWeights
 from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.problem import DiagnosisProblem, Drive
+from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings.localising import ReconstructionSettings
 from seatsim.diagnosis.spectra import Spectra, estimate_response, measure_power
 from seatsim.schema.errors import RunError
-from seatsim.simulation.augment import readings
-from seatsim.simulation.simulate import Forces, simulate
+from seatsim.simulation.inputs import Forces, SeatInputs
+from seatsim.simulation.respond import respond
 
 Array = NDArray[np.float64]
 
@@ -25,8 +25,10 @@ FAR_OFF = 1e6
 
 
 class Port(NamedTuple):
-    """Where an unknown signal acts: as a force on frame or driver (N), a base acceleration (m/s^2), an error of the
-    load cell (N), or a current (A); each as a multiple of the signal."""
+    """Where an unknown signal acts, each field a multiple of it.
+
+    A force on frame or driver in N, a base acceleration in m/s^2, an error of the load cell in N, a current in A.
+    """
 
     frame_force: float = 0.0
     driver_force: float = 0.0
@@ -60,22 +62,29 @@ class Reconstruction:
         return self.problem.settings.reconstruction
 
     @property
+    def recorded(self) -> SeatInputs:
+        """What drove the run."""
+        inputs = self.problem.inputs[self.run]
+        assert isinstance(inputs, SeatInputs)
+        return inputs
+
+    @property
     def samples(self) -> int:
         """How many samples a signal has."""
         return int(self.problem.measured[self.run].shape[1])
 
     def simulate_with(self, signal: Array) -> Array:
         """Return the channels with a signal at the port, shape (channels, samples)."""
-        problem, port, floor = self.problem, self.port, self.problem.floors[self.run]
-        assert floor is not None
+        problem, port, floor = self.problem, self.port, self.recorded.floor
         rows = np.arange(len(floor.acceleration)) / problem.parts
         full = np.interp(rows, problem.skip + np.arange(self.samples), signal, left=0.0, right=0.0)
         floor = floor._replace(acceleration=floor.acceleration + port.base_acceleration * full)
         if port.current:
             floor = floor._replace(command=None, coil_current=np.maximum(self.current + port.current * full, 0.0))
-        drive = Drive(floor, Forces(port.frame_force * full, port.driver_force * full))
+        forces = Forces(port.frame_force * full, port.driver_force * full)
+        inputs = self.recorded._replace(floor=floor, forces=forces)
         try:
-            outputs = problem.simulated(self.run, self.parameters.deviations, self.parameters.effects, drive)
+            outputs = problem.simulated(self.run, self.parameters.deviations, self.parameters.effects, inputs)
         except RunError:
             return np.full(problem.measured[self.run].shape, FAR_OFF * problem.spread[:, None])
         if port.load_cell_error and "damper_force" in problem.channels:
@@ -88,11 +97,10 @@ class Reconstruction:
 
     def draw_probe(self, corner: float, seed: int) -> Array:
         """Return a small random signal whose spectrum falls above a corner in Hz."""
-        floor, plant = self.problem.floors[self.run], self.problem.scenario.plant
-        assert floor is not None
+        plant = self.problem.scenario.plant
         assert plant is not None
         mass = 1.0 if self.port.base_acceleration else plant.driver_mass
-        scale = self.settings.probe_size * float(np.std(floor.acceleration)) * mass
+        scale = self.settings.probe_size * float(np.std(self.recorded.floor.acceleration)) * mass
         return scale * _draw_red_noise(self.samples, self.problem.rate, corner, seed)
 
     def plausible_power(self) -> Array:
@@ -116,9 +124,11 @@ def reconstruct(objective: Objective, parameters: Parameters, run: str, port: Po
     problem = objective.problem
     current = np.zeros(0)
     if port.current:
+        inputs = problem.inputs[run]
+        assert isinstance(inputs, SeatInputs)
         scenario = problem.augmented(parameters.deviations, parameters.effects)
-        flowing = simulate(scenario, problem.floors[run])["coil_current"]
-        current = readings(scenario.effects, scenario.solver.step, {"coil_current": flowing})["coil_current"]
+        every_step = inputs._replace(interval=inputs.floor.step)
+        current = respond(scenario, every_step, carry_all_effects=True)["coil_current"]
     return Reconstruction(problem, objective.weights, parameters, run, port, current)
 
 

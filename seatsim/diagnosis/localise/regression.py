@@ -37,7 +37,9 @@ def explain_signal(problem: DiagnosisProblem, parameters: Parameters, signals: M
     return shares
 
 
-def predict_share(settings: LocalisationSettings, regressors: Mapping[str, Array], target: Mapping[str, Array]) -> float:
+def predict_share(
+    settings: LocalisationSettings, regressors: Mapping[str, Array], target: Mapping[str, Array]
+) -> float:
     """Return the share of the variance of runs that a ridge regression on the others predicts, at least 0.
 
     Args:

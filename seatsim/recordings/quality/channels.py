@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.recordings.quality.issue import MOTION, Array, Finding, Run
+from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.quality.run_under_test import MOTION, Array, RunUnderTest
 
 STUCK = 0.5
 """Seconds without any change that a noisy channel does not have."""
@@ -15,7 +16,7 @@ CLIPPED = 0.002
 """Share of rows at an extreme above which clipping is an error."""
 
 
-def ranges(run: Run) -> Iterator[Finding]:
+def check_ranges(run: RunUnderTest) -> Iterator[Issue]:
     """Look at constant channels, currents and temperatures."""
     for channel in run.table:
         yield from _constant(run, channel)
@@ -26,39 +27,39 @@ def ranges(run: Run) -> Iterator[Finding]:
         yield from _temperature(run, "damper_temperature")
 
 
-def _constant(run: Run, channel: str) -> Iterator[Finding]:
+def _constant(run: RunUnderTest, channel: str) -> Iterator[Issue]:
     values, noise = run.table[channel], run.noise(channel)
     if (channel in MOTION or noise > 0.0) and np.ptp(values) == 0.0:
         text = f"is {values[0]:g} throughout; the sensor is dead: repair it or remove the channel"
-        yield run.finding("warning" if channel == "damper_temperature" else "error", "constant", text, channel)
+        yield run.issue("warning" if channel == "damper_temperature" else "error", "constant", text, channel)
     elif channel in MOTION and run.is_still(channel) and channel != run.driver:
         text = f"shows hardly more than its noise of {noise:g}; it cannot be judged"
-        yield run.finding("warning", "silent", text, channel)
+        yield run.issue("warning", "silent", text, channel)
 
 
-def _current(run: Run, channel: str) -> Iterator[Finding]:
+def _current(run: RunUnderTest, channel: str) -> Iterator[Issue]:
     values, most = run.table[channel], run.nominal.coil.max_current
     low, high = float(np.min(values)), float(np.max(values))
     seen = f"ranges from {low:.3g} to {high:.3g} A"
     if max(-low, high) > 30.0 * most:
         text = f"{seen} where max_current is {most:g} A; is it in mA? convert it to A"
-        yield run.finding("error", "unit", text, channel)
+        yield run.issue("error", "unit", text, channel)
     elif -low > max(0.25 * most, 2.0 * high):
-        yield run.finding("error", "sign", f"{seen}; its sign is swapped: turn it", channel)
+        yield run.issue("error", "sign", f"{seen}; its sign is swapped: turn it", channel)
     elif -low > 0.25 * most or high > 1.3 * most:
         text = f"{seen}, outside 0 to {most:g} A; check its zero and its scale"
-        yield run.finding("warning", "range", text, channel)
+        yield run.issue("warning", "range", text, channel)
 
 
-def _temperature(run: Run, channel: str) -> Iterator[Finding]:
+def _temperature(run: RunUnderTest, channel: str) -> Iterator[Issue]:
     low, high = float(np.min(run.table[channel])), float(np.max(run.table[channel]))
     if low < -40.0 or high > 200.0:
         guess = "is it in kelvin? " if low > 230.0 and high < 480.0 else ""
         seen = f"ranges from {low:.4g} to {high:.4g} degC, outside -40 to 200 degC"
-        yield run.finding("error", "unit", f"{seen}; {guess}convert it to degC", channel)
+        yield run.issue("error", "unit", f"{seen}; {guess}convert it to degC", channel)
 
 
-def shapes(run: Run) -> Iterator[Finding]:
+def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
     """Look for flat tops, held values and stretches without change."""
     for channel, values in run.table.items():
         if channel in ("current_command", "command_voltage", "damper_temperature") or np.ptp(values) == 0.0:
@@ -67,21 +68,21 @@ def shapes(run: Run) -> Iterator[Finding]:
         for extreme, rows in _flat_tops(values):
             is_sure = is_fine and rows > CLIPPED * len(values)
             text = f"{rows} rows stand at its extreme {extreme:.4g}; it is clipped: widen its range"
-            yield run.finding("error" if is_sure else "warning", "clipped", text, channel)
+            yield run.issue("error" if is_sure else "warning", "clipped", text, channel)
         if is_fine:
             yield from _held(run, channel)
 
 
-def _held(run: Run, channel: str) -> Iterator[Finding]:
+def _held(run: RunUnderTest, channel: str) -> Iterator[Issue]:
     lengths, starts = _plateaus(run.table[channel])
     longest = int(np.argmax(lengths))
     if lengths[longest] > max(STUCK * run.rate, 20):
         begin, end = starts[longest] / run.rate, (starts[longest] + lengths[longest]) / run.rate
         text = f"is stuck from {begin:.3g} to {end:.3g} s; cut the run there or repair the sensor"
-        yield run.finding("error", "stuck", text, channel)
+        yield run.issue("error", "stuck", text, channel)
     elif np.median(lengths) >= 2:
         text = f"holds each value for {int(np.median(lengths))} rows; its own rate is lower: interpolate it"
-        yield run.finding("warning", "held", text, channel)
+        yield run.issue("warning", "held", text, channel)
 
 
 def _plateaus(values: Array) -> tuple[NDArray[np.int_], NDArray[np.int_]]:

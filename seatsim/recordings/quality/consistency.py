@@ -1,7 +1,7 @@
-"""Damages that are told by undoing them: what the channels of a run say then contradicts the nominal rig far less.
+"""Data faults that are recognised by correcting them: the channels then contradict the nominal rig far less.
 
-A damage is named where undoing it lowers the misfit (see `misfit`) grossly, and where the channel itself then fits.
-Undoing one on an input takes a new simulation.
+A fault is named where its correction lowers the consistency residual (see `residual`) grossly, and where the corrected
+channel itself then fits. Correcting an input takes a new simulation.
 """
 
 from __future__ import annotations
@@ -10,69 +10,82 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from seatsim.recordings.quality.faults import Damage, damages, exchange
-from seatsim.recordings.quality.issue import MOTION, Finding, Run, Severity, Table
-from seatsim.recordings.quality.residual import misfits, simulated
+from seatsim.recordings.quality.faults import DataFault, exchange_fault, list_faults
+from seatsim.recordings.quality.issue import Issue, Severity
+from seatsim.recordings.quality.residual import consistency_residuals, simulate_nominal
+from seatsim.recordings.quality.run_under_test import MOTION, RunUnderTest, Table
 
 INPUTS = ("floor_acceleration", "displacement", "velocity", "current_command", "command_voltage")
 """Channels that drive the simulation."""
-GROSS, DELAYED, EXCHANGED = 0.4, 0.2, 0.002
-"""Fall of the misfit from which a damage is named; for a delay; misfit of the coil that asks for exchanged currents."""
+GROSS, DELAYED = 0.4, 0.2
+"""Fall of the residual from which a fault is named, and a delay. A flipped sign raises e^2 of a channel by up to 2, a
+wrong unit by 1; nominals whose mass, stiffness or damper are far off leave less than 0.4 to be gained by any fault."""
+EXCHANGED, LEFT_BY_EXCHANGE = 0.002, 0.3
+"""Residual of the coil from which currents may be exchanged, and share of it that the exchange leaves at most. A coil
+follows its command so closely that the right way round leaves almost nothing."""
+FITS, FITS_DELAYED = 0.5, 0.1
+"""Mean residual up to which what a correction changed counts as fitting; a delay, which any lag resembles, has to fit
+well."""
+CHANGED = 0.05
+"""Change of a residual from which a correction is taken to have changed it."""
+AS_GOOD = 0.1
+"""Fall below the largest one within which another fault explains a run as well."""
 
 
-def exchanged_currents(run: Run) -> Iterator[Finding]:
+def check_exchanged_currents(run: RunUnderTest) -> Iterator[Issue]:
     """Say where the coil follows from the command much better once the two are exchanged."""
-    damage = exchange("current_command", "coil_current")
-    if not set(damage.channels) <= set(run.table):
+    fault = exchange_fault("current_command", "coil_current")
+    if not set(fault.channels) <= set(run.table):
         return
-    before, after = (_misfit_of_coil(run, table) for table in (run.table, damage.undo(run.table)))
-    if before > EXCHANGED and after < 0.3 * before:
-        yield _named(run, [damage])
+    before, after = (_coil_residual(run, table) for table in (run.table, fault.correct(run.table)))
+    if before > EXCHANGED and after < LEFT_BY_EXCHANGE * before:
+        yield _named(run, [fault])
 
 
-def _misfit_of_coil(run: Run, table: Table) -> float:
-    return misfits(run, table, simulated(run, {"current_command": table["current_command"]}))["coil_current"]
+def _coil_residual(run: RunUnderTest, table: Table) -> float:
+    driving = {**run.table, "current_command": table["current_command"]}
+    return consistency_residuals(run, table, simulate_nominal(run, driving))["coil_current"]
 
 
-def contradictions(run: Run) -> Iterator[Finding]:
-    """Name the damage whose undoing lowers the misfit of a run most, and those that do it as well."""
-    outputs = simulated(run, {})
-    before = misfits(run, run.table, outputs)
+def check_consistency(run: RunUnderTest) -> Iterator[Issue]:
+    """Name the fault whose correction lowers the residual of a run most, and those that do it as well."""
+    outputs = simulate_nominal(run, run.table)
+    before = consistency_residuals(run, run.table, outputs)
     fall = {}
-    for damage in _possible(run, before, outputs):
-        table = damage.undo(run.table)
+    for fault in _possible(run, before, outputs):
+        table = fault.correct(run.table)
         inputs = {c: table[c] for c in INPUTS if c in table and table[c] is not run.table[c]}
-        after = misfits(run, table, simulated(run, inputs) if inputs else outputs)
-        if _explains(damage, before, after):
-            fall[damage] = sum(before.values()) - sum(after.values())
-    named = sorted((d for d in fall if fall[d] > max(fall.values()) - 0.1), key=lambda damage: -fall[damage])
+        after = consistency_residuals(run, table, simulate_nominal(run, {**run.table, **inputs}) if inputs else outputs)
+        if _explains(fault, before, after):
+            fall[fault] = sum(before.values()) - sum(after.values())
+    named = sorted((d for d in fall if fall[d] > max(fall.values()) - AS_GOOD), key=lambda fault: -fall[fault])
     if named:
         yield _named(run, named)
 
 
-def _possible(run: Run, before: Mapping[str, float], outputs: Table | None) -> Iterator[Damage]:
-    """Yield each damage that could explain such a misfit; one on what drives the rig leaves few outputs alone."""
+def _possible(run: RunUnderTest, before: Mapping[str, float], outputs: Table | None) -> Iterator[DataFault]:
+    """Yield each fault that could explain such a residual; one on what drives the rig leaves few outputs alone."""
     if sum(before.values()) < DELAYED:
         return
     is_driven_wrong = float(np.median([size for name, size in before.items() if name in MOTION])) > 0.5 * DELAYED
-    for damage in damages(run, outputs):
-        if is_driven_wrong or not set(INPUTS) & set(damage.channels):
-            yield damage
+    for fault in list_faults(run, outputs):
+        if is_driven_wrong or not set(INPUTS) & set(fault.channels):
+            yield fault
 
 
-def _explains(damage: Damage, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
-    """Say whether undoing a damage lowers the misfit grossly, and what it changed then fits."""
-    changed = [name for name in before if abs(before[name] - after[name]) > 0.05]
-    limit, left = (DELAYED, 0.1) if damage.kind == "late" else (GROSS, 0.5)
+def _explains(fault: DataFault, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Say whether the correction of a fault lowers the residual grossly, and what it changed then fits."""
+    changed = [name for name in before if abs(before[name] - after[name]) > CHANGED]
+    limit, left = (DELAYED, FITS_DELAYED) if fault.kind == "late" else (GROSS, FITS)
     fall = sum(before.values()) - sum(after.values())
     return fall >= limit and float(np.mean([after[name] for name in changed])) <= left
 
 
-def _named(run: Run, explanations: Sequence[Damage]) -> Finding:
-    """Return the finding for damages that explain a run equally well, the best first."""
+def _named(run: RunUnderTest, explanations: Sequence[DataFault]) -> Issue:
+    """Return the issue for faults that explain a run equally well, the best first."""
     first, *others = explanations
     said = [f"{' and '.join(first.channels)}: {first.says}"]
     said += [f"{' and '.join(d.channels)} {d.says}" for d in others if d.channels != first.channels]
     text = f"{run.name}, {', or '.join(said)}; correct it and diagnose again"
     severity: Severity = "warning" if first.kind == "late" and first.channels == ("coil_current",) else "error"
-    return Finding(severity, first.kind, text, first.channels[0], run.name)
+    return Issue(severity, first.kind, text, first.channels[0], run.name)

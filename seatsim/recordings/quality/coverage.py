@@ -32,7 +32,7 @@ TRUNK = (3.0, 8.0)
 """Hz; a seated driver's inner resonance lies between."""
 
 
-class Visited(NamedTuple):
+class VisitedRange(NamedTuple):
     """The range of a quantity over all runs, and the values at its PERCENTILES."""
 
     quantity: str
@@ -42,17 +42,21 @@ class Visited(NamedTuple):
     percentiles: tuple[float, ...]
 
 
+Visited = dict[str, VisitedRange]
+"""Ranges by quantity."""
+
+
 @dataclass(frozen=True)
 class Coverage:
     """Seconds recorded, the quantities visited by name, the band of the excitation in Hz, and what is left out."""
 
     seconds: float
-    visited: dict[str, Visited]
+    visited: Visited
     band: tuple[float, float] | None
     missing: list[str]
 
 
-def coverage(recording: Recording) -> Coverage:
+def measure_coverage(recording: Recording) -> Coverage:
     """Return what the runs of a recording visited, and a sentence for each thing that they cannot judge.
 
     Raises:
@@ -126,9 +130,9 @@ def _slope(values: Array, noise: float, rate: float) -> Array:
     return np.asarray(np.gradient(smooth, 1.0 / rate))
 
 
-def _visited(name: str, unit: str, values: Array) -> Visited:
+def _visited(name: str, unit: str, values: Array) -> VisitedRange:
     percentiles = tuple(float(p) for p in np.percentile(values, PERCENTILES))
-    return Visited(name, unit, float(np.min(values)), float(np.max(values)), percentiles)
+    return VisitedRange(name, unit, float(np.min(values)), float(np.max(values)), percentiles)
 
 
 def _drop(current: Array, rate: float) -> float:
@@ -156,7 +160,11 @@ def _band(recording: Recording, tables: list[dict[str, Array]]) -> tuple[float, 
 
 
 def _missing(
-    recording: Recording, nominal: Scenario, visited: dict[str, Visited], drop: float, band: tuple[float, float] | None
+    recording: Recording,
+    nominal: Scenario,
+    visited: Visited,
+    drop: float,
+    band: tuple[float, float] | None,
 ) -> list[str]:
     """Return a sentence for each place where the rig has not been, with what cannot be judged for it."""
     sentences = [*_missing_motion(recording, visited), *_missing_current(nominal, visited, drop)]
@@ -169,7 +177,7 @@ def _missing(
     return [sentence for sentence in sentences if sentence]
 
 
-def _missing_motion(recording: Recording, visited: dict[str, Visited]) -> list[str]:
+def _missing_motion(recording: Recording, visited: Visited) -> list[str]:
     sentences = []
     travel, velocity, driver = (visited.get(name) for name in ("travel", "velocity", "driver"))
     if travel is None:
@@ -188,7 +196,7 @@ def _missing_motion(recording: Recording, visited: dict[str, Visited]) -> list[s
     return sentences
 
 
-def _missing_current(nominal: Scenario, visited: dict[str, Visited], drop: float) -> list[str]:
+def _missing_current(nominal: Scenario, visited: Visited, drop: float) -> list[str]:
     current, most = visited.get("current"), nominal.coil.max_current
     if current is None:
         return ["no current is recorded: what the coil does cannot be judged apart from the damper"]
@@ -203,7 +211,7 @@ def _missing_current(nominal: Scenario, visited: dict[str, Visited], drop: float
     return sentences
 
 
-def _missing_temperature(nominal: Scenario, temperature: Visited | None) -> str:
+def _missing_temperature(nominal: Scenario, temperature: VisitedRange | None) -> str:
     stated = nominal.temperature.start if isinstance(nominal.temperature, Thermal) else nominal.temperature
     if temperature is None:
         return "no temperature is recorded: thermal fade can only be seen as a weaker damper, not be told by its warmth"

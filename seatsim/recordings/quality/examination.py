@@ -1,7 +1,8 @@
 """What is wrong with a recording, said before anything is fitted.
 
-An `error` would lead to a wrong confident verdict, so that the diagnosis refuses; a `warning` is said and the diagnosis
-goes on; a `note` is worth knowing. Thresholds are gross, because the gap between a rig and its simulation is no damage.
+An `error` would lead to a wrong confident verdict, so that diagnosis and gap refuse; a `warning` is said and they
+go on; a `note` is worth knowing. Thresholds are gross, because the gap between a rig and its simulation is no fault
+of the data.
 """
 
 from __future__ import annotations
@@ -9,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from seatsim.recordings.quality.channels import ranges, shapes
-from seatsim.recordings.quality.consistency import contradictions, exchanged_currents
-from seatsim.recordings.quality.floor import floor
-from seatsim.recordings.quality.issue import Finding, Run
-from seatsim.recordings.quality.runs import clock, together
+from seatsim.recordings.quality.channels import check_ranges, check_shapes
+from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
+from seatsim.recordings.quality.floor_sensor import check_floor_sensor
+from seatsim.recordings.quality.issue import Issue, select_errors
+from seatsim.recordings.quality.run_under_test import RunUnderTest
+from seatsim.recordings.quality.runs import check_all_runs, check_clock
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError
@@ -23,18 +25,19 @@ ORDER = ("error", "warning", "note")
 
 @dataclass(frozen=True)
 class Examination:
-    """All findings, errors first."""
+    """All issues of a recording, errors first."""
 
-    findings: list[Finding]
+    issues: list[Issue]
 
     @property
-    def errors(self) -> list[Finding]:
-        """Findings for which the diagnosis must refuse."""
-        return _errors(self.findings)
+    def errors(self) -> list[Issue]:
+        """Issues for which diagnosis and gap must refuse."""
+        return select_errors(self.issues)
 
-
-def _errors(findings: Sequence[Finding]) -> list[Finding]:
-    return [finding for finding in findings if finding.severity == "error"]
+    @property
+    def sentences(self) -> list[str]:
+        """What to tell the user, a sentence for each issue."""
+        return [issue.sentence for issue in self.issues]
 
 
 def examine(recording: Recording) -> Examination:
@@ -43,19 +46,19 @@ def examine(recording: Recording) -> Examination:
     Raises:
         InputError: the nominal scenario is wrong.
     """
-    runs, findings = _read(recording)
-    if not _errors(findings):
-        findings += together(runs)
-    if not _errors(findings):
-        findings += _merged([finding for run in runs for finding in _each(run)], len(runs))
-    return Examination(sorted(findings, key=lambda finding: ORDER.index(finding.severity)))
+    runs, issues = _read(recording)
+    if not select_errors(issues):
+        issues += check_all_runs(runs)
+    if not select_errors(issues):
+        issues += _merged([issue for run in runs for issue in _each(run)], len(runs))
+    return Examination(sorted(issues, key=lambda issue: ORDER.index(issue.severity)))
 
 
 def refuse(examination: Examination) -> None:
-    """Raise what stands against a diagnosis, in one sentence.
+    """Raise what forbids trusting a recording, in one sentence.
 
     Raises:
-        InputError: there is an error among the findings.
+        InputError: there is an error among the issues.
     """
     errors = examination.errors
     if errors:
@@ -63,39 +66,39 @@ def refuse(examination: Examination) -> None:
         raise InputError(f"{errors[0].sentence}{more}")
 
 
-def _read(recording: Recording) -> tuple[list[Run], list[Finding]]:
+def _read(recording: Recording) -> tuple[list[RunUnderTest], list[Issue]]:
     """Return the runs that can be read, and what is wrong with their clocks or forbids reading them."""
     nominal = single(recording.nominal)
-    runs, findings = [], []
+    runs, issues = [], []
     for name in recording.runs:
         try:
-            run = Run(name, recording.table(name), recording, nominal)
+            run = RunUnderTest(name, recording.table(name), recording, nominal)
         except InputError as error:
-            findings.append(Finding("error", "unreadable", str(error), run=name))
+            issues.append(Issue("error", "unreadable", str(error), run=name))
         else:
             runs.append(run)
-            findings += clock(run)
-    return runs, findings
+            issues += check_clock(run)
+    return runs, issues
 
 
-def _each(run: Run) -> list[Finding]:
+def _each(run: RunUnderTest) -> list[Issue]:
     """Return what is wrong with one run; a later check asks only where the earlier ones found no error."""
-    findings: list[Finding] = []
-    for check in (ranges, exchanged_currents, shapes, floor, contradictions):
-        findings += check(run)
-        if _errors(findings):
+    issues: list[Issue] = []
+    for check in (check_ranges, check_exchanged_currents, check_shapes, check_floor_sensor, check_consistency):
+        issues += check(run)
+        if select_errors(issues):
             break
-    return findings
+    return issues
 
 
-def _merged(findings: Sequence[Finding], runs: int) -> list[Finding]:
-    """Return the findings with those that all runs share said once."""
-    groups: dict[tuple[str, str, str | None], list[Finding]] = {}
-    for finding in findings:
-        groups.setdefault((finding.severity, finding.kind, finding.channel), []).append(finding)
+def _merged(issues: Sequence[Issue], runs: int) -> list[Issue]:
+    """Return the issues with those that all runs share said once."""
+    groups: dict[tuple[str, str, str | None], list[Issue]] = {}
+    for issue in issues:
+        groups.setdefault((issue.severity, issue.kind, issue.channel), []).append(issue)
     merged = []
     for group in groups.values():
-        if runs > 1 and len({finding.run for finding in group}) == runs:
+        if runs > 1 and len({issue.run for issue in group}) == runs:
             first = group[0]
             text = first.sentence.replace(str(first.run), f"all runs (shown: {first.run})", 1)
             merged.append(first._replace(sentence=text, run=None))

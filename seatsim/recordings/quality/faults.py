@@ -1,4 +1,4 @@
-"""Damages that a recording may have suffered: wrong signs and units, exchanged channels, delays; each can be undone."""
+"""Faults that data may have: wrong signs and units, exchanged channels, delays; each with its correction."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.recordings.compared import LEFT_OUT
-from seatsim.recordings.quality.issue import LATE, MOTION, Array, Run, Table
-from seatsim.recordings.quality.residual import band, lateness
+from seatsim.recordings.quality.residual import filter_band, find_delay
+from seatsim.recordings.quality.run_under_test import LATE, MOTION, Array, RunUnderTest, Table
 
 UNITS: dict[str, dict[str, float]] = {
     "acceleration": {"g": 1 / 9.81, "ft/s^2": 1 / 0.3048, "cm/s^2": 100.0, "mm/s^2": 1000.0},
@@ -19,61 +19,66 @@ UNITS: dict[str, dict[str, float]] = {
     "force": {"kN": 0.001},
 }
 """What a channel of motion or force reads in another unit, per SI unit, by the last word of its name."""
+LONGEST_DELAY = 0.5
+"""Seconds within which a delay is sought: half a period of the slowest motion that is looked at."""
+ALIKE = 0.8
+"""Correlation from which a delayed channel is that of the simulation: less may be another motion."""
 
 
-class Damage(NamedTuple):
-    """A damage that may have been done to channels: `undo` takes the table of a run and returns it as it was."""
+class DataFault(NamedTuple):
+    """A fault that channels may have: `correct` takes the table of a run and returns it as it should be."""
 
     kind: str
     channels: tuple[str, ...]
     says: str
-    undo: Callable[[Table], Table]
+    correct: Callable[[Table], Table]
 
 
-def damages(run: Run, outputs: Table | None) -> Iterator[Damage]:
-    """Yield every damage that a run may have suffered; delays are told by simulated outputs."""
+def list_faults(run: RunUnderTest, outputs: Table | None) -> Iterator[DataFault]:
+    """Yield every fault that a run may have; delays are those against simulated outputs."""
     for channel in run.table:
         yield from _scales(channel)
     for first, second in itertools.combinations(MOTION[:3], 2):
         if first in run.table and second in run.table:
-            yield exchange(first, second)
+            yield exchange_fault(first, second)
     yield from _delays(run, outputs or {})
 
 
-def _scales(channel: str) -> Iterator[Damage]:
+def _scales(channel: str) -> Iterator[DataFault]:
     quantity = channel.rpartition("_")[2]
     if channel in MOTION or channel == "coil_current":
-        yield Damage("sign", (channel,), "its sign is swapped", _scaled(channel, -1.0))
+        yield DataFault("sign", (channel,), "its sign is swapped", _scaled(channel, -1.0))
     for unit, factor in UNITS.get(quantity, {}).items():
-        yield Damage("unit", (channel,), f"reads as if in {unit}", _scaled(channel, 1.0 / factor))
+        yield DataFault("unit", (channel,), f"reads as if in {unit}", _scaled(channel, 1.0 / factor))
 
 
 def _scaled(channel: str, factor: float) -> Callable[[Table], Table]:
     return lambda table: {**table, channel: factor * table[channel]}
 
 
-def exchange(first: str, second: str) -> Damage:
-    """Return the damage of two channels that stand for each other."""
+def exchange_fault(first: str, second: str) -> DataFault:
+    """Return the fault of two channels that stand for each other."""
     says = "are exchanged for each other"
-    return Damage("exchange", (first, second), says, lambda t: {**t, first: t[second], second: t[first]})
+    return DataFault("exchange", (first, second), says, lambda t: {**t, first: t[second], second: t[first]})
 
 
-def _delays(run: Run, outputs: Table) -> Iterator[Damage]:
+def _delays(run: RunUnderTest, outputs: Table) -> Iterator[DataFault]:
     """Yield the delay of each output against the simulation, and that of the floor that would explain the most."""
     skip = round(LEFT_OUT * run.rate)
     found = []
     for channel, values in outputs.items():
-        late, alike = lateness(band(run, run.table[channel][skip:]), band(run, values), round(0.5 * run.rate))
-        if alike > 0.8 and abs(late) > (LATE if channel in MOTION else 2.0 * LATE) * run.rate:
+        recorded, simulated = filter_band(run, run.table[channel][skip:]), filter_band(run, values)
+        late, alike = find_delay(recorded, simulated, round(LONGEST_DELAY * run.rate))
+        if alike > ALIKE and abs(late) > (LATE if channel in MOTION else 2.0 * LATE) * run.rate:
             found += [late] if channel in MOTION else []
             yield _delay(channel, late, run.rate)
     if found:
         yield _delay(run.driver, -int(np.median(found)), run.rate)
 
 
-def _delay(channel: str, rows: int, rate: float) -> Damage:
+def _delay(channel: str, rows: int, rate: float) -> DataFault:
     says = f"is {abs(rows) / rate:.3g} s {'late' if rows > 0 else 'early'}"
-    return Damage("late", (channel,), says, lambda table: {**table, channel: _moved(table[channel], rows)})
+    return DataFault("late", (channel,), says, lambda table: {**table, channel: _moved(table[channel], rows)})
 
 
 def _moved(values: Array, rows: int) -> Array:

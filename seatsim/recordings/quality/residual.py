@@ -1,51 +1,38 @@
 """How badly the channels of a run fit a simulation, and each other.
 
 With `e(a, b) = rms(a - b) / sqrt(rms(a)^2 + rms(b)^2)` (0 alike, 1 unrelated or of another size, 1.41 opposite) between
-0.5 and 8 Hz, the misfit of a run is the sum of e^2 over
+0.5 and 8 Hz, the consistency residual of a run is the sum of e^2 over
 
     each compared channel against the simulation (the coil current at all frequencies),
     x'' against frame acceleration - floor acceleration (a bench: x' against velocity),
     Fd against -(ms zs'' + m zc'' + kf x + cf x'),
 
-where the channels are there.
+where the channels are there. The band holds what a seat and its nominal simulation agree on even where the nominal is
+rough: below it drift and bias reign, above it noise, friction and the cushion.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 from collections.abc import Iterator
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from seatsim.recordings.compared import COMPARED, LEFT_OUT
-from seatsim.recordings.quality.issue import Array, Run, Table
-from seatsim.recordings.replay import replay
+from seatsim.recordings.quality.run_under_test import Array, RunUnderTest, Table
+from seatsim.recordings.replay import replay_table
 from seatsim.schema.errors import RunError
 
 
-class Restored(NamedTuple):
-    """An effect that replaces recorded inputs by others, shape (rows,) each."""
-
-    channels: Table
-
-    def truth(self, channel: str, step: float, values: Array) -> Array:
-        """Return what drives the simulation, shape (N,): linear between the rows."""
-        rows = self.channels.get(channel)
-        return values if rows is None else np.interp(np.linspace(0, len(rows) - 1, len(values)), range(len(rows)), rows)
-
-
-def simulated(run: Run, inputs: Table) -> Table | None:
-    """Return the nominal outputs without the first second, driven by these inputs; None where there is no solution."""
-    effects: tuple[Any, ...] = (*run.nominal.effects, Restored(inputs))
+def simulate_nominal(run: RunUnderTest, table: Table) -> Table | None:
+    """Return the nominal outputs that are compared, driven by a table's inputs; None where there is no solution."""
     try:
-        return replay(dataclasses.replace(run.nominal, effects=effects), run.recording, run.name)[1]
+        return replay_table(run.nominal, run.recording, table)
     except RunError:
         return None
 
 
-def misfits(run: Run, table: Table, outputs: Table | None) -> dict[str, float]:
+def consistency_residuals(run: RunUnderTest, table: Table, outputs: Table | None) -> dict[str, float]:
     """Return e^2 of each compared channel (1 where there is no simulation) and of each balance between channels."""
     skip = round(LEFT_OUT * run.rate)
     used = {name: values[skip:] for name, values in table.items()}
@@ -54,11 +41,11 @@ def misfits(run: Run, table: Table, outputs: Table | None) -> dict[str, float]:
     pairs |= _balances(run, used)
     if not pairs:
         return {}
-    smooth = dict(zip(pairs, band(run, np.array(list(pairs.values()))), strict=True))
+    smooth = dict(zip(pairs, filter_band(run, np.array(list(pairs.values()))), strict=True))
     return {name: _unlike(*(pair if name == "coil_current" else smooth[name])) for name, pair in pairs.items()}
 
 
-def _balances(run: Run, used: Table) -> Iterator[tuple[str, tuple[Array, Array]]]:
+def _balances(run: RunUnderTest, used: Table) -> Iterator[tuple[str, tuple[Array, Array]]]:
     """Yield name and both sides of each equation between recorded channels alone."""
     plant = run.nominal.plant
     travel = used.get("suspension_displacement")
@@ -74,8 +61,8 @@ def _balances(run: Run, used: Table) -> Iterator[tuple[str, tuple[Array, Array]]
         yield "force balance", (used["damper_force"], -inertia - spring)
 
 
-def _slope(run: Run, values: Array) -> Array:
-    return np.asarray(np.gradient(band(run, values), 1.0 / run.rate))
+def _slope(run: RunUnderTest, values: Array) -> Array:
+    return np.asarray(np.gradient(filter_band(run, values), 1.0 / run.rate))
 
 
 def _unlike(first: Array, second: Array) -> float:
@@ -84,7 +71,7 @@ def _unlike(first: Array, second: Array) -> float:
     return float(np.mean((first - second) ** 2)) / size if size > 0.0 else 0.0
 
 
-def band(run: Run, values: Array) -> Array:
+def filter_band(run: RunUnderTest, values: Array) -> Array:
     """Return values, shape (..., N), between 0.5 and 8 Hz (a bench: below 8 Hz, without their mean)."""
     from scipy.signal import sosfiltfilt
 
@@ -102,7 +89,7 @@ def _filter(rate: float, on_seat: bool) -> Array:
     return np.asarray(butter(2, edges, "bandpass" if on_seat else "lowpass", fs=rate, output="sos"))
 
 
-def lateness(first: Array, second: Array, most: int) -> tuple[int, float]:
+def find_delay(first: Array, second: Array, most: int) -> tuple[int, float]:
     """Return by how many rows the first is late against the second, and their correlation then."""
     from scipy.signal import correlate
 

@@ -8,8 +8,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from seatsim.recordings.compared import LEAST_ROWS, LEFT_OUT
-from seatsim.recordings.quality.issue import LATE, MOTION, Array, Finding, Run, Severity, of_all_runs
-from seatsim.recordings.quality.residual import band, lateness
+from seatsim.recordings.quality.issue import Issue, Severity, issue_in_all_runs
+from seatsim.recordings.quality.residual import filter_band, find_delay
+from seatsim.recordings.quality.run_under_test import LATE, MOTION, Array, RunUnderTest
 from seatsim.rig.temperature import Thermal
 
 SHORTEST, SHORT = 4.0, 10.0
@@ -18,7 +19,7 @@ NOISE_OFF = 3.0
 """Factor by which the noise may differ from what is stated."""
 
 
-def clock(run: Run) -> Iterator[Finding]:
+def check_clock(run: RunUnderTest) -> Iterator[Issue]:
     """Compare the column `time` of a run, where there is one, with the stated sample rate."""
     import pandas as pd
 
@@ -34,71 +35,71 @@ def clock(run: Run) -> Iterator[Finding]:
     typical = float(np.median(steps))
     if not (abs(typical - 1.0) <= 0.3 and abs(mean - 1.0) <= 0.005):
         apart = f"rows are {typical * interval:.5g} s apart where sample_rate {run.rate:g} means {interval:.5g} s"
-        yield run.finding("error", "rate", f"{apart}; resample the run or correct the rate", "time")
+        yield run.issue("error", "rate", f"{apart}; resample the run or correct the rate", "time")
     elif jumps.size:
         lost = float(np.sum(np.abs(steps[jumps] - 1.0))) * interval
         first = f"{jumps.size} jumps, the first at {time[jumps[0]]:.3f} s (line {jumps[0] + 3})"
         text = f"{first}; rows are missing: fill them or cut the run there"
-        yield run.finding("warning" if lost <= LATE else "error", "jump", text, "time")
+        yield run.issue("warning" if lost <= LATE else "error", "jump", text, "time")
 
 
-def together(runs: Sequence[Run]) -> Iterator[Finding]:
+def check_all_runs(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Look at all runs together."""
     for check in (_length, _duplicates, _repeats, _at_rest, _noise, _fahrenheit):
         yield from check(runs)
 
 
-def _length(runs: Sequence[Run]) -> Iterator[Finding]:
+def _length(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     seconds = [run.rows / run.rate - LEFT_OUT for run in runs]
     for run, left in zip(runs, seconds, strict=True):
         if left * run.rate < LEAST_ROWS:
             text = f"lasts {left + LEFT_OUT:.3g} s and its first second is left out; remove or record anew"
-            yield run.finding("error", "short", text)
+            yield run.issue("error", "short", text)
     total = sum(seconds)
     if total < SHORT:
         text = f"{total:.3g} s remain to compare, at least {SHORT:g} s are wanted; record more"
-        yield of_all_runs("warning" if total >= SHORTEST else "error", "short", text)
+        yield issue_in_all_runs("warning" if total >= SHORTEST else "error", "short", text)
     if len(runs) == 1:
         text = "is the only run, so that no other excitation checks the verdict; record a second run"
-        yield runs[0].finding("warning", "single", text)
+        yield runs[0].issue("warning", "single", text)
 
 
-def _duplicates(runs: Sequence[Run]) -> Iterator[Finding]:
+def _duplicates(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     for first, second in itertools.combinations(runs, 2):
         rows = min(first.rows, second.rows)
         if np.mean([np.mean(first.table[c][:rows] == second.table[c][:rows]) for c in first.table]) > 0.9:
             text = f"holds the same rows as {first.name}, so that it checks nothing; remove one of them"
-            yield second.finding("error", "duplicate", text)
+            yield second.issue("error", "duplicate", text)
 
 
-def _repeats(runs: Sequence[Run]) -> Iterator[Finding]:
+def _repeats(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     named = {run.name: run for run in runs}
     for run in runs:
         other = run.recording.runs[run.name].repeat_of
         if other is not None and other in named and not _is_repeat(run, named[other]):
-            yield run.finding("error", "repeat", f"is no repeat of {other}, their excitations differ; remove repeat_of")
+            yield run.issue("error", "repeat", f"is no repeat of {other}, their excitations differ; remove repeat_of")
 
 
-def _is_repeat(run: Run, other: Run) -> bool:
+def _is_repeat(run: RunUnderTest, other: RunUnderTest) -> bool:
     """Say whether two runs have one excitation, up to a shift of a second."""
-    first, second = (band(r, r.table[r.driver]) for r in (run, other))
+    first, second = (filter_band(r, r.table[r.driver]) for r in (run, other))
     rows = min(len(first), len(second))
-    return lateness(first[:rows], second[:rows], round(run.rate))[1] > 0.8
+    return find_delay(first[:rows], second[:rows], round(run.rate))[1] > 0.8
 
 
-def _at_rest(runs: Sequence[Run]) -> Iterator[Finding]:
+def _at_rest(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     still = [run for run in runs if run.is_still(run.driver)]
     resting: Severity = "error" if len(still) == len(runs) else "warning"
     for run in still:
         moving = [channel for channel in MOTION if channel in run.table and not run.is_still(channel)]
         if moving:
             text = f"does not move while {moving[0]} does; check its cable and its scale"
-            yield run.finding("error", "still", text, run.driver)
+            yield run.issue("error", "still", text, run.driver)
         else:
-            yield run.finding(resting, "still", "nothing moves; remove the run")
+            yield run.issue(resting, "still", "nothing moves; remove the run")
 
 
-def _noise(runs: Sequence[Run]) -> Iterator[Finding]:
+def _noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Compare the stated noise with the least white noise seen in any run."""
     for channel, entry in runs[0].recording.channels.items():
         stated = entry.noise_rms
@@ -107,7 +108,7 @@ def _noise(runs: Sequence[Run]) -> Iterator[Finding]:
             continue
         if fourth < stated / NOISE_OFF or (third > NOISE_OFF * stated and fourth > 0.9 * third):
             text = f"noise_rms is stated as {stated:g}, but about {fourth:.2g} is seen"
-            yield of_all_runs("warning", "noise", f"{text}; correct it, all thresholds hang on it", channel)
+            yield issue_in_all_runs("warning", "noise", f"{text}; correct it, all thresholds hang on it", channel)
 
 
 def _white(values: Array, rate: float) -> tuple[float, float]:
@@ -125,11 +126,11 @@ def _white(values: Array, rate: float) -> tuple[float, float]:
     return float(np.mean(third[quiet])), float(np.mean(fourth[quiet]))
 
 
-def _fahrenheit(runs: Sequence[Run]) -> Iterator[Finding]:
+def _fahrenheit(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Say where the lowest temperature, taken as degF, is the one that the nominal scenario states."""
     channel, nominal = "damper_temperature", runs[0].nominal.temperature
     stated = nominal.start if isinstance(nominal, Thermal) else nominal
     low = min((float(np.min(run.table[channel])) for run in runs if channel in run.table), default=stated)
     if abs(low - stated) > 20.0 and abs((low - 32.0) / 1.8 - stated) < 2.5:
         text = f"is never below {low:.3g} degC where the nominal scenario states {stated:g} degC"
-        yield of_all_runs("warning", "unit", f"{text}; if it is in degF, convert it", channel)
+        yield issue_in_all_runs("warning", "unit", f"{text}; if it is in degF, convert it", channel)

@@ -16,7 +16,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from seatsim.recordings.quality.issue import Array, Finding, Run, at_rest
+from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.quality.run_under_test import Array, RunUnderTest, is_at_rest
 from seatsim.recordings.recording import Recording
 
 FLOOR = "floor_acceleration"
@@ -37,11 +38,11 @@ PILED, FEW = 5.0, 12
 """Ratio of rows at an extreme to those in a bin beside it from which it is a limit, and least rows of one."""
 
 
-def floor(run: Run) -> Iterator[Finding]:
+def check_floor_sensor(run: RunUnderTest) -> Iterator[Issue]:
     """Look for an accelerometer of the floor that stands still while the floor moves."""
     if FLOOR in run.table:
         for kind, text in _faults(run.table[FLOOR], run.noise(FLOOR), run.rate):
-            yield run.finding("warning", kind, text, FLOOR)
+            yield run.issue("warning", kind, text, FLOOR)
 
 
 def follows_floor(recording: Recording) -> bool:
@@ -53,7 +54,7 @@ def follows_floor(recording: Recording) -> bool:
 def _faults(values: Array, noise: float, rate: float) -> list[tuple[str, str]]:
     """Return kind and text of what a record shows; nothing where the floor rests."""
     noise = max(noise, LEAST)
-    if at_rest(values, noise):
+    if is_at_rest(values, noise):
         return []
     if _stillness(values, noise, max(FEWEST, round(WINDOW * rate))) > STILL:
         return [("steps", "stands still at values other than zero, as a sensor does that has steps or play; repair it")]

@@ -1,0 +1,115 @@
+"""Candidate experiments: what could be done next with a rig, cheapest first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple, Protocol, cast
+
+import numpy as np
+
+from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.excitations.base import Floor
+from seatsim.schema.registry import find
+from seatsim.simulation.inputs import SeatInputs
+
+Keys = Mapping[str, str | float]
+
+SWITCHING = 0.25
+"""s; time after which a switched current changes: long beside a coil's lag, short beside the motion."""
+NEARLY_FULL = 0.9
+"""Share of the largest current that is switched, so that no supply is at its limit."""
+WARM_UP = (20.0, 60.0)
+"""degC at the start and at the end of a run in which the damper warms up."""
+ADDED_MASS = 20.0
+"""kg on the driver's place."""
+
+
+class CandidateExperiment(NamedTuple):
+    """What drives the rig, sensors and mass added to it; an excitation has a `scenario`, its sections in a file."""
+
+    name: str
+    text: str
+    floor: Floor
+    added_sensors: tuple[str, ...] = ()
+    added_mass: float = 0.0
+    scenario: Mapping[str, Keys] | None = None
+
+
+class _Excitation(Protocol):
+    def floor(self, step: float, seed: int) -> Floor: ...
+
+
+def _tone(frequency: float, amplitude: float, duration: float) -> Keys:
+    return {"kind": "sine", "amplitude": amplitude, "frequency": frequency, "duration": duration}
+
+
+STEADY: Keys = {"law": "constant", "current": 0.3}
+SWITCHED: Keys = {"law": "on_off_skyhook", "on": NEARLY_FULL}
+EXCITATIONS: Mapping[str, tuple[str, Keys, Keys]] = {
+    "bump": ("drive over a bump of 50 mm", STEADY, {"kind": "bumps", "shape": "haversine", "height": 0.05,
+        "length": 1.0, "speed": 3.0, "duration": 8.0, "through": "direct"}),
+    "sweep": ("sweep the floor from 1 to 20 Hz at 1.5 m/s^2", STEADY, {"kind": "chirp", "start_frequency": 1.0,
+        "stop_frequency": 20.0, "amplitude": 1.5, "duration": 12.0, "quantity": "acceleration"}),
+    "large_slow_sine": ("shake the floor at 0.5 Hz with 25 mm", STEADY, _tone(0.5, 0.025, 12.0)),
+    "very_slow_sine": ("move the floor at 0.05 Hz with 25 mm", STEADY, _tone(0.05, 0.025, 20.0)),
+    "current_steps": ("switch the current about every 0.25 s on a tone of 1 Hz", SWITCHED, _tone(1.0, 0.03, 12.0)),
+}  # fmt: skip
+"""What is to be done, the control law and the excitation of a scenario; currents are shares of the largest one."""
+
+
+def list_candidate_experiments(problem: DiagnosisProblem) -> Iterator[CandidateExperiment]:
+    """Yield what can be done, cheapest first: excitations with the rig as it is, then interventions."""
+    for name in EXCITATIONS:
+        if not (problem.bench and name == "bump"):
+            yield _excite(problem, name)
+    yield from _intervene(problem, _recorded_floor(problem))
+
+
+def _excite(problem: DiagnosisProblem, name: str) -> CandidateExperiment:
+    """Return an excitation with its law and currents, as a floor and as sections of a scenario."""
+    words, law, keys = EXCITATIONS[name]
+    text = words.replace("the floor", "the damper") if problem.bench else words
+    own = {key: value for key, value in keys.items() if key != "kind"}
+    excitation = cast(_Excitation, find("excitation", str(keys["kind"]))(**own))
+    floor = excitation.floor(problem.scenario.solver.step, 0)
+    top = problem.scenario.coil.max_current
+    current = {key: top * float(value) for key, value in law.items() if key != "law"}
+    command = np.full(len(floor.time), current.get("current", 0.0))
+    if "on" in current:
+        command = current["on"] * (np.floor(floor.time / SWITCHING) % 2.0)
+    scenario: Mapping[str, Keys] = {"controller": {"law": law["law"], **current}, "excitation": keys}
+    return CandidateExperiment(name, text, floor._replace(command=command), scenario=scenario)
+
+
+def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExperiment]:
+    """Yield what changes the rig, its sensors or its warmth, with the floor of a recorded run or with none."""
+    rest, time = np.zeros(len(floor.acceleration)), floor.time
+    steps = NEARLY_FULL * problem.scenario.coil.max_current * (np.floor(time / SWITCHING) % 2.0)
+    still = Floor(floor.step, rest, rest, rest, steps)
+    if "coil_current" not in problem.channels:
+        text = "repeat a run and log the current of the coil"
+        yield CandidateExperiment("coil_current", text, floor, ("coil_current",))
+    without = floor._replace(command=rest, coil_current=rest)
+    yield CandidateExperiment("zero_current", "repeat a run without current", without)
+    low, high = WARM_UP
+    warming = floor._replace(temperature=low + (high - low) * time / time[-1])
+    yield CandidateExperiment("warm_up", "repeat a run while the damper warms from 20 to 60 degC", warming)
+    if not problem.bench:
+        yield CandidateExperiment("locked_seat", "lock the seat and switch the current every 0.25 s", still)
+        text = "repeat a run with 20 kg more on the driver's place"
+        yield CandidateExperiment("added_mass", text, floor, added_mass=ADDED_MASS)
+    if "damper_force" not in problem.channels:
+        text = "repeat a run with a load cell at the damper"
+        yield CandidateExperiment("load_cell", text, floor, ("damper_force",))
+
+
+def _recorded_floor(problem: DiagnosisProblem) -> Floor:
+    """Return what drove the first run; on a bench the motion of the damper stands for that of the floor."""
+    inputs = problem.inputs[problem.runs[0]]
+    if isinstance(inputs, SeatInputs):
+        return inputs.floor
+    still = np.zeros(len(inputs.displacement))
+    return Floor(
+        1.0 / problem.rate, still, still, inputs.displacement, inputs.current_command, inputs.coil_current,
+        inputs.damper_temperature,
+    )  # fmt: skip

@@ -1,0 +1,173 @@
+"""The search for the causes of a gap: noise, selection, decision, localisation, again where noise was overlooked."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.diagnosis.candidates import Candidate, list_candidates
+from seatsim.diagnosis.cross_validate import select_by_cross_validation
+from seatsim.diagnosis.decide import Decision, decide_beside_unknown, decide_verdict
+from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy
+from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
+from seatsim.diagnosis.localise.localisation import Remainder, localise_remainder, share_gap
+from seatsim.diagnosis.localise.stochastic import (
+    add_to_noise,
+    find_bias_drift,
+    merge_effect,
+    name_stochastic_effect,
+)
+from seatsim.diagnosis.noise import NoiseWeights, measure_broadband, weigh_gap, weigh_noise
+from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.result import Share
+from seatsim.diagnosis.select import Selection, select_effects
+from seatsim.schema.registry import names
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], object]
+Forces = Mapping[str, Array] | None
+
+
+class Method(NamedTuple):
+    """The stages of a diagnosis; a benchmark replaces one of them to measure what it is worth."""
+
+    weigh_noise: Callable[[DiagnosisProblem, Forces, Forces], NoiseWeights] = weigh_noise
+    select_effects: Callable[[Objective, Sequence[Candidate], Progress, int | None], Selection] = select_effects
+    decide_verdict: Callable[[DiagnosisProblem, Selection, Sequence[str]], Decision] = decide_verdict
+    share_gap: Callable[[Objective, Evaluation, Remainder | None], list[Share]] = share_gap
+
+
+class Task(NamedTuple):
+    """What a search is given: the candidates, the names of all effects, whom to tell of progress, and the method."""
+
+    candidates: Sequence[Candidate]
+    effects: Sequence[str]
+    progress: Progress
+    method: Method
+
+
+class Solution(NamedTuple):
+    """A selection with its decision, the blocks that the gap lies in, and the discrepancy, where something is left.
+
+    `stochastic` is the effect at work, if any, whose signal is that discrepancy.
+    """
+
+    objective: Objective
+    selection: Selection
+    decision: Decision
+    where: Sequence[Share] = ()
+    discrepancy: Discrepancy | None = None
+    stochastic: str = ""
+
+
+def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress, method: Method) -> Solution:
+    """Search for the causes; where what is left is a stochastic disturbance, count it as noise and search again.
+
+    Args:
+        problem: a recording beside its nominal scenario.
+        without: names of effects that are withheld from the library.
+        progress: called with what is being done.
+        method: the stages.
+    """
+    effects = [name for name in names("effect") if name not in without]
+    task = Task(list_candidates(problem, without), effects, progress, method)
+    progress("weighing the channels")
+    objective = Objective(problem, method.weigh_noise(problem, None, None))
+    forces = None if problem.bench else _estimate_nonrepeatable(objective)
+    if forces is not None:
+        objective = Objective(problem, method.weigh_noise(problem, forces, None))
+    first = _search(task, objective)
+    if first.decision.verdict == "unknown":
+        first = _search_beyond_broadband(task, first, forces)
+    first = _search_by_gap(task, first) if first.decision.verdict == "unknown" else _localise(task, first)
+    return _search_beside_stochastic(task, first, without)
+
+
+def _estimate_nonrepeatable(objective: Objective) -> Forces:
+    """Return the force on the frame by which repeated runs of the nominal rig differ, None without repeats."""
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    return estimate_nonrepeatable_force(objective, nominal)
+
+
+def _search(task: Task, objective: Objective) -> Solution:
+    selection = task.method.select_effects(objective, task.candidates, task.progress, None)
+    return Solution(objective, selection, task.method.decide_verdict(objective.problem, selection, task.effects))
+
+
+def _search_beyond_broadband(task: Task, first: Solution, forces: Forces) -> Solution:
+    """Search again where most of what the best set leaves is broadband, and return what explains the gap beside it."""
+    problem, best = first.objective.problem, first.selection.sets[-1][0]
+    errors, weights = measure_broadband(problem, best.residuals), first.objective.weights.weights
+    broadband = sum(float(np.sum(power * weights[run] ** 2)) for run, power in errors.items())
+    if broadband < problem.settings.noise.broadband_share * best.excess * best.rows:
+        return first
+    task.progress("counting a broadband residual as noise")
+    second = _search(task, Objective(problem, task.method.weigh_noise(problem, forces, errors)))
+    return second if second.decision.verdict in ("known", "ambiguous") else first
+
+
+def _search_by_gap(task: Task, first: Solution) -> Solution:
+    """Return what is unexplained, beside the effects that runs left out support where only the gap counts."""
+    task.progress("weighing the gap alone")
+    problem, settings = first.objective.problem, first.objective.settings
+    objective = Objective(problem, weigh_gap(problem, first.selection.calibrated.residuals))
+    # Only the first start of each structure: the search is a second one, and its measure is coarse.
+    first_starts = {each.structure: each for each in reversed(task.candidates)}
+    largest = settings.selection.largest_uniform_set
+    selection = task.method.select_effects(objective, list(first_starts.values()), task.progress, largest)
+    chosen, equivalent = select_by_cross_validation(objective, selection)
+    refitted = refit(first.objective, chosen.parameters)
+    decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent)
+    localised = _localise(task, first._replace(decision=decision))
+    if localised.decision is not decision:
+        return localised
+    # The effects are stated as the gap's weights fitted them, since these are the ones that were cross-validated.
+    return localised._replace(
+        objective=objective, selection=selection, decision=dataclasses.replace(decision, chosen=chosen)
+    )
+
+
+def _localise(task: Task, solution: Solution) -> Solution:
+    """Return the solution with the blocks that the gap lies in, and the signal of what is unexplained."""
+    objective, decision = solution.objective, solution.decision
+    problem, share = objective.problem, task.method.share_gap
+    if decision.verdict == "none":
+        return solution
+    if decision.verdict != "unknown":
+        return solution._replace(where=share(objective, decision.chosen, None))
+    if problem.bench:
+        # A bench has nothing but the damper between its motion and its load cell.
+        return solution._replace(where=[Share("damper", 1.0)])
+    task.progress("asking which block could hold the remainder")
+    remainder, rig = localise_remainder(objective, solution.selection.calibrated, decision.chosen)
+    found = describe_discrepancy(problem, rig.parameters, remainder.block, remainder.likeliest)
+    if rig is not decision.chosen:
+        decision = decide_beside_unknown(objective.settings.decision, decision, rig)
+    return solution._replace(decision=decision, where=share(objective, rig, remainder), discrepancy=found)
+
+
+def _search_beside_stochastic(task: Task, first: Solution, without: Sequence[str]) -> Solution:
+    """Search again where the discrepancy may be a stochastic disturbance, counted as noise; keep what it explains."""
+    problem, found = first.objective.problem, first.discrepancy
+    if first.decision.verdict in ("known", "ambiguous") and not problem.bench:
+        found = find_bias_drift(problem, first.decision.chosen)
+    effect = name_stochastic_effect(problem, found) if found else ""
+    if found is None or not effect or effect in without:
+        return first
+    task.progress(f"counting {effect} as noise")
+    noisy = Objective(problem, add_to_noise(problem, first.objective.weights, effect, found))
+    others = task._replace(candidates=[each for each in task.candidates if each.effect != effect])
+    second = _search(others, noisy)
+    if second.decision.verdict == "unknown":
+        return first
+    localised = _localise(others, second)
+    decision, where = merge_effect(problem.settings, second.decision, localised.where, effect)
+    found = found._replace(block=effect.partition(".")[0])
+    return second._replace(decision=decision, where=where, discrepancy=found, stochastic=effect)

@@ -1,0 +1,128 @@
+"""Statement of a solution: what it amounts to on a held-out run, with the evidence for it."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from seatsim.diagnosis.augmented import write_augmented
+from seatsim.diagnosis.decide import decide_beside_unknown
+from seatsim.diagnosis.design.collinearity import measure_collinearity
+from seatsim.diagnosis.design.experiment import propose_experiment
+from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
+from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_run
+from seatsim.diagnosis.localise.discrepancy import show_discrepancy
+from seatsim.diagnosis.localise.stochastic import add_strength
+from seatsim.diagnosis.objective import Evaluation, Linearisation
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.result import Cause, Diagnosis, Evidence, Gaps, ProposedExperiment
+from seatsim.diagnosis.sentences import write_answer
+from seatsim.diagnosis.solve import Solution
+from seatsim.diagnosis.validate import (
+    choose_held_out_run,
+    make_scenario,
+    measure_gaps,
+    refit_without,
+    shrink_by_run,
+)
+from seatsim.recordings.quality.coverage import measure_coverage
+from seatsim.scenario.loading import single
+from seatsim.scenario.scenario import Scenario
+
+
+@dataclasses.dataclass(frozen=True)
+class Validation:
+    """A solution on a run held out of its fits: the rigs fitted without the run, and the gaps that they leave on it."""
+
+    solution: Solution
+    nominal: Scenario
+    run: str
+    calibrated: Evaluation
+    augmented: Evaluation
+    gaps: Gaps
+
+    @property
+    def rigs(self) -> tuple[Parameters, Parameters, Parameters]:
+        """Parameters of the nominal, the calibrated and the augmented rig."""
+        nominal = Parameters(self.solution.objective.problem.nominal)
+        return nominal, self.calibrated.parameters, self.augmented.parameters
+
+
+def validate_on_held_out(solution: Solution) -> Validation:
+    """Return what a solution amounts to on a held-out run; what fails there beside an unknown cause is given up."""
+    objective, decision, selection = solution.objective, solution.decision, solution.selection
+    problem, chosen = objective.problem, decision.chosen
+    shrink = shrink_by_run(problem, selection.nominal, chosen)
+    run = choose_held_out_run(problem, chosen, shrink)
+    calibrated, augmented = refit_without(objective, chosen, run)
+    if decision.verdict == "unknown" and not chosen.parameters.terms:
+        augmented = selection.nominal
+    nominal = single(problem.recording.nominal)
+    rigs = Parameters(problem.nominal), calibrated.parameters, augmented.parameters
+    first, second, third = (make_scenario(problem, nominal, rig) for rig in rigs)
+    # A single run has no spread, which would be NaN with one degree of freedom less.
+    spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
+    gaps = measure_gaps(problem, (first, second, third), [run], spread)
+    if decision.verdict == "unknown" and chosen.parameters.terms and gaps.shrink < 0.0:
+        alone = decide_beside_unknown(problem.settings.decision, decision, selection.calibrated)
+        return validate_on_held_out(solution._replace(decision=alone))
+    return Validation(solution, nominal, run, calibrated, augmented, gaps)
+
+
+def state_diagnosis(solution: Solution, notes: Sequence[str], progress: Callable[[str], object]) -> Diagnosis:
+    """Return the diagnosis that a solution amounts to; `notes` are sentences on the quality of the data."""
+    progress("holding out a run")
+    validation = validate_on_held_out(solution)
+    solution = validation.solution
+    objective, decision = solution.objective, solution.decision
+    problem = objective.problem
+    recording = problem.recording
+    rig, channels = recording.header.rig, recording.channels
+    causes = _list_causes(validation)
+    nuisances = objective.linearise_nuisances(decision.chosen)
+    at_work = {solution.stochastic, *decision.chosen.parameters.names}
+    diagnosis = Diagnosis(
+        name=recording.folder.name, verdict=decision.verdict, sentence="", where=list(solution.where), causes=causes,
+        probability_none=decision.none, probability_unknown=decision.unknown,
+        selected=[name for name in decision.probabilities if name in at_work], stochastic=solution.stochastic,
+        indistinguishable=decision.groups, experiment=_propose_experiment(solution, nuisances),
+        held_out=[validation.run], isolable=find_isolable_groups(rig, channels), gap=validation.gaps,
+        notes=[*notes, *describe_missing_sensors(rig, channels), *measure_coverage(recording).missing],
+        augmented=write_augmented(problem, validation.augmented.parameters),
+        evidence=_collect_evidence(validation, nuisances, causes),
+    )  # fmt: skip
+    return dataclasses.replace(diagnosis, sentence=write_answer(diagnosis))
+
+
+def _list_causes(validation: Validation) -> list[Cause]:
+    """Return every effect with its probability, shrink and parameters; a stochastic one with its strength."""
+    solution, found = validation.solution, validation.solution.discrepancy
+    causes = estimate_causes(
+        solution.objective, solution.selection, solution.decision, validation.calibrated, validation.augmented,
+        validation.nominal, validation.run,
+    )  # fmt: skip
+    if found is None:
+        return causes
+    return [add_strength(cause, found) if cause.effect == solution.stochastic else cause for cause in causes]
+
+
+def _propose_experiment(solution: Solution, nuisances: Linearisation) -> ProposedExperiment | None:
+    """Return the experiment that would separate the first group of equivalent effects, None where all is clear."""
+    decision = solution.decision
+    if decision.verdict != "ambiguous" or solution.objective.problem.bench:
+        return None
+    return propose_experiment(solution.objective, nuisances, decision.groups[0])
+
+
+def _collect_evidence(validation: Validation, nuisances: Linearisation, causes: Sequence[Cause]) -> Evidence:
+    """Return what the pictures of the report show, on the held-out run."""
+    solution, run = validation.solution, validation.run
+    problem, settings = solution.objective.problem, solution.objective.settings.design
+    traces = trace_run(problem, validation.rigs, run)
+    found = solution.discrepancy
+    shown = None if found is None else show_discrepancy(problem, found, run)
+    relevant = [c.effect for c in causes[: settings.listed] if c.probability > settings.listed_probability]
+    collinearity = measure_collinearity(solution.objective, nuisances, relevant)
+    return Evidence(traces, trace_motion(problem, run), shown, collinearity, compare_comfort(traces))

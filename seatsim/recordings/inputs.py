@@ -1,0 +1,45 @@
+"""From a run of a recording to what drives the simulation of its rig."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.excitations.recording import interpolate_floor
+from seatsim.recordings.recording import Recording
+from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
+
+Array = NDArray[np.float64]
+SAME_STEP = 1e-9
+"""Part of a step by which a row interval may exceed a whole number of steps, for the sake of rounding."""
+
+
+def recorded_inputs(recording: Recording, table: Mapping[str, Array], largest_step: float) -> RigInputs:
+    """Return what drove a rig in a run, from the `table` of the run.
+
+    On a seat the inputs are sampled at the largest step, at most `largest_step` in s, that divides the interval between
+    rows: floor acceleration, coil current and temperature are linear between rows, a command is held until the next
+    row. A bench is driven row by row, with a step of its own.
+    """
+    interval = 1.0 / recording.header.sample_rate
+    if recording.header.rig == "damper_bench":
+        return _bench_inputs(recording, table, interval)
+    steps = max(1, math.ceil(interval / largest_step - SAME_STEP))
+    return SeatInputs(interpolate_floor(table, steps, interval / steps), interval)
+
+
+def _bench_inputs(recording: Recording, table: Mapping[str, Array], interval: float) -> BenchInputs:
+    return BenchInputs(
+        interval,
+        table["displacement"],
+        recording.channels["displacement"].noise_rms,
+        table.get("velocity"),
+        table.get("current_command"),
+        table.get("command_voltage"),
+        recording.voltage_gain,
+        table.get("coil_current"),
+        table.get("damper_temperature"),
+    )

@@ -1,0 +1,71 @@
+"""A run under examination: its table, and what its recording says about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.recordings.quality.issue import Issue, Severity
+from seatsim.recordings.recording import Recording
+from seatsim.scenario.scenario import Scenario
+
+Array = NDArray[np.float64]
+Table = Mapping[str, Array]
+
+MOTION = (
+    "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "displacement",
+    "velocity", "damper_force",
+)  # fmt: skip
+"""Channels of motion and force, which swing about zero and are never at rest for long."""
+LATE = 0.05
+"""Seconds by which no channel of a healthy recording is late, and that its rows may lack; a slow coil twice that.
+
+A sensor or logger that is late by less is a cause of a gap (sensor.lag, sensor.clock_skew) for the diagnosis to find.
+"""
+AT_REST = 3.0
+"""Standard deviation, over the stated noise, up to which a channel is taken to be at rest: noise is stated roughly."""
+
+
+def is_at_rest(values: Array, noise: float) -> bool:
+    """Say whether values show hardly more than their noise."""
+    return float(np.std(values)) <= AT_REST * noise
+
+
+class RunUnderTest(NamedTuple):
+    """One run under examination: its table, and what the recording says about it."""
+
+    name: str
+    table: Table
+    recording: Recording
+    nominal: Scenario
+
+    @property
+    def rate(self) -> float:
+        """Rows per second."""
+        return self.recording.header.sample_rate
+
+    @property
+    def rows(self) -> int:
+        """Rows of the table."""
+        return len(next(iter(self.table.values())))
+
+    @property
+    def driver(self) -> str:
+        """Channel of the excitation."""
+        return "floor_acceleration" if "floor_acceleration" in self.table else "displacement"
+
+    def noise(self, channel: str) -> float:
+        """Return the stated noise of a channel."""
+        return self.recording.channels[channel].noise_rms
+
+    def is_still(self, channel: str) -> bool:
+        """Say whether a channel shows hardly more than its noise."""
+        return is_at_rest(self.table[channel], self.noise(channel))
+
+    def issue(self, severity: Severity, kind: str, text: str, channel: str | None = None) -> Issue:
+        """Return an issue of this run, or of one channel of it."""
+        place = f"{self.name}, {channel}" if channel else self.name
+        return Issue(severity, kind, f"{place}: {text}", channel, self.name)

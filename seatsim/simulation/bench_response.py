@@ -1,0 +1,110 @@
+"""A damper on a bench: recorded motion and command in, force and coil current out."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline, UnivariateSpline
+
+from seatsim.effects.base import ON_SEAT, acts_on
+from seatsim.kernel.lag import lagged
+from seatsim.rig.coil import Coil
+from seatsim.rig.temperature import Thermal
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.errors import InputError
+from seatsim.schema.registry import name_of
+from seatsim.simulation.augment import (
+    augment_coil,
+    augment_damper,
+    augment_factors,
+    augment_temperature,
+    read_sensors,
+    select_in_loop,
+    undo_reading,
+)
+from seatsim.simulation.damper_bench import bench_force
+from seatsim.simulation.inputs import BenchInputs
+
+Array = NDArray[np.float64]
+EARLY = 1e-9
+"""Part of a row by which a command may be early, so that rounding of the half rows puts none off to the next."""
+
+
+def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: bool = False) -> dict[str, Array]:
+    """Return the simulated `damper_force` and `coil_current` of a bench at the rows of its inputs, shape (N,) each.
+
+    Displacement follows a quintic spline smoothed to within its stated noise, velocity its derivative or, where it is
+    recorded, its own spline. The command (or the command voltage times its gain) is held from its row until the next
+    and drives the coil; where only a coil current is recorded it drives the damper; where nothing is, the current is
+    zero.
+
+    Raises:
+        InputError: an effect acts on a part that a bench does not have. RunError: the damper's state ran away.
+    """
+    effects, interval = scenario.effects, inputs.interval
+    _check_effects(scenario)
+    true = _undo_readings(effects, inputs)
+    rows = interval * np.arange(len(true.displacement), dtype=np.float64)
+    fine = np.arange(2 * len(rows) - 1, dtype=np.float64) * 0.5 * interval
+    position = _smooth(interval, true.displacement.tobytes(), true.displacement_noise)
+    velocity = position.derivative()(fine) if true.velocity is None else CubicSpline(rows, true.velocity)(fine)
+    current = _coil_current(augment_coil(effects, scenario.coil), true, rows, fine)
+    damper, state = augment_damper(scenario.damper.record, select_in_loop(effects, carry_all_effects)[0])
+    temperature = augment_temperature(effects, 0.5 * interval, _temperature(scenario, true, rows, fine))
+    factors = augment_factors(effects, scenario.damper.factors)
+    force = bench_force(damper, position(fine), velocity, current, temperature, interval, factors, state)
+    return read_sensors(effects, interval, {"damper_force": force, "coil_current": current[::2]})
+
+
+def _check_effects(scenario: Scenario) -> None:
+    """Raise InputError at the first effect that acts on seat, plant or frame."""
+    for effect in scenario.effects:
+        if acts_on(type(effect), (*ON_SEAT, "plant", "push")):
+            name = name_of("effect", type(effect))
+            raise InputError(f"{scenario.name}: a damper bench has no part on which {name} acts; remove it")
+
+
+def _undo_readings(effects: tuple[object, ...], inputs: BenchInputs) -> BenchInputs:
+    """Return the inputs as they truly were."""
+
+    def true(channel: str, values: Array | None) -> Array | None:
+        return None if values is None else undo_reading(effects, values, channel, inputs.interval)
+
+    return inputs._replace(
+        displacement=undo_reading(effects, inputs.displacement, "displacement", inputs.interval),
+        velocity=true("velocity", inputs.velocity),
+        current_command=true("current_command", inputs.current_command),
+        command_voltage=true("command_voltage", inputs.command_voltage),
+        coil_current=true("coil_current", inputs.coil_current),
+        damper_temperature=true("damper_temperature", inputs.damper_temperature),
+    )
+
+
+@lru_cache(maxsize=64)
+def _smooth(interval: float, content: bytes, noise: float) -> UnivariateSpline:
+    """Return the spline through a channel, whose `content` is kept so that no run is smoothed twice."""
+    values = np.frombuffer(content)
+    return UnivariateSpline(np.arange(len(values)) * interval, values, k=5, s=len(values) * noise**2)
+
+
+def _coil_current(coil: Coil, true: BenchInputs, rows: Array, fine: Array) -> Array:
+    """Return the coil current in A on the half-row grid."""
+    command = true.current_command
+    if command is None and true.voltage_gain is not None and true.command_voltage is not None:
+        command = true.voltage_gain * true.command_voltage
+    if command is None:
+        return np.zeros(len(fine)) if true.coil_current is None else np.interp(fine, rows, true.coil_current)
+    held = np.searchsorted(rows, fine - coil.delay + EARLY * rows[1], side="right") - 1
+    start = 0.0 if true.coil_current is None else true.coil_current[0]
+    wanted = np.where(held < 0, start, np.clip(command, 0.0, coil.max_current)[np.maximum(held, 0)])
+    return np.asarray(lagged(coil, wanted, fine[1], start))
+
+
+def _temperature(scenario: Scenario, true: BenchInputs, rows: Array, fine: Array) -> Array:
+    """Return the damper's temperature in degC on the half-row grid."""
+    if true.damper_temperature is not None:
+        return np.interp(fine, rows, true.damper_temperature)
+    fixed = scenario.temperature
+    return np.full(len(fine), fixed.start if isinstance(fixed, Thermal) else fixed)
