@@ -86,8 +86,8 @@ class Component(NamedTuple):
 class Coordinates:
     """The free parameters of a record class, between the record and a vector of shape (P,).
 
-    start: a record of the class, from which sizes are taken; fixed: fields that stay as they are in it; levels: how many
-    currents the data hold, which a law's degree stays below, None for any number.
+    start: a record of the class, from which sizes are taken; fixed: fields that stay as they are in it; levels: how
+    many currents the data hold, which a law's degree stays below, None for any number.
     """
 
     def __init__(self, start: Any, scales: Scales, fixed: Sequence[str] = (), levels: int | None = None) -> None:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
-from seatsim.diagnosis.result import Diagnosis
+from seatsim.diagnosis.result import Diagnosis, GapFigures
 from seatsim.plots.diagnosis import answer as diagnosis_answer
 from seatsim.report.html import Html, joined, pictures, table, tag
 from seatsim.report.words import listed, percent, sentence
@@ -34,7 +33,7 @@ def head(diagnosis: Diagnosis) -> Html:
 
 def gaps(diagnosis: Diagnosis) -> Html:
     """Return the table of the gaps on held-out runs and its picture."""
-    channels = list(diagnosis.gap.before.get("channels", {}))
+    channels = list(diagnosis.gap.before.channels)
     stages = diagnosis_answer.stages(diagnosis)[1:]
     head = ["gap", *(words for _, words, *_ in stages), "noise floor", "shrinks by"]
     if diagnosis.verdict == "none":
@@ -87,6 +86,6 @@ def _explained(diagnosis: Diagnosis) -> str:
     return text
 
 
-def _value(values: dict[str, Any], name: str) -> float | None:
-    value = values.get("overall") if name == "overall" else values.get("channels", {}).get(name)
-    return None if value is None else float(value)
+def _value(figures: GapFigures, name: str) -> float | None:
+    """Return the overall figure, or that of a channel; None where the channel is not compared."""
+    return figures.overall if name == "overall" else figures.channels.get(name)

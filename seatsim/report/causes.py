@@ -12,7 +12,6 @@ from seatsim.report.words import estimate, listed, meaning, percent, plain, sent
 
 LIKELY = 0.05
 """Probability from which on the parameters of a cause are printed."""
-TITLES = {"name", "title"}
 
 
 def ranked(diagnosis: Diagnosis) -> Html:
@@ -36,16 +35,16 @@ def confusions(diagnosis: Diagnosis) -> Html:
 def _experiment(diagnosis: Diagnosis) -> Html:
     """Return the experiment that would decide, as it is described."""
     found = diagnosis.experiment
-    if not found:
+    if found is None:
         return Html("")
-    facts = {key: value for key, value in found.items() if value not in (None, "", [], {})}
-    title = next((str(facts[key]) for key in ("name", "title") if key in facts), "")
-    reason = str(facts.get("reason", ""))
-    rows = [(key.replace("_", " "), plain(facts[key])) for key in facts if key not in {"reason", *TITLES}]
-    parts = [tag("p", tag("strong", sentence(title.replace("_", " ")))) if title else Html("")]
-    parts += [tag("p", sentence(reason))] if reason else []
-    parts += [tag("dl", *(joined([tag("dt", key), tag("dd", text)]) for key, text in rows))] if rows else []
-    if diagnosis.experiment_scenario:
+    now, then = plain(found.likeness_now), plain(found.likeness_then)
+    rows = [("kind", found.kind), ("alikeness now", now), ("alikeness then", then)]
+    parts = [
+        tag("p", tag("strong", sentence(found.name.replace("_", " ")))),
+        tag("p", sentence(found.reason)),
+        tag("dl", *(joined([tag("dt", key), tag("dd", text)]) for key, text in rows)),
+    ]
+    if found.scenario is not None:
         parts.append(tag("p", "Its scenario is written beside this report, ready to run."))
     return tag("div", tag("h3", "What would decide"), *parts, class_="card")
 

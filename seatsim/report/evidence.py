@@ -33,17 +33,14 @@ def ranges(diagnosis: Diagnosis) -> Html:
 
 def missing(diagnosis: Diagnosis) -> Html:
     """Return what would close the gap, described and drawn, where the cause is unknown."""
-    found = diagnosis.evidence.latent
-    if not found:
+    found = diagnosis.evidence.discrepancy
+    if found is None:
         return Html("")
-    given = found.get("description") or []
-    sentences = [given] if isinstance(given, str) else list(given)
-    block = str(found.get("block", ""))
-    lead = f"What would close the gap in the {block}, estimated from the recording." if block else ""
+    lead = f"What would close the gap in the {found.block}, estimated from the recording."
     return joined(
         [
-            tag("p", lead, class_="lead") if lead else Html(""),
-            bullets(sentence(str(text)) for text in sentences),
+            tag("p", lead, class_="lead"),
+            bullets(sentence(text) for text in found.description),
             pictures(latent(diagnosis)),
         ]
     )

@@ -36,7 +36,7 @@ def stages(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
 
 def gaps(diagnosis: Diagnosis) -> Picture | None:
     """Return the gap of each channel on its way from the nominal simulation to the noise floor."""
-    channels = list(diagnosis.gap.before.get("channels", {}))
+    channels = list(diagnosis.gap.before.channels)
     if not channels:
         return None
     names = ["overall", *channels]

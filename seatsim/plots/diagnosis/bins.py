@@ -65,7 +65,7 @@ def worst(diagnosis: Diagnosis) -> tuple[Trace, dict[str, Array]] | None:
     same = [trace for trace in fitting if trace.run == fitting[0].run and len(settled(trace).time) > 1]
     if not same:
         return None
-    gaps = diagnosis.gap.before.get("channels", {})
+    gaps = diagnosis.gap.before.channels
     chosen = max(same, key=lambda trace: gaps.get(trace.channel, gap(trace)))
     begin = _begin(chosen.time)
     return settled(chosen), {name: values[begin:] for name, values in motion.items() if len(values) == length}

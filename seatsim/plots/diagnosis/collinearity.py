@@ -21,7 +21,7 @@ DARK_FROM = 0.55
 
 def alikeness(diagnosis: Diagnosis) -> Picture | None:
     """Return the heat map of how alike the traces of the likeliest effects are, and of those alike to them."""
-    names, matrix = diagnosis.evidence.alikeness
+    names, matrix = diagnosis.evidence.collinearity
     chosen = _chosen(diagnosis)
     if len(chosen) < 2:
         return None
@@ -49,7 +49,7 @@ def alikeness(diagnosis: Diagnosis) -> Picture | None:
 
 def _chosen(diagnosis: Diagnosis) -> list[int]:
     """Return the effects shown: selected, in a group, then by turns the likeliest and the most alike to those."""
-    names, matrix = diagnosis.evidence.alikeness
+    names, matrix = diagnosis.evidence.collinearity
     wanted = [*diagnosis.selected, *(name for group in diagnosis.indistinguishable for name in group)]
     wanted += [cause.effect for cause in diagnosis.causes[:3]]
     first = list(dict.fromkeys(names.index(name) for name in wanted if name in names))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,21 +27,20 @@ FALLING = Entry("mean while it falls", COLOURS[1], (0.0, (5.0, 1.5)), width=2.0)
 
 def latent(diagnosis: Diagnosis) -> list[Picture]:
     """Return the course of what would close the gap, whole and close up, and over what may drive it."""
-    found = diagnosis.evidence.latent
-    if not found or len(found.get("values", ())) < 2:
+    found = diagnosis.evidence.discrepancy
+    if found is None or len(found.values) < 2:
         return []
-    time, values = np.asarray(found["time"], dtype=float), np.asarray(found["values"], dtype=float)
-    shown = quantity(str(found.get("quantity", "missing")), str(found.get("unit", "")))
+    time, values = found.time, found.values
+    shown = quantity(found.quantity, found.unit)
     pictures = [_course(time, shown.factor * values, shown)]
-    against = _against(diagnosis, found, len(values))
+    against = _against(diagnosis, len(values))
     return pictures + [_over(x, shown.factor * values, OVER.get(name), name, shown) for name, x in against.items()]
 
 
-def _against(diagnosis: Diagnosis, found: dict[str, Any], length: int) -> dict[str, Array]:
-    """Return what the course is drawn over: its own companions, else the measured motion of the same rows."""
-    arrays = found.get("against") or diagnosis.evidence.motion
-    known = {str(name): np.asarray(values, dtype=float) for name, values in arrays.items()}
-    return {name: values for name, values in known.items() if len(values) == length and varies(values)}
+def _against(diagnosis: Diagnosis, length: int) -> dict[str, Array]:
+    """Return what the signal is drawn over: the measured motion of the same rows."""
+    motion = diagnosis.evidence.motion
+    return {name: values for name, values in motion.items() if len(values) == length and varies(values)}
 
 
 def _course(time: Array, values: Array, shown: Quantity) -> Picture:
