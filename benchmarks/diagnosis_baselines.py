@@ -42,7 +42,7 @@ from regressed import regressed
 from seatsim.diagnosis import select as searching
 from seatsim.diagnosis.candidates import candidates
 from seatsim.diagnosis.decide import movements
-from seatsim.diagnosis.design.isolability import isolable
+from seatsim.diagnosis.design.isolability import find_isolable_groups
 from seatsim.diagnosis.fit import Engine, Point, State
 from seatsim.diagnosis.problem import Problem, problem
 from seatsim.recordings.recording import load_recording
@@ -60,7 +60,7 @@ def verdict(posed: Problem, kind: str, effects: Sequence[str], blocks: Sequence[
         "where": [{"block": block, "share": 1.0 / len(ranked)} for block in ranked] if kind != "none" else [],
         "causes": [{"effect": effect, "probability": 1.0} for effect in effects],
         "selected": list(effects), "indistinguishable": [],
-        "isolable": isolable(posed.recording.header.rig, posed.recording.channels),
+        "isolable": find_isolable_groups(posed.recording.header.rig, posed.recording.channels),
     }  # fmt: skip
 
 

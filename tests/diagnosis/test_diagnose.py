@@ -6,7 +6,8 @@ import pytest
 from typer.testing import CliRunner
 
 import seatsim
-from seatsim.blind.make import absorbed, case, make
+from seatsim.blind.make import absorbed, case
+from seatsim.blind.make.make import make
 from seatsim.blind.sealed import unseal
 from seatsim.cli.app import app
 from seatsim.cli.outputs.diagnosis import write_diagnosis

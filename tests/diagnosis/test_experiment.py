@@ -1,4 +1,4 @@
-"""How alike effects are in a recording, and the experiment that tells apart those that are."""
+"""How collinear effects are in a recording, and the experiment that tells apart those that are."""
 
 import shutil
 from dataclasses import replace
@@ -8,12 +8,14 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.diagnosis.candidates import candidates
-from seatsim.diagnosis.design.collinearity import Side, alikeness, discrimination
-from seatsim.diagnosis.design.experiment import experiment
-from seatsim.diagnosis.fit import Engine, Point
-from seatsim.diagnosis.noise import whitening
-from seatsim.diagnosis.problem import problem
+from seatsim.diagnosis.candidates import list_candidates
+from seatsim.diagnosis.design.collinearity import measure_collinearity
+from seatsim.diagnosis.design.experiment import propose_experiment
+from seatsim.diagnosis.design.separability import PredictedExperiment, measure_separability
+from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.noise import weigh_noise
+from seatsim.diagnosis.objective import Objective
+from seatsim.diagnosis.parameters import Parameters
 from seatsim.effects.damper import GasSpring, SealFriction
 from seatsim.excitations.recording import RecordedRun
 from seatsim.recordings.compared import COMPARED
@@ -22,6 +24,7 @@ from seatsim.scenario.loading import single
 from seatsim.simulation.simulate import simulate
 
 from .damaged import edit, noisy, rewrite
+from .posed import pose
 
 FRICTIONS = ["damper.seal_friction", "suspension.friction"]
 
@@ -40,15 +43,12 @@ def recorded(sound, folder, effect, without=()):
 
 
 def fitted(rig, name):
-    """Fit the first form of an effect."""
-    at_hand = problem(load_recording(rig))
-    engine = Engine(at_hand, whitening(at_hand))
-    candidate = next(c for c in candidates(at_hand) if c.effect == name)
-    start = engine.states([Point(at_hand.rest, (candidate,), (np.array(candidate.start),))])[0]
-    engine.refresh(start)
-    state = engine.fitted(start)
-    engine.refresh(state)
-    return engine, state
+    """Fit the first structure of an effect, and linearise there."""
+    problem = pose(rig)
+    objective = Objective(problem, weigh_noise(problem))
+    candidate = next(c for c in list_candidates(problem) if c.effect == name)
+    fitted = refit(objective, Parameters(problem.nominal, (candidate,), (np.array(candidate.start),)))
+    return objective, objective.linearise_nuisances(fitted)
 
 
 @pytest.fixture(scope="module")
@@ -58,61 +58,63 @@ def rubbing(sound, tmp_path_factory):
 
 
 def test_without_a_load_cell_one_friction_is_like_the_other_and_unlike_the_rest(rubbing):
-    names, matrix = alikeness(*rubbing, [*FRICTIONS, "driver.mass", "damper.free_play", "sensor.gain", "no.such"])
+    names, matrix = measure_collinearity(
+        *rubbing, [*FRICTIONS, "driver.mass", "damper.free_play", "sensor.gain", "no.such"]
+    )
     assert names == [*FRICTIONS, "driver.mass", "damper.free_play", "sensor.gain"]
     assert matrix.shape == (5, 5) and np.allclose(matrix, matrix.T) and np.all(np.diag(matrix) == 1.0)
     assert matrix[0, 1] > 0.95 and matrix[0, 2:].max() < 0.8
     assert np.all((matrix >= 0.0) & (matrix <= 1.0))
-    assert np.array_equal(alikeness(*rubbing, names)[1], matrix)
+    assert np.array_equal(measure_collinearity(*rubbing, names).matrix, matrix)
 
 
 def test_a_load_cell_tells_friction_in_the_damper_from_friction_in_the_linkage(rubbing):
-    found = experiment(*rubbing, FRICTIONS)
-    assert (found["kind"], found["name"]) == ("intervention", "load_cell") and "scenario" not in found
-    assert found["alikeness_now"] > 0.99 > found["alikeness_then"]
-    assert "load cell" in found["reason"]
+    found = propose_experiment(*rubbing, FRICTIONS)
+    assert (found.kind, found.name) == ("intervention", "load_cell") and found.scenario is None
+    assert found.likeness_now > 0.99 > found.likeness_then
+    assert "load cell" in found.reason
 
 
 def test_what_no_experiment_can_tell_apart_is_said_to_be_so(rubbing):
-    found = experiment(*rubbing, [FRICTIONS[0], FRICTIONS[0]])
-    assert found["kind"] == "none" and found["alikeness_then"] > 0.999
+    found = propose_experiment(*rubbing, [FRICTIONS[0], FRICTIONS[0]])
+    assert found.kind == "none" and found.likeness_then > 0.999
 
 
 def test_a_calibration_tells_a_wrong_sensor_from_another_driver(rubbing):
-    found = experiment(*rubbing, ["sensor.gain", "driver.mass"])
-    assert (found["kind"], found["name"]) == ("intervention", "calibrate_sensor") and "calibrating" in found["reason"]
+    found = propose_experiment(*rubbing, ["sensor.gain", "driver.mass"])
+    assert (found.kind, found.name) == ("intervention", "calibrate_sensor") and "calibrating" in found.reason
 
 
 def test_frictions_have_the_same_forms_so_that_none_is_preferred_where_no_load_cell_tells_them(rubbing):
     forms = [
-        [(c.free, c.start, c.low, c.high) for c in candidates(rubbing[0].problem) if c.effect == name]
+        [(c.free, c.start, c.low, c.high) for c in list_candidates(rubbing[0].problem) if c.effect == name]
         for name in FRICTIONS
     ]
     assert forms[0] == forms[1]
 
 
 def test_beside_a_calibration_what_remains_is_told_apart_too(rubbing):
-    found = experiment(*rubbing, ["sensor.gain", *FRICTIONS])
-    assert (found["kind"], found["name"]) == ("intervention", "load_cell")
-    assert (
-        found["reason"].startswith("calibrating ") and "; beside that, repeat a run with a load cell" in found["reason"]
-    )
+    found = propose_experiment(*rubbing, ["sensor.gain", *FRICTIONS])
+    assert (found.kind, found.name) == ("intervention", "load_cell")
+    assert found.reason.startswith("calibrating ") and "; beside that, repeat a run with a load cell" in found.reason
 
 
 def test_a_proposed_excitation_is_a_scenario_that_runs(sound, tmp_path):
     rig = recorded(sound, tmp_path, GasSpring(preload=10.0, stiffness=600.0), ["damper_force"])
-    found = experiment(*fitted(rig, "damper.gas_spring"), ["damper.gas_spring", "suspension.progressive_spring"])
-    assert found["kind"] == "excitation" and found["alikeness_then"] < 0.9
-    YAML(typ="safe").dump(found["scenario"], tmp_path / "next.yaml")
+    found = propose_experiment(
+        *fitted(rig, "damper.gas_spring"), ["damper.gas_spring", "suspension.progressive_spring"]
+    )
+    assert found.kind == "excitation" and found.likeness_then < 0.9
+    YAML(typ="safe").dump(dict(found.scenario), tmp_path / "next.yaml")
     result = seatsim.run(tmp_path / "next.yaml")
     assert np.ptp(result["suspension_displacement"]) > 1e-3
 
 
-def test_discrimination_is_the_distance_that_no_parameter_takes_away():
+def test_separability_is_the_distance_that_no_parameter_takes_away():
     axes = np.eye(6)
-    old = Side(np.zeros((2, 3)), 1e-9 * axes[:1, :3], [1e-9 * axes[:1, :3]] * 2)
+    old = PredictedExperiment(np.zeros((2, 3)), 1e-9 * axes[:1, :3], [1e-9 * axes[:1, :3]] * 2)
     outputs = np.array([[0.0, 0.0, 0.0], [30.0, 40.0, 0.0]])
-    free = Side(outputs, 1e-9 * axes[:1, :3], [1e-9 * axes[:1, :3]] * 2)
-    tied = Side(outputs, 1e-9 * axes[:1, :3], [1e4 * axes[:1, :3]] * 2)
-    assert discrimination(old, free) == pytest.approx(50.0)
-    assert discrimination(old, tied) == pytest.approx(40.0)
+    free = PredictedExperiment(outputs, 1e-9 * axes[:1, :3], [1e-9 * axes[:1, :3]] * 2)
+    tied = PredictedExperiment(outputs, 1e-9 * axes[:1, :3], [1e4 * axes[:1, :3]] * 2)
+    assert measure_separability(old, free, 0.58, 10.0) == pytest.approx(50.0)
+    assert measure_separability(old, tied, 0.58, 10.0) == pytest.approx(40.0)

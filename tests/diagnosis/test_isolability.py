@@ -6,7 +6,7 @@ suspension, and the floor's unmeasured input enters the same force balance.
 
 import pytest
 
-from seatsim.diagnosis.design.isolability import Equation, isolable, losses, overdetermined
+from seatsim.diagnosis.design.isolability import Equation, find_isolable_groups, describe_missing_sensors, find_overdetermined
 
 ALL = {
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
@@ -30,14 +30,14 @@ TABLE = [
 
 @pytest.mark.parametrize(("absent", "merged"), TABLE)
 def test_the_groups_are_those_of_the_published_table(absent, merged):
-    groups = [set(group) - {"floor"} for group in isolable("seat", ALL - set(absent))]
+    groups = [set(group) - {"floor"} for group in find_isolable_groups("seat", ALL - set(absent))]
     assert [group for group in groups if len(group) > 1] == merged
     assert set().union(*groups) == {"damper", "coil", "suspension", "cushion", "driver", "sensor"}
     assert sum(map(len, groups)) == 6
 
 
 def test_the_floor_stands_with_the_suspension():
-    assert ["suspension", "floor"] in isolable("seat", ALL)
+    assert ["suspension", "floor"] in find_isolable_groups("seat", ALL)
 
 
 def test_the_redundancy_of_the_full_seat_is_five():
@@ -48,13 +48,13 @@ def test_the_redundancy_of_the_full_seat_is_five():
 
 
 def test_what_leaves_no_trace_stands_in_no_group():
-    groups = isolable("seat", ALL - {"current_command"})
+    groups = find_isolable_groups("seat", ALL - {"current_command"})
     assert not any("coil" in group for group in groups)
-    assert isolable("seat", {"floor_acceleration"}) == []
+    assert find_isolable_groups("seat", {"floor_acceleration"}) == []
 
 
 def test_without_any_record_of_the_current_coil_and_damper_are_one():
-    assert ["damper", "coil"] in isolable("seat", ALL - {"current_command", "coil_current"})
+    assert ["damper", "coil"] in find_isolable_groups("seat", ALL - {"current_command", "coil_current"})
 
 
 @pytest.mark.parametrize(
@@ -67,11 +67,11 @@ def test_without_any_record_of_the_current_coil_and_damper_are_one():
     ],
 )
 def test_a_bench_has_damper_coil_and_sensors(channels, groups):
-    assert isolable("damper_bench", channels) == groups
+    assert find_isolable_groups("damper_bench", channels) == groups
 
 
 def test_the_temperature_changes_no_group():
-    assert isolable("seat", ALL | {"damper_temperature"}) == isolable("seat", ALL)
+    assert find_isolable_groups("seat", ALL | {"damper_temperature"}) == find_isolable_groups("seat", ALL)
 
 
 @pytest.mark.parametrize(
@@ -84,16 +84,16 @@ def test_the_temperature_changes_no_group():
     ],
 )
 def test_a_missing_channel_and_its_remedy_are_one_sentence(absent, sentence):
-    assert any(sentence in said for said in losses("seat", ALL - {absent}))
+    assert any(sentence in said for said in describe_missing_sensors("seat", ALL - {absent}))
 
 
 def test_a_full_seat_lacks_nothing_but_the_floor_against_the_suspension():
-    (sentence,) = losses("seat", ALL)
+    (sentence,) = describe_missing_sensors("seat", ALL)
     assert sentence.startswith("suspension and floor cannot be told apart by any channel")
 
 
 def test_overdetermined_is_what_a_leftover_equation_reaches():
     square = [Equation(frozenset("a"), None), Equation(frozenset("ab"), None)]
-    assert overdetermined(square) == set()
-    assert overdetermined([*square, Equation(frozenset("a"), None)]) == {0, 2}
-    assert overdetermined([]) == set()
+    assert find_overdetermined(square) == set()
+    assert find_overdetermined([*square, Equation(frozenset("a"), None)]) == {0, 2}
+    assert find_overdetermined([]) == set()

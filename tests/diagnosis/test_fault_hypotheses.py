@@ -6,21 +6,22 @@ import shutil
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.fit import Engine, Point
-from seatsim.diagnosis.localise.hypotheses import suspects
-from seatsim.diagnosis.localise.input_estimate import INPUTS, unrepeated
-from seatsim.diagnosis.noise import whitening
-from seatsim.diagnosis.problem import problem
-from seatsim.recordings.recording import load_recording
+from seatsim.diagnosis.localise.hypotheses import evaluate_hypotheses
+from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
+from seatsim.diagnosis.localise.reconstruction import PORTS
+from seatsim.diagnosis.noise import weigh_noise
+from seatsim.diagnosis.objective import Objective
+from seatsim.diagnosis.parameters import Parameters
 from seatsim.simulation.inputs import Forces
 from seatsim.simulation.simulate import simulate
 
 from .damaged import blurred, limited, rewrite, stepped, with_play
+from .posed import pose
 
 
 @pytest.fixture(scope="module")
 def posed(sound):
-    return problem(load_recording(sound))
+    return pose(sound)
 
 
 def course(samples, rate):
@@ -30,25 +31,24 @@ def course(samples, rate):
 
 def with_input(posed, block, course=course):
     """Return the problem with the recording of a rig that has an input more, and the stated noise."""
-    where, rng, measured = INPUTS[block], np.random.default_rng(3), {}
+    port, rng, measured = PORTS[block], np.random.default_rng(3), {}
     for run in posed.runs:
         floor = posed.inputs[run].floor
         extra = 20.0 * course(len(floor.acceleration), 1.0 / floor.step)
-        forces = Forces(where.push * extra, where.lift * extra)
-        true = posed.simulated(run, posed.rest, (), posed.inputs[run]._replace(forces=forces))
+        forces = Forces(port.frame_force * extra, port.driver_force * extra)
+        true = posed.simulated(run, posed.nominal, (), posed.inputs[run]._replace(forces=forces))
         parts = round(1.0 / posed.recording.header.sample_rate / floor.step)
         cell = extra[::parts][posed.skip : posed.skip + true.shape[1]]
-        true[posed.channels.index("damper_force")] += where.cell * cell
+        true[posed.channels.index("damper_force")] += port.load_cell_error * cell
         measured[run] = true + posed.noise[:, None] * rng.standard_normal(true.shape)
     return dataclasses.replace(posed, measured=measured)
 
 
 def likeliest(posed):
-    engine = Engine(posed, whitening(posed))
-    state = engine.states([Point(posed.rest)])[0]
-    engine.refresh(state)
-    found = suspects(engine, state)
-    return min(found, key=lambda block: found[block].doubt), found
+    objective = Objective(posed, weigh_noise(posed))
+    nominal = objective.evaluate([Parameters(posed.nominal)])[0]
+    found = evaluate_hypotheses(objective, objective.linearise_nuisances(nominal))
+    return min(found, key=lambda block: found[block].negative_log_evidence), found
 
 
 @pytest.mark.parametrize("block", ["damper", "suspension", "cushion", "driver"])
@@ -61,14 +61,14 @@ def test_a_slow_force_is_no_wandering_zero_of_the_floor(posed):
     assert likeliest(slow)[0] in ("suspension", "driver")
 
 
-def test_a_current_that_the_command_does_not_foretell_is_the_coils(posed):
+def test_a_current_that_the_command_does_not_predict_is_the_coils(posed):
     rng, measured = np.random.default_rng(3), {}
     for run in posed.runs:
         floor = posed.inputs[run].floor
-        flowing = simulate(posed.augmented(posed.rest, ()), floor, carry_all_effects=True)["coil_current"]
+        flowing = simulate(posed.augmented(posed.nominal, ()), floor, carry_all_effects=True)["coil_current"]
         without_small = np.where(flowing > 0.3, flowing - 0.2, 0.0)
         logged = posed.inputs[run]._replace(floor=floor._replace(command=None, coil_current=without_small))
-        true = posed.simulated(run, posed.rest, (), logged)
+        true = posed.simulated(run, posed.nominal, (), logged)
         measured[run] = true + posed.noise[:, None] * rng.standard_normal(true.shape)
     assert likeliest(dataclasses.replace(posed, measured=measured))[0] == "coil"
 
@@ -87,7 +87,7 @@ def test_without_a_load_cell_damper_and_suspension_are_one(posed):
     shaken = with_input(posed, "suspension")
     measured = {run: values[kept] for run, values in shaken.measured.items()}
     best, found = likeliest(dataclasses.replace(shaken, channels=channels, measured=measured))
-    assert best == "damper" and found["suspension"].doubt == found["damper"].doubt
+    assert best == "damper" and found["suspension"].negative_log_evidence == found["damper"].negative_log_evidence
 
 
 def test_an_error_of_one_channel_is_the_sensors(posed):
@@ -104,7 +104,7 @@ def test_an_error_of_one_channel_is_the_sensors(posed):
 def test_a_floor_that_only_its_sensor_sees_rest_is_the_sensors(sound, tmp_path, fault):
     copy = shutil.copytree(sound, tmp_path / "copy")
     rewrite(copy, blurred(fault))
-    best, found = likeliest(problem(load_recording(copy)))
+    best, found = likeliest(pose(copy))
     assert best == "sensor"
     assert found[best].channel == "floor_acceleration"
     assert "floor" not in found
@@ -116,7 +116,7 @@ def repeated(posed, newtons):
     rng, measured = np.random.default_rng(5), {}
     for run in posed.runs:
         push = Forces(newtons * rng.standard_normal(len(posed.inputs[first].floor.acceleration)))
-        true = posed.simulated(first, posed.rest, (), posed.inputs[first]._replace(forces=push))
+        true = posed.simulated(first, posed.nominal, (), posed.inputs[first]._replace(forces=push))
         measured[run] = true + posed.noise[:, None] * rng.standard_normal(true.shape)
     runs = posed.recording.runs | {second: posed.recording.runs[second]._replace(repeat_of=first)}
     return dataclasses.replace(posed, measured=measured, recording=dataclasses.replace(posed.recording, runs=runs))
@@ -126,13 +126,13 @@ def test_a_force_that_does_not_repeat_is_found_for_every_run(posed):
     found = []
     for newtons in (0.0, 30.0):
         problem = repeated(posed, newtons)
-        engine = Engine(problem, whitening(problem))
-        forces = unrepeated(engine, engine.states([Point(problem.rest)])[0])
+        objective = Objective(problem, weigh_noise(problem))
+        forces = estimate_nonrepeatable_force(objective, objective.evaluate([Parameters(problem.nominal)])[0])
         assert set(forces) == set(problem.runs)
         found.append(np.std(forces[problem.runs[0]]))
     assert found[1] > 3.0 * found[0]
 
 
 def test_without_repeats_no_force_is_looked_for(posed):
-    engine = Engine(posed, whitening(posed))
-    assert unrepeated(engine, engine.states([Point(posed.rest)])[0]) is None
+    objective = Objective(posed, weigh_noise(posed))
+    assert estimate_nonrepeatable_force(objective, objective.evaluate([Parameters(posed.nominal)])[0]) is None

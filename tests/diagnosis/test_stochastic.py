@@ -1,4 +1,4 @@
-"""Causes whose course is random: a force from outside, a zero that wanders; and what only looks like them."""
+"""Effects with a stochastic signal: a force from outside, a bias drift; and what only looks like them."""
 
 import dataclasses
 
@@ -6,17 +6,20 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
-from seatsim.diagnosis.diagnose import solved
-from seatsim.diagnosis.fit import Point, State
-from seatsim.diagnosis.localise.discrepancy import Latent, foretold
-from seatsim.diagnosis.localise.stochastic import wandering
-from seatsim.diagnosis.noise import broadband
-from seatsim.diagnosis.problem import problem
-from seatsim.recordings.recording import load_recording
+from seatsim.diagnosis.localise.discrepancy import Discrepancy, is_bias_drift, is_from_outside
+from seatsim.diagnosis.localise.regression import predict_share
+from seatsim.diagnosis.localise.stochastic import find_bias_drift
+from seatsim.diagnosis.noise import measure_broadband
+from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.settings.localising import LocalisationSettings
 from seatsim.schema.registry import find
 from seatsim.simulation.inputs import Forces
 
+from .posed import pose, solved
+
 RATE = 500.0
+SETTINGS = LocalisationSettings()
 
 
 def coloured(samples, low, high, seed, rate=RATE):
@@ -28,31 +31,31 @@ def coloured(samples, low, high, seed, rate=RATE):
 
 def left(courses, block="suspension"):
     shares = {"velocity": 0.02, "everything": 0.03}
-    return Latent(block, "force", "N", dict(enumerate(courses)), shares)
+    return Discrepancy(block, "force", "N", dict(enumerate(courses)), shares)
 
 
 def test_a_force_from_outside_is_as_strong_in_every_run():
     course = coloured(5000, 1.0, 20.0, 1)
-    assert left([8.0 * course, 9.0 * course]).from_outside
-    assert not left([8.0 * course, 14.0 * course]).from_outside
+    assert is_from_outside(SETTINGS, left([8.0 * course, 9.0 * course]))
+    assert not is_from_outside(SETTINGS, left([8.0 * course, 14.0 * course]))
 
 
-def test_regressors_at_rest_foretell_nothing():
+def test_regressors_at_rest_predict_nothing():
     courses = {run: coloured(2000, 1.0, 20.0, seed) for seed, run in enumerate("ab")}
-    assert foretold({run: np.zeros((3, 2000)) for run in courses}, courses) == 0.0
-    assert foretold({run: course[None] for run, course in courses.items()}, courses) > 0.99
+    assert predict_share(SETTINGS, {run: np.zeros((3, 2000)) for run in courses}, courses) == 0.0
+    assert predict_share(SETTINGS, {run: course[None] for run, course in courses.items()}, courses) > 0.99
 
 
 def test_a_zero_wanders_slowly():
     slow, fast = coloured(12000, 0.02, 0.2, 2), coloured(12000, 2.0, 20.0, 3)
-    assert left([slow, slow + 0.1 * fast], "sensor").wanders(RATE)
-    assert not left([fast], "sensor").wanders(RATE)
-    assert not left([slow]).wanders(RATE)
+    assert is_bias_drift(SETTINGS, left([slow, slow + 0.1 * fast], "sensor"), RATE)
+    assert not is_bias_drift(SETTINGS, left([fast], "sensor"), RATE)
+    assert not is_bias_drift(SETTINGS, left([slow]), RATE)
 
 
 @pytest.fixture(scope="module")
 def posed(sound):
-    return problem(load_recording(sound))
+    return pose(sound)
 
 
 def noisy(posed, true):
@@ -63,12 +66,12 @@ def test_a_wandering_zero_is_named_with_its_channel(posed):
     k, measured = posed.channels.index("frame_acceleration"), {}
     rate = posed.recording.header.sample_rate
     for seed, run in enumerate(posed.runs):
-        true = posed.simulated(run, posed.rest, ())
+        true = posed.simulated(run, posed.nominal, ())
         true[k] += 0.3 * posed.spread[k] * coloured(true.shape[1], 0.05, 0.2, seed, rate)
         measured[run] = noisy(posed, true)
-    solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
-    assert solution.random == "sensor.bias"
-    assert solution.rest.channel == "frame_acceleration"
+    solution = solved(dataclasses.replace(posed, measured=measured))
+    assert solution.stochastic == "sensor.bias"
+    assert solution.discrepancy.channel == "frame_acceleration"
 
 
 def test_a_wandering_zero_of_the_floor_is_told_from_a_motion_of_it(posed):
@@ -77,21 +80,21 @@ def test_a_wandering_zero_of_the_floor_is_told_from_a_motion_of_it(posed):
         floor = posed.inputs[run].floor
         wander = 0.03 * coloured(len(floor.acceleration), 0.05, 0.2, seed, 1.0 / floor.step)
         moving = floor._replace(acceleration=floor.acceleration + wander)
-        measured[run] = noisy(posed, posed.simulated(run, posed.rest, (), posed.inputs[run]._replace(floor=moving)))
-    solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
-    assert (solution.random, solution.rest.channel) == ("sensor.bias", "floor_acceleration")
+        measured[run] = noisy(posed, posed.simulated(run, posed.nominal, (), posed.inputs[run]._replace(floor=moving)))
+    solution = solved(dataclasses.replace(posed, measured=measured))
+    assert (solution.stochastic, solution.discrepancy.channel) == ("sensor.bias", "floor_acceleration")
 
 
 def test_a_zero_that_wanders_beside_an_effect_is_named_too(posed):
     heavier, k, measured = find("effect", "driver.mass")(change=12.0), posed.channels.index("damper_force"), {}
     for seed, run in enumerate(posed.runs):
-        true = posed.simulated(run, posed.rest, [heavier])
+        true = posed.simulated(run, posed.nominal, [heavier])
         true[k] += 0.12 * posed.spread[k] * coloured(true.shape[1], 0.2, 0.35, seed, posed.recording.header.sample_rate)
         measured[run] = noisy(posed, true)
-    solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
-    assert (solution.random, solution.rest.channel) == ("sensor.bias", "damper_force")
-    assert solution.judgement.verdict == "known"
-    assert [term.effect for term in solution.judgement.chosen.point.terms] == ["driver.mass"]
+    solution = solved(dataclasses.replace(posed, measured=measured))
+    assert (solution.stochastic, solution.discrepancy.channel) == ("sensor.bias", "damper_force")
+    assert solution.decision.verdict == "known"
+    assert [term.effect for term in solution.decision.chosen.parameters.terms] == ["driver.mass"]
     assert {share.block for share in solution.where} == {"sensor", "driver"}
 
 
@@ -104,7 +107,7 @@ def test_one_channel_that_stays_open_has_a_wandering_zero_unless_it_is_the_trave
             k = posed.channels.index(name)
             for values in rest.values():
                 values[k] = share * posed.spread[k] * coloured(values.shape[1], 0.05, 0.2, 1, 250.0)
-        return wandering(posed, State(Point(posed.rest), rest, {}, 0.0))
+        return find_bias_drift(posed, Evaluation(Parameters(posed.nominal), rest, {}, 0.0))
 
     assert of(damper_force=0.1).channel == "damper_force"
     assert of(damper_force=0.01) is None
@@ -117,19 +120,19 @@ def test_a_random_force_is_named_unless_it_is_withheld(posed):
     for seed, run in enumerate(posed.runs):
         floor = posed.inputs[run].floor
         push = 15.0 * coloured(len(floor.acceleration), 1.0, 15.0, seed, 1.0 / floor.step)
-        true = posed.simulated(run, posed.rest, (), posed.inputs[run]._replace(forces=Forces(push)))
+        true = posed.simulated(run, posed.nominal, (), posed.inputs[run]._replace(forces=Forces(push)))
         measured[run] = noisy(posed, true)
     shaken = dataclasses.replace(posed, measured=measured)
-    assert solved(shaken, (), lambda _: None).random == "floor.unmeasured_input"
-    assert solved(shaken, ("floor.unmeasured_input",), lambda _: None).judgement.verdict == "unknown"
+    assert solved(shaken).stochastic == "floor.unmeasured_input"
+    assert solved(shaken, ("floor.unmeasured_input",)).decision.verdict == "unknown"
 
 
 def test_broadband_noise_is_seen_above_the_compared_band(posed):
     run, k = posed.runs[0], posed.channels.index("frame_acceleration")
     quiet = posed.noise[:, None] * np.random.default_rng(3).standard_normal(posed.measured[run].shape)
-    assert not np.any(broadband(posed, {run: quiet})[run])
+    assert not np.any(measure_broadband(posed, {run: quiet})[run])
     loud = np.where(np.arange(len(quiet))[:, None] == k, 10.0 * quiet, quiet)
-    found = broadband(posed, {run: loud})[run]
+    found = measure_broadband(posed, {run: loud})[run]
     assert np.flatnonzero(found).tolist() == [k]
     assert found[k, 0] == pytest.approx(99.0 * posed.noise[k] ** 2 * quiet.shape[1], rel=0.1)
 
@@ -138,9 +141,9 @@ def test_chatter_hides_no_cause(posed):
     heavier = find("effect", "driver.mass")(change=12.0)
     k, measured = posed.channels.index("frame_acceleration"), {}
     for seed, run in enumerate(posed.runs):
-        true = posed.simulated(run, posed.rest, [heavier])
+        true = posed.simulated(run, posed.nominal, [heavier])
         true[k] += 0.3 * posed.spread[k] * np.random.default_rng(seed).standard_normal(true.shape[1])
         measured[run] = noisy(posed, true)
-    solution = solved(dataclasses.replace(posed, measured=measured), (), lambda _: None)
-    assert solution.judgement.verdict == "known"
-    assert [term.effect for term in solution.judgement.chosen.point.terms] == ["driver.mass"]
+    solution = solved(dataclasses.replace(posed, measured=measured))
+    assert solution.decision.verdict == "known"
+    assert [term.effect for term in solution.decision.chosen.parameters.terms] == ["driver.mass"]

@@ -7,8 +7,9 @@ import pandas as pd
 import pytest
 
 import seatsim
-from seatsim.diagnosis.decide import groups_of
-from seatsim.diagnosis.fit import Point, State
+from seatsim.diagnosis.movement import group_equivalent
+from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.parameters import Parameters
 
 RATE = 250.0
 NOMINAL = """\
@@ -64,11 +65,11 @@ def test_a_known_effect_is_named_beside_a_form_that_is_wrong_everywhere(folder):
 
 
 def fitted(*effects):
-    """Return a state with these effects, of which nothing else is asked."""
-    return State(Point(np.zeros(0), tuple(SimpleNamespace(effect=effect) for effect in effects)), {}, {}, 0.0)
+    """Return an evaluation with these effects, of which nothing else is asked."""
+    return Evaluation(Parameters(np.zeros(0), tuple(SimpleNamespace(effect=effect) for effect in effects)), {}, {}, 0.0)
 
 
 def test_what_stands_for_one_of_two_effects_stands_for_it_in_other_sets():
     alike = [fitted("c", "b"), fitted("a", "d"), fitted("c", "d"), fitted("c", "e"), fitted("f", "g"), fitted("a")]
-    groups = groups_of(fitted("a", "b"), alike)
+    groups = group_equivalent(fitted("a", "b"), alike)
     assert groups == [["a", "c"], ["b", "d", "e"]]
