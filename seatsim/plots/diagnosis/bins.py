@@ -134,7 +134,7 @@ def spectrum(time: Array, courses: list[Array]) -> tuple[Array, Array]:
     rate = 1.0 / step(time)
     shortest = min(len(values) for values in courses)
     length = max(8, min(round(SEGMENT * rate), 2 * shortest // (AVERAGES + 1)))
-    found = [metrics.density(values, rate, min(length, shortest)) for values in courses]
+    found = [metrics.power_spectral_density(values, rate, min(length, shortest)) for values in courses]
     return found[0][0][1:], np.mean([power for _, power in found], axis=0)[1:]
 
 

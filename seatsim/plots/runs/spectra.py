@@ -95,7 +95,7 @@ def _floors(runs: Sequence[Run]) -> list[Run]:
 def _density(run: Run, channel: str) -> Density:
     values, rate = run.history[channel], 1 / run.history.step
     length = max(1, min(round(LONGEST * rate), 2 * len(values) // (AVERAGES + 1)))
-    frequency, power = metrics.density(values, rate, length)
+    frequency, power = metrics.power_spectral_density(values, rate, length)
     return _averaged(frequency, power)
 
 
