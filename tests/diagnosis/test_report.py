@@ -14,14 +14,14 @@ from matplotlib.text import Text
 
 from seatsim.diagnosis.result import Cause, Diagnosis, Estimate, Evidence, Gaps, Share, Trace
 from seatsim.plots.diagnosis import answer as diagnosis_answer
-from seatsim.plots.diagnosis import collinearity as diagnosis_alikeness
-from seatsim.plots.diagnosis import discrepancy as diagnosis_latent
+from seatsim.plots.diagnosis import collinearity as diagnosis_collinearity
+from seatsim.plots.diagnosis import discrepancy as diagnosis_discrepancy
 from seatsim.plots.diagnosis import maps as diagnosis_maps
 from seatsim.plots.diagnosis import signals as diagnosis_signals  # fmt: skip
-from seatsim.plots.diagnosis.bins import FEWEST, binned_rms, loudest, settled, worst
+from seatsim.plots.diagnosis.bins import FEWEST, bin_rms, drop_start, find_window, find_worst
 from seatsim.report import write_report
+from seatsim.report.formatting import format_estimate, format_percent, format_sentence
 from seatsim.report.html import tag
-from seatsim.report.words import estimate, percent, sentence
 
 RATE = 500.0
 SEAT = {
@@ -227,7 +227,7 @@ class Outline(HTMLParser):
 def drawn(monkeypatch):
     """Leave out the drawing of pictures, which takes most of the time; the pages are complete otherwise."""
     figures = []
-    monkeypatch.setattr("seatsim.report.html.png", lambda figure: figures.append(figure) or b"picture")
+    monkeypatch.setattr("seatsim.report.html.render_png", lambda figure: figures.append(figure) or b"picture")
     return figures
 
 
@@ -236,7 +236,7 @@ def pages(tmp_path_factory):
     """Diagnosis and page of each case, without drawn pictures."""
     folder, found = tmp_path_factory.mktemp("pages"), {}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("seatsim.report.html.png", lambda figure: b"picture")
+        patch.setattr("seatsim.report.html.render_png", lambda figure: b"picture")
         for case, make in CASES.items():
             diagnosis = make()
             found[case] = diagnosis, write_report(diagnosis, folder / f"{case}.html").read_text(encoding="utf-8")
@@ -247,7 +247,7 @@ def pages(tmp_path_factory):
 def test_the_answer_comes_first_and_empty_sections_vanish(case, pages):
     diagnosis, text = pages[case]
     outline = Outline(text)
-    assert outline.headings[0] == sentence(diagnosis.sentence)
+    assert outline.headings[0] == format_sentence(diagnosis.sentence)
     assert text.index("<h1>") < text.index("<section") and text.index("badge") < text.index("<h1>")
     assert f" {BADGES[case]}" in outline.words
     assert outline.anchors == SHOWN[case]
@@ -262,9 +262,9 @@ def test_the_table_has_the_gaps_of_each_channel(pages):
     cells = {name: re.findall(r"<td[^>]*>([^<]*)</td>", row) for name, row in rows}
     gap = diagnosis.gap
     stages = [gap.before, gap.calibrated, gap.after, gap.floor]
-    assert cells["overall"] == [*(percent(stage["overall"]) for stage in stages), percent(gap.shrink)]
+    assert cells["overall"] == [*(format_percent(stage["overall"]) for stage in stages), format_percent(gap.shrink)]
     force = [stage["channels"]["damper_force"] for stage in stages]
-    assert cells["damper force"] == [*map(percent, force), percent(1 - force[2] / force[0])]
+    assert cells["damper force"] == [*map(format_percent, force), format_percent(1 - force[2] / force[0])]
 
 
 def test_hostile_names_are_text(drawn, tmp_path):
@@ -333,10 +333,14 @@ def test_a_whole_page_is_small_quick_and_the_same_from_any_thread(tmp_path):
 @pytest.fixture(scope="module")
 def pictures():
     diagnosis = replace(unknown(("damper_force",)), selected=["damper.magnetic_saturation"])
-    found = [diagnosis_answer.gaps(diagnosis), diagnosis_answer.where(diagnosis), diagnosis_answer.ranking(diagnosis)]
-    found += [diagnosis_alikeness.alikeness(diagnosis), *diagnosis_latent.latent(diagnosis)]
-    found += [*diagnosis_signals.signals(diagnosis), *diagnosis_signals.spectra(diagnosis)]
-    found += diagnosis_maps.maps(diagnosis)
+    found = [
+        diagnosis_answer.plot_gaps(diagnosis),
+        diagnosis_answer.plot_location(diagnosis),
+        diagnosis_answer.plot_ranking(diagnosis),
+    ]
+    found += [diagnosis_collinearity.plot_collinearity(diagnosis), *diagnosis_discrepancy.plot_discrepancy(diagnosis)]
+    found += [*diagnosis_signals.plot_signals(diagnosis), *diagnosis_signals.plot_spectra(diagnosis)]
+    found += diagnosis_maps.plot_maps(diagnosis)
     for picture in found:
         FigureCanvasAgg(picture.figure).draw()
     return found
@@ -353,7 +357,7 @@ def test_texts_are_legible_and_inside_the_picture(pictures):
 
 def test_every_scale_has_a_unit_and_lines_have_a_legend(pictures):
     for picture in pictures:
-        if picture.title.startswith("Most alike"):
+        if picture.title.startswith("Most collinear"):
             continue
         panels = picture.figure.axes
         assert any(axes.get_xlabel().endswith("]") for axes in panels)
@@ -369,23 +373,23 @@ def test_every_scale_has_a_unit_and_lines_have_a_legend(pictures):
 def test_a_window_holds_the_burst():
     rows = np.arange(10_000) / RATE
     values = np.where((rows > 12.4) & (rows < 13.9), 1.0, 0.01)
-    window = loudest(rows, values, 2.0)
+    window = find_window(rows, values, 2.0)
     assert window.start <= 12.4 and window.end >= 13.9 and window.end - window.start == pytest.approx(2.0)
-    assert tuple(loudest(rows[:50], values[:50], 2.0)) == (0.0, pytest.approx(0.098))
+    assert tuple(find_window(rows[:50], values[:50], 2.0)) == (0.0, pytest.approx(0.098))
 
 
 def test_bins_of_few_samples_stay_empty():
     x = np.concatenate([np.full(FEWEST, 0.5), np.full(FEWEST - 1, 1.5)])
-    level = binned_rms(x, np.full(len(x), -3.0), np.array([0.0, 1.0, 2.0]))
+    level = bin_rms(x, np.full(len(x), -3.0), np.array([0.0, 1.0, 2.0]))
     assert level[0] == 3.0 and np.isnan(level[1])
 
 
 def test_the_first_second_is_left_out_and_the_worst_channel_is_mapped():
     diagnosis = known()
-    trace, motion = worst(diagnosis)
+    trace, motion = find_worst(diagnosis)
     assert trace.channel == "frame_acceleration" and trace.time[0] == 1.0
-    assert len(motion["velocity"]) == len(trace.time) == len(settled(diagnosis.evidence.traces[0]).time)
-    assert len(settled(trace).time) == len(trace.time)
+    assert len(motion["velocity"]) == len(trace.time) == len(drop_start(diagnosis.evidence.traces[0]).time)
+    assert len(drop_start(trace).time) == len(trace.time)
 
 
 def test_a_white_residual_of_the_noise_is_one_in_every_band():
@@ -396,18 +400,18 @@ def test_a_white_residual_of_the_noise_is_one_in_every_band():
     trace = Trace("run-a", "damper_force", "N", noise, rows, measured, clean, clean, clean)
     base = known()
     diagnosis = replace(base, evidence=replace(base.evidence, traces=[trace], motion={}))
-    picture = next(p for p in diagnosis_maps.maps(diagnosis) if p.title.startswith("Over frequency"))
+    picture = next(p for p in diagnosis_maps.plot_maps(diagnosis) if p.title.startswith("Over frequency"))
     level = picture.figure.axes[0].lines[0].get_ydata()
     np.testing.assert_allclose(level, 1.0, atol=0.25)
     assert level[-1] == pytest.approx(1.0, abs=0.03)
 
 
 def test_numbers_as_they_are_printed():
-    assert [percent(value) for value in (0.314, 0.0314, 0.0, None, np.nan)] == ["31 %", "3.1 %", "0 %", "–", "–"]
-    assert estimate(Estimate(0.08124, 0.0041, "A")) == "0.0812 ± 0.0041 A"
-    assert estimate(Estimate(4512.3, 130.0, "N s/m")) == "4512 ± 130 N·s/m"
-    assert estimate(Estimate(1.5, np.inf, "-")) == "1.5"
-    assert estimate("driver_acceleration") == "driver_acceleration"
-    assert sentence("no run is warmer than 35 degC") == "No run is warmer than 35 °C."
-    assert sentence("damper.remanence is at work.") == "damper.remanence is at work."
+    assert [format_percent(value) for value in (0.314, 0.0314, 0.0, None, np.nan)] == ["31 %", "3.1 %", "0 %", "–", "–"]
+    assert format_estimate(Estimate(0.08124, 0.0041, "A")) == "0.0812 ± 0.0041 A"
+    assert format_estimate(Estimate(4512.3, 130.0, "N s/m")) == "4512 ± 130 N·s/m"
+    assert format_estimate(Estimate(1.5, np.inf, "-")) == "1.5"
+    assert format_estimate("driver_acceleration") == "driver_acceleration"
+    assert format_sentence("no run is warmer than 35 degC") == "No run is warmer than 35 °C."
+    assert format_sentence("damper.remanence is at work.") == "damper.remanence is at work."
     assert tag("p", "a < b", class_="x", title="") == '<p class="x">a &lt; b</p>'
