@@ -36,9 +36,9 @@ def render_confusions(diagnosis: Diagnosis) -> Html:
         for group in diagnosis.indistinguishable
         if len(group) > 1
     ]
-    decides, alike = _render_experiment(diagnosis), embed_pictures([plot_collinearity(diagnosis)])
+    decides, collinear = _render_experiment(diagnosis), embed_pictures([plot_collinearity(diagnosis)])
     lead = [tag("p", text, class_="lead") for text in sentences]
-    return join([*lead, tag("div", alike, decides, class_="beside")]) if lead or decides or alike else Html("")
+    return join([*lead, tag("div", collinear, decides, class_="beside")]) if lead or decides or collinear else Html("")
 
 
 def _render_experiment(diagnosis: Diagnosis) -> Html:

@@ -18,10 +18,18 @@ from seatsim.plots.diagnosis import collinearity as diagnosis_collinearity
 from seatsim.plots.diagnosis import discrepancy as diagnosis_discrepancy
 from seatsim.plots.diagnosis import maps as diagnosis_maps
 from seatsim.plots.diagnosis import signals as diagnosis_signals  # fmt: skip
+from seatsim.plots.diagnosis.answer import read_gap, select_stages
 from seatsim.plots.diagnosis.bins import FEWEST, bin_rms, drop_start, find_window, find_worst
 from seatsim.report import write_report
-from seatsim.report.formatting import format_estimate, format_percent, format_sentence
-from seatsim.report.html import tag
+from seatsim.report.formatting import (
+    describe_effect,
+    format_estimate,
+    format_percent,
+    format_sentence,
+    format_value,
+    join_names,
+)
+from seatsim.report.html import Html, join, make_list, make_table, tag
 
 RATE = 500.0
 SEAT = {
@@ -415,3 +423,33 @@ def test_numbers_as_they_are_printed():
     assert format_sentence("no run is warmer than 35 degC") == "No run is warmer than 35 °C."
     assert format_sentence("damper.remanence is at work.") == "damper.remanence is at work."
     assert tag("p", "a < b", class_="x", title="") == '<p class="x">a &lt; b</p>'
+
+
+def test_text_is_escaped_and_markup_is_not():
+    assert join(["a < b", Html("<b>c</b>")], " & ") == "a &lt; b &amp; <b>c</b>"
+    assert make_list([]) == "" and make_list(["<"]) == "<ul><li>&lt;</li></ul>"
+    assert tag("img", alt='"', aria_label="x") == '<img alt="&quot;" aria-label="x">'
+
+
+def test_a_table_tells_words_from_numbers_and_marks_rows():
+    text = make_table(["name", "value"], [["a", "1"], ["b", "2"]], words=1, strong=[1])
+    assert text.count('<td class="number">') == 2 and text.count('<th scope="row">') == 2
+    assert '<tr class="strong"><th scope="row">b</th>' in text and '<tr><th scope="row">a</th>' in text
+
+
+def test_words_as_they_are_printed():
+    assert join_names(["a"]) == "a" and join_names(["a", "b", "c"], "or") == "a, b or c"
+    assert [format_value(value) for value in ("x", 12.3456, ["a", "b"], {"c": 1}, True)] == [
+        "x", "12.35", "a, b", '{"c": 1}', "true",
+    ]  # fmt: skip
+    assert describe_effect("no.such_effect") == ""
+    assert describe_effect("suspension.friction") and "`" not in describe_effect("suspension.friction")
+
+
+def test_the_gap_of_a_stage_is_read_by_channel():
+    gaps = known().gap
+    assert read_gap(gaps, "after", "overall") == gaps.after["overall"]
+    assert read_gap(gaps, "before", "damper_force") == gaps.before["channels"]["damper_force"]
+    assert read_gap(gaps, "floor", "no_such_channel") is None
+    assert [stage.key for stage in select_stages(known())] == ["floor", "before", "calibrated", "after"]
+    assert [stage.key for stage in select_stages(none())] == ["floor", "before", "calibrated"]

@@ -28,9 +28,9 @@ def select_shown(runs: Sequence[Run]) -> list[Run]:
         return list(runs)
     # Lines of the same swept values differ in their variant, which is what a reader compares.
     first = _swept_values(runs[0])
-    alike = [run for run in runs if _swept_values(run) == first]
-    if 1 < len(alike) <= MOST:
-        return alike
+    group = [run for run in runs if _swept_values(run) == first]
+    if 1 < len(group) <= MOST:
+        return group
     return spread_evenly(runs, MOST)
 
 
@@ -45,20 +45,20 @@ def label_runs(runs: Sequence[Run], longest: int = LONGEST, without: str = "") -
     return [clean_text(_describe(run.scenario, several, without), longest) for run in runs]
 
 
-def distinguish_runs(alike: Sequence[Run], runs: Sequence[Run]) -> tuple[str, list[str]]:
+def distinguish_runs(group: Sequence[Run], runs: Sequence[Run]) -> tuple[str, list[str]]:
     """Return what sets some of the runs apart from the others, and what sets each of these apart from the rest."""
-    keys = [key for key in alike[0].scenario.label if len({str(run.scenario.label.get(key)) for run in alike}) == 1]
+    keys = [key for key in group[0].scenario.label if len({str(run.scenario.label.get(key)) for run in group}) == 1]
     several = len({run.scenario.name for run in runs}) > 1
-    same = len({run.scenario.name for run in alike}) == 1
-    shared = [_describe_part(alike[0].scenario, key, alike[0].scenario.label[key]) for key in keys]
+    same = len({run.scenario.name for run in group}) == 1
+    shared = [_describe_part(group[0].scenario, key, group[0].scenario.label[key]) for key in keys]
     own = [
         [_describe_part(run.scenario, key, value) for key, value in run.scenario.label.items() if key not in keys]
-        for run in alike
+        for run in group
     ]
-    heading = ", ".join([alike[0].scenario.name] * (several and same) + shared)
+    heading = ", ".join([group[0].scenario.name] * (several and same) + shared)
     names = [
         ", ".join([run.scenario.name] * (not same) + parts) or run.scenario.name
-        for run, parts in zip(alike, own, strict=True)
+        for run, parts in zip(group, own, strict=True)
     ]
     return clean_text(heading, LONGEST), [clean_text(name, LONGEST) for name in names]
 

@@ -104,7 +104,7 @@ def _estimate_density(run: Run, channel: str) -> Density:
 def _average_bands(frequency: Array, power: Array) -> Density:
     """Return means over bands of equal width on a logarithmic axis; lines further apart than a band stay as they are.
 
-    Otherwise the many lines of the high decades would make a thick noisy trace of the drawn line.
+    Otherwise the many lines of the high decades would make the drawn line thick and noisy.
     """
     inside = (frequency >= BAND[0]) & (frequency <= BAND[1])
     frequency, power = frequency[inside], power[inside]
