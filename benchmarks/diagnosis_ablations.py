@@ -28,7 +28,7 @@ from unittest.mock import patch
 import numpy as np
 from cases import Array, arguments, can_be_fed, fed, opened, show, twin, white, work
 
-from seatsim.cli.outputs.diagnosis import contents
+from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.diagnosis import decide as judging
 from seatsim.diagnosis import diagnose as diagnosing
 from seatsim.diagnosis import noise as weighing
@@ -122,7 +122,7 @@ def diagnosed(part: str, case: Path) -> dict[str, Any]:
     with ExitStack() as stack:
         for module, name, value in PARTS[part]:
             stack.enter_context(patch.object(module, name, value))
-        return contents(diagnosing.diagnose(case))
+        return encode_diagnosis(diagnosing.diagnose(case))
 
 
 def main() -> None:

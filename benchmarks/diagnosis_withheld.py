@@ -27,7 +27,7 @@ from threadpoolctl import threadpool_limits
 from seatsim.blind.make.draw import Order
 from seatsim.blind.make.make import make_case
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
-from seatsim.cli.outputs.diagnosis import contents
+from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.diagnosis.candidates import candidates
 from seatsim.diagnosis.decide import EXPLAINED
 from seatsim.diagnosis.design.collinearity import with_member
@@ -66,7 +66,7 @@ def case_name(k: int) -> str:
 
 def diagnosed(without: Sequence[str], case: Path) -> dict[str, Any]:
     """Return the diagnosis of a case by a library without some effects."""
-    return contents(diagnose(case, without=without))
+    return encode_diagnosis(diagnose(case, without=without))
 
 
 def imitated(case: Path, effect: str) -> str:

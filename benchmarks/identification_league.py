@@ -26,7 +26,7 @@ from rich.progress import track
 from rich.table import Table
 from threadpoolctl import threadpool_limits
 
-from seatsim.cli.outputs.identification import contents, parameters
+from seatsim.cli.outputs.identification import encode_identification, encode_parameters
 from seatsim.identification.identify import Request, identify, predict
 from seatsim.schema.files import write_json
 from seatsim.schema.registry import names
@@ -83,7 +83,7 @@ def done(task: Task, out: Path) -> Found:
     if not path.exists():
         found = identify(task.data, task.model, task.request)
         found = predict(found, task.further, AVERAGE, centred=True) if task.further else found
-        write_json(path, {**contents(found), "warm": found.warm, "file": parameters(found)})
+        write_json(path, {**encode_identification(found), "warm": found.warm, "file": encode_parameters(found)})
     return dict(json.loads(path.read_text(encoding="utf-8")))
 
 

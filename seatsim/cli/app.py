@@ -103,7 +103,7 @@ def diagnose(
     ] = None,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
-    from seatsim.cli.outputs.diagnosis import tables, write_diagnosis
+    from seatsim.cli.outputs.diagnosis import make_tables, write_diagnosis
     from seatsim.diagnosis.diagnose import diagnose as find_cause
     from seatsim.schema.registry import find
 
@@ -112,7 +112,7 @@ def diagnose(
         find("effect", name)
     with show_progress() as progress:
         diagnosis = find_cause(recording, withheld, progress)
-    for table in tables(diagnosis):
+    for table in make_tables(diagnosis):
         out.print(table)
     warn(diagnosis.notes)
     say(diagnosis.sentence)

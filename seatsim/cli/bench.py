@@ -31,7 +31,7 @@ def characterise(
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
     from seatsim.characterisation.of_model import characterise_model, settings_of, specimen
     from seatsim.characterisation.summary import characterise as of_records
-    from seatsim.cli.outputs.characterisation import WIDEST_TABLE, remarks, tables, write_characterisation
+    from seatsim.cli.outputs.characterisation import WIDEST_TABLE, collect_remarks, make_tables, write_characterisation
     from seatsim.recordings.bench_tables import load_bench
 
     grid = (currents, temperatures, amplitudes, frequencies)
@@ -43,9 +43,9 @@ def characterise(
     else:
         tested = specimen(model, parameters)
         found = characterise_model(tested, settings_of(tested, *grid))
-    for table in tables(found):
+    for table in make_tables(found):
         wide(WIDEST_TABLE).print(table)
-    warn(remarks(found))
+    warn(collect_remarks(found))
     folder = out_folder or Path("out") / f"characterise-{found.name}"
     wrote(folder, write_characterisation(found, folder))
 
@@ -89,13 +89,13 @@ def identify(
 
 
 def _identify(records: list[BenchRecord], model: str, request: Request, beside: Further, folder: Path) -> None:
-    from seatsim.cli.outputs.identification import tables, write_identification
+    from seatsim.cli.outputs.identification import make_tables, write_identification
     from seatsim.identification.identify import identify_records, predict_records
 
     with show_progress() as progress:
         found = predict_records(identify_records(records, model, request, progress), beside)
         paths = write_identification(found, folder)
-    for table in tables(found):
+    for table in make_tables(found):
         out.print(table)
     warn(found.notes)
     wrote(folder, paths)
@@ -103,14 +103,14 @@ def _identify(records: list[BenchRecord], model: str, request: Request, beside: 
 
 def _league(records: list[BenchRecord], request: Request, beside: Further, folder: Path) -> None:
     """Identify every model, print and write the table; exit 1 where one failed."""
-    from seatsim.cli.outputs.identification import league_table, write_identification, write_league
+    from seatsim.cli.outputs.identification import make_league_table, write_identification, write_league
     from seatsim.identification.league import league
 
     with show_progress() as progress:
         places = league(
             records, request, beside, folder, progress, lambda found: write_identification(found, folder / found.model)
         )
-    out.print(league_table(places))
+    out.print(make_league_table(places))
     failed = [place for place in places if place.failed]
     for place in failed:
         complain(f"failed: {place.failed}")

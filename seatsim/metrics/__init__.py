@@ -1,4 +1,7 @@
-"""What comes out of a run: comfort, motion, force and energy as single figures."""
+"""What comes out of a run: comfort, motion, force and energy as single figures, and the spectra behind them.
+
+Everything here is a function of sampled signals in SI units: no scenario, no simulation, no file is known.
+"""
 
 from seatsim.metrics.comfort import (
     Dose,
@@ -22,10 +25,10 @@ from seatsim.metrics.motion import (
     peak,
     rms,
 )
-from seatsim.metrics.spectra import cross_density, density
+from seatsim.metrics.spectra import cross_spectral_density, power_spectral_density
 from seatsim.metrics.table import METRICS, Metric, MetricSpecification, summarise
 from seatsim.metrics.transmissibility import Transmissibility, transmissibility
-from seatsim.metrics.weighting import WEIGHTINGS, Weighting, response, weight
+from seatsim.metrics.weighting import WEIGHTINGS, Weighting, frequency_response, weight
 
 __all__ = [
     "METRICS",
@@ -37,19 +40,19 @@ __all__ = [
     "Transmissibility",
     "Weighting",
     "crest_factor",
-    "cross_density",
+    "cross_spectral_density",
     "daily_exposure",
     "daily_vdv",
-    "density",
     "dose",
     "electrical_energy",
     "end_stop_hits",
     "energy_residual",
     "estimated_vdv",
     "force_tracking_error",
+    "frequency_response",
     "mtvv",
     "peak",
-    "response",
+    "power_spectral_density",
     "rms",
     "running_rms",
     "seat_factor",

@@ -1,4 +1,4 @@
-"""What every metric asks of its input, checked in one place."""
+"""What every metric requires of its input, checked in one place so that each error names the signal."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def as_signal(values: ArrayLike, name: str = "signal") -> Array:
 
 
 def as_pair(first: ArrayLike, second: ArrayLike, names: tuple[str, str]) -> tuple[Array, Array]:
-    """Return two signals of the same length.
+    """Return two signals of the same length, shape (N,) each; `names` are theirs in an error.
 
     Raises:
         InputError: one of them is no signal, or their lengths differ.
@@ -39,11 +39,11 @@ def as_pair(first: ArrayLike, second: ArrayLike, names: tuple[str, str]) -> tupl
     return a, b
 
 
-def finite(signal: Array, name: str) -> Array:
-    """Return the signal, all of whose samples are numbers.
+def require_finite(signal: Array, name: str) -> Array:
+    """Return the signal unchanged, shape (N,), after checking that all of its samples are finite.
 
     Raises:
-        InputError: one is NaN or infinite.
+        InputError: a sample is NaN or infinite; the error gives the index of the first.
     """
     numbers = np.isfinite(signal)
     if not numbers.all():
@@ -51,8 +51,8 @@ def finite(signal: Array, name: str) -> Array:
     return signal
 
 
-def positive(value: float, name: str) -> float:
-    """Return a number that is finite and above zero.
+def require_positive(value: float, name: str) -> float:
+    """Return `value` as a float after checking that it is finite and above zero.
 
     Raises:
         InputError: it is not.

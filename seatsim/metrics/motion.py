@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from seatsim.metrics.arrays import as_pair, as_signal, positive, ratio
+from seatsim.metrics.arrays import as_pair, as_signal, ratio, require_positive
 from seatsim.schema.errors import InputError
 
 
@@ -30,6 +30,7 @@ def peak(signal: ArrayLike) -> float:
         InputError: the signal is empty or not one-dimensional.
     """
     x = as_signal(signal)
+    # Both extremes in place of `abs`, which would copy a signal of a million samples.
     return float(max(np.max(x), -np.min(x)))
 
 
@@ -53,7 +54,8 @@ def end_stop_hits(displacement: ArrayLike, travel: tuple[float, float]) -> int:
     return _entries(x < low) + _entries(x > high)
 
 
-def _entries(inside: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> int:
+def _entries(inside: NDArray[np.bool_]) -> int:
+    """Return how often a condition becomes true, the first sample included."""
     return int(inside[0]) + int(np.count_nonzero(inside[1:] & ~inside[:-1]))
 
 
@@ -101,8 +103,8 @@ def electrical_energy(current: ArrayLike, resistance: float, sample_rate: float)
         InputError: resistance or sample rate is not above 0, or the current is no signal.
     """
     i = as_signal(current, "current")
-    step = 1 / positive(sample_rate, "sample_rate")
-    return positive(resistance, "resistance") * float(np.trapezoid(i * i, dx=step))
+    step = 1 / require_positive(sample_rate, "sample_rate")
+    return require_positive(resistance, "resistance") * float(np.trapezoid(i * i, dx=step))
 
 
 def energy_residual(supplied: ArrayLike, parts: Sequence[ArrayLike]) -> float:

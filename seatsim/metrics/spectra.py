@@ -10,8 +10,8 @@ from seatsim.metrics.arrays import Array
 from seatsim.metrics.weighting import ComplexArray
 
 
-def cross_density(x: Array, y: Array, sample_rate: float, length: int) -> tuple[Array, ComplexArray]:
-    """Return frequencies in Hz and the one-sided cross density `S_xy(f)`, shape (F,), in units of x times y per Hz.
+def cross_spectral_density(x: Array, y: Array, sample_rate: float, length: int) -> tuple[Array, ComplexArray]:
+    """Return frequencies in Hz and the one-sided cross spectral density `S_xy(f)`, shape (F,), in units of x y per Hz.
 
     `S_xy = 2 mean(conj(X) Y) / (sample_rate sum(w^2))` over half-overlapping segments of `length` samples, each with
     its mean removed and under a periodic Hann window w: what `scipy.signal.csd(x, y, sample_rate, nperseg=length)`
@@ -22,13 +22,17 @@ def cross_density(x: Array, y: Array, sample_rate: float, length: int) -> tuple[
     first, second = (_segments(values, length) * window for values in (x, y))
     products = np.conj(fft.rfft(first, axis=-1)) * fft.rfft(second, axis=-1)
     density = products.mean(axis=0) / (sample_rate * np.sum(window**2))
+    # One-sided: every line stands for its negative frequency too, except zero and, for even lengths, Nyquist's.
     density[1 : (length + 1) // 2] *= 2.0
     return fft.rfftfreq(length, 1.0 / sample_rate), density
 
 
-def density(x: Array, sample_rate: float, length: int) -> tuple[Array, Array]:
-    """Return frequencies in Hz and the one-sided power spectral density of x, shape (F,)."""
-    frequency, power = cross_density(x, x, sample_rate, length)
+def power_spectral_density(x: Array, sample_rate: float, length: int) -> tuple[Array, Array]:
+    """Return frequencies in Hz and the one-sided power spectral density `S_xx(f)`, shape (F,), in units of x^2 per Hz.
+
+    Estimated as in `cross_spectral_density`, over segments of `length` samples.
+    """
+    frequency, power = cross_spectral_density(x, x, sample_rate, length)
     return frequency, power.real
 
 

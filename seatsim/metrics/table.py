@@ -1,4 +1,4 @@
-"""The table of one run: every metric is declared here once, with unit, meaning and how it comes about."""
+"""The table of one run: every metric is declared here once, with unit, meaning and the function that computes it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from seatsim.metrics.motion import (
     peak,
     rms,
 )
-from seatsim.metrics.record import Absent, Record
+from seatsim.metrics.record import MissingInput, RunChannels
 
 
 class Metric(NamedTuple):
@@ -30,20 +30,23 @@ class Metric(NamedTuple):
     meaning: str
 
 
-class Run(NamedTuple):
-    """What the metrics read: the channels, and what is known of the rig (None where it is not)."""
+class MetricInputs(NamedTuple):
+    """What the metrics read: the channels, and what is known of the rig (None where it is not).
 
-    record: Record
+    `travel` is (low, high) of the suspension in m, `coil_resistance` is in ohm.
+    """
+
+    channels: RunChannels
     travel: tuple[float, float] | None
     coil_resistance: float | None
 
 
 class MetricSpecification(NamedTuple):
-    """A metric before there is a run: `value` works it out, or raises `Absent` where an input is missing."""
+    """A metric before there is a run: `compute` returns its value, or raises `MissingInput` where it lacks an input."""
 
     unit: str
     meaning: str
-    value: Callable[[Run], float]
+    compute: Callable[[MetricInputs], float]
 
 
 def summarise(
@@ -72,94 +75,95 @@ def summarise(
         InputError: step, settle, travel or resistance out of range, channels not of one length,
             or a channel that must be weighted and is not finite.
     """
-    run = Run(Record(history, step, settle), travel, coil_resistance)
+    inputs = MetricInputs(RunChannels(history, step, settle), travel, coil_resistance)
     metrics = {}
     for name, specification in METRICS.items():
         try:
-            metrics[name] = Metric(specification.value(run), specification.unit, specification.meaning)
-        except Absent:
+            metrics[name] = Metric(specification.compute(inputs), specification.unit, specification.meaning)
+        except MissingInput:
             continue
     return metrics
 
 
-def _rms(channel: str) -> Callable[[Run], float]:
-    return lambda run: rms(run.record.settled(channel))
+def _rms_of(channel: str) -> Callable[[MetricInputs], float]:
+    return lambda inputs: rms(inputs.channels.settled(channel))
 
 
-def _peak(channel: str) -> Callable[[Run], float]:
-    return lambda run: peak(run.record.settled(channel))
+def _peak_of(channel: str) -> Callable[[MetricInputs], float]:
+    return lambda inputs: peak(inputs.channels.settled(channel))
 
 
-def _weighted_rms(run: Run) -> float:
-    return rms(run.record.weighted("driver_acceleration"))
+def _weighted_rms(inputs: MetricInputs) -> float:
+    return rms(inputs.channels.weighted("driver_acceleration"))
 
 
-def _vdv(run: Run) -> float:
-    return vdv(run.record.weighted("driver_acceleration"), run.record.sample_rate)
+def _vdv(inputs: MetricInputs) -> float:
+    return vdv(inputs.channels.weighted("driver_acceleration"), inputs.channels.sample_rate)
 
 
-def _mtvv(run: Run) -> float:
-    return mtvv(run.record.weighted("driver_acceleration"), run.record.sample_rate)
+def _mtvv(inputs: MetricInputs) -> float:
+    return mtvv(inputs.channels.weighted("driver_acceleration"), inputs.channels.sample_rate)
 
 
-def _crest_factor(run: Run) -> float:
-    return crest_factor(run.record.weighted("driver_acceleration"))
+def _crest_factor(inputs: MetricInputs) -> float:
+    return crest_factor(inputs.channels.weighted("driver_acceleration"))
 
 
-def _seat_factor(run: Run) -> float:
-    return ratio(_weighted_rms(run), rms(run.record.weighted("floor_acceleration")))
+def _seat_factor(inputs: MetricInputs) -> float:
+    return ratio(_weighted_rms(inputs), rms(inputs.channels.weighted("floor_acceleration")))
 
 
-def _end_stop_hits(run: Run) -> float:
-    if run.travel is None:
-        raise Absent("travel")
-    return float(end_stop_hits(run.record.whole("suspension_displacement"), run.travel))
+def _end_stop_hits(inputs: MetricInputs) -> float:
+    if inputs.travel is None:
+        raise MissingInput("travel")
+    return float(end_stop_hits(inputs.channels.whole("suspension_displacement"), inputs.travel))
 
 
-def _tracking(run: Run) -> TrackingError:
-    return force_tracking_error(run.record.settled("wanted_force"), run.record.settled("damper_force"))
+def _tracking(inputs: MetricInputs) -> TrackingError:
+    return force_tracking_error(inputs.channels.settled("wanted_force"), inputs.channels.settled("damper_force"))
 
 
-def _tracking_error(run: Run) -> float:
-    return _tracking(run).rms
+def _tracking_error(inputs: MetricInputs) -> float:
+    return _tracking(inputs).rms
 
 
-def _tracking_relative(run: Run) -> float:
-    return _tracking(run).relative
+def _tracking_relative(inputs: MetricInputs) -> float:
+    return _tracking(inputs).relative
 
 
-def _served_share(run: Run) -> float:
-    served = run.record.settled("force_served")
+def _served_share(inputs: MetricInputs) -> float:
+    served = inputs.channels.settled("force_served")
+    # NaN where the law wants no force: such samples are neither served nor missed.
     asked = served[~np.isnan(served)]
     return ratio(float(asked.sum()), asked.size)
 
 
-def _electrical_energy(run: Run) -> float:
-    if run.coil_resistance is None:
-        raise Absent("coil_resistance")
-    return electrical_energy(run.record.whole("coil_current"), run.coil_resistance, run.record.sample_rate)
+def _electrical_energy(inputs: MetricInputs) -> float:
+    if inputs.coil_resistance is None:
+        raise MissingInput("coil_resistance")
+    return electrical_energy(inputs.channels.whole("coil_current"), inputs.coil_resistance, inputs.channels.sample_rate)
 
 
-def _damper_energy(run: Run) -> float:
-    energy = run.record.whole("energy_damper")
+def _damper_energy(inputs: MetricInputs) -> float:
+    energy = inputs.channels.whole("energy_damper")
     return float(energy[-1] - energy[0])
 
 
-def _energy_residual(run: Run) -> float:
+def _energy_residual(inputs: MetricInputs) -> float:
     sinks = ("energy_damper", "energy_suspension", "energy_cushion", "energy_stored")
-    return energy_residual(run.record.whole("energy_floor"), [run.record.whole(name) for name in sinks])
+    return energy_residual(inputs.channels.whole("energy_floor"), [inputs.channels.whole(name) for name in sinks])
 
 
-def _temperature_final(run: Run) -> float:
-    return float(run.record.whole("damper_temperature")[-1])
+def _temperature_final(inputs: MetricInputs) -> float:
+    return float(inputs.channels.whole("damper_temperature")[-1])
 
 
 METRICS: Mapping[str, MetricSpecification] = {
     "driver_acceleration_rms": MetricSpecification(
-        "m/s^2", "RMS acceleration of the driver", _rms("driver_acceleration")
+        "m/s^2", "RMS acceleration of the driver", _rms_of("driver_acceleration")
     ),
     "driver_acceleration_peak": MetricSpecification(
-        "m/s^2", "largest driver acceleration", _peak("driver_acceleration")
+        "m/s^2", "largest driver acceleration", _peak_of("driver_acceleration")
     ),
     "driver_acceleration_weighted": MetricSpecification("m/s^2", "RMS driver acceleration, Wk-weighted", _weighted_rms),
     "driver_vdv": MetricSpecification("m/s^1.75", "vibration dose value of the driver, Wk-weighted", _vdv),
@@ -170,11 +174,17 @@ METRICS: Mapping[str, MetricSpecification] = {
     "seat_factor": MetricSpecification(
         "-", "Wk-weighted RMS of the driver over that of the floor (SEAT)", _seat_factor
     ),
-    "frame_acceleration_rms": MetricSpecification("m/s^2", "RMS acceleration of the frame", _rms("frame_acceleration")),
-    "frame_acceleration_peak": MetricSpecification("m/s^2", "largest frame acceleration", _peak("frame_acceleration")),
-    "suspension_displacement_rms": MetricSpecification("m", "RMS suspension travel", _rms("suspension_displacement")),
+    "frame_acceleration_rms": MetricSpecification(
+        "m/s^2", "RMS acceleration of the frame", _rms_of("frame_acceleration")
+    ),
+    "frame_acceleration_peak": MetricSpecification(
+        "m/s^2", "largest frame acceleration", _peak_of("frame_acceleration")
+    ),
+    "suspension_displacement_rms": MetricSpecification(
+        "m", "RMS suspension travel", _rms_of("suspension_displacement")
+    ),
     "suspension_displacement_peak": MetricSpecification(
-        "m", "largest suspension travel", _peak("suspension_displacement")
+        "m", "largest suspension travel", _peak_of("suspension_displacement")
     ),
     "end_stop_hits": MetricSpecification("-", "separate excursions beyond the travel", _end_stop_hits),
     "force_tracking_error": MetricSpecification("N", "RMS of wanted less delivered force", _tracking_error),
@@ -182,7 +192,7 @@ METRICS: Mapping[str, MetricSpecification] = {
         "-", "the same over the RMS of the wanted force", _tracking_relative
     ),
     "force_served_share": MetricSpecification("-", "share of time the wanted force could be delivered", _served_share),
-    "current_rms": MetricSpecification("A", "RMS coil current", _rms("coil_current")),
+    "current_rms": MetricSpecification("A", "RMS coil current", _rms_of("coil_current")),
     "electrical_energy": MetricSpecification("J", "heat of the coil", _electrical_energy),
     "damper_energy": MetricSpecification("J", "energy dissipated by the damper", _damper_energy),
     "energy_residual": MetricSpecification("-", "energy unaccounted for over the largest energy", _energy_residual),

@@ -7,8 +7,8 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.arrays import Array, as_pair, positive
-from seatsim.metrics.spectra import cross_density, density
+from seatsim.metrics.arrays import Array, as_pair, require_positive
+from seatsim.metrics.spectra import cross_spectral_density, power_spectral_density
 from seatsim.metrics.weighting import ComplexArray
 from seatsim.schema.errors import InputError
 
@@ -38,7 +38,7 @@ class Transmissibility(NamedTuple):
 
     @property
     def gain(self) -> Array:
-        """|H1(f)|, the transmissibility."""
+        """|H1(f)|, the transmissibility, dimensionless, shape (F,)."""
         return np.abs(self.response)
 
 
@@ -58,10 +58,10 @@ def transmissibility(floor: ArrayLike, driver: ArrayLike, sample_rate: float) ->
         InputError: the shapes differ, or the record is shorter than 4.5 s.
     """
     x, y = as_pair(floor, driver, ("floor", "driver"))
-    length = _segment(x.size, positive(sample_rate, "sample_rate"))
-    frequency, floor_psd = density(x, sample_rate, length)
-    _, driver_psd = density(y, sample_rate, length)
-    _, cross = cross_density(x, y, sample_rate, length)
+    length = _segment(x.size, require_positive(sample_rate, "sample_rate"))
+    frequency, floor_psd = power_spectral_density(x, sample_rate, length)
+    _, driver_psd = power_spectral_density(y, sample_rate, length)
+    _, cross = cross_spectral_density(x, y, sample_rate, length)
     response = _quotient(cross, floor_psd)
     coherence = _quotient(np.abs(cross) ** 2, floor_psd * driver_psd)
     segments = 2 * x.size // length - 1
@@ -69,7 +69,8 @@ def transmissibility(floor: ArrayLike, driver: ArrayLike, sample_rate: float) ->
 
 
 def _segment(samples: int, sample_rate: float) -> int:
-    """Even length of a segment such that `AVERAGES` of them, half overlapping, fit into the record."""
+    """Return the even length of a segment such that `AVERAGES` of them, half overlapping, fit into the record."""
+    # n segments that overlap by half span (n + 1) half segments.
     longest = 2 * (samples // (AVERAGES + 1))
     if longest < SHORTEST * sample_rate:
         needed = SHORTEST * (AVERAGES + 1) / 2
@@ -78,6 +79,6 @@ def _segment(samples: int, sample_rate: float) -> int:
 
 
 def _quotient(numerator: Spectrum, power: Array) -> Spectrum:
-    """Divide where there is power, and leave NaN elsewhere."""
+    """Return the quotient, shape (F,), where there is power, and NaN elsewhere."""
     undefined = np.full_like(numerator, np.nan)
     return np.divide(numerator, power, out=undefined, where=power > 0)

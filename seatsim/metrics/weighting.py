@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
-from seatsim.metrics.arrays import Array, as_signal, finite, positive
+from seatsim.metrics.arrays import Array, as_signal, require_finite, require_positive
 from seatsim.schema.errors import InputError, nearest
 
 ComplexArray = NDArray[np.complex128]
@@ -32,10 +32,11 @@ ComplexArray = NDArray[np.complex128]
 MINIMUM_RATE = 200.0
 """Lowest sample rate in Hz: the weightings reach up to 80 Hz, and the Nyquist frequency must lie above."""
 
-_DECAY = 12.0  # s; the slowest poles, of the 0.4 Hz high-pass, have died down to 1e-9 by then
+_DECAY = 12.0
+"""Zeros in s behind a record: the slowest poles, of the 0.4 Hz high-pass, have died down to 1e-9 by then."""
 
 
-class Step(NamedTuple):
+class UpwardStep(NamedTuple):
     """Upward step: corner frequencies in Hz and their quality factors."""
 
     f5: float
@@ -52,33 +53,33 @@ class Weighting(NamedTuple):
     f3: float
     f4: float
     Q4: float
-    step: Step | None = None
+    step: UpwardStep | None = None
 
 
 WEIGHTINGS: Mapping[str, Weighting] = {
-    "Wk": Weighting(0.4, 100.0, 12.5, 12.5, 0.63, Step(2.37, 0.91, 3.35, 0.91)),
+    "Wk": Weighting(0.4, 100.0, 12.5, 12.5, 0.63, UpwardStep(2.37, 0.91, 3.35, 0.91)),
     "Wd": Weighting(0.4, 100.0, 2.0, 2.0, 0.63),
 }
 """Wk: vertical, on the seat and under the feet. Wd: fore-and-aft and lateral, on the seat."""
 
 
-class Section(NamedTuple):
+class SecondOrderSection(NamedTuple):
     """A factor of a weighting, `(b0 + b1 s + b2 s^2) / (a0 + a1 s + a2 s^2)` with s in rad/s."""
 
     numerator: tuple[float, float, float]
     denominator: tuple[float, float, float]
 
 
-def sections(weighting: str = "Wk") -> tuple[Section, ...]:
+def sections(weighting: str = "Wk") -> tuple[SecondOrderSection, ...]:
     """Return the factors Hh, Hl, Ht and (Wk only) Hs, for filters with states.
 
     Raises:
         InputError: no weighting has this name.
     """
     c = _constants(weighting)
-    high_pass = Section((0.0, 0.0, (2 * math.pi * c.f1) ** -2), _coefficients(c.f1, math.sqrt(0.5)))
-    low_pass = Section((1.0, 0.0, 0.0), _coefficients(c.f2, math.sqrt(0.5)))
-    transition = Section((1.0, 1 / (2 * math.pi * c.f3), 0.0), _coefficients(c.f4, c.Q4))
+    high_pass = SecondOrderSection((0.0, 0.0, (2 * math.pi * c.f1) ** -2), _coefficients(c.f1, math.sqrt(0.5)))
+    low_pass = SecondOrderSection((1.0, 0.0, 0.0), _coefficients(c.f2, math.sqrt(0.5)))
+    transition = SecondOrderSection((1.0, 1 / (2 * math.pi * c.f3), 0.0), _coefficients(c.f4, c.Q4))
     if c.step is None:
         return high_pass, low_pass, transition
     rise = (c.step.f5 / c.step.f6) ** 2
@@ -87,16 +88,17 @@ def sections(weighting: str = "Wk") -> tuple[Section, ...]:
         high_pass,
         low_pass,
         transition,
-        Section((rise * b0, rise * b1, rise * b2), _coefficients(c.step.f6, c.step.Q6)),
+        SecondOrderSection((rise * b0, rise * b1, rise * b2), _coefficients(c.step.f6, c.step.Q6)),
     )
 
 
 def _coefficients(corner: float, quality: float) -> tuple[float, float, float]:
+    """Return the coefficients of 1 + s/(Q w) + (s/w)^2 in rising powers of s, with w = 2 pi `corner`."""
     omega = 2 * math.pi * corner
     return 1.0, 1 / (quality * omega), omega**-2
 
 
-def response(frequency: ArrayLike, weighting: str = "Wk") -> ComplexArray:
+def frequency_response(frequency: ArrayLike, weighting: str = "Wk") -> ComplexArray:
     """Return H(2j pi f), dimensionless, at each `frequency` in Hz; same shape as `frequency`.
 
     Raises:
@@ -121,12 +123,13 @@ def _constants(weighting: str) -> Weighting:
     return WEIGHTINGS[weighting]
 
 
-def _upward_step(jf: ComplexArray, step: Step) -> ComplexArray:
+def _upward_step(jf: ComplexArray, step: UpwardStep) -> ComplexArray:
     rise: ComplexArray = _quadratic(jf, step.f5, step.Q5) / _quadratic(jf, step.f6, step.Q6)
     return rise * (step.f5 / step.f6) ** 2
 
 
 def _quadratic(jf: ComplexArray, corner: float, quality: float) -> ComplexArray:
+    """Return 1 + s/(Q w) + (s/w)^2 at s = 2 pi jf, w = 2 pi `corner`: the factors 2 pi cancel."""
     u: ComplexArray = jf / corner
     return 1 + u / quality + u * u
 
@@ -135,7 +138,7 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
     """Return the frequency-weighted signal, shape (N,), in the unit of the signal.
 
     y = F^-1[H(f) F[x](f)], the record being zero before its first sample and followed by so many zeros that
-    nothing wraps round. Gain and phase are those of `response` at every frequency below `sample_rate / 2`.
+    nothing wraps round. Gain and phase are those of `frequency_response` at every frequency below `sample_rate / 2`.
 
     Being band-limited, the filter is causal but for a faint ringing: for a few samples ahead of a one-sample
     pulse the output reaches 0.2 % of its peak at 1 kHz, 0.5 % at 500 Hz, 2.6 % at 200 Hz. It suits finished
@@ -150,22 +153,23 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
     Raises:
         InputError: a sample is not finite, the sample rate is too low, or no weighting has this name.
     """
-    x = finite(as_signal(signal), "signal")
+    x = require_finite(as_signal(signal), "signal")
     if not can_weight(sample_rate):
         raise InputError(
             f"sample_rate: is {sample_rate} Hz; weightings reach 80 Hz and need {MINIMUM_RATE:g} Hz or more"
         )
+    # The product of transforms is a circular convolution: zeros behind the record keep its end out of its start.
     size = fft.next_fast_len(x.size + math.ceil(_DECAY * sample_rate), real=True)
-    weighted: Array = fft.irfft(fft.rfft(x, size) * _bins(size, float(sample_rate), weighting), size)
+    weighted: Array = fft.irfft(fft.rfft(x, size) * _response_at_bins(size, float(sample_rate), weighting), size)
     return weighted[: x.size]
 
 
 def can_weight(sample_rate: float) -> bool:
     """Tell whether a record at this `sample_rate` (Hz) can be weighted; rounding of the rate is forgiven."""
-    return positive(sample_rate, "sample_rate") >= MINIMUM_RATE * (1 - 1e-6)
+    return require_positive(sample_rate, "sample_rate") >= MINIMUM_RATE * (1 - 1e-6)
 
 
 @lru_cache(maxsize=4)
-def _bins(size: int, sample_rate: float, weighting: str) -> ComplexArray:
-    """Response at the bins of a transform of `size` samples; kept, as records of a study have one length."""
-    return response(fft.rfftfreq(size, 1 / sample_rate), weighting)
+def _response_at_bins(size: int, sample_rate: float, weighting: str) -> ComplexArray:
+    """Return the response at the bins of a transform of `size` samples; kept, as records of a study have one length."""
+    return frequency_response(fft.rfftfreq(size, 1 / sample_rate), weighting)

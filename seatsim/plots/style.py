@@ -1,4 +1,4 @@
-"""The common look of all pictures: colours, pages with fixed margins, legends above the panels.
+"""The common look of all figures: colours, pages with fixed margins, legends above the panels.
 
 Pages are laid out in inches: that costs nothing, where matplotlib's own layout engines draw every text first.
 """
@@ -6,16 +6,20 @@ Pages are laid out in inches: that costs nothing, where matplotlib's own layout 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Literal, NamedTuple, TypedDict
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import Locator, NullLocator
+from matplotlib.typing import LineStyleType
 from numpy.typing import ArrayLike
 
 WIDTH = 10.0
+"""Width of a page in inches: text of 9 points stays legible where a page of a paper shrinks it to 60 %."""
 MARGIN = 0.15
 LETTER = 0.082
 """Width of a letter of a legend in inches, on average."""
@@ -25,19 +29,18 @@ LINE = 0.23
 """Height of a line of text in inches."""
 GREY = "0.6"
 DARK = "0.25"
-Dashes = str | tuple[float, tuple[float, float]]
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#882255", "#000000")
 """Okabe and Ito's palette for all kinds of colour vision; wine replaces its yellow, which fades on white."""
-DASHES: tuple[Dashes, ...] = ("-", (0.0, (5.0, 1.5)))
+DASHES: tuple[LineStyleType, ...] = ("-", (0.0, (5.0, 1.5)))
 """Every second line is dashed: two that coincide are both seen, and colour is not the only difference."""
 
 
 class Entry(NamedTuple):
-    """A line of a picture: what the legend calls it, and how it looks."""
+    """An entry of a legend: what it calls a line, and how that line looks; width in points, `alpha` its opacity."""
 
     label: str
     colour: str
-    dashes: Dashes = "-"
+    dashes: LineStyleType = "-"
     width: float = 1.4
     alpha: float = 1.0
     mark: str = ""
@@ -62,22 +65,36 @@ class Grid(NamedTuple):
     gap: tuple[float, float] = (0.85, 0.75)
 
 
-def entries(labels: Sequence[str]) -> list[Entry]:
+class _LineProperties(TypedDict):
+    """How a line looks, as matplotlib names it."""
+
+    color: str
+    linestyle: LineStyleType
+    linewidth: float
+    alpha: float
+    solid_capstyle: Literal["butt"]
+    marker: str
+
+
+def make_entries(labels: Sequence[str]) -> list[Entry]:
     """Return one distinct look for each of up to eight runs; further ones begin anew."""
     return [
         Entry(label, COLOURS[index % len(COLOURS)], DASHES[index % len(DASHES)]) for index, label in enumerate(labels)
     ]
 
 
-def scale(name: str, count: int) -> list[str]:
-    """Return `count` colours in the order of a quantity; the light end of the colour map is left out."""
+def sample_colours(name: str, count: int) -> list[str]:
+    """Return `count` colours of a colour map in the order of a quantity; its light end, pale on white, is left out."""
     last = max(1, count - 1)
     codes = [colormaps[name](0.85 * index / last, bytes=True) for index in range(count)]
     return ["#" + "".join(f"{int(part):02x}" for part in code[:3]) for code in codes]
 
 
-def page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -> Page:
-    """Return a figure with a title, a note, a legend where there are entries, and empty panels."""
+def make_page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -> Page:
+    """Return a figure with a title, a note, a legend where there are entries, and empty panels.
+
+    The height follows from what stands on the page, so that no panel shrinks where a legend grows.
+    """
     columns = _legend_columns(legend)
     header = MARGIN + 0.52 + LINE * -(-len(legend) // columns) + grid.top
     height = header + sum(grid.heights) + grid.gap[1] * (len(grid.heights) - 1) + grid.bottom
@@ -90,15 +107,15 @@ def page(title: str, note: str, grid: Grid, legend: Sequence[Entry] = ()) -> Pag
             handles=[_handle(entry) for entry in legend], ncols=columns, loc="upper left", frameon=False,
             bbox_to_anchor=(left, 1 - (MARGIN + 0.56) / height), borderaxespad=0, borderpad=0,
         )  # fmt: skip
-    return Page(figure, panels(figure, grid, WIDTH, height - header))
+    return Page(figure, add_panels(figure, grid, WIDTH, height - header))
 
 
-def line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> None:
-    """Draw a line with the look of its entry."""
+def draw_line(axes: Axes, x: ArrayLike, y: ArrayLike, look: Entry) -> None:
+    """Draw the line through (x, y), shape (N,) each, with the look of its entry."""
     axes.plot(np.asarray(x), np.asarray(y), label=look.label, **_style(look))
 
 
-def beside(axes: Axes, title: str) -> None:
+def draw_legend_beside(axes: Axes, title: str) -> None:
     """Put the legend of a panel to its right."""
     axes.legend(
         title=title, alignment="left", loc="upper left", bbox_to_anchor=(1.02, 1.0), frameon=False,
@@ -106,7 +123,20 @@ def beside(axes: Axes, title: str) -> None:
     )  # fmt: skip
 
 
-def say(axes: Axes, text: str) -> None:
+def add_axes_beside(axes: Axes, gap: float, width: float) -> Axes:
+    """Return new axes to the right of a panel, as tall as it, for a bar of colours; sizes over the figure's width."""
+    box = axes.get_position()
+    return axes.figure.add_axes((box.x1 + gap, box.y0, width, box.height))
+
+
+def set_plain_log_ticks(axis: Axis, locator: Locator) -> None:
+    """Label the ticks of a logarithmic axis by plain numbers in place of powers of ten, without ticks between them."""
+    axis.set_major_locator(locator)
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_locator(NullLocator())
+
+
+def explain_empty(axes: Axes, text: str) -> None:
     """Write into the middle of a panel why it is empty."""
     axes.set_yticks([])
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=DARK)
@@ -116,7 +146,7 @@ def _handle(look: Entry) -> Line2D:
     return Line2D([], [], label=look.label, **_style(look._replace(width=look.width + 0.5)))
 
 
-def _style(look: Entry) -> dict[str, Any]:
+def _style(look: Entry) -> _LineProperties:
     return {
         "color": look.colour, "linestyle": look.dashes, "linewidth": look.width, "alpha": look.alpha,
         "solid_capstyle": "butt", "marker": look.mark,
@@ -133,8 +163,8 @@ def _legend_columns(legend: Sequence[Entry]) -> int:
     return 1
 
 
-def panels(figure: Figure, grid: Grid, width: float, top: float) -> list[list[Axes]]:
-    """Return the axes of a grid, row by row, on a figure `width` inches wide, from `top` inches above its foot."""
+def add_panels(figure: Figure, grid: Grid, width: float, top: float) -> list[list[Axes]]:
+    """Return new axes in a grid, row by row, on a figure `width` inches wide, from `top` inches above its foot."""
     height = float(figure.get_figheight())
     wide = (width - grid.left - grid.right - grid.gap[0] * (grid.columns - 1)) / grid.columns
     rows = []

@@ -1,20 +1,18 @@
-"""Long channels made short for drawing, and the part of a run that is worth a closer look."""
+"""Long signals made short for drawing: fewer points, the part worth a closer look, few items of many."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 
 BINS = 1200
 """Intervals over the width of a panel, of which least and largest value are kept: finer than its pixels."""
-CLOSE_UP = 6.0
-"""Length in s of a closer look."""
-STRIDE = 0.1
-"""Raster in s on which a closer look begins."""
 
 
 class Window(NamedTuple):
@@ -24,7 +22,7 @@ class Window(NamedTuple):
     end: float
 
     def part(self, step: float) -> slice:
-        """Return the samples inside, both ends included."""
+        """Return the samples inside, both ends included, of a signal that is sampled every `step` s from 0."""
         return slice(round(self.start / step), round(self.end / step) + 1)
 
     def __str__(self) -> str:
@@ -32,23 +30,35 @@ class Window(NamedTuple):
         return f"{self.start:.1f} to {self.end:.1f} s"
 
 
-def thinned(x: Array, y: Array) -> tuple[Array, Array]:
-    """Return a line of at most 2 `BINS` points over the same pixels: extremes are kept, in their order."""
+def thin_line(x: Array, y: Array) -> tuple[Array, Array]:
+    """Return a line of at most 2 `BINS` points that covers the same pixels as (x, y), shape (N,) each.
+
+    The least and the largest value of every interval are kept, in their order: a mean or every n-th sample would hide
+    the peaks that a reader looks for.
+    """
     if len(y) <= 2 * BINS:
         return x, y
     size = -(-len(y) // BINS)
     bins = np.pad(y, (0, -len(y) % size), mode="edge").reshape(-1, size)
     ends = np.sort(np.column_stack([bins.argmin(axis=1), bins.argmax(axis=1)]), axis=1)
+    # The padding repeats the last sample, which may be an extreme at a place beyond the end.
     kept = np.minimum(ends + size * np.arange(len(bins))[:, None], len(y) - 1).ravel()
     return x[kept], y[kept]
 
 
-def eventful(values: Array, step: float) -> Window:
-    """Return the window of `CLOSE_UP` seconds in which the RMS is largest, the first of equals."""
-    size = round(CLOSE_UP / step)
-    if size >= len(values):
-        return Window(0.0, (len(values) - 1) * step)
-    energy = np.concatenate([[0.0], np.cumsum(values**2)])
-    starts = np.arange(0, len(values) - size, max(1, round(STRIDE / step)))
-    start = int(starts[np.argmax(energy[starts + size] - energy[starts])])
-    return Window(start * step, (start + size) * step)
+def find_loudest(values: Array, size: int, stride: int) -> int:
+    """Return the first of those `size` consecutive samples in which sum x^2 is largest, the earliest of equals.
+
+    values: shape (N,) with N > `size`. Only every `stride`-th sample may be the first: a close-up looks the same a few
+    samples later, and its title states a round time.
+    """
+    energy = np.concatenate([[0.0], np.cumsum(np.square(values))])
+    starts = np.arange(0, len(values) - size, stride)
+    return int(starts[np.argmax(energy[starts + size] - energy[starts])])
+
+
+def spread_evenly(items: Sequence[T], most: int) -> list[T]:
+    """Return at most `most` items (2 or more), spread evenly over their order, first and last included."""
+    if len(items) <= most:
+        return list(items)
+    return [items[index * (len(items) - 1) // (most - 1)] for index in range(most)]

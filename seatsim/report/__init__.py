@@ -1,11 +1,14 @@
-"""The report of a diagnosis: one HTML file that needs no network, the answer first, then what it rests on."""
+"""The report of a diagnosis: one HTML file that needs no network, the answer first, then what it rests on.
+
+Only the page stands here: its figures are drawn in `seatsim.plots.diagnosis`, its numbers come from the diagnosis.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from seatsim.diagnosis.result import Diagnosis
-from seatsim.report.page import page
+from seatsim.report.page import render_page
 from seatsim.schema.files import write_text
 
 __all__ = ["write_report"]
@@ -19,4 +22,4 @@ def write_report(diagnosis: Diagnosis, path: Path) -> Path:
     Raises:
         InputError: the folder or the file cannot be written.
     """
-    return write_text(path, page(diagnosis))
+    return write_text(path, render_page(diagnosis))

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from seatsim.diagnosis.result import Diagnosis, GapFigures
-from seatsim.plots.diagnosis import answer as diagnosis_answer
-from seatsim.report.html import Html, joined, pictures, table, tag
-from seatsim.report.words import listed, percent, sentence
+from seatsim.diagnosis.result import Diagnosis
+from seatsim.plots.diagnosis.answer import Key, plot_gaps, read_gap, select_stages
+from seatsim.report.formatting import format_percent, format_sentence, join_names
+from seatsim.report.html import Html, embed_pictures, join, make_table, tag
 
 VERDICTS = {
     "none": ("✓", "No material gap", "Nothing to explain gap beyond noise and the tolerance of the parameters."),
@@ -15,64 +16,67 @@ VERDICTS = {
     "ambiguous": ("◐", "Ambiguous", "Two or more effects explain the gap equally well on this recording."),
     "unknown": ("?", "Cause unknown", "A material gap stays that no effect of the library explains."),
 }
-"""Mark, words and explanation of each verdict."""
+"""Mark, words and explanation of each verdict; the mark differs too, so that colour is not the only sign."""
 
 
-def head(diagnosis: Diagnosis) -> Html:
-    """Return verdict, sentence and what the gap shrinks by."""
+def render_head(diagnosis: Diagnosis) -> Html:
+    """Return the head of the page: verdict, answer in a sentence, and what the gap shrinks by."""
     mark, words, explanation = VERDICTS.get(diagnosis.verdict, ("?", diagnosis.verdict, ""))
     badge = tag("span", tag("span", mark, aria_hidden="true"), f" {words}", class_=f"badge {diagnosis.verdict}")
     return tag(
         "header",
         tag("p", f"Diagnosis of {diagnosis.name}", class_="eyebrow"),
         tag("p", badge, tag("span", explanation, class_="explanation"), class_="verdict"),
-        tag("h1", sentence(diagnosis.sentence)),
-        tag("p", _shrink(diagnosis), class_="lead") if diagnosis.verdict != "none" else Html(""),
+        tag("h1", format_sentence(diagnosis.sentence)),
+        tag("p", _describe_shrink(diagnosis), class_="lead") if diagnosis.verdict != "none" else Html(""),
     )
 
 
-def gaps(diagnosis: Diagnosis) -> Html:
+def render_gaps(diagnosis: Diagnosis) -> Html:
     """Return the table of the gaps on held-out runs and its picture."""
     channels = list(diagnosis.gap.before.channels)
-    stages = diagnosis_answer.stages(diagnosis)[1:]
-    head = ["gap", *(words for _, words, *_ in stages), "noise floor", "shrinks by"]
+    # In the figure the noise floor lies at the back and comes first, in the table it is the last column.
+    stages = select_stages(diagnosis)[1:]
+    head = ["gap", *(stage.words for stage in stages), "noise floor", "shrinks by"]
     if diagnosis.verdict == "none":
         head = head[:-1]
-    rows = [_row(diagnosis, name, [stage for stage, *_ in stages])[: len(head)] for name in ["overall", *channels]]
-    return joined(
+    keys = [stage.key for stage in stages]
+    rows = [_make_row(diagnosis, name, keys)[: len(head)] for name in ["overall", *channels]]
+    return join(
         [
-            tag("p", _explained(diagnosis), class_="lead"),
-            tag("div", table(head, rows, strong=[0]), pictures([diagnosis_answer.gaps(diagnosis)]), class_="beside"),
+            tag("p", _explain_gap(diagnosis), class_="lead"),
+            tag("div", make_table(head, rows, strong=[0]), embed_pictures([plot_gaps(diagnosis)]), class_="beside"),
         ]
     )
 
 
-def _row(diagnosis: Diagnosis, name: str, stages: list[str]) -> list[str]:
+def _make_row(diagnosis: Diagnosis, name: str, keys: Sequence[Key]) -> list[str]:
     gap = diagnosis.gap
-    found = [_value(getattr(gap, stage), name) for stage in (*stages, "floor")]
-    before, after = _value(gap.before, name), _value(gap.after, name)
+    found = [read_gap(gap, key, name) for key in keys] + [read_gap(gap, "floor", name)]
+    before, after = read_gap(gap, "before", name), read_gap(gap, "after", name)
+    # The overall shrink of the diagnosis is over the refit, so that tolerance is not credited to an effect.
     change = 1 - after / before if after is not None and before else None
     if name == "overall" and math.isfinite(gap.shrink):
         change = gap.shrink
-    return [name.replace("_", " "), *(percent(value) for value in found), percent(change)]
+    return [name.replace("_", " "), *(format_percent(value) for value in found), format_percent(change)]
 
 
-def _shrink(diagnosis: Diagnosis) -> str:
+def _describe_shrink(diagnosis: Diagnosis) -> str:
     gap = diagnosis.gap
     if not diagnosis.selected:
-        stages = (_value(values, "overall") for values in (gap.before, gap.calibrated, gap.floor))
-        before, after, floor = (percent(value) for value in stages)
+        keys: tuple[Key, ...] = ("before", "calibrated", "floor")
+        before, after, floor = (format_percent(read_gap(gap, key, "overall")) for key in keys)
         return f"Refitting alone takes the gap from {before} to {after}; noise alone makes {floor}."
     if not math.isfinite(gap.shrink):
         return ""
     low, high = gap.shrink_interval
-    between = f" (90 % interval {percent(low)} to {percent(high)})" if math.isfinite(low + high) else ""
-    runs = f" on {listed(diagnosis.held_out)}, which took no part in the fit" if diagnosis.held_out else ""
+    between = f" (90 % interval {format_percent(low)} to {format_percent(high)})" if math.isfinite(low + high) else ""
+    runs = f" on {join_names(diagnosis.held_out)}, which took no part in the fit" if diagnosis.held_out else ""
     effects = "effect" if len(diagnosis.selected) == 1 else "effects"
-    return f"The gap shrinks by {percent(gap.shrink)}{between} with the {effects} found{runs}."
+    return f"The gap shrinks by {format_percent(gap.shrink)}{between} with the {effects} found{runs}."
 
 
-def _explained(diagnosis: Diagnosis) -> str:
+def _explain_gap(diagnosis: Diagnosis) -> str:
     text = (
         "Gap: RMS of measured less simulated, over the standard deviation of the measured signal."
         " Refitted: nominal parameters moved inside their tolerance."
@@ -80,12 +84,9 @@ def _explained(diagnosis: Diagnosis) -> str:
     if diagnosis.selected:
         text += " Only what the effects take off beyond that is credited to them."
     if diagnosis.verdict == "none":
-        low, high = (_value(values, "overall") for values in (diagnosis.gap.floor, diagnosis.gap.before))
-        known = low is not None and high is not None
-        text += f" The nominal simulation is off by {percent(high)}; noise alone makes {percent(low)}." if known else ""
+        low, high = read_gap(diagnosis.gap, "floor", "overall"), read_gap(diagnosis.gap, "before", "overall")
+        if low is not None and high is not None:
+            text += (
+                f" The nominal simulation is off by {format_percent(high)}; noise alone makes {format_percent(low)}."
+            )
     return text
-
-
-def _value(figures: GapFigures, name: str) -> float | None:
-    """Return the overall figure, or that of a channel; None where the channel is not compared."""
-    return figures.overall if name == "overall" else figures.channels.get(name)

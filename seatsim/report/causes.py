@@ -1,71 +1,78 @@
-"""Which effect: probabilities, parameters, what cannot be told apart, and what would tell it."""
+"""Causes of the gap: probabilities, parameters, equivalent effects, and the experiment that would decide."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from seatsim.diagnosis.result import Cause, Diagnosis
-from seatsim.plots.diagnosis.answer import MOST, ranking, where
-from seatsim.plots.diagnosis.collinearity import alikeness
-from seatsim.report.html import Html, bullets, joined, pictures, table, tag
-from seatsim.report.words import estimate, listed, meaning, percent, plain, sentence
+from seatsim.plots.diagnosis.answer import MOST, plot_location, plot_ranking
+from seatsim.plots.diagnosis.collinearity import plot_collinearity
+from seatsim.report.formatting import (
+    describe_effect,
+    format_estimate,
+    format_percent,
+    format_sentence,
+    format_value,
+    join_names,
+)
+from seatsim.report.html import Html, embed_pictures, join, make_list, make_table, tag
 
 LIKELY = 0.05
 """Probability from which on the parameters of a cause are printed."""
 
 
-def ranked(diagnosis: Diagnosis) -> Html:
+def render_causes(diagnosis: Diagnosis) -> Html:
     """Return where the gap lies, which effects may cause it, and their parameters."""
-    left = joined([pictures([where(diagnosis)]), _parameters(diagnosis)])
-    return tag("div", tag("div", left), pictures([ranking(diagnosis)]), class_="beside")
+    left = join([embed_pictures([plot_location(diagnosis)]), _render_parameters(diagnosis)])
+    return tag("div", tag("div", left), embed_pictures([plot_ranking(diagnosis)]), class_="beside")
 
 
-def confusions(diagnosis: Diagnosis) -> Html:
-    """Return what could be taken for what, in sentences and as a heat map."""
+def render_confusions(diagnosis: Diagnosis) -> Html:
+    """Return which effects this recording cannot tell apart, in sentences and as a heat map of collinearity."""
     sentences = [
-        f"This recording cannot tell {listed([f'{name}' for name in group])} apart: each explains the gap as well."
+        f"This recording cannot tell {join_names(group)} apart: each explains the gap as well."
         for group in diagnosis.indistinguishable
         if len(group) > 1
     ]
-    decides, alike = _experiment(diagnosis), pictures([alikeness(diagnosis)])
+    decides, collinear = _render_experiment(diagnosis), embed_pictures([plot_collinearity(diagnosis)])
     lead = [tag("p", text, class_="lead") for text in sentences]
-    return joined([*lead, tag("div", alike, decides, class_="beside")]) if lead or decides or alike else Html("")
+    return join([*lead, tag("div", collinear, decides, class_="beside")]) if lead or decides or collinear else Html("")
 
 
-def _experiment(diagnosis: Diagnosis) -> Html:
+def _render_experiment(diagnosis: Diagnosis) -> Html:
     """Return the experiment that would decide, as it is described."""
     found = diagnosis.experiment
     if found is None:
         return Html("")
-    now, then = plain(found.likeness_now), plain(found.likeness_then)
+    now, then = format_value(found.likeness_now), format_value(found.likeness_then)
     rows = [("kind", found.kind), ("alikeness now", now), ("alikeness then", then)]
     parts = [
-        tag("p", tag("strong", sentence(found.name.replace("_", " ")))),
-        tag("p", sentence(found.reason)),
-        tag("dl", *(joined([tag("dt", key), tag("dd", text)]) for key, text in rows)),
+        tag("p", tag("strong", format_sentence(found.name.replace("_", " ")))),
+        tag("p", format_sentence(found.reason)),
+        tag("dl", *(join([tag("dt", key), tag("dd", text)]) for key, text in rows)),
     ]
     if found.scenario is not None:
         parts.append(tag("p", "Its scenario is written beside this report, ready to run."))
     return tag("div", tag("h3", "What would decide"), *parts, class_="card")
 
 
-def _parameters(diagnosis: Diagnosis) -> Html:
-    shown = list(_worth_printing(diagnosis))
+def _render_parameters(diagnosis: Diagnosis) -> Html:
+    shown = list(_select_causes(diagnosis))
     if not shown:
         return Html("")
     rows = [
         [
-            joined([tag("code", cause.effect), tag("small", sentence(meaning(cause.effect)))]), _listed(cause),
-            percent(cause.probability),
+            join([tag("code", cause.effect), tag("small", format_sentence(describe_effect(cause.effect)))]),
+            _list_parameters(cause), format_percent(cause.probability),
         ]
         for cause in shown
     ]  # fmt: skip
     strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
     heading = tag("h3", "Parameters of the likely effects, ± one standard deviation")
-    return joined([heading, table(["effect", "parameters", "probability"], rows, 2, strong)])
+    return join([heading, make_table(["effect", "parameters", "probability"], rows, 2, strong)])
 
 
-def _worth_printing(diagnosis: Diagnosis) -> Iterator[Cause]:
+def _select_causes(diagnosis: Diagnosis) -> Iterator[Cause]:
     """Yield the causes that are selected, in a group that cannot be told apart, or not improbable."""
     named = {*diagnosis.selected, *(name for group in diagnosis.indistinguishable for name in group)}
     for rank, cause in enumerate(diagnosis.causes):
@@ -73,5 +80,5 @@ def _worth_printing(diagnosis: Diagnosis) -> Iterator[Cause]:
             yield cause
 
 
-def _listed(cause: Cause) -> Html:
-    return bullets(f"{name.replace('_', ' ')} {estimate(value)}" for name, value in cause.parameters.items())
+def _list_parameters(cause: Cause) -> Html:
+    return make_list(f"{name.replace('_', ' ')} {format_estimate(value)}" for name, value in cause.parameters.items())

@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.report import answer, causes, evidence
-from seatsim.report.html import Html, joined, tag
+from seatsim.report.html import Html, join, tag
 
 
-class Section(NamedTuple):
-    """A part of the page: its anchor, heading, and what fills it; `short` ones are shown where there is no gap."""
+class PageSection(NamedTuple):
+    """A part of the page: its anchor, heading, and what renders it; `short` ones are also shown without a gap."""
 
     anchor: str
     heading: str
@@ -21,34 +21,34 @@ class Section(NamedTuple):
 
 
 SECTIONS = (
-    Section("gaps", "How far: gaps on held-out runs", answer.gaps, short=True),
-    Section("causes", "Where it lies and what causes it", causes.ranked),
-    Section("missing", "What is missing", evidence.missing),
-    Section("confusions", "What could be taken for what", causes.confusions),
-    Section("signals", "Held-out signals before and after", evidence.before_and_after),
-    Section("maps", "Where in the operating range", evidence.ranges),
-    Section("spectra", "Residual spectra", evidence.frequencies),
-    Section("comfort", "Comfort and travel", evidence.comfort, short=True),
-    Section("notes", "Notes on the data", evidence.notes, short=True),
-    Section("use", "Check the claim", evidence.use),
+    PageSection("gaps", "How far: gaps on held-out runs", answer.render_gaps, short=True),
+    PageSection("causes", "Where it lies and what causes it", causes.render_causes),
+    PageSection("missing", "What is missing", evidence.render_discrepancy),
+    PageSection("confusions", "What could be taken for what", causes.render_confusions),
+    PageSection("signals", "Held-out signals before and after", evidence.render_signals),
+    PageSection("maps", "Where in the operating range", evidence.render_maps),
+    PageSection("spectra", "Residual spectra", evidence.render_spectra),
+    PageSection("comfort", "Comfort and travel", evidence.render_comfort, short=True),
+    PageSection("notes", "Notes on the data", evidence.render_notes, short=True),
+    PageSection("use", "Check the claim", evidence.render_use),
 )
 
 
-def page(diagnosis: Diagnosis) -> str:
-    """Return the page of a diagnosis; sections without content are left out."""
+def render_page(diagnosis: Diagnosis) -> str:
+    """Return the HTML page of a diagnosis; sections without content are left out."""
     chosen = [section for section in SECTIONS if section.short or diagnosis.verdict != "none"]
     filled = [(section, section.content(diagnosis)) for section in chosen]
     shown = [(section, content) for section, content in filled if content]
     body = tag(
         "main",
-        answer.head(diagnosis),
-        _contents([section for section, _ in shown]),
-        *(_section(section, content) for section, content in shown),
+        answer.render_head(diagnosis),
+        _render_contents([section for section, _ in shown]),
+        *(_render_section(section, content) for section, content in shown),
     )
-    return f"<!DOCTYPE html>\n{tag('html', _head(diagnosis), tag('body', body), lang='en')}\n"
+    return f"<!DOCTYPE html>\n{tag('html', _render_head(diagnosis), tag('body', body), lang='en')}\n"
 
 
-def _head(diagnosis: Diagnosis) -> Html:
+def _render_head(diagnosis: Diagnosis) -> Html:
     look = files(__package__).joinpath("report.css").read_text(encoding="utf-8")
     return tag(
         "head",
@@ -58,10 +58,10 @@ def _head(diagnosis: Diagnosis) -> Html:
     )
 
 
-def _contents(sections: list[Section]) -> Html:
+def _render_contents(sections: list[PageSection]) -> Html:
     links = [tag("a", section.heading, href=f"#{section.anchor}") for section in sections]
-    return tag("nav", joined(links, " "), aria_label="Contents")
+    return tag("nav", join(links, " "), aria_label="Contents")
 
 
-def _section(section: Section, content: Html) -> Html:
+def _render_section(section: PageSection, content: Html) -> Html:
     return tag("section", tag("h2", section.heading), content, id=section.anchor)

@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 from seatsim.characterisation.of_model import characterise_model, settings_of, specimen
 from seatsim.characterisation.summary import characterise
 from seatsim.cli.app import app
-from seatsim.cli.outputs.characterisation import tables
-from seatsim.plots.bench.characterisation import draw
+from seatsim.cli.outputs.characterisation import make_tables
+from seatsim.plots.bench.characterisation import plot_characterisation
 from seatsim.schema.errors import InputError
 
 
@@ -137,8 +137,8 @@ def cases(record, sine):
 
 def test_pictures_are_labelled_and_inside_their_page(record, sine):
     for found in cases(record, sine):
-        assert tables(found)
-        for name, figure in draw(found).items():
+        assert make_tables(found)
+        for name, figure in plot_characterisation(found).items():
             canvas = FigureCanvasAgg(figure)
             canvas.draw()
             width, height = canvas.get_width_height()

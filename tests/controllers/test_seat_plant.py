@@ -43,7 +43,7 @@ def test_every_path_with_lag_and_weighting():
         B, C = np.hstack([plant.B1, plant.B2]), np.vstack([plant.C1, plant.C2])
         return gains(System(plant.A, B, C, np.zeros((4, 2))))
 
-    H = weighting.response(OMEGA / (2 * np.pi), "Wk")
+    H = weighting.frequency_response(OMEGA / (2 * np.pi), "Wk")
     rows, columns = np.ones((len(OMEGA), 4, 1), complex), np.ones((len(OMEGA), 1, 2), complex)
     rows[:, 1, 0], columns[:, 0, 1] = H, 0.7 * gains(actuator(lag))[:, 0, 0]
     np.testing.assert_allclose(paths(full), rows * paths(bare) * columns, rtol=1e-8, atol=1e-14)

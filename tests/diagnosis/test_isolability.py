@@ -6,7 +6,12 @@ suspension, and the floor's unmeasured input enters the same force balance.
 
 import pytest
 
-from seatsim.diagnosis.design.isolability import Equation, find_isolable_groups, describe_missing_sensors, find_overdetermined
+from seatsim.diagnosis.design.isolability import (
+    Equation,
+    describe_missing_sensors,
+    find_isolable_groups,
+    find_overdetermined,
+)
 
 ALL = {
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",

@@ -12,16 +12,37 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
-from seatsim.diagnosis.result import Cause, Diagnosis, Estimate, Evidence, Gaps, Share, Trace
+from seatsim.diagnosis.result import (
+    Cause,
+    Collinearity,
+    ComfortFigure,
+    Diagnosis,
+    DiscrepancySignal,
+    Estimate,
+    Evidence,
+    GapFigures,
+    Gaps,
+    ProposedExperiment,
+    Share,
+    Trace,
+)
 from seatsim.plots.diagnosis import answer as diagnosis_answer
-from seatsim.plots.diagnosis import collinearity as diagnosis_alikeness
-from seatsim.plots.diagnosis import discrepancy as diagnosis_latent
+from seatsim.plots.diagnosis import collinearity as diagnosis_collinearity
+from seatsim.plots.diagnosis import discrepancy as diagnosis_discrepancy
 from seatsim.plots.diagnosis import maps as diagnosis_maps
 from seatsim.plots.diagnosis import signals as diagnosis_signals  # fmt: skip
-from seatsim.plots.diagnosis.bins import FEWEST, binned_rms, loudest, settled, worst
+from seatsim.plots.diagnosis.answer import read_gap, select_stages
+from seatsim.plots.diagnosis.bins import FEWEST, bin_rms, drop_start, find_window, find_worst
 from seatsim.report import write_report
-from seatsim.report.html import tag
-from seatsim.report.words import estimate, percent, sentence
+from seatsim.report.formatting import (
+    describe_effect,
+    format_estimate,
+    format_percent,
+    format_sentence,
+    format_value,
+    join_names,
+)
+from seatsim.report.html import Html, join, make_list, make_table, tag
 
 RATE = 500.0
 SEAT = {
@@ -86,13 +107,13 @@ def traces(channels, after=0.1, gap=1.0, runs=("run-c",), bench=False):
 def gaps_of(found):
     def pooled(courses):
         channels = {t.channel: float(np.sqrt(np.mean(course**2)) / np.std(t.measured)) for t, course in courses}
-        return {"overall": float(np.sqrt(np.mean(np.square(list(channels.values()))))), "channels": channels}
+        return GapFigures(float(np.sqrt(np.mean(np.square(list(channels.values()))))), channels)
 
     before = pooled([(t, t.measured - t.nominal) for t in found])
     after = pooled([(t, t.measured - t.after) for t in found])
     floor = pooled([(t, np.full(9, t.noise_rms)) for t in found])
-    calibrated = {"overall": 0.97 * before["overall"], "channels": {k: 0.97 * g for k, g in before["channels"].items()}}
-    shrink = 1 - after["overall"] / before["overall"]
+    calibrated = GapFigures(0.97 * before.overall, {k: 0.97 * g for k, g in before.channels.items()})
+    shrink = 1 - after.overall / before.overall
     return Gaps(before, calibrated, after, floor, shrink, (shrink - 0.04, shrink + 0.03))
 
 
@@ -101,7 +122,7 @@ def alike():
     matrix = np.clip((matrix + matrix.T) / 2, 0, 1)
     matrix[2, 3] = matrix[3, 2] = 0.99
     np.fill_diagonal(matrix, 1)
-    return EFFECTS, matrix
+    return Collinearity(EFFECTS, matrix)
 
 
 def ranked(first):
@@ -119,10 +140,10 @@ def known(channels=tuple(SEAT), bench=False, runs=("run-c",)):
         sentence="the yield force remembers past current (damper.remanence, 0.08 A): it explains 87 % of the gap",
         where=[Share("damper", 0.93), Share("coil", 0.04), Share("sensor", 0.03)],
         causes=ranked({"damper.remanence": 0.97}), probability_none=0.0, probability_unknown=0.02,
-        selected=["damper.remanence"], random="", indistinguishable=[], experiment=None, held_out=list(runs),
+        selected=["damper.remanence"], stochastic="", indistinguishable=[], experiment=None, held_out=list(runs),
         isolable=[["damper"], ["coil"], ["suspension", "floor"], ["cushion"], ["driver", "sensor"]],
         gap=gaps_of(found), notes=["no run is warmer than 35 degC: thermal fade cannot be judged"],
-        augmented={}, experiment_scenario=None,
+        augmented={},
         evidence=Evidence(found, rig(bench=bench)[0], None, alike(), [] if bench else comfort),
     )  # fmt: skip
 
@@ -136,8 +157,7 @@ def ambiguous():
         " cell they cannot be told apart",
         where=[Share("suspension", 0.5), Share("damper", 0.5)], causes=ranked(first),
         selected=["suspension.friction"], indistinguishable=[list(first)],
-        experiment={"kind": "intervention", "name": "add_load_cell", "reason": reason, "expected_separation": 12.3456,
-                    "channels": ["damper_force"]},
+        experiment=ProposedExperiment("intervention", "add_load_cell", reason, 0.9876, 0.3456),
     )  # fmt: skip
 
 
@@ -145,16 +165,14 @@ def unknown(channels=tuple(SEAT)):
     motion, _, lacks = rig()
     rows = np.arange(len(motion["velocity"])) / RATE
     force = lacks["damper_force"] + 3 * np.random.default_rng(6).standard_normal(len(rows))
-    latent = {
-        "block": "damper", "quantity": "force", "unit": "N", "time": rows, "values": force,
-        "description": ["It follows the sign of the velocity.", "It is there only while the current falls."],
-    }  # fmt: skip
+    words = ["It follows the sign of the velocity.", "It is there only while the current falls."]
+    discrepancy = DiscrepancySignal("damper", "force", "N", rows, force, words)
     base = known(channels)
     found = [replace(trace, after=trace.calibrated) for trace in base.evidence.traces]
     return replace(
         base, verdict="unknown", sentence="a force of 70 N in the damper stays that no effect of the library explains",
         causes=ranked({"damper.magnetic_saturation": 0.3}), probability_unknown=0.94, selected=[],
-        gap=gaps_of(found), evidence=replace(base.evidence, traces=found, latent=latent),
+        gap=gaps_of(found), evidence=replace(base.evidence, traces=found, discrepancy=discrepancy),
     )  # fmt: skip
 
 
@@ -227,7 +245,7 @@ class Outline(HTMLParser):
 def drawn(monkeypatch):
     """Leave out the drawing of pictures, which takes most of the time; the pages are complete otherwise."""
     figures = []
-    monkeypatch.setattr("seatsim.report.html.png", lambda figure: figures.append(figure) or b"picture")
+    monkeypatch.setattr("seatsim.report.html.render_png", lambda figure: figures.append(figure) or b"picture")
     return figures
 
 
@@ -236,7 +254,7 @@ def pages(tmp_path_factory):
     """Diagnosis and page of each case, without drawn pictures."""
     folder, found = tmp_path_factory.mktemp("pages"), {}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("seatsim.report.html.png", lambda figure: b"picture")
+        patch.setattr("seatsim.report.html.render_png", lambda figure: b"picture")
         for case, make in CASES.items():
             diagnosis = make()
             found[case] = diagnosis, write_report(diagnosis, folder / f"{case}.html").read_text(encoding="utf-8")
@@ -247,7 +265,7 @@ def pages(tmp_path_factory):
 def test_the_answer_comes_first_and_empty_sections_vanish(case, pages):
     diagnosis, text = pages[case]
     outline = Outline(text)
-    assert outline.headings[0] == sentence(diagnosis.sentence)
+    assert outline.headings[0] == format_sentence(diagnosis.sentence)
     assert text.index("<h1>") < text.index("<section") and text.index("badge") < text.index("<h1>")
     assert f" {BADGES[case]}" in outline.words
     assert outline.anchors == SHOWN[case]
@@ -262,9 +280,9 @@ def test_the_table_has_the_gaps_of_each_channel(pages):
     cells = {name: re.findall(r"<td[^>]*>([^<]*)</td>", row) for name, row in rows}
     gap = diagnosis.gap
     stages = [gap.before, gap.calibrated, gap.after, gap.floor]
-    assert cells["overall"] == [*(percent(stage["overall"]) for stage in stages), percent(gap.shrink)]
-    force = [stage["channels"]["damper_force"] for stage in stages]
-    assert cells["damper force"] == [*map(percent, force), percent(1 - force[2] / force[0])]
+    assert cells["overall"] == [*(format_percent(stage.overall) for stage in stages), format_percent(gap.shrink)]
+    force = [stage.channels["damper_force"] for stage in stages]
+    assert cells["damper force"] == [*map(format_percent, force), format_percent(1 - force[2] / force[0])]
 
 
 def test_hostile_names_are_text(drawn, tmp_path):
@@ -274,9 +292,10 @@ def test_hostile_names_are_text(drawn, tmp_path):
     found = replace(
         found, name=bad, sentence=bad, notes=[bad], held_out=[bad], selected=[bad], isolable=[[bad]],
         where=[Share(bad, 1.0)], causes=[Cause(bad, 0.9, 0.8, {bad: Estimate(1.0, 0.1, bad), "in": bad})],
-        indistinguishable=[[bad, "coil.lag"]], experiment={"name": bad, "reason": bad, bad: [bad, {bad: 1.0}]},
+        indistinguishable=[[bad, "coil.lag"]], experiment=ProposedExperiment("none", bad, bad, 1.0, 1.0),
         evidence=replace(
-            found.evidence, traces=traces, comfort=[(bad, bad, 1.0, 1.0, 1.0)], alikeness=([bad, "b"], np.eye(2))
+            found.evidence, traces=traces, comfort=[ComfortFigure(bad, bad, 1.0, 1.0, 1.0)],
+            collinearity=Collinearity([bad, "b"], np.eye(2)),
         ),
     )  # fmt: skip
     outline = Outline(write_report(found, tmp_path / "report.html").read_text(encoding="utf-8"))
@@ -288,8 +307,9 @@ def test_hostile_names_are_text(drawn, tmp_path):
 def test_little_is_known(drawn, tmp_path):
     """No traces, no motion, no gaps by channel, numbers that are none: what is left is printed."""
     found = known()
-    nothing = Evidence([], {}, None, ([], np.zeros((0, 0))), [])
-    gap = Gaps({"overall": 0.3}, {"overall": 0.29, "channels": {}}, {"overall": 0.1}, {}, np.nan, (np.nan, np.nan))
+    nothing = Evidence([], {}, None, Collinearity([], np.zeros((0, 0))), [])
+    figures = [GapFigures(size, {}) for size in (0.3, 0.29, 0.1, np.nan)]
+    gap = Gaps(*figures, np.nan, (np.nan, np.nan))
     found = replace(found, evidence=nothing, gap=gap, notes=[], held_out=[], isolable=[], where=[], selected=[])
     outline = Outline(write_report(found, tmp_path / "report.html").read_text(encoding="utf-8"))
     assert outline.anchors == ["gaps", "causes", "use"]
@@ -311,7 +331,7 @@ def test_a_group_names_both_blocks_and_what_would_decide(pages):
     outline = Outline(pages["ambiguous"][1])
     assert "The gap lies in the suspension or the damper" in outline.headings
     assert "suspension.friction 55 % or damper.seal_friction 45 %" in outline.headings
-    assert "Add load cell." in outline.words and "12.35" in outline.words
+    assert "Add load cell." in outline.words and "0.3456" in outline.words
     assert any("cannot tell suspension.friction and damper.seal_friction apart" in words for words in outline.words)
 
 
@@ -333,10 +353,14 @@ def test_a_whole_page_is_small_quick_and_the_same_from_any_thread(tmp_path):
 @pytest.fixture(scope="module")
 def pictures():
     diagnosis = replace(unknown(("damper_force",)), selected=["damper.magnetic_saturation"])
-    found = [diagnosis_answer.gaps(diagnosis), diagnosis_answer.where(diagnosis), diagnosis_answer.ranking(diagnosis)]
-    found += [diagnosis_alikeness.alikeness(diagnosis), *diagnosis_latent.latent(diagnosis)]
-    found += [*diagnosis_signals.signals(diagnosis), *diagnosis_signals.spectra(diagnosis)]
-    found += diagnosis_maps.maps(diagnosis)
+    found = [
+        diagnosis_answer.plot_gaps(diagnosis),
+        diagnosis_answer.plot_location(diagnosis),
+        diagnosis_answer.plot_ranking(diagnosis),
+    ]
+    found += [diagnosis_collinearity.plot_collinearity(diagnosis), *diagnosis_discrepancy.plot_discrepancy(diagnosis)]
+    found += [*diagnosis_signals.plot_signals(diagnosis), *diagnosis_signals.plot_spectra(diagnosis)]
+    found += diagnosis_maps.plot_maps(diagnosis)
     for picture in found:
         FigureCanvasAgg(picture.figure).draw()
     return found
@@ -353,7 +377,7 @@ def test_texts_are_legible_and_inside_the_picture(pictures):
 
 def test_every_scale_has_a_unit_and_lines_have_a_legend(pictures):
     for picture in pictures:
-        if picture.title.startswith("Most alike"):
+        if picture.title.startswith("Most collinear"):
             continue
         panels = picture.figure.axes
         assert any(axes.get_xlabel().endswith("]") for axes in panels)
@@ -369,23 +393,23 @@ def test_every_scale_has_a_unit_and_lines_have_a_legend(pictures):
 def test_a_window_holds_the_burst():
     rows = np.arange(10_000) / RATE
     values = np.where((rows > 12.4) & (rows < 13.9), 1.0, 0.01)
-    window = loudest(rows, values, 2.0)
+    window = find_window(rows, values, 2.0)
     assert window.start <= 12.4 and window.end >= 13.9 and window.end - window.start == pytest.approx(2.0)
-    assert tuple(loudest(rows[:50], values[:50], 2.0)) == (0.0, pytest.approx(0.098))
+    assert tuple(find_window(rows[:50], values[:50], 2.0)) == (0.0, pytest.approx(0.098))
 
 
 def test_bins_of_few_samples_stay_empty():
     x = np.concatenate([np.full(FEWEST, 0.5), np.full(FEWEST - 1, 1.5)])
-    level = binned_rms(x, np.full(len(x), -3.0), np.array([0.0, 1.0, 2.0]))
+    level = bin_rms(x, np.full(len(x), -3.0), np.array([0.0, 1.0, 2.0]))
     assert level[0] == 3.0 and np.isnan(level[1])
 
 
 def test_the_first_second_is_left_out_and_the_worst_channel_is_mapped():
     diagnosis = known()
-    trace, motion = worst(diagnosis)
+    trace, motion = find_worst(diagnosis)
     assert trace.channel == "frame_acceleration" and trace.time[0] == 1.0
-    assert len(motion["velocity"]) == len(trace.time) == len(settled(diagnosis.evidence.traces[0]).time)
-    assert len(settled(trace).time) == len(trace.time)
+    assert len(motion["velocity"]) == len(trace.time) == len(drop_start(diagnosis.evidence.traces[0]).time)
+    assert len(drop_start(trace).time) == len(trace.time)
 
 
 def test_a_white_residual_of_the_noise_is_one_in_every_band():
@@ -396,18 +420,48 @@ def test_a_white_residual_of_the_noise_is_one_in_every_band():
     trace = Trace("run-a", "damper_force", "N", noise, rows, measured, clean, clean, clean)
     base = known()
     diagnosis = replace(base, evidence=replace(base.evidence, traces=[trace], motion={}))
-    picture = next(p for p in diagnosis_maps.maps(diagnosis) if p.title.startswith("Over frequency"))
+    picture = next(p for p in diagnosis_maps.plot_maps(diagnosis) if p.title.startswith("Over frequency"))
     level = picture.figure.axes[0].lines[0].get_ydata()
     np.testing.assert_allclose(level, 1.0, atol=0.25)
     assert level[-1] == pytest.approx(1.0, abs=0.03)
 
 
 def test_numbers_as_they_are_printed():
-    assert [percent(value) for value in (0.314, 0.0314, 0.0, None, np.nan)] == ["31 %", "3.1 %", "0 %", "–", "–"]
-    assert estimate(Estimate(0.08124, 0.0041, "A")) == "0.0812 ± 0.0041 A"
-    assert estimate(Estimate(4512.3, 130.0, "N s/m")) == "4512 ± 130 N·s/m"
-    assert estimate(Estimate(1.5, np.inf, "-")) == "1.5"
-    assert estimate("driver_acceleration") == "driver_acceleration"
-    assert sentence("no run is warmer than 35 degC") == "No run is warmer than 35 °C."
-    assert sentence("damper.remanence is at work.") == "damper.remanence is at work."
+    assert [format_percent(value) for value in (0.314, 0.0314, 0.0, None, np.nan)] == ["31 %", "3.1 %", "0 %", "–", "–"]
+    assert format_estimate(Estimate(0.08124, 0.0041, "A")) == "0.0812 ± 0.0041 A"
+    assert format_estimate(Estimate(4512.3, 130.0, "N s/m")) == "4512 ± 130 N·s/m"
+    assert format_estimate(Estimate(1.5, np.inf, "-")) == "1.5"
+    assert format_estimate("driver_acceleration") == "driver_acceleration"
+    assert format_sentence("no run is warmer than 35 degC") == "No run is warmer than 35 °C."
+    assert format_sentence("damper.remanence is at work.") == "damper.remanence is at work."
     assert tag("p", "a < b", class_="x", title="") == '<p class="x">a &lt; b</p>'
+
+
+def test_text_is_escaped_and_markup_is_not():
+    assert join(["a < b", Html("<b>c</b>")], " & ") == "a &lt; b &amp; <b>c</b>"
+    assert make_list([]) == "" and make_list(["<"]) == "<ul><li>&lt;</li></ul>"
+    assert tag("img", alt='"', aria_label="x") == '<img alt="&quot;" aria-label="x">'
+
+
+def test_a_table_tells_words_from_numbers_and_marks_rows():
+    text = make_table(["name", "value"], [["a", "1"], ["b", "2"]], words=1, strong=[1])
+    assert text.count('<td class="number">') == 2 and text.count('<th scope="row">') == 2
+    assert '<tr class="strong"><th scope="row">b</th>' in text and '<tr><th scope="row">a</th>' in text
+
+
+def test_words_as_they_are_printed():
+    assert join_names(["a"]) == "a" and join_names(["a", "b", "c"], "or") == "a, b or c"
+    assert [format_value(value) for value in ("x", 12.3456, ["a", "b"], {"c": 1}, True)] == [
+        "x", "12.35", "a, b", '{"c": 1}', "true",
+    ]  # fmt: skip
+    assert describe_effect("no.such_effect") == ""
+    assert describe_effect("suspension.friction") and "`" not in describe_effect("suspension.friction")
+
+
+def test_the_gap_of_a_stage_is_read_by_channel():
+    gaps = known().gap
+    assert read_gap(gaps, "after", "overall") == gaps.after.overall
+    assert read_gap(gaps, "before", "damper_force") == gaps.before.channels["damper_force"]
+    assert read_gap(gaps, "floor", "no_such_channel") is None
+    assert [stage.key for stage in select_stages(known())] == ["floor", "before", "calibrated", "after"]
+    assert [stage.key for stage in select_stages(none())] == ["floor", "before", "calibrated"]

@@ -10,14 +10,14 @@ from ruamel.yaml import YAML
 from typer.testing import CliRunner
 
 from seatsim.cli.app import app, main
-from seatsim.cli.outputs.identification import contents, write_identification
+from seatsim.cli.outputs.identification import encode_identification, write_identification
 from seatsim.identification import league as league_module
 from seatsim.identification.identify import identify
 from seatsim.identification.judging import Further
 from seatsim.identification.league import Place, league, ranked
 from seatsim.identification.search import silent
 from seatsim.identification.split import Request
-from seatsim.plots.bench.identification import loops
+from seatsim.plots.bench.identification import plot_predictions
 from seatsim.schema.errors import InputError, RunError
 
 from .benches import BINGHAM, made, sines, write
@@ -115,12 +115,12 @@ def test_factors_of_temperature_and_laws_are_written_and_read_again(tmp_path):
 
 
 def test_without_held_out_records_there_is_no_test(bench):
-    fit = contents(identify(bench, "bingham"))
+    fit = encode_identification(identify(bench, "bingham"))
     assert fit["test"] is None and "predicted" not in fit
 
 
 def test_a_fraction_is_held_out_of_every_record(bench):
-    fit = contents(identify(bench, "bingham", Request(test_fraction=0.3)))
+    fit = encode_identification(identify(bench, "bingham", Request(test_fraction=0.3)))
     parts = [record["part"] for record in fit["records"].values()]
     assert parts == ["train"] * 3 + ["test"] * 3 and "sine_4Hz, 0.5 A (test)" in fit["records"]
     assert fit["test"].fit_percent > 97.0
@@ -129,7 +129,7 @@ def test_a_fraction_is_held_out_of_every_record(bench):
 def test_the_picture_is_labelled_and_inside_its_page(bench):
     found = identify(bench, "bingham", Request(("*2.5Hz",)))
     for judged in (found.judged, found.judged[:1], found.judged * 4):
-        figure = loops(found._replace(judged=list(judged)))
+        figure = plot_predictions(found._replace(judged=list(judged)))
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
         width, height = canvas.get_width_height()
@@ -137,7 +137,7 @@ def test_the_picture_is_labelled_and_inside_its_page(bench):
             box = part.get_tightbbox()
             assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, part
         assert {axes.get_xlabel() for axes in figure.axes} == {"velocity [m/s]", "displacement [mm]", "time [s]"}
-    assert "held out" in loops(found).axes[0].get_title(loc="left")
+    assert "held out" in plot_predictions(found).axes[0].get_title(loc="left")
 
 
 # --------------------------------------------------------------------------------------------------- the league

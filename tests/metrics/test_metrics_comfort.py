@@ -13,8 +13,8 @@ from seatsim.metrics import (
     daily_vdv,
     dose,
     estimated_vdv,
+    frequency_response,
     mtvv,
-    response,
     running_rms,
     seat_factor,
     vdv,
@@ -32,13 +32,15 @@ def sine(amplitude, frequency, seconds, sample_rate=RATE):
 
 def test_weighted_rms_of_a_sine_is_the_weighted_amplitude():
     # The start-up of the high-pass is 2 of 300 s.
-    assert weighted_rms(sine(2.0, 5.0, 300), RATE) == pytest.approx(2 * abs(response(5.0)) / math.sqrt(2), rel=1e-3)
+    assert weighted_rms(sine(2.0, 5.0, 300), RATE) == pytest.approx(
+        2 * abs(frequency_response(5.0)) / math.sqrt(2), rel=1e-3
+    )
 
 
 def test_weighted_rms_of_noise_agrees_with_the_integrated_spectrum():
     noise = np.random.default_rng(1).normal(size=200_000)
     grid = (np.arange(50_000) + 0.5) * RATE / 2 / 50_000
-    expected = math.sqrt(np.mean(np.abs(response(grid)) ** 2))
+    expected = math.sqrt(np.mean(np.abs(frequency_response(grid)) ** 2))
     assert weighted_rms(noise, RATE) == pytest.approx(expected, rel=0.02)
 
 
@@ -118,7 +120,7 @@ def test_seat_factor_of_a_rigid_and_of_a_halving_seat():
 
 def test_seat_factor_weighs_what_the_seat_adds():
     floor, added = sine(1.0, 1.0, 200), sine(1.0, 6.0, 200)
-    expected = math.hypot(abs(response(1.0)), abs(response(6.0))) / abs(response(1.0))
+    expected = math.hypot(abs(frequency_response(1.0)), abs(frequency_response(6.0))) / abs(frequency_response(1.0))
     assert seat_factor(floor + added, floor, RATE) == pytest.approx(expected, rel=2e-3)
 
 

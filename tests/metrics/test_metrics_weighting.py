@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import signal as sp
 
-from seatsim.metrics import WEIGHTINGS, response, weight
+from seatsim.metrics import WEIGHTINGS, frequency_response, weight
 from seatsim.schema.errors import InputError
 
 NOMINAL = np.array([
@@ -38,18 +38,18 @@ def measured_gain(frequency, sample_rate, weighting):
 
 
 def test_formula_reproduces_the_table_at_its_nominal_frequencies():
-    assert np.abs(response(NOMINAL, "Wk")) == pytest.approx(WK, rel=4e-3)
+    assert np.abs(frequency_response(NOMINAL, "Wk")) == pytest.approx(WK, rel=4e-3)
 
 
 def test_formula_reproduces_the_horizontal_table():
     # The table's 212 at 10 Hz lies off the curve that its neighbours and the formula (202) follow.
     smooth = NOMINAL != 10
-    assert np.abs(response(NOMINAL, "Wd"))[smooth] == pytest.approx(WD[smooth], rel=4e-3)
+    assert np.abs(frequency_response(NOMINAL, "Wd"))[smooth] == pytest.approx(WD[smooth], rel=4e-3)
 
 
 def test_table_belongs_to_nominal_not_to_exact_centres():
-    assert np.abs(response(EXACT, "Wk")) == pytest.approx(WK, rel=1.5e-2)
-    assert np.abs(np.abs(response(EXACT, "Wk")) / WK - 1).max() > 1e-2
+    assert np.abs(frequency_response(EXACT, "Wk")) == pytest.approx(WK, rel=1.5e-2)
+    assert np.abs(np.abs(frequency_response(EXACT, "Wk")) / WK - 1).max() > 1e-2
 
 
 @pytest.mark.parametrize("sample_rate", RATES)
@@ -62,7 +62,7 @@ def test_digital_weighting_meets_the_table(sample_rate):
 @pytest.mark.parametrize("sample_rate", RATES)
 def test_digital_gain_and_phase_are_the_analog_ones(sample_rate, weighting):
     for frequency in EXACT:
-        analog = complex(response(frequency, weighting))
+        analog = complex(frequency_response(frequency, weighting))
         assert abs(measured_gain(frequency, sample_rate, weighting) / analog - 1) < 1e-3
 
 
@@ -110,8 +110,8 @@ def test_constant_acceleration_is_forgotten():
 
 
 def test_continues_smoothly_at_zero_frequency():
-    assert response(0.0) == 0
-    assert response(np.zeros((2, 3))).shape == (2, 3)
+    assert frequency_response(0.0) == 0
+    assert frequency_response(np.zeros((2, 3))).shape == (2, 3)
 
 
 @pytest.mark.parametrize("rate", [100.0, 199.0, 0.0, -500.0, math.nan, math.inf])

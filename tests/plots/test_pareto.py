@@ -8,8 +8,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Annotation
 
 from seatsim.metrics import Metric
-from seatsim.plots.runs.pareto import BEST, BOUND, pareto
-from seatsim.plots.runs.placing import placed
+from seatsim.plots.runs.pareto import BEST, BOUND, plot_pareto
+from seatsim.plots.runs.placing import place_names
 from seatsim.simulation.result import Run
 
 
@@ -50,7 +50,7 @@ def names_of(figure):
     ("count", "temperatures"), [(4, (20.0,)), (18, (20.0,)), (4, (20.0, 80.0)), (18, (20.0, 50.0, 80.0))]
 )
 def test_no_two_names_overlap(runs, count, temperatures):
-    figure = pareto(runs([f"law of length {n}" for n in range(count)], temperatures), {})
+    figure = plot_pareto(runs([f"law of length {n}" for n in range(count)], temperatures), {})
     panels = names_of(figure)
     assert [len(panel) for panel in panels] == [count] * len(temperatures)
     for panel in panels:
@@ -59,18 +59,18 @@ def test_no_two_names_overlap(runs, count, temperatures):
 
 
 def test_panels_are_titled_and_points_named_by_what_sets_them_apart(runs):
-    figure = pareto(runs(["soft", "hard"], (20.0, 80.0)), {})
+    figure = plot_pareto(runs(["soft", "hard"], (20.0, 80.0)), {})
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["20 °C", "80 °C"]
     assert [text.get_text() for text in names_of(figure)[0]] == ["soft", "hard"]
 
 
 def test_rigs_of_one_run_share_a_panel(runs):
-    assert len(pareto(runs(["soft"], (20.0, 50.0, 80.0)), {}).axes) == 1
+    assert len(plot_pareto(runs(["soft"], (20.0, 50.0, 80.0)), {}).axes) == 1
 
 
 def test_bracket_is_drawn_where_there_is_one(runs):
     both = runs(["soft", "hard"], (20.0, 80.0))
-    figure = pareto(both, {both[0].scenario.rig: Fake()})
+    figure = plot_pareto(both, {both[0].scenario.rig: Fake()})
     with_bracket, without = figure.axes
     assert [line.get_label() for line in with_bracket.lines] == [BOUND.label, BEST.label]
     assert not without.lines
@@ -80,14 +80,14 @@ def test_bracket_is_drawn_where_there_is_one(runs):
 
 def test_a_rig_of_one_run_has_a_panel_where_there_are_brackets(runs):
     both = runs(["soft"], (20.0, 80.0))
-    assert len(pareto(both, {both[0].scenario.rig: Fake()}).axes) == 2
+    assert len(plot_pareto(both, {both[0].scenario.rig: Fake()}).axes) == 2
 
 
 def test_without_weighted_accelerations_it_says_so(runs):
     bare = [dataclasses.replace(run, metrics={}) for run in runs(["soft", "hard"])]
-    [axes] = pareto(bare, {}).axes
+    [axes] = plot_pareto(bare, {}).axes
     assert "200 samples" in axes.texts[0].get_text()
 
 
 def test_a_name_without_room_is_told():
-    assert placed([(0.5, 0.5)], ["a name longer than its panel"], (1.0, 1.0)) is None
+    assert place_names([(0.5, 0.5)], ["a name longer than its panel"], (1.0, 1.0)) is None

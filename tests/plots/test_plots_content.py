@@ -8,12 +8,13 @@ import pytest
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.metrics import summarise
 from seatsim.plots import labels
-from seatsim.plots.runs.comparison import comparison, swept_number
-from seatsim.plots.runs.envelope import force_velocity
-from seatsim.plots.runs.histories import time_histories
-from seatsim.plots.runs.loops import amplitude_of, damper_loops, specimens
-from seatsim.plots.runs.spectra import psd, transmissibility
-from seatsim.plots.thinning import BINS, CLOSE_UP, Window, eventful, thinned
+from seatsim.plots.runs import naming
+from seatsim.plots.runs.comparison import find_swept_number, plot_comparison
+from seatsim.plots.runs.envelope import plot_force_velocity
+from seatsim.plots.runs.histories import CLOSE_UP, find_close_up, plot_time_histories
+from seatsim.plots.runs.loops import choose_amplitude, find_dampers, plot_damper_loops
+from seatsim.plots.runs.spectra import plot_psd, plot_transmissibility
+from seatsim.plots.thinning import BINS, Window, thin_line
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.simulation.damper_bench import sine_test
@@ -40,7 +41,7 @@ def with_plant(run, **changes):
 def test_thinning_keeps_extremes_and_order():
     x, y = np.arange(100_003.0), np.random.default_rng(0).standard_normal(100_003)
     y[[0, 54_321, 100_002]] = 40, 50, -60
-    thin_x, thin_y = thinned(x, y)
+    thin_x, thin_y = thin_line(x, y)
     assert len(thin_x) <= 2 * BINS and np.all(np.diff(thin_x) >= 0)
     assert thin_y.max() == 50 and thin_y.min() == -60 and thin_y[0] == 40
     np.testing.assert_array_equal(thin_y, y[thin_x.astype(int)])
@@ -48,20 +49,20 @@ def test_thinning_keeps_extremes_and_order():
 
 def test_short_lines_stay_as_they_are():
     x = np.arange(2.0 * BINS)
-    assert thinned(x, x)[0] is x
+    assert thin_line(x, x)[0] is x
 
 
 def test_the_eventful_window_holds_the_burst():
     values = np.full(30_000, 0.1)
     values[17_000:19_000] = 2.0
-    window = eventful(values, 0.001)
+    window = find_close_up(values, 0.001)
     assert window.end - window.start == pytest.approx(CLOSE_UP)
     assert window.start <= 17.0 and window.end >= 19.0
-    assert eventful(values[:100], 0.001) == Window(0.0, pytest.approx(0.099))
+    assert find_close_up(values[:100], 0.001) == Window(0.0, pytest.approx(0.099))
 
 
 def test_the_close_up_is_stated_and_shared(made_up):
-    figure = time_histories([made_up({"variant": "a"}), made_up({"variant": "b"}, seconds=7.0)])
+    figure = plot_time_histories([made_up({"variant": "a"}), made_up({"variant": "b"}, seconds=7.0)])
     start, end = figure.axes[0].get_xlim()
     assert end - start == pytest.approx(CLOSE_UP) and end <= 7.0
     assert texts(figure)[1].startswith(f"{start:.1f} to {end:.1f} s, where the RMS acceleration")
@@ -69,32 +70,32 @@ def test_the_close_up_is_stated_and_shared(made_up):
 
 
 def test_displacement_is_in_millimetres_within_its_limits(made_up):
-    axes = time_histories([made_up()]).axes[2]
+    axes = plot_time_histories([made_up()]).axes[2]
     assert np.max(axes.lines[0].get_ydata()) == pytest.approx(20.0, rel=1e-3)
     assert [line.get_ydata()[0] for line in axes.lines[1:3]] == [-50.0, 50.0]
 
 
 def test_limits_that_are_far_away_or_not_stated_are_left_out(made_up):
     for run in (made_up(motion=0.1), with_plant(made_up(), travel=(-10.0, 10.0))):
-        assert len(time_histories([run]).axes[2].lines) == 1
+        assert len(plot_time_histories([run]).axes[2].lines) == 1
 
 
 def test_a_force_is_wanted_only_where_a_law_wants_one(made_up):
-    with_force, without = (time_histories([made_up(wanted=wanted)]).axes[4] for wanted in (True, False))
+    with_force, without = (plot_time_histories([made_up(wanted=wanted)]).axes[4] for wanted in (True, False))
     assert [line.get_label() for line in with_force.lines] == ["wanted", "delivered"]
     assert len(without.lines) == 1
 
 
 def test_temperature_is_shown_where_it_changes(made_up):
-    shown = [axes.get_ylabel() for axes in time_histories([made_up(warming=5.0)]).axes]
+    shown = [axes.get_ylabel() for axes in plot_time_histories([made_up(warming=5.0)]).axes]
     assert any("temperature" in label for label in shown)
-    steady = [axes.get_ylabel() for axes in time_histories([made_up()]).axes]
+    steady = [axes.get_ylabel() for axes in plot_time_histories([made_up()]).axes]
     assert not any("temperature" in label for label in steady)
 
 
 def test_the_density_of_white_noise_is_flat(made_up):
     run = made_up(seconds=60.0)
-    floor, _ = psd([run]).axes[0].lines
+    floor, _ = plot_psd([run]).axes[0].lines
     level = 2 * run.history.step * np.var(run.history["floor_acceleration"])
     high = floor.get_xdata() > 5
     np.testing.assert_allclose(floor.get_ydata()[high], level, rtol=0.6)
@@ -103,26 +104,26 @@ def test_the_density_of_white_noise_is_flat(made_up):
 
 def test_a_floor_that_runs_share_is_drawn_once(made_up):
     same = [made_up({"variant": name}) for name in "ab"]
-    assert len(psd(same).axes[0].lines) == 3
-    assert len(psd([same[0], made_up({"variant": "c"}, motion=2.0)]).axes[0].lines) == 4
-    assert legend(psd(same)) == ["a", "b", "floor"]
+    assert len(plot_psd(same).axes[0].lines) == 3
+    assert len(plot_psd([same[0], made_up({"variant": "c"}, motion=2.0)]).axes[0].lines) == 4
+    assert legend(plot_psd(same)) == ["a", "b", "floor"]
 
 
 def test_transmissibility_of_a_rigid_seat_of_half_gain(made_up):
     run = made_up()
     run = with_channels(run, driver_acceleration=0.5 * run.history["floor_acceleration"])
-    axes = transmissibility([run]).axes[0]
+    axes = plot_transmissibility([run]).axes[0]
     np.testing.assert_allclose(axes.lines[0].get_ydata(), 0.5, rtol=1e-9)
 
 
 def test_transmissibility_ends_where_the_floor_explains_nothing(made_up):
     run = made_up(seconds=60.0)
     run = with_channels(run, driver_acceleration=np.random.default_rng(9).standard_normal(30_000))
-    gain = transmissibility([run]).axes[0].lines[0].get_ydata()
+    gain = plot_transmissibility([run]).axes[0].lines[0].get_ydata()
     assert np.isnan(gain).mean() > 0.95
 
 
-@pytest.mark.parametrize(("picture", "words"), [(psd, "at rest"), (transmissibility, "no floor motion")])
+@pytest.mark.parametrize(("picture", "words"), [(plot_psd, "at rest"), (plot_transmissibility, "no floor motion")])
 def test_an_empty_spectrum_says_so(picture, words, made_up):
     axes = picture([made_up(motion=0.0)]).axes[0]
     assert words in axes.texts[0].get_text()
@@ -131,14 +132,14 @@ def test_an_empty_spectrum_says_so(picture, words, made_up):
 
 def test_the_test_has_the_rms_of_the_run_to_one_digit(made_up):
     run = made_up()
-    assert amplitude_of([run]) == pytest.approx(0.02)
-    assert amplitude_of([run, with_plant(run, damper_ratio=2.0)]) == pytest.approx(0.04)
-    assert amplitude_of([made_up(motion=0.0)]) == 0.01
-    assert amplitude_of([made_up(motion=1e-4)]) == 0.001
+    assert choose_amplitude([run]) == pytest.approx(0.02)
+    assert choose_amplitude([run, with_plant(run, damper_ratio=2.0)]) == pytest.approx(0.04)
+    assert choose_amplitude([made_up(motion=0.0)]) == 0.01
+    assert choose_amplitude([made_up(motion=1e-4)]) == 0.001
 
 
 def test_loops_by_current_and_by_temperature(made_up):
-    figure = damper_loops([made_up()])
+    figure = plot_damper_loops([made_up()])
     assert texts(figure)[1] == "Sine test, amplitude 20 mm, frequency 1.5 Hz."
     names = [[text.get_text() for text in axes.get_legend().get_texts()] for axes in figure.axes[1::2]]
     assert names == [["0 A", "0.25 A", "0.5 A", "0.75 A", "1 A"], ["20 °C", "50 °C", "80 °C"]]
@@ -148,25 +149,25 @@ def test_loops_by_current_and_by_temperature(made_up):
 
 
 def test_loops_at_the_temperatures_that_are_swept(made_up):
-    figure = damper_loops([made_up({"temperature": t}) for t in (10, 60)])
+    figure = plot_damper_loops([made_up({"temperature": t}) for t in (10, 60)])
     assert [text.get_text() for text in figure.axes[3].get_legend().get_texts()] == ["10 °C", "60 °C"]
 
 
 def test_no_loops_by_temperature_where_it_plays_no_part(made_up):
-    assert len(damper_loops([made_up(factors=TemperatureFactors())]).axes) == 2
+    assert len(plot_damper_loops([made_up(factors=TemperatureFactors())]).axes) == 2
 
 
 def test_distinct_dampers(made_up):
     run, other = made_up({"variant": "a"}), made_up({"variant": "b"}, factors=TemperatureFactors())
     strong = replace(run, scenario=replace(run.scenario, coil=Coil(max_current=2.0)))
-    assert [len(damper.runs) for damper in specimens([run, other, run, strong])] == [2, 1, 1]
-    titles = [axes.get_title(loc="left") for axes in damper_loops([run, other]).axes[::2]]
+    assert [len(damper.runs) for damper in find_dampers([run, other, run, strong])] == [2, 1, 1]
+    titles = [axes.get_title(loc="left") for axes in plot_damper_loops([run, other]).axes[::2]]
     assert titles == ["bouc_wen (a) at 20 °C", "bouc_wen (a) at 1 A", "bouc_wen (b) at 20 °C"]
 
 
 def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
     run = made_up()
-    figure = force_velocity(run)
+    figure = plot_force_velocity(run)
     axes = figure.axes[0]
     dots = axes.collections[0].get_offsets()
     every = -(-len(run.history["time"]) // len(dots))
@@ -177,7 +178,7 @@ def test_force_velocity_shows_the_run_within_the_dampers_curves(made_up):
 
 def test_a_sweep_is_compared_over_its_number(made_up):
     runs = [made_up({"variant": v, "temperature": t}) for v in "ab" for t in (80, 20, 50)]
-    figure = comparison(runs)
+    figure = plot_comparison(runs)
     assert legend(figure) == ["a", "b"]
     assert [axes.get_xlabel() for axes in figure.axes] == ["damper temperature [°C]"] * 4
     np.testing.assert_array_equal(figure.axes[0].lines[0].get_xdata(), [20.0, 50.0, 80.0])
@@ -187,7 +188,7 @@ def test_a_sweep_is_compared_over_its_number(made_up):
 
 def test_variants_are_compared_by_bars_with_their_values(made_up):
     runs = [made_up({"variant": v}) for v in "ab"] + [made_up({"variant": "at rest"}, motion=0.0)]
-    figure = comparison(runs)
+    figure = plot_comparison(runs)
     assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["a", "b", "at rest"]
     assert [text.get_text() for text in figure.axes[2].texts] == ["14.2", "14.2", "0.0"]
     assert figure.axes[3].texts[2].get_text() == "none"
@@ -196,12 +197,12 @@ def test_variants_are_compared_by_bars_with_their_values(made_up):
 def test_a_metric_that_a_run_lacks_is_none(made_up):
     run = made_up({"variant": "a"})
     coarse = replace(run, metrics=summarise(run.history.channels, 0.01))
-    assert [text.get_text() for text in comparison([coarse, coarse]).axes[1].texts] == ["none", "none"]
+    assert [text.get_text() for text in plot_comparison([coarse, coarse]).axes[1].texts] == ["none", "none"]
 
 
 def test_only_numbers_that_change_in_every_run_are_swept(made_up):
     def key(*labels_of_runs):
-        return swept_number([made_up(label, seconds=0.1) for label in labels_of_runs])
+        return find_swept_number([made_up(label, seconds=0.1) for label in labels_of_runs])
 
     assert key({"a": 1, "b": 1}, {"a": 2, "b": 1}) == "a"
     assert key({"a": 1}, {"a": 1}) == ""
@@ -212,11 +213,11 @@ def test_only_numbers_that_change_in_every_run_are_swept(made_up):
 def test_more_runs_than_lines_can_tell_apart(made_up):
     mass = "plant.driver_mass"
     sweep = [made_up({"variant": v, mass: m}, seconds=0.1) for v in "abc" for m in (50, 60, 70)]
-    assert labels.labels(labels.shown(sweep)) == [f"{v}, driver mass 50 kg" for v in "abc"]
+    assert naming.label_runs(naming.select_shown(sweep)) == [f"{v}, driver mass 50 kg" for v in "abc"]
     many = [made_up({"seed": n}, seconds=0.1) for n in range(20)]
-    spread = [run.scenario.label["seed"] for run in labels.shown(many)]
+    spread = [run.scenario.label["seed"] for run in naming.select_shown(many)]
     assert len(spread) == 8 and spread[0] == 0 and spread[-1] == 19
-    assert "8 of 20 runs are shown." in texts(psd(many))[1]
+    assert "8 of 20 runs are shown." in texts(plot_psd(many))[1]
 
 
 @pytest.mark.parametrize(
@@ -230,10 +231,10 @@ def test_more_runs_than_lines_can_tell_apart(made_up):
     ],
 )
 def test_swept_values_have_their_unit(key, axis, made_up):
-    assert labels.axis(made_up(seconds=0.1).scenario, key) == axis
+    assert naming.label_axis(made_up(seconds=0.1).scenario, key) == axis
 
 
 def test_names_are_printed_as_they_stand():
-    assert labels.clean("_a $x$", 20) == r" _a \$x\$"
-    assert labels.clean("abcdefghij", 6) == "ab…hij"
-    assert labels.clean("abcdef", 6) == "abcdef"
+    assert labels.clean_text("_a $x$", 20) == r" _a \$x\$"
+    assert labels.clean_text("abcdefghij", 6) == "ab…hij"
+    assert labels.clean_text("abcdef", 6) == "abcdef"

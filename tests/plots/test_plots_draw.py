@@ -7,7 +7,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
-from seatsim.plots.runs.draw import draw
+from seatsim.plots.runs.draw import plot_result
 from seatsim.simulation.result import Result
 
 ALWAYS = {"time_histories", "psd", "transmissibility", "damper_loops", "force_velocity"}
@@ -26,7 +26,7 @@ CASES = {
 
 @pytest.fixture(scope="module", params=list(CASES))
 def figures(request, made_up):
-    drawn = draw(Result(CASES[request.param](made_up)))
+    drawn = plot_result(Result(CASES[request.param](made_up)))
     for figure in drawn.values():
         FigureCanvasAgg(figure).draw()
     return drawn
@@ -84,7 +84,7 @@ def test_equal_results_give_equal_bytes(made_up):
 
 def drawn_bytes(result):
     files = {}
-    for name, figure in draw(result).items():
+    for name, figure in plot_result(result).items():
         file = io.BytesIO()
         figure.savefig(file, dpi=50, metadata={"Software": "seatsim"})
         files[name] = file.getvalue()
@@ -94,6 +94,6 @@ def drawn_bytes(result):
 def test_a_run_is_not_changed_by_drawing_it(made_up):
     run = made_up()
     before = {name: values.copy() for name, values in run.history.channels.items()}
-    draw(Result([run]))
+    plot_result(Result([run]))
     for name, values in run.history.channels.items():
         np.testing.assert_array_equal(values, before[name])

@@ -1,1 +1,1 @@
-"""Files that the commands write, one module a kind of result."""
+"""Files that the commands write and tables that they print, one module a kind of result; nothing is computed here."""

@@ -7,7 +7,6 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
 from rich.table import Table
 from ruamel.yaml import YAML
@@ -31,12 +30,12 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     if diagnosis.experiment is not None and diagnosis.experiment.scenario is not None:
         paths.append(write_whole(folder / "experiment.yaml", partial(dump, dict(diagnosis.experiment.scenario))))
     paths.append(write_report(diagnosis, folder / "report.html"))
-    paths.append(write_json(folder / "diagnosis.json", contents(diagnosis)))
+    paths.append(write_json(folder / "diagnosis.json", encode_diagnosis(diagnosis)))
     return paths
 
 
-def contents(diagnosis: Diagnosis) -> dict[str, Any]:
-    """Return a diagnosis as it stands in `diagnosis.json`."""
+def encode_diagnosis(diagnosis: Diagnosis) -> dict[str, object]:
+    """Return a diagnosis as it stands in `diagnosis.json`, whose keys the public contract fixes."""
     gap = diagnosis.gap
     experiment = None if diagnosis.experiment is None else diagnosis.experiment.as_dict()
     fields = {
@@ -52,11 +51,11 @@ def contents(diagnosis: Diagnosis) -> dict[str, Any]:
         },
         "notes": diagnosis.notes, "augmented": "augmented.yaml",
     }  # fmt: skip
-    found: dict[str, Any] = plain(fields)
+    found: dict[str, object] = plain(fields)
     return found
 
 
-def tables(diagnosis: Diagnosis) -> list[Table]:
+def make_tables(diagnosis: Diagnosis) -> list[Table]:
     """Return the gaps and the likeliest causes as tables."""
     gap = diagnosis.gap
     gaps = Table(title=f"gap on {', '.join(diagnosis.held_out)}, in standard deviations", title_justify="left")
@@ -83,7 +82,7 @@ def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
     open_cases = [case for case in cases if not (case / "diagnosis" / "diagnosis.json").exists()]
     count(len(cases) - len(open_cases), len(cases))
     with ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
-        futures = [pool.submit(_diagnosed, case) for case in open_cases]
+        futures = [pool.submit(_diagnose_one, case) for case in open_cases]
         try:
             for done, future in enumerate(as_completed(futures), len(cases) - len(open_cases) + 1):
                 future.result()
@@ -93,7 +92,7 @@ def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
             raise
 
 
-def _diagnosed(case: Path) -> None:
+def _diagnose_one(case: Path) -> None:
     """Diagnose one case; one that cannot be diagnosed is left without, and counts as wrong."""
     try:
         write_diagnosis(diagnose(case), case / "diagnosis")

@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from rich import box
 from rich.markup import escape
@@ -32,29 +31,29 @@ NO_COIL = "# No command that changes was recorded: the rates of the actuator are
 
 def write_identification(found: Identification, folder: str | Path) -> list[Path]:
     """Write `parameters.yaml`, `fit.json` and the picture of an identification; return their paths."""
-    from seatsim.plots.bench.identification import loops
+    from seatsim.plots.bench.identification import plot_predictions
 
     folder = Path(folder)
     text = io.StringIO(HEAD + ("" if found.commanded else NO_COIL))
     text.seek(0, io.SEEK_END)
     yaml = YAML()
     yaml.default_flow_style = False
-    yaml.dump(parameters(found), text)
+    yaml.dump(encode_parameters(found), text)
     paths = [
         write_text(folder / "parameters.yaml", text.getvalue()),
-        write_json(folder / "fit.json", contents(found)),
+        write_json(folder / "fit.json", encode_identification(found)),
     ]
-    return [*paths, *write_pictures({"loops": loops(found)}, folder)]
+    return [*paths, *write_pictures({"loops": plot_predictions(found)}, folder)]
 
 
-def parameters(found: Identification) -> dict[str, Any]:
+def encode_parameters(found: Identification) -> dict[str, object]:
     """Return the damper and its coil as a scenario has them, with what else the bench needs under `bench`."""
     bench = found.bench
     values = {
         name: list(map(float, value)) if isinstance(value, tuple) else value if isinstance(value, int) else float(value)
         for name, value in bench.damper._asdict().items()
     }
-    damper: dict[str, Any] = {"model": found.model, "parameters": values}
+    damper: dict[str, object] = {"model": found.model, "parameters": values}
     if found.warm:
         damper["temperature_factors"] = {name: float(value) for name, value in bench.factors._asdict().items()}
     end = max(float(each.record.current.max()) for each in found.judged if each.part != "predicted")
@@ -65,11 +64,11 @@ def parameters(found: Identification) -> dict[str, Any]:
     }
 
 
-def contents(found: Identification) -> dict[str, Any]:
+def encode_identification(found: Identification) -> dict[str, object]:
     """Return what `fit.json` holds; `test` is null where nothing was held out."""
     records = {
         name: {"part": each.part, "current": each.record.mean_current, **each.figures._asdict()}
-        for name, each in zip(_names(found), found.judged, strict=True)
+        for name, each in zip(_name_records(found), found.judged, strict=True)
     }
     known = found.information
     further = {"predicted": found.mean("predicted")} if found.mean("predicted") else {}
@@ -91,7 +90,7 @@ def contents(found: Identification) -> dict[str, Any]:
     }
 
 
-def _names(found: Identification) -> list[str]:
+def _name_records(found: Identification) -> list[str]:
     """Return the names of the judged records, with the part they had where the name alone does not tell them apart."""
     names = [each.record.name for each in found.judged]
     full = [
@@ -105,17 +104,17 @@ def _names(found: Identification) -> list[str]:
     return full
 
 
-def tables(found: Identification) -> list[Table]:
+def make_tables(found: Identification) -> list[Table]:
     """Return the tables of figures and of parameters."""
-    figures = _table(f"{found.model}: agreement with the measured force", ("", "R²", "MD", "RMSE [N]", "fit [%]"))
+    figures = _make_table(f"{found.model}: agreement with the measured force", ("", "R²", "MD", "RMSE [N]", "fit [%]"))
     for judged in found.judged if len(found.judged) <= LISTED else ():
-        figures.add_row(f"{escape(judged.record.name)} ({judged.part})", *_figures(judged.figures))
+        figures.add_row(f"{escape(judged.record.name)} ({judged.part})", *_format_figures(judged.figures))
     figures.add_section()
     for part in ("train", "test", "predicted"):
         mean = found.mean(part)
         if mean:
-            figures.add_row(f"mean, {part}", *_figures(mean))
-    values = _table(f"{found.model}: parameters, ±1.96 standard deviations", ("", "value", "±", "unit", ""))
+            figures.add_row(f"mean, {part}", *_format_figures(mean))
+    values = _make_table(f"{found.model}: parameters, ±1.96 standard deviations", ("", "value", "±", "unit", ""))
     for estimate in found.information.estimates:
         note = "" if estimate.identified else "not identified"
         row = (f"{estimate.value:.5g}", f"{1.96 * estimate.std:.2g}", escape(estimate.unit), note)
@@ -131,9 +130,9 @@ def write_league(places: Sequence[Place], folder: Path) -> Path:
     return write_whole(folder / "league.csv", partial(frame.to_csv, index=False))
 
 
-def league_table(places: Sequence[Place]) -> Table:
+def make_league_table(places: Sequence[Place]) -> Table:
     """Return the league as a table."""
-    table = _table("league", ("model", "train [%]", "test [%]", "parameters", "ns a step", "BIC", "s"))
+    table = _make_table("league", ("model", "train [%]", "test [%]", "parameters", "ns a step", "BIC", "s"))
     for place in places:
         if place.failed:
             table.add_row(place.model, *["-"] * 6)
@@ -146,12 +145,12 @@ def league_table(places: Sequence[Place]) -> Table:
     return table
 
 
-def _table(title: str, headings: Sequence[str]) -> Table:
+def _make_table(title: str, headings: Sequence[str]) -> Table:
     table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD)
     for k, heading in enumerate(headings):
         table.add_column(escape(heading), justify="right" if k and heading not in ("unit", "") else "left")
     return table
 
 
-def _figures(figures: Figures) -> tuple[str, ...]:
+def _format_figures(figures: Figures) -> tuple[str, ...]:
     return f"{figures.r2:.4f}", f"{figures.md:.3f}", f"{figures.rmse:.1f}", f"{figures.fit_percent:.1f}"

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,58 +17,56 @@ from seatsim.simulation.result import UNITS, Result, Run
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PICTURE: dict[str, Any] = {"dpi": 110, "metadata": {"Software": "seatsim"}, "pil_kwargs": {"compress_level": 3}}
-"""How pictures are saved: the same bytes for the same result."""
+DPI = 110
+"""Dots per inch of a picture: 1100 over the width of a page."""
+COMPRESSION = 3
+"""Level of zlib, 0 to 9: fast rather than small."""
 
 
 def write_result(result: Result, folder: Path) -> list[Path]:
     """Write `summary.csv`, `summary.json`, `history.parquet` and the pictures of a result; return their paths."""
     with ThreadPoolExecutor(max_workers=1) as pool:
-        # Compressing the histories leaves the processor to the pictures.
+        # Compressing the histories, in a thread of its own, releases Python's lock to the drawing of the pictures.
         history = pool.submit(write_whole, folder / "history.parquet", partial(_write_history, result))
-        from seatsim.plots.runs.draw import draw
+        from seatsim.plots.runs.draw import plot_result
 
         paths = [
             write_whole(folder / "summary.csv", partial(result.table.to_csv, index=False)),
-            write_json(folder / "summary.json", {"runs": [_summary(run) for run in result.runs]}),
+            write_json(folder / "summary.json", {"runs": [_encode_summary(run) for run in result.runs]}),
         ]
-        pictures = write_pictures(draw(result), folder)
+        pictures = write_pictures(plot_result(result), folder)
         if result.brackets:
-            paths.append(write_json(folder / "brackets.json", {"rigs": _brackets(result)}))
+            paths.append(write_json(folder / "brackets.json", {"rigs": _encode_brackets(result)}))
         return [*paths, history.result(), *pictures]
 
 
 def write_pictures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
-    """Write figures as `NAME.png` and return their paths."""
-    return [write_whole(folder / f"{name}.png", partial(figure.savefig, **PICTURE)) for name, figure in figures.items()]
+    """Write figures as `NAME.png` and return their paths; the same figure gives the same bytes."""
+    # The stated software takes the place of matplotlib's own entry, which holds its version.
+    metadata, options = {"Software": "seatsim"}, {"compress_level": COMPRESSION}
+    return [
+        write_whole(folder / f"{name}.png", partial(figure.savefig, dpi=DPI, metadata=metadata, pil_kwargs=options))
+        for name, figure in figures.items()
+    ]
 
 
-def _brackets(result: Result) -> list[dict[str, Any]]:
-    """Return for each rig its bracket, and for each of its runs where that stands."""
+def _encode_brackets(result: Result) -> list[dict[str, object]]:
+    """Return for each rig its performance bounds, and for each of its runs how far from them it is."""
     found = []
     for rig, bracket in result.brackets.items():
-        runs = [run for run in result.runs if run.scenario.rig == rig]
-        found.append(
-            {
-                **bracket.as_dict(),
-                "runs": [
-                    {
-                        "scenario": run.scenario.name,
-                        "label": dict(run.scenario.label),
-                        **distance(run, bracket)._asdict(),
-                    }
-                    for run in runs
-                ],
-            }
-        )
+        runs = [_encode_name(run) | distance(run, bracket)._asdict() for run in result.runs if run.scenario.rig == rig]
+        found.append({**bracket.as_dict(), "runs": runs})
     return found
 
 
-def _summary(run: Run) -> dict[str, Any]:
+def _encode_name(run: Run) -> dict[str, object]:
+    """Return the name of a run's scenario, and what sets the run apart from the others."""
+    return {"scenario": run.scenario.name, "label": dict(run.scenario.label)}
+
+
+def _encode_summary(run: Run) -> dict[str, object]:
     metrics = {name: {"value": m.value, "unit": m.unit, "meaning": m.meaning} for name, m in run.metrics.items()}
-    return {
-        "scenario": run.scenario.name,
-        "label": dict(run.scenario.label),
+    return _encode_name(run) | {
         "metrics": metrics,
         "warnings": list(run.warnings),
         "notes": list(run.history.notes),

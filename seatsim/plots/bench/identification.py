@@ -1,4 +1,4 @@
-"""Pictures of an identification: measured and predicted loops, and force over time."""
+"""Figures of an identification: measured and predicted loops, and force over time."""
 
 from __future__ import annotations
 
@@ -20,30 +20,33 @@ SHOWN = 1500
 MEASURED, PREDICTED = Entry("measured", "#000000", width=1.6), Entry("predicted", style.COLOURS[1])
 
 
-def loops(found: Identification) -> Figure:
+def plot_predictions(found: Identification) -> Figure:
     """Return force over velocity, over displacement and over time of some records, held-out ones before fitted ones."""
-    chosen = _chosen(found.judged)
+    chosen = _select_records(found.judged)
     grid = Grid(heights=(2.2,) * len(chosen), columns=3, top=0.4, gap=(0.75, 0.95))
     drawn = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
     mean = found.mean("test") or found.mean("train")
     note = f"{len(chosen)} of {len(found.judged)} records; mean fit {mean.fit_percent:.1f} %" if mean else ""
     note += " of held-out records" if found.mean("test") else ""
-    page = style.page(f"{found.model}: measured and predicted force", note, grid, (MEASURED, PREDICTED))
+    page = style.make_page(f"{found.model}: measured and predicted force", note, grid, (MEASURED, PREDICTED))
     for panels, judged in zip(page.rows, chosen, strict=True):
-        title = labels.clean(judged.record.name, labels.LONGEST_TITLE)
+        title = labels.clean_text(judged.record.name, labels.LONGEST_TITLE)
         panels[0].set_title(f"{title} ({drawn[judged.part]}), fit {judged.figures.fit_percent:.1f} %", loc="left")
-        _draw(panels, judged)
+        _draw_record(panels, judged)
     return page.figure
 
 
-def _chosen(judged: Sequence[Judged]) -> list[Judged]:
-    """Return records spread evenly over the held-out ones, or the fitted ones where none is held out."""
+def _select_records(judged: Sequence[Judged]) -> list[Judged]:
+    """Return records spread evenly over the held-out ones, or the fitted ones where none is held out.
+
+    Held-out records come first because only they show how well the model predicts.
+    """
     first = [each for each in judged if each.part != "train"] or list(judged)
     places = np.unique(np.linspace(0, len(first) - 1, min(MOST, len(first))).round().astype(int))
     return [first[place] for place in places]
 
 
-def _draw(panels: Sequence[Axes], judged: Judged) -> None:
+def _draw_record(panels: Sequence[Axes], judged: Judged) -> None:
     record = judged.record
     part = slice(*record.liveliest(SHOWN))
     for axes, across, name in (
@@ -51,7 +54,7 @@ def _draw(panels: Sequence[Axes], judged: Judged) -> None:
         (panels[1], 1e3 * record.displacement, "displacement [mm]"),
         (panels[2], record.time, "time [s]"),
     ):
-        style.line(axes, across[part], record.force[part], MEASURED)
-        style.line(axes, across[part], judged.predicted[part], PREDICTED)
+        style.draw_line(axes, across[part], record.force[part], MEASURED)
+        style.draw_line(axes, across[part], judged.predicted[part], PREDICTED)
         axes.set_xlabel(name)
     panels[0].set_ylabel("force [N]")

@@ -1,4 +1,4 @@
-"""Response of the force to steps of the current, beside the first-order lag of the same time to 95 %."""
+"""Response of the force to steps of the current, and the first-order lag of the same time to 95 % for comparison."""
 
 from __future__ import annotations
 
@@ -19,37 +19,37 @@ SHOWN = 2.2
 """Length of a panel over the longest time to 95 %."""
 
 
-def steps(found: Characterisation) -> Figure:
-    """Return the share of the change that the force has covered, rise and fall apart."""
+def plot_steps(found: Characterisation) -> Figure:
+    """Return the share of the change that the force has covered over time, rise and fall of the current apart."""
     known = [answer for answer in found.responses if answer.share is not None]
     speeds = {f"{answer.speed:.3g} m/s" for answer in known if math.isfinite(answer.speed)}
     at = f" at {speeds.pop()}" if len(speeds) == 1 else ""
     note = f"Force{at}, from its level before to that after the step; dots: 5, 90, 95 %. Thin: first order, same t95."
-    page = style.page(
-        f"Response to steps of current: {labels.clean(found.name, labels.LONGEST_TITLE - 20)}",
+    page = style.make_page(
+        f"Response to steps of current: {labels.clean_text(found.name, labels.LONGEST_TITLE - 20)}",
         note, Grid((3.6,), columns=2, top=0.4, right=0.3, gap=(0.7, 0.7)),
     )  # fmt: skip
     for axes, rises in zip(page.rows[0], (True, False), strict=True):
         chosen = [answer for answer in known if answer.rises == rises]
-        _draw(axes, chosen)
+        _draw_responses(axes, chosen)
         axes.set_title("current rises" if rises else "current falls", loc="left", fontsize=10.5)
     page.rows[0][0].set_ylabel("share of the change [-]")
     return page.figure
 
 
-def _draw(axes: Axes, answers: list[Response]) -> None:
+def _draw_responses(axes: Axes, answers: list[Response]) -> None:
     if not answers:
-        style.say(axes, "none determined")
+        style.explain_empty(axes, "none determined")
         return
     for level in SHARES:
         axes.axhline(level, color=GREY, linewidth=0.7, linestyle=(0.0, (1.0, 2.0)))
     shown = answers[:MOST]
     end = SHOWN * max((a.t95 for a in shown if math.isfinite(a.t95)), default=0.05)
-    for answer, colour in zip(shown, style.scale("viridis", len(shown)), strict=True):
+    for answer, colour in zip(shown, style.sample_colours("viridis", len(shown)), strict=True):
         if answer.time is None or answer.share is None:
             continue
         name = f"{round(answer.before, 2):g} to {round(answer.after, 2):g} A, {1e3 * answer.t95:.3g} ms"
-        style.line(axes, 1e3 * answer.time, answer.share, Entry(name, colour, width=1.7))
+        style.draw_line(axes, 1e3 * answer.time, answer.share, Entry(name, colour, width=1.7))
         times = np.array([answer.t5, answer.t90, answer.t95])
         axes.plot(1e3 * times, SHARES, "o", color=colour, markersize=4)
         lag = np.linspace(0.0, end, 200)

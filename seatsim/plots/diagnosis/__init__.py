@@ -1,1 +1,1 @@
-"""Figures of a diagnosis, as SVG for its report."""
+"""Figures of a diagnosis, as pictures with title and caption for the report; nothing here writes HTML."""

@@ -1,1 +1,1 @@
-"""Figures of simulated runs."""
+"""Figures of simulated runs: histories, spectra, damper loops, comparisons; not of recordings or benches."""

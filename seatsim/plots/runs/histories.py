@@ -9,21 +9,26 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.plots import labels, style
+from seatsim.plots import style
+from seatsim.plots.runs import naming
 from seatsim.plots.style import COLOURS, DARK, WIDTH, Entry, Grid
-from seatsim.plots.thinning import Array, Window, eventful, thinned
+from seatsim.plots.thinning import Array, Window, find_loudest, thin_line
 from seatsim.simulation.result import Run
 
+CLOSE_UP = 6.0
+"""Length in s of the close-up: about nine swings of a seat suspension."""
+STRIDE = 0.1
+"""Raster in s on which a close-up begins, the digits that its title has."""
 NEAR = 0.2
 """Part of the way to a travel limit from which on it is drawn; before, it would only flatten the motion."""
 WIDEST = 1.0
-"""Travel limits in m from which on they are none."""
+"""Travel limits in m from which on they are none: no seat travels so far, so that a scenario means no limit."""
 
 
-class Channel(NamedTuple):
-    """A panel: channel, label of its axis, factor to the unit shown, and the channel that it should follow.
+class ChannelPanel(NamedTuple):
+    """A panel: channel, label of its axis, factor from SI to the unit shown, and the channel that it should follow.
 
-    `words` tell the two apart in the legend: what came, what was asked for.
+    `words` name the two in the legend: what was delivered, what was asked for.
     """
 
     name: str
@@ -34,12 +39,12 @@ class Channel(NamedTuple):
 
 
 CHANNELS = (
-    Channel("driver_acceleration", "driver\nacceleration\n[m/s²]"),
-    Channel("suspension_displacement", "suspension\ndisplacement\n[mm]", 1e3),
-    Channel("damper_force", "damper force\n[N]", 1.0, "wanted_force", ("delivered", "wanted")),
-    Channel("coil_current", "coil current\n[A]", 1.0, "current_command", ("flowing", "commanded")),
+    ChannelPanel("driver_acceleration", "driver\nacceleration\n[m/s²]"),
+    ChannelPanel("suspension_displacement", "suspension\ndisplacement\n[mm]", 1e3),
+    ChannelPanel("damper_force", "damper force\n[N]", 1.0, "wanted_force", ("delivered", "wanted")),
+    ChannelPanel("coil_current", "coil current\n[A]", 1.0, "current_command", ("flowing", "commanded")),
 )
-TEMPERATURE = Channel("damper_temperature", "damper\ntemperature\n[°C]")
+TEMPERATURE = ChannelPanel("damper_temperature", "damper\ntemperature\n[°C]")
 LIMIT = Entry("travel limit", DARK, ":")
 GRID = Grid(heights=(), left=1.15, gap=(0.35, 0.32))
 HEIGHT = 1.75
@@ -50,7 +55,7 @@ LABEL = 0.55
 """Inches from a panel to the label of its axis, the same for all."""
 
 
-def time_histories(runs: Sequence[Run]) -> Figure:
+def plot_time_histories(runs: Sequence[Run]) -> Figure:
     """Return driver acceleration, suspension displacement, damper force, current, and a changing temperature.
 
     Close up is the window with the largest RMS of the first run's driver acceleration, within all runs. What
@@ -59,44 +64,57 @@ def time_histories(runs: Sequence[Run]) -> Figure:
     common = min(run.history["time"][-1] for run in runs)
     first = runs[0].history
     inside = first["time"] <= common
-    window = eventful(first["driver_acceleration"][inside], first.step)
-    return _one(runs[0], window) if len(runs) == 1 else _several(runs, window)
+    window = find_close_up(first["driver_acceleration"][inside], first.step)
+    return _plot_one(runs[0], window) if len(runs) == 1 else _plot_several(runs, window)
 
 
-def _one(run: Run, window: Window) -> Figure:
-    channels = (*CHANNELS, TEMPERATURE) if _warms(run) else CHANNELS
+def find_close_up(values: Array, step: float) -> Window:
+    """Return the window of `CLOSE_UP` seconds in which the RMS is largest, or the whole of a shorter signal.
+
+    values: shape (N,), sampled every `step` s from 0.
+    """
+    size = round(CLOSE_UP / step)
+    if size >= len(values):
+        return Window(0.0, (len(values) - 1) * step)
+    start = find_loudest(values, size, max(1, round(STRIDE / step)))
+    return Window(start * step, (start + size) * step)
+
+
+def _plot_one(run: Run, window: Window) -> Figure:
+    channels = (*CHANNELS, TEMPERATURE) if _warms_up(run) else CHANNELS
     whole = Window(0.0, float(run.history["time"][-1]))
     views, note = [whole], ""
     if window.end - window.start < whole.end:
         views.append(window)
         note = f"Left: whole run. Right: {window}, where the driver's RMS acceleration is largest."
     grid = GRID._replace(heights=(1.45,) * len(channels), columns=len(views))
-    page = style.page(f"Time histories: {labels.title([run])}", note, grid)
+    page = style.make_page(f"Time histories: {naming.make_title([run])}", note, grid)
     for row, channel in zip(page.rows, channels, strict=True):
         for axes, view in zip(row, views, strict=True):
-            _view(axes, run, channel, view)
-        _label(row[0], channel)
-        _join(row, window)
+            _draw_view(axes, run, channel, view)
+        _label_panel(row[0], channel)
+        _join_views(row, window)
     for column in range(len(views)):
-        _time_axis([row[column] for row in page.rows])
+        _label_time_axis([row[column] for row in page.rows])
     return page.figure
 
 
-def _view(axes: Axes, run: Run, channel: Channel, view: Window) -> None:
+def _draw_view(axes: Axes, run: Run, channel: ChannelPanel, view: Window) -> None:
     """Draw a channel within a window, over the one that it should follow."""
     part = view.part(run.history.step)
     name = ""
     if channel.target and not np.all(np.isnan(run.history[channel.target])):
         name, wanted = channel.words
-        _trace(axes, run, channel, channel.target, part, Entry(wanted, COLOURS[5], width=2.0, alpha=0.6))
-    _trace(axes, run, channel, channel.name, part, Entry(name, COLOURS[0], width=1.1))
+        _draw_channel(axes, run, channel, channel.target, part, Entry(wanted, COLOURS[5], width=2.0, alpha=0.6))
+    _draw_channel(axes, run, channel, channel.name, part, Entry(name, COLOURS[0], width=1.1))
     if channel.name == "suspension_displacement":
-        _draw_limits(axes, _limits([run]))
+        _draw_limits(axes, _find_limits([run]))
     axes.set_xlim(*view)
 
 
-def _join(row: Sequence[Axes], window: Window) -> None:
+def _join_views(row: Sequence[Axes], window: Window) -> None:
     """Give the close-up the scale of the whole run, mark it there, and put one legend above the row."""
+    # An axes gives lines without a label one that begins with an underscore.
     for close in row[1:]:
         row[0].axvspan(*window, color="0.93", zorder=0)
         close.set_ylim(row[0].get_ylim())
@@ -109,48 +127,51 @@ def _join(row: Sequence[Axes], window: Window) -> None:
         )  # fmt: skip
 
 
-def _several(runs: Sequence[Run], window: Window) -> Figure:
-    chosen = labels.shown(runs)
-    warming, limits = any(_warms(run) for run in chosen), _limits(chosen)
+def _plot_several(runs: Sequence[Run], window: Window) -> Figure:
+    chosen = naming.select_shown(runs)
+    warming, limits = any(_warms_up(run) for run in chosen), _find_limits(chosen)
     note = (
         f"{window}, where the RMS acceleration of the driver is largest in the first run."
-        f"{' Temperature: whole run.' if warming else ''}{labels.which(chosen, runs)}"
+        f"{' Temperature: whole run.' if warming else ''}{naming.describe_omission(chosen, runs)}"
     )
-    looks = style.entries(labels.labels(chosen))
+    looks = style.make_entries(naming.label_runs(chosen))
     heights = (HEIGHT,) * len(CHANNELS) + (HEIGHT + OWN_AXIS,) * warming
     grid = GRID._replace(heights=heights)
     legend = [*looks, LIMIT] if limits else looks
-    page = style.page(f"Time histories: {labels.title(runs)}", note, grid, legend)
+    page = style.make_page(f"Time histories: {naming.make_title(runs)}", note, grid, legend)
     panels = [row[0] for row in page.rows]
     for axes, channel in zip(panels, CHANNELS, strict=False):
         for run, look in zip(chosen, looks, strict=True):
-            _trace(axes, run, channel, channel.name, window.part(run.history.step), look)
-        _label(axes, channel)
+            _draw_channel(axes, run, channel, channel.name, window.part(run.history.step), look)
+        _label_panel(axes, channel)
         axes.set_xlim(*window)
     _draw_limits(panels[1], limits)
-    _time_axis(panels[: len(CHANNELS)])
+    _label_time_axis(panels[: len(CHANNELS)])
     if warming:
-        _temperatures(panels[-1], chosen, looks)
+        _draw_temperatures(panels[-1], chosen, looks)
     return page.figure
 
 
-def _temperatures(axes: Axes, runs: Sequence[Run], looks: Sequence[Entry]) -> None:
-    """Draw the temperatures over whole runs, in the lower part of the panel's place."""
+def _draw_temperatures(axes: Axes, runs: Sequence[Run], looks: Sequence[Entry]) -> None:
+    """Draw the temperatures over whole runs, in the lower part of the panel's place.
+
+    A temperature changes over minutes: a close-up of it would be a flat line.
+    """
     left, bottom, width, height = axes.get_position().bounds
     axes.set_position((left, bottom, width, height * HEIGHT / (HEIGHT + OWN_AXIS)))
     for run, look in zip(runs, looks, strict=True):
-        _trace(axes, run, TEMPERATURE, TEMPERATURE.name, slice(None), look)
-    _label(axes, TEMPERATURE)
+        _draw_channel(axes, run, TEMPERATURE, TEMPERATURE.name, slice(None), look)
+    _label_panel(axes, TEMPERATURE)
     axes.set_xlim(left=0)
-    _time_axis([axes])
+    _label_time_axis([axes])
 
 
-def _trace(axes: Axes, run: Run, channel: Channel, name: str, part: slice, look: Entry) -> None:
+def _draw_channel(axes: Axes, run: Run, channel: ChannelPanel, name: str, part: slice, look: Entry) -> None:
     time, values = run.history["time"][part], run.history[name][part]
-    style.line(axes, *thinned(time, channel.factor * values), look)
+    style.draw_line(axes, *thin_line(time, channel.factor * values), look)
 
 
-def _limits(runs: Sequence[Run]) -> list[float]:
+def _find_limits(runs: Sequence[Run]) -> list[float]:
     """Return the stated travel limits in m that the runs come near to."""
     peak = max(float(np.max(np.abs(run.history["suspension_displacement"]))) for run in runs)
     stated = {limit for run in runs if run.scenario.plant for limit in run.scenario.plant.travel}
@@ -163,17 +184,17 @@ def _draw_limits(axes: Axes, limits: Sequence[float]) -> None:
         axes.axhline(1e3 * limit, label=label, color=LIMIT.colour, linestyle=":", linewidth=LIMIT.width)
 
 
-def _label(axes: Axes, channel: Channel) -> None:
+def _label_panel(axes: Axes, channel: ChannelPanel) -> None:
     axes.set_ylabel(channel.axis)
     axes.yaxis.set_label_coords(-LABEL / (axes.get_position().width * WIDTH), 0.5)
 
 
-def _time_axis(panels: Sequence[Axes]) -> None:
+def _label_time_axis(panels: Sequence[Axes]) -> None:
     for axes in panels[:-1]:
         axes.tick_params(labelbottom=False)
     panels[-1].set_xlabel("time [s]")
 
 
-def _warms(run: Run) -> bool:
+def _warms_up(run: Run) -> bool:
     values: Array = run.history[TEMPERATURE.name]
     return bool(np.ptp(values) > 0)

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.dampers.base import DamperSpecification
+from seatsim.dampers.base import Damper, DamperSpecification
 from seatsim.metrics import rms
 from seatsim.plots import labels, style
+from seatsim.plots.runs import naming
 from seatsim.plots.style import Entry, Grid
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.schema.registry import name_of, specification_of
@@ -19,7 +20,7 @@ from seatsim.simulation.damper_bench import SineTest, sine_test
 from seatsim.simulation.result import Run
 
 FREQUENCY = 1.5
-"""Hz; near the resonance of a seat suspension."""
+"""Hz; near the resonance of a seat suspension, where its damper works most."""
 SMALLEST = 0.001
 """m; least amplitude of a test."""
 AT_REST = 0.01
@@ -30,16 +31,20 @@ MOST = 4
 """Most dampers in one picture."""
 
 
-class Specimen(NamedTuple):
-    """A damper with its temperature factors, the largest current, and the runs that use it."""
+class InstalledDamper(NamedTuple):
+    """A damper with its temperature factors, the actuator's largest current in A, and the runs that use it."""
 
-    record: Any
+    record: Damper
     factors: TemperatureFactors
     max_current: float
     runs: list[Run]
 
     def loop(self, amplitude: float, current: float, temperature: float) -> SineTest:
-        """Return a cycle at `FREQUENCY`."""
+        """Return a cycle of a sine test at `FREQUENCY`; amplitude in m, current in A, temperature in degC.
+
+        Raises:
+            RunError: the damper's state runs away.
+        """
         return sine_test(self.record, amplitude, FREQUENCY, current, temperature, self.factors)
 
     @property
@@ -48,33 +53,34 @@ class Specimen(NamedTuple):
         return name_of("damper", type(self.record))
 
 
-def damper_loops(runs: Sequence[Run]) -> Figure:
+def plot_damper_loops(runs: Sequence[Run]) -> Figure:
     """Return the loops of each distinct damper by current, and by temperature where that plays a part."""
-    dampers = specimens(runs)
-    rows = [row for damper in dampers[:MOST] for row in _rows(damper, len(dampers) > 1)]
-    amplitude = amplitude_of(runs)
+    dampers = find_dampers(runs)
+    rows = [row for damper in dampers[:MOST] for row in _make_rows(damper, len(dampers) > 1)]
+    amplitude = choose_amplitude(runs)
     note = f"Sine test, amplitude {1e3 * amplitude:g} mm, frequency {FREQUENCY:g} Hz."
     if len(dampers) > MOST:
         note += f" {MOST} of {len(dampers)} dampers are shown."
     grid = Grid(heights=(2.9,) * len(rows), columns=2, right=1.35, top=0.35, gap=(0.35, 0.95))
     names = ", ".join(dict.fromkeys(damper.name for damper in dampers))
-    page = style.page(f"Damper loops: {labels.clean(names, labels.LONGEST_TITLE)}", note, grid)
+    page = style.make_page(f"Damper loops: {labels.clean_text(names, labels.LONGEST_TITLE)}", note, grid)
     for panels, row in zip(page.rows, rows, strict=True):
-        _draw(panels, row, amplitude)
+        _draw_row(panels, row, amplitude)
     return page.figure
 
 
-def specimens(runs: Iterable[Run]) -> list[Specimen]:
-    """Return the distinct dampers of some runs in their order."""
-    found: dict[str, Specimen] = {}
+def find_dampers(runs: Iterable[Run]) -> list[InstalledDamper]:
+    """Return the distinct dampers of some runs in their order; equal parameters make one damper of them."""
+    found: dict[str, InstalledDamper] = {}
     for run in runs:
         choice, current = run.scenario.damper, run.scenario.coil.max_current
-        damper = Specimen(choice.record, choice.factors, current, [])
+        damper = InstalledDamper(choice.record, choice.factors, current, [])
+        # By text: equal values of two classes of dampers are equal tuples.
         found.setdefault(repr(damper), damper).runs.append(run)
     return list(found.values())
 
 
-def amplitude_of(runs: Iterable[Run]) -> float:
+def choose_amplitude(runs: Iterable[Run]) -> float:
     """Return the amplitude in m of the sine with the largest RMS damper stroke of the runs, to one digit."""
     strokes = [stroke_ratio(run) * rms(run.history["suspension_displacement"]) for run in runs]
     amplitude = math.sqrt(2) * max(strokes)
@@ -89,43 +95,43 @@ def stroke_ratio(run: Run) -> float:
     return run.scenario.plant.damper_ratio if run.scenario.plant else 1.0
 
 
-def temperature_of(run: Run) -> float:
+def start_temperature(run: Run) -> float:
     """Return the temperature in degC at which a run begins."""
     stated = run.scenario.temperature
     return stated.start if isinstance(stated, Thermal) else stated
 
 
-class _Row(NamedTuple):
+class _LoopRow(NamedTuple):
     """Two panels: their title, that of the legend, and label, current, temperature, colour of each loop."""
 
-    damper: Specimen
+    damper: InstalledDamper
     title: str
     legend: str
     loops: list[tuple[str, float, float, str]]
 
 
-def _rows(damper: Specimen, several: bool) -> list[_Row]:
-    start = temperature_of(damper.runs[0])
-    called = f"{damper.name} ({labels.labels(damper.runs)[0]})" if several else damper.name
+def _make_rows(damper: InstalledDamper, several: bool) -> list[_LoopRow]:
+    start = start_temperature(damper.runs[0])
+    called = f"{damper.name} ({naming.label_runs(damper.runs)[0]})" if several else damper.name
     currents = [share * damper.max_current for share in SHARES]
     by_current = [
         (f"{current:g} A", current, start, colour)
-        for current, colour in zip(currents, style.scale("viridis", len(currents)), strict=True)
+        for current, colour in zip(currents, style.sample_colours("viridis", len(currents)), strict=True)
     ]
-    rows = [_Row(damper, f"{called} at {start:g} °C", "current", by_current)]
+    rows = [_LoopRow(damper, f"{called} at {start:g} °C", "current", by_current)]
     if any(damper.factors[:3]):
-        temperatures = _temperatures(damper)
+        temperatures = _choose_temperatures(damper)
         by_temperature = [
             (f"{value:g} °C", damper.max_current, value, colour)
-            for value, colour in zip(temperatures, style.scale("plasma", len(temperatures)), strict=True)
+            for value, colour in zip(temperatures, style.sample_colours("plasma", len(temperatures)), strict=True)
         ]
-        rows.append(_Row(damper, f"{called} at {damper.max_current:g} A", "temperature", by_temperature))
+        rows.append(_LoopRow(damper, f"{called} at {damper.max_current:g} A", "temperature", by_temperature))
     return rows
 
 
-def _temperatures(damper: Specimen) -> list[float]:
+def _choose_temperatures(damper: InstalledDamper) -> list[float]:
     """Return the temperatures of the runs where these differ, else those between which the model holds."""
-    used = sorted({temperature_of(run) for run in damper.runs})
+    used = sorted({start_temperature(run) for run in damper.runs})
     if len(used) > 1:
         return used
     specification: DamperSpecification = specification_of(type(damper.record))
@@ -133,16 +139,16 @@ def _temperatures(damper: Specimen) -> list[float]:
     return [low, 0.5 * (low + high), high]
 
 
-def _draw(panels: Sequence[Axes], row: _Row, amplitude: float) -> None:
+def _draw_row(panels: Sequence[Axes], row: _LoopRow, amplitude: float) -> None:
     for name, current, temperature, colour in row.loops:
         test = row.damper.loop(amplitude, current, temperature)
         look = Entry(name, colour, width=1.6)
-        style.line(panels[0], test.velocity, test.force, look)
-        style.line(panels[1], 1e3 * test.displacement, test.force, look)
+        style.draw_line(panels[0], test.velocity, test.force, look)
+        style.draw_line(panels[1], 1e3 * test.displacement, test.force, look)
     panels[0].set_title(row.title, loc="left", fontsize=10.5)
     panels[0].set_xlabel("velocity [m/s]")
     panels[1].set_xlabel("displacement [mm]")
     panels[0].set_ylabel("damper force [N]")
     panels[1].set_ylim(panels[0].get_ylim())
     panels[1].tick_params(labelleft=False)
-    style.beside(panels[1], row.legend)
+    style.draw_legend_beside(panels[1], row.legend)

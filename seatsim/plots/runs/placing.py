@@ -1,4 +1,4 @@
-"""Where the names of points go so that no two overlap, in inches: without drawing any text."""
+"""Places for the names of points so that no two overlap, in inches: estimated, without drawing any text."""
 
 from __future__ import annotations
 
@@ -38,23 +38,30 @@ class Box(NamedTuple):
         return self.left < other.right and other.left < self.right and self.low < other.high and other.low < self.high
 
 
-def placed(points: Sequence[tuple[float, float]], names: Sequence[str], size: tuple[float, float]) -> list[Spot] | None:
-    """Return a spot for the name of each point in a panel of a width and height; None where one finds no room."""
+def place_names(
+    points: Sequence[tuple[float, float]], names: Sequence[str], size: tuple[float, float]
+) -> list[Spot] | None:
+    """Return a spot for the name of each point, all in inches from the lower left corner of a panel.
+
+    points: (x, y) of each. size: width and height of the panel. None is returned where one name finds no room. The
+    lowest point, the most comfortable run, chooses first: its name stands nearest.
+    """
     taken = [Box(x - MARK, y - MARK, x + MARK, y + MARK) for x, y in points]
     spots: list[Spot | None] = [None] * len(points)
     for index in sorted(range(len(points)), key=lambda k: points[k][1]):
-        found = _free(points[index], LETTER * len(names[index]), taken, size)
+        found = _find_free_spot(points[index], LETTER * len(names[index]), taken, size)
         if found is None:
             return None
         spot, box = found
         spots[index] = spot
-        taken += [box, *(_leader(points[index], box) if spot.far else [])]
+        taken += [box, *(_cover_leader(points[index], box) if spot.far else [])]
     return [spot for spot in spots if spot]
 
 
-def _free(
+def _find_free_spot(
     point: tuple[float, float], wide: float, taken: Sequence[Box], size: tuple[float, float]
 ) -> tuple[Spot, Box] | None:
+    """Return the nearest free spot for a name `wide` inches wide in the preferred direction, with its rectangle."""
     x, y = point
     for distance in DISTANCES:
         for direction in DIRECTIONS:
@@ -64,13 +71,13 @@ def _free(
             box = Box(left, middle - 0.5 * TALL, left + wide, middle + 0.5 * TALL)
             inside = box.left >= 0 and box.low >= 0 and box.right <= size[0] and box.high <= size[1]
             far = distance > DISTANCES[0]
-            needed = [box, *(_leader(point, box) if far else [])]
+            needed = [box, *(_cover_leader(point, box) if far else [])]
             if inside and not any(one.meets(other) for one in needed for other in taken):
                 return Spot(left - x, middle - y, far), box
     return None
 
 
-def _leader(point: tuple[float, float], box: Box) -> list[Box]:
+def _cover_leader(point: tuple[float, float], box: Box) -> list[Box]:
     """Return small rectangles along the line between a point and the middle of its name, clear of both."""
     x, y = 0.5 * (box.left + box.right) - point[0], 0.5 * (box.low + box.high) - point[1]
     shares = [0.1 * tenth for tenth in range(1, 10) if 0.1 * tenth * max(abs(x), abs(y)) > MARK + THIN]

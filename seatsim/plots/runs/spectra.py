@@ -1,4 +1,4 @@
-"""Frequency content: power spectral densities, and what the seat passes on to the driver."""
+"""Frequency content: power spectral densities, and the transmissibility from floor to driver."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from seatsim import metrics
 from seatsim.metrics.transmissibility import AVERAGES, LONGEST
-from seatsim.plots import labels, style
+from seatsim.plots import style
+from seatsim.plots.runs import naming
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import Array
 from seatsim.schema.errors import InputError
@@ -22,10 +23,11 @@ BAND = (0.3, 30.0)
 """Hz; what the seat can change, and more than the driver feels."""
 TICKS = (0.3, 0.5, 1, 2, 3, 5, 10, 20, 30)
 PER_OCTAVE = 12
+"""Bands in an octave over which a density is averaged, finer than the resonance of a seat is wide."""
 DECADES = 6.0
 """Decades below the highest density that are shown."""
 TRUSTED = 0.5
-"""Least coherence with which a transmissibility is drawn: below it is chance."""
+"""Least coherence with which a transmissibility is drawn; below it most of the driver's motion is not the floor's."""
 GRID = Grid(heights=(4.4,))
 
 
@@ -36,43 +38,43 @@ class Density(NamedTuple):
     power: Array
 
 
-def psd(runs: Sequence[Run]) -> Figure:
-    """Return the power spectral density of the driver's acceleration, run by run, with the floor's."""
-    chosen = labels.shown(runs)
-    looks = style.entries(labels.labels(chosen))
+def plot_psd(runs: Sequence[Run]) -> Figure:
+    """Return the power spectral density of the driver's acceleration in m^2/s^3, run by run, with the floor's."""
+    chosen = naming.select_shown(runs)
+    looks = style.make_entries(naming.label_runs(chosen))
     floor = Entry("floor", GREY, width=2.2)
-    note = f"Welch's method, averaged over 1/{PER_OCTAVE} octave.{labels.which(chosen, runs)}"
-    title = f"Driver acceleration over frequency: {labels.title(runs)}"
-    page = style.page(title, note, GRID, [*looks, floor])
+    note = f"Welch's method, averaged over 1/{PER_OCTAVE} octave.{naming.describe_omission(chosen, runs)}"
+    title = f"Driver acceleration over frequency: {naming.make_title(runs)}"
+    page = style.make_page(title, note, GRID, [*looks, floor])
     axes = page.rows[0][0]
-    lines = [(_density(run, "floor_acceleration"), floor) for run in _floors(chosen)]
-    lines += [(_density(run, "driver_acceleration"), look) for run, look in zip(chosen, looks, strict=True)]
-    _frequency_axis(axes)
+    lines = [(_estimate_density(run, "floor_acceleration"), floor) for run in _find_distinct_floors(chosen)]
+    lines += [(_estimate_density(run, "driver_acceleration"), look) for run, look in zip(chosen, looks, strict=True)]
+    _scale_frequency_axis(axes)
     axes.set_ylabel("power spectral density [m²/s³]")
     highest = max(float(np.max(density.power, initial=0.0)) for density, _ in lines)
     if highest == 0.0:
-        style.say(axes, "at rest, or too short a run for a spectrum")
+        style.explain_empty(axes, "at rest, or too short a run for a spectrum")
         return page.figure
     axes.set_yscale("log")
     for density, look in lines:
-        style.line(axes, *density, look)
+        style.draw_line(axes, *density, look)
     axes.set_ylim(bottom=max(axes.get_ylim()[0], highest / 10**DECADES))
     return page.figure
 
 
-def transmissibility(runs: Sequence[Run]) -> Figure:
+def plot_transmissibility(runs: Sequence[Run]) -> Figure:
     """Return the magnitude of the transmissibility from floor to driver, where the coherence is high."""
-    chosen = labels.shown(runs)
-    looks = style.entries(labels.labels(chosen))
+    chosen = naming.select_shown(runs)
+    looks = style.make_entries(naming.label_runs(chosen))
     note = f"Drawn where the floor explains the driver's motion (coherence of {TRUSTED:g} or more)."
-    title = f"Transmissibility, floor to driver: {labels.title(runs)}"
-    page = style.page(title, note + labels.which(chosen, runs), GRID, looks)
+    title = f"Transmissibility, floor to driver: {naming.make_title(runs)}"
+    page = style.make_page(title, note + naming.describe_omission(chosen, runs), GRID, looks)
     axes = page.rows[0][0]
-    _frequency_axis(axes)
+    _scale_frequency_axis(axes)
     axes.set_ylabel("|driver / floor| [-]")
-    drawn = [_gain(axes, run, look) for run, look in zip(chosen, looks, strict=True)]
+    drawn = [_draw_gain(axes, run, look) for run, look in zip(chosen, looks, strict=True)]
     if not any(drawn):
-        style.say(axes, "no floor motion, no coherence with it, or too short a run")
+        style.explain_empty(axes, "no floor motion, no coherence with it, or too short a run")
         return page.figure
     axes.axhline(1.0, color=GREY, linewidth=1.0, zorder=1)
     axes.set_yscale("log")
@@ -82,7 +84,7 @@ def transmissibility(runs: Sequence[Run]) -> Figure:
     return page.figure
 
 
-def _floors(runs: Sequence[Run]) -> list[Run]:
+def _find_distinct_floors(runs: Sequence[Run]) -> list[Run]:
     """Return the runs less those whose floor moves as that of one before."""
     found: list[Run] = []
     for run in runs:
@@ -92,15 +94,18 @@ def _floors(runs: Sequence[Run]) -> list[Run]:
     return found
 
 
-def _density(run: Run, channel: str) -> Density:
+def _estimate_density(run: Run, channel: str) -> Density:
     values, rate = run.history[channel], 1 / run.history.step
     length = max(1, min(round(LONGEST * rate), 2 * len(values) // (AVERAGES + 1)))
-    frequency, power = metrics.density(values, rate, length)
-    return _averaged(frequency, power)
+    frequency, power = metrics.power_spectral_density(values, rate, length)
+    return _average_bands(frequency, power)
 
 
-def _averaged(frequency: Array, power: Array) -> Density:
-    """Average over bins of equal width on a logarithmic axis; lines further apart stay as they are."""
+def _average_bands(frequency: Array, power: Array) -> Density:
+    """Return means over bands of equal width on a logarithmic axis; lines further apart than a band stay as they are.
+
+    Otherwise the many lines of the high decades would make the drawn line thick and noisy.
+    """
     inside = (frequency >= BAND[0]) & (frequency <= BAND[1])
     frequency, power = frequency[inside], power[inside]
     bins = np.floor(PER_OCTAVE * np.log2(frequency / BAND[0])).astype(int)
@@ -109,8 +114,8 @@ def _averaged(frequency: Array, power: Array) -> Density:
     return Density(np.bincount(index, frequency) / count, np.bincount(index, power) / count)
 
 
-def _gain(axes: Axes, run: Run, look: Entry) -> bool:
-    """Draw the transmissibility of a run; tell whether it has one."""
+def _draw_gain(axes: Axes, run: Run, look: Entry) -> bool:
+    """Draw the transmissibility of a run; return whether any of it is drawn."""
     floor, driver = run.history["floor_acceleration"], run.history["driver_acceleration"]
     try:
         found = metrics.transmissibility(floor, driver, 1 / run.history.step)
@@ -118,11 +123,11 @@ def _gain(axes: Axes, run: Run, look: Entry) -> bool:
         return False
     inside = (found.frequency >= BAND[0]) & (found.frequency <= BAND[1])
     trusted = inside & (found.coherence >= TRUSTED)
-    style.line(axes, found.frequency[inside], np.where(trusted, found.gain, np.nan)[inside], look)
+    style.draw_line(axes, found.frequency[inside], np.where(trusted, found.gain, np.nan)[inside], look)
     return bool(trusted.any())
 
 
-def _frequency_axis(axes: Axes) -> None:
+def _scale_frequency_axis(axes: Axes) -> None:
     axes.set_xscale("log")
     axes.set_xlim(*BAND)
     axes.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])

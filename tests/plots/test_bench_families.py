@@ -1,0 +1,74 @@
+"""Which rows of a characterisation share a panel, and in which order."""
+
+import math
+
+import numpy as np
+
+from seatsim.characterisation.rows import Cloud, Row
+from seatsim.plots.bench import families
+from seatsim.plots.bench.trends import BY_CURRENT, BY_FREQUENCY, BY_TEMPERATURE, choose_abscissas, choose_looks
+from seatsim.simulation.damper_bench import SineTest
+
+PHASE = np.linspace(0.0, 2.0 * np.pi, 101)
+
+
+def row(current=0.0, temperature=math.nan, amplitude=0.01, frequency=1.0, record="bench, 0 A"):
+    """Return a row with a loop of a viscous damper."""
+    velocity = amplitude * 2.0 * np.pi * frequency * np.cos(PHASE)
+    loop = SineTest(PHASE / (2.0 * np.pi * frequency), amplitude * np.sin(PHASE), velocity, 500.0 * velocity)
+    return Row(record=record, file="", cycles=3, left_out=0, current=current, temperature=temperature,
+               temperature_range=0.0, amplitude=amplitude, frequency=frequency, loop=loop)  # fmt: skip
+
+
+def cloud(current, amplitude, peak_speed):
+    values = np.linspace(-1.0, 1.0, 5)
+    return Row(record="chirp", file="", cycles=0, left_out=0, current=current, amplitude=amplitude,
+               peak_speed=peak_speed, cloud=Cloud(values, values, values, values))  # fmt: skip
+
+
+def test_loops_are_ordered_by_current_at_the_lowest_temperature():
+    rows = [row(i, t) for i in (2.0, 0.0, 1.0) for t in (20.0, 60.0)]
+    family = families.order_by_current(rows)
+    assert family.names == ["0 A", "1 A", "2 A"] and family.legend == "current"
+    assert family.title == "10 mm, 1 Hz, 20 °C"
+    assert {row.temperature for row in family.rows} == {20.0}
+
+
+def test_loops_are_ordered_by_temperature_at_the_largest_current():
+    rows = [row(i, t) for i in (0.0, 1.0, 0.99) for t in (60.0, 20.0)]
+    family = families.order_by_temperature(rows)
+    assert family.names == ["20 °C", "20 °C", "60 °C", "60 °C"] and family.legend == "temperature"
+    assert min(row.current for row in family.rows) == 0.99
+
+
+def test_one_current_is_ordered_by_temperature_or_by_record():
+    warm = families.order_by_current([row(1.0, t) for t in (60.0, 20.0)])
+    assert warm.legend == "temperature" and warm.names == ["20 °C", "60 °C"]
+    same = families.order_by_current([row(1.0, record=f"run {k}, 1 A") for k in range(2)])
+    assert same.legend == "record" and same.names == ["run 0", "run 1"]
+
+
+def test_settings_beyond_the_most_are_counted():
+    rows = [row(i, frequency=f) for f in range(1, 9) for i in (0.0, 1.0)]
+    found, left_out = families.find_families(rows)
+    assert len(found) == families.MOST and left_out == 2
+    assert found[0].title == "10 mm, 1 Hz" and found[-1].title == "10 mm, 8 Hz"
+
+
+def test_a_warm_setting_has_a_family_by_temperature_too():
+    found, _ = families.find_families([row(i, t) for i in (0.0, 1.0) for t in (20.0, 60.0)])
+    assert [family.legend for family in found] == ["current", "temperature"]
+
+
+def test_clouds_of_the_same_motion_share_a_panel():
+    rows = [cloud(0.0, 0.01, 0.2), cloud(1.0, 0.0105, 0.21), cloud(1.0, 0.02, 0.2), row()]
+    assert [[one.current for one in group] for group in families.group_clouds(rows)] == [[0.0, 1.0], [1.0]]
+
+
+def test_figures_are_drawn_over_what_varies():
+    by_both = choose_abscissas([row(i, t) for i in (0.0, 1.0) for t in (20.0, 60.0)])
+    assert [across for across, _ in by_both] == [BY_CURRENT, BY_TEMPERATURE]
+    assert choose_abscissas([row(1.0, frequency=f) for f in (1.0, 2.0)])[0][0] is BY_FREQUENCY
+    looks, note = choose_looks(by_both)
+    assert list(looks) == ["10 mm, 1 Hz"]
+    assert note == "Over current at 20 °C; over temperature at 1 A."

@@ -1,0 +1,84 @@
+"""Pages, legends and text that all figures share."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
+
+from seatsim.plots import style
+from seatsim.plots.labels import clean_text, format_unit
+from seatsim.plots.style import COLOURS, LINE, WIDTH, Entry, Grid
+
+
+@pytest.mark.parametrize(
+    ("written", "printed"), [("m/s^2", "m/s²"), ("N s/m", "N·s/m"), ("degC", "°C"), ("ohm", "Ω"), ("kg m^3", "kg m³")]
+)
+def test_units_are_printed(written, printed):
+    assert format_unit(written) == printed
+
+
+def test_a_text_is_cut_in_the_middle_and_never_a_formula():
+    assert clean_text("abcdefghij", 6) == "ab…hij"
+    assert clean_text("_hidden", 20) == " _hidden"
+    assert clean_text("$x$", 20) == r"\$x\$"
+
+
+def test_panels_have_the_sizes_of_their_grid():
+    grid = Grid((2.0, 1.0), columns=2, left=1.0, right=0.5, gap=(0.7, 0.4), bottom=0.6)
+    page = style.make_page("title", "note", grid)
+    height = page.figure.get_figheight()
+    boxes = [[axes.get_position() for axes in row] for row in page.rows]
+    assert [round(height * row[0].height, 9) for row in boxes] == [2.0, 1.0]
+    assert WIDTH * boxes[0][0].x0 == pytest.approx(1.0) and WIDTH * (1 - boxes[0][1].x1) == pytest.approx(0.5)
+    assert WIDTH * (boxes[0][1].x0 - boxes[0][0].x1) == pytest.approx(0.7)
+    assert height * (boxes[0][0].y0 - boxes[1][0].y1) == pytest.approx(0.4)
+    assert height * boxes[1][0].y0 == pytest.approx(0.6)
+
+
+def test_a_legend_makes_the_page_higher_not_the_panels_smaller():
+    grid = Grid((2.0,))
+    bare = style.make_page("title", "note", grid).figure.get_figheight()
+    long = [Entry("a name that takes a third of the width", "k") for _ in range(5)]
+    page = style.make_page("title", "note", grid, long)
+    [legend] = page.figure.legends
+    assert legend._ncols == 2
+    assert page.figure.get_figheight() - bare == pytest.approx(3 * LINE)
+    assert page.figure.get_figheight() * page.rows[0][0].get_position().height == pytest.approx(2.0)
+
+
+def test_nine_entries_differ_but_the_first_and_the_last():
+    looks = style.make_entries([str(n) for n in range(9)])
+    assert len({look.colour for look in looks}) == len(COLOURS) == 8
+    assert looks[0].colour == looks[8].colour and looks[0].dashes != looks[1].dashes
+
+
+def test_colours_of_a_quantity_leave_out_the_light_end():
+    colours = style.sample_colours("viridis", 3)
+    assert colours[0] == "#440154" and len(set(colours)) == 3
+    assert style.sample_colours("viridis", 1) == ["#440154"]
+    red, green, blue = (int(colours[2][k : k + 2], 16) for k in (1, 3, 5))
+    assert max(red, blue) < green < 0xE7
+
+
+def test_axes_beside_a_panel_are_as_tall_as_it():
+    axes = style.make_page("title", "note", Grid((2.0,), right=2.0)).rows[0][0]
+    panel, bar = axes.get_position(), style.add_axes_beside(axes, 0.03, 0.02).get_position()
+    assert (bar.x0 - panel.x1, bar.width) == pytest.approx((0.03, 0.02))
+    assert (bar.y0, bar.height) == (panel.y0, panel.height)
+
+
+def test_ticks_of_a_logarithmic_axis_are_plain_numbers():
+    axes = Figure().add_subplot()
+    axes.set_xscale("log")
+    axes.set_xlim(0.9, 60)
+    style.set_plain_log_ticks(axes.xaxis, LogLocator(subs=(1, 2, 5)))
+    inside = [tick for tick in axes.get_xticks() if 0.9 <= tick <= 60]
+    np.testing.assert_allclose(inside, [1, 2, 5, 10, 20, 50])
+    assert [axes.xaxis.get_major_formatter()(tick) for tick in inside] == ["1", "2", "5", "10", "20", "50"]
+    assert len(axes.xaxis.get_minorticklocs()) == 0
+
+
+def test_an_empty_panel_says_why():
+    axes = style.make_page("title", "note", Grid((2.0,))).rows[0][0]
+    style.explain_empty(axes, "nothing was recorded")
+    assert axes.texts[0].get_text() == "nothing was recorded" and len(axes.get_yticks()) == 0
