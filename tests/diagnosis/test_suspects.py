@@ -15,7 +15,7 @@ from seatsim.recordings.recording import load_recording
 from seatsim.simulation.inputs import Forces
 from seatsim.simulation.simulate import simulate
 
-from .damaged import blurred, limited, rewrite, stepped, with_play
+from ..faulty_recordings import blurred, limited, rewrite, stepped, with_play
 
 
 @pytest.fixture(scope="module")
