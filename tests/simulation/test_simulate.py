@@ -54,7 +54,7 @@ def test_a_sampled_law_commands_every_sample_time(history):
 
 def test_a_sample_time_that_is_no_multiple_of_the_step_is_refused(scenario):
     odd = replace(scenario, control=replace(scenario.control, sample_time=0.0033))
-    with pytest.raises(InputError, match="choose 0.003 s"):
+    with pytest.raises(InputError, match=r"choose 0\.003 s"):
         simulate(odd)
 
 
