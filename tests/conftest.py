@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from .faulty_recordings import record_sound_rig
+
 ROOT = Path(__file__).resolve().parents[1]
 SEAT = """\
 plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
@@ -33,6 +35,12 @@ def kept_seat_file(tmp_path_factory):
     path = tmp_path_factory.mktemp("kept") / "seat.yaml"
     path.write_text(SEAT)
     return path
+
+
+@pytest.fixture(scope="session")
+def sound(kept_seat_file, tmp_path_factory):
+    """The folder of a recording without faults, which no test edits."""
+    return record_sound_rig(kept_seat_file, tmp_path_factory.mktemp("sound") / "recorded")
 
 
 @pytest.fixture

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
+from pydantic.fields import FieldInfo
 
 from seatsim.schema.fields import param
 
 
-def choice(meaning: str, unit: str = "") -> Any:
+def choice(meaning: str, unit: str = "") -> FieldInfo:
     """Describe a key that has no numeric bounds of its own: a choice, a list or a nested record."""
-    return Field(description=meaning, json_schema_extra={"unit": unit})
+    described: FieldInfo = Field(description=meaning, json_schema_extra={"unit": unit})
+    return described
 
 
 DURATION = param("s", "length of the run", above=0, high=7200)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
+from pydantic.fields import FieldInfo
 
 from seatsim.excitations.base import Array, Floor, excitation
 from seatsim.excitations.keys import Duration, Quantity, choice
@@ -26,7 +27,7 @@ from seatsim.schema.fields import param
 Frequency = Annotated[float, param("Hz", "frequency of the tone", above=0)]
 Amplitude = Annotated[float, param("m or m/s^2", "amplitude of displacement or acceleration, see quantity", above=0)]
 
-TONES: Any = Field(description="the tones in order", json_schema_extra={"unit": "Hz"}, min_length=1)
+TONES: FieldInfo = Field(description="the tones in order", json_schema_extra={"unit": "Hz"}, min_length=1)
 
 
 @excitation("sine")

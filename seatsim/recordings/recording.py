@@ -5,10 +5,11 @@ from __future__ import annotations
 import lzma
 import zipfile
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -141,7 +142,7 @@ def _load(folder: Path, stamp: Stamp) -> Recording:
     return Recording(folder, header, _runs(data, source), channels, gain)
 
 
-def _runs(data: dict[str, Any], source: Source) -> dict[str, RunEntry]:
+def _runs(data: Mapping[str, object], source: Source) -> dict[str, RunEntry]:
     entries = data.get("runs")
     if not isinstance(entries, list) or not entries:
         raise source.error(("runs",), "a recording has at least one run; write '- {name: run-a, file: run-a.csv.gz}'")
@@ -158,7 +159,7 @@ def _runs(data: dict[str, Any], source: Source) -> dict[str, RunEntry]:
     return runs
 
 
-def _channels(data: dict[str, Any], source: Source, rig: str) -> dict[str, ChannelEntry]:
+def _channels(data: Mapping[str, object], source: Source, rig: str) -> dict[str, ChannelEntry]:
     known = SEAT_CHANNELS if rig == "seat" else BENCH_CHANNELS
     entries = mapping(data.get("channels", {}), source, ("channels",))
     check_keys(entries, known, source, ("channels",))

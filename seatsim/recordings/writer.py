@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -52,12 +51,12 @@ def save_recording(result: Result, folder: str | Path, channels: Sequence[str], 
     return folder
 
 
-def _nominal(run: Run, recorded: set[str]) -> dict[str, Any]:
+def _nominal(run: Run, recorded: set[str]) -> dict[str, object]:
     """Return the content of the nominal scenario; a current that is not `recorded` must be a constant one."""
     if run.scenario.source is None:
         raise InputError(f"{run.scenario.name}: only the result of a scenario file can become a recording")
     values = run.scenario.source.data
-    law: dict[str, Any] = {"law": "replay"}
+    law: dict[str, object] = {"law": "replay"}
     if not recorded:
         commands = run["current_command"]
         if np.ptp(commands) > 0.0:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -61,7 +61,7 @@ class SineTest(NamedTuple):
 
 
 def sine_test(
-    damper: Any,
+    damper: tuple[object, ...],
     amplitude: float,
     frequency: float,
     current: float,
@@ -72,8 +72,8 @@ def sine_test(
 ) -> SineTest:
     """Drive the damper with `x = amplitude sin(2 pi frequency t)` and return the last of its `cycles`.
 
-    amplitude in m, frequency in Hz, current in A, temperature in degC; `factors` default to those on the
-    model's card. `samples` per cycle is even. Models with a slow state (the branch of an algebraic model
+    amplitude in m, frequency in Hz, current in A, temperature in degC; `factors` default to those that
+    the model states. `samples` per cycle is even. Models with a slow state (the branch of an algebraic model
     forgets its start within seconds) need as many cycles as that takes.
 
     Raises:
@@ -97,7 +97,7 @@ def sine_test(
 
 
 def bench_force(
-    damper: Any,
+    damper: tuple[object, ...],
     displacement: ArrayLike,
     velocity: ArrayLike,
     current: ArrayLike,
@@ -109,8 +109,8 @@ def bench_force(
     """Return the force in N, shape (n + 1,), of a damper whose motion is prescribed, every `step` seconds.
 
     displacement [m] and velocity [m/s] have shape (2 n + 1,), sampled every *half* step; current [A] and
-    temperature [degC] likewise, or one number. `factors` and the initial `state` default to those on the
-    model's card.
+    temperature [degC] likewise, or one number. `factors` and the initial `state` default to those that
+    the model states.
 
     Raises:
         InputError: the lengths do not fit.
@@ -136,7 +136,7 @@ def bench_force(
 
 
 def centring(displacement: ArrayLike, velocity: ArrayLike) -> str:
-    """Return why this motion does not suit a model whose card says `centred`, or an empty string.
+    """Return why this motion does not suit a model whose specification says `centred`, or an empty string.
 
     Such a model takes its branch from the sign of the displacement, so every stroke between two reversals has
     to be centred about x = 0; reported is the mean distance of the strokes' middles from it, over half the

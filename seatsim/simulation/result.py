@@ -40,7 +40,7 @@ UNITS = {
 """Unit of every channel of a history."""
 
 
-class Channel(np.ndarray[Any, np.dtype[np.float64]]):
+class Channel(np.ndarray[tuple[int, ...], np.dtype[np.float64]]):
     """A channel of a run: an array of shape (N,) with its `name` and `unit`."""
 
     name: str
@@ -52,7 +52,7 @@ class Channel(np.ndarray[Any, np.dtype[np.float64]]):
         channel.name, channel.unit = name, unit
         return channel
 
-    def __array_finalize__(self, other: Any) -> None:
+    def __array_finalize__(self, other: object) -> None:
         """Carry name and unit over to what is made from the channel."""
         self.name = getattr(other, "name", "")
         self.unit = getattr(other, "unit", "")
@@ -90,6 +90,6 @@ class Result:
 
         rows = []
         for run in self.runs:
-            row: dict[str, Any] = {"scenario": run.scenario.name, **run.scenario.label}
+            row: dict[str, object] = {"scenario": run.scenario.name, **run.scenario.label}
             rows.append(row | {name: metric.value for name, metric in run.metrics.items()})
         return pd.DataFrame(rows)

@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
 
 from seatsim.metrics import summarise
 from seatsim.scenario.loading import load
@@ -14,10 +13,10 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import RunError, SynthesisError
 from seatsim.simulation.result import Result, Run
 from seatsim.simulation.simulate import simulate
-from seatsim.simulation.validity import warnings_of
+from seatsim.simulation.validity import list_warnings
 
 
-def run(scenario: str | Path | Scenario, settings: Mapping[str, Any] | None = None) -> Result:
+def run(scenario: str | Path | Scenario, settings: Mapping[str, object] | None = None) -> Result:
     """Run a scenario, or the file of one with all its variants and sweeps.
 
     Raises:
@@ -27,7 +26,7 @@ def run(scenario: str | Path | Scenario, settings: Mapping[str, Any] | None = No
     return Result([run_one(one) for one in scenarios])
 
 
-def compare(paths: Iterable[str | Path], settings: Mapping[str, Any] | None = None) -> Result:
+def compare(paths: Iterable[str | Path], settings: Mapping[str, object] | None = None) -> Result:
     """Run several files and return one result over all of them."""
     return Result([run_one(one) for path in paths for one in load(path, settings)])
 
@@ -42,7 +41,7 @@ def run_one(scenario: Scenario) -> Run:
         travel=plant.travel if plant else None,
         coil_resistance=scenario.coil.resistance,
     )
-    return Run(scenario, history, metrics, warnings_of(scenario, history))
+    return Run(scenario, history, metrics, list_warnings(scenario, history))
 
 
 def run_many(

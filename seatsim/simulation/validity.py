@@ -10,10 +10,10 @@ from seatsim.simulation.damper_bench import centring
 from seatsim.simulation.simulate import History
 
 SHARE = 0.01
-"""Share of the run that may lie outside a range before it is worth a warning."""
+"""Share of the run that may lie outside a range before it is worth a warning: a single peak changes no metric."""
 
 
-def warnings_of(scenario: Scenario, history: History) -> tuple[str, ...]:
+def list_warnings(scenario: Scenario, history: History) -> tuple[str, ...]:
     """Return a sentence for every range of the damper that the run leaves for more than 1 % of its time."""
     cls = type(scenario.damper.record)
     specification, model = specification_of(cls), name_of("damper", cls)

@@ -23,7 +23,7 @@ from seatsim.recordings.recording import load_recording
 from seatsim.scenario.loading import single
 from seatsim.simulation.simulate import simulate
 
-from .damaged import edit, noisy, rewrite
+from ..faulty_recordings import edit, noisy, rewrite
 from .posed import pose
 
 FRICTIONS = ["damper.seal_friction", "suspension.friction"]

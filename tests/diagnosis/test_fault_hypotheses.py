@@ -15,7 +15,7 @@ from seatsim.diagnosis.parameters import Parameters
 from seatsim.simulation.inputs import Forces
 from seatsim.simulation.simulate import simulate
 
-from .damaged import blurred, limited, rewrite, stepped, with_play
+from ..faulty_recordings import blurred, limited, rewrite, stepped, with_play
 from .posed import pose
 
 

@@ -6,6 +6,7 @@ import pytest
 
 import seatsim
 from seatsim.effects.base import ON_SEAT, acts_on
+from seatsim.recordings.gap import measure_gap
 from seatsim.rig.coil import Coil, relax
 from seatsim.schema.registry import find
 
@@ -52,9 +53,9 @@ def folder(tmp_path):
 
 
 def test_the_effects_of_a_bench_close_its_gap(folder):
-    nominal = seatsim.gap(folder / "nominal.yaml", folder)
+    nominal = measure_gap(folder / "nominal.yaml", folder)
     (folder / "nominal.yaml").write_text(RIG.replace("effects: []\n", EFFECTS))
-    closed = seatsim.gap(folder / "nominal.yaml", folder)
+    closed = measure_gap(folder / "nominal.yaml", folder)
     assert nominal.overall > 0.1
     assert closed.overall < 0.01
 
@@ -65,4 +66,4 @@ def test_effects_of_the_seat_are_refused_on_a_bench(folder, name):
     listed = ", ".join(f"{key}: {value!r}" for key, value in values.items())
     (folder / "nominal.yaml").write_text(RIG.replace("[]", f"[{{effect: {name}, parameters: {{{listed}}}}}]"))
     with pytest.raises(seatsim.InputError, match=f"no part on which {name} acts"):
-        seatsim.gap(folder / "nominal.yaml", folder)
+        measure_gap(folder / "nominal.yaml", folder)

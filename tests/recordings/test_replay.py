@@ -10,6 +10,7 @@ import pytest
 import seatsim
 from seatsim.cli.app import main
 from seatsim.dampers.bouc_wen import BoucWen
+from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.writer import save_recording
 from seatsim.simulation.damper_bench import bench_force
 
@@ -67,7 +68,7 @@ def test_the_command_writes_the_gap(recorded, tmp_path, monkeypatch):
         main()
     assert stopped.value.code == 0
     written = json.loads((tmp_path / "gap" / "gap.json").read_text())
-    assert set(written) == {"overall", "channels", "floor"}
+    assert set(written) == {"overall", "channels", "floor", "notes"}
     assert set(written["floor"]) == {"overall", "channels"}
 
 
@@ -105,7 +106,7 @@ def test_a_wrong_header_is_one_clear_error(recorded, old, new, expected):
             "line 9",
         ),
         (lambda frame: frame.iloc[:0], "holds 0 rows"),
-        (lambda frame: frame.iloc[:500], "too short"),
+        (lambda frame: frame.iloc[:500], "its first second is left out"),
     ],
 )
 def test_a_damaged_table_is_one_clear_error(recorded, damage, expected):
@@ -178,7 +179,7 @@ def test_a_bench_recording_is_replayed_from_displacement_and_command(tmp_path):
 
 def test_every_recording_of_an_independent_rig_can_be_replayed(shared):
     folders = sorted((shared / "field").glob("field-*"))
-    gaps = [seatsim.gap(folder / "nominal.yaml", folder) for folder in folders]
+    gaps = [measure_gap(folder / "nominal.yaml", folder) for folder in folders]
     assert gaps
     for gap in gaps:
         assert 0 < gap.floor["overall"] < gap.overall < 2

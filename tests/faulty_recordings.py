@@ -1,6 +1,6 @@
-"""A small healthy recording, and the ways in which a recording is damaged.
+"""A small recording without faults, and faults that its data may have.
 
-A damage takes the table of a run, as a pandas frame, and returns it damaged; it is done to every run.
+A fault takes the table of a run, as a pandas frame, and returns it faulty; it is done to every run.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ FEEDBACK = {"excitation.duration": 8.0, "controller.sample_time": 0.008}
 """Settings of the first run: the samples of the controller are every second row."""
 
 
-def healthy(scenario, folder):
+def record_sound_rig(scenario, folder):
     """Simulate two runs of a seat scenario, 8 s at 250 Hz each, and save them as a recording with noise."""
     runs = {
         "feedback": FEEDBACK,
@@ -47,10 +47,10 @@ def noisy(frame, generator):
     return frame.assign(**{c: values.round(DECIMALS.get(c, 4)) for c, values in columns.items()})
 
 
-def rewrite(folder, damage, files=None):
-    """Hand the tables of a recording through a damage."""
+def rewrite(folder, fault, files=None):
+    """Hand the tables of a recording through a fault."""
     for path in files or sorted(folder.glob("*.csv.gz")):
-        damage(pd.read_csv(path)).to_csv(path, index=False, float_format="%.7g", compression=QUICK)
+        fault(pd.read_csv(path)).to_csv(path, index=False, float_format="%.7g", compression=QUICK)
 
 
 def edit(folder, change):
@@ -152,11 +152,12 @@ SIGNS = [
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
     "current_command", "coil_current",
 ]  # fmt: skip
-DAMAGES = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS} | {
+FAULTS = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS} | {
     "no rows": (lambda frame: frame.iloc[:0], None, "holds 0 rows"),
     "holes": (holed("frame_acceleration"), "frame_acceleration", "not a finite number"),
     "no column": (lambda frame: frame.drop(columns="coil_current"), "coil_current", "is missing"),
     "missing rows": (without(3.0, 3.4), "time", "rows are missing"),
+    "500 missing rows": (without(3.0, 5.0), "time", "rows are missing"),
     "another rate": (lambda frame: frame.iloc[::2], "time", "rows are 0.008 s apart"),
     "half a second": (lambda frame: frame.iloc[:125], None, "its first second is left out"),
     "two seconds": (lambda frame: frame.iloc[:500], None, "2 s remain to compare"),
@@ -181,8 +182,8 @@ DAMAGES = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGN
     "late displacement": (late(0.1, "suspension_displacement"), "suspension_displacement", "s late"),
     "late driver": (late(0.1, "driver_acceleration"), "driver_acceleration", "s late"),
 }
-"""Damages for which a diagnosis must refuse: what is done, the channel named, and words of the sentence."""
-DOUBTS = {
+"""Faults for which diagnosis and gap must refuse: what is done, the channel named, and words of the sentence."""
+WARNINGS = {
     "fahrenheit": (
         lambda f: f.assign(damper_temperature=32 + 1.8 * f.damper_temperature),
         "damper_temperature",
@@ -197,8 +198,8 @@ DOUBTS = {
     "floor at its limit": (blurred(limited), "floor_acceleration", "it is clipped"),
     "late current": (late(0.15, "coil_current"), "coil_current", "s late"),
 }
-"""Damages that are said while the diagnosis goes on."""
-GAPS = {
+"""Faults that are said while diagnosis and gap go on."""
+SOUND_GAPS = {
     "a gain of 20 %": scaled("frame_acceleration", 1.2),
     "a bias": shifted("suspension_displacement", 0.02),
     "a slow sensor": lagging("damper_force", 0.02),
@@ -207,4 +208,4 @@ GAPS = {
         coil_current=f.coil_current.where(f.coil_current < 0.3, 0.3 + 0.01 * f.coil_current)
     ),
 }
-"""What sensors and supplies of a healthy recording may do."""
+"""What sensors and supplies of a sound recording may do."""

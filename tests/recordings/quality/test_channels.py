@@ -1,0 +1,73 @@
+"""Faults that the values of one channel show: constant, out of range, clipped, stuck, held."""
+
+import numpy as np
+import pytest
+
+from seatsim.recordings.quality.channels import check_ranges, check_shapes
+
+RATE = 250.0
+TIME = np.arange(2500) / RATE
+NOISE = {"frame_acceleration": 0.03, "floor_acceleration": 0.01, "damper_temperature": 0.1, "damper_force": 2.5}
+MOVING = 2.0 * np.sin(2 * np.pi * 1.3 * TIME) + 0.03 * np.random.default_rng(1).standard_normal(len(TIME))
+
+
+def kinds(check, run):
+    return [(issue.severity, issue.kind, issue.channel) for issue in check(run)]
+
+
+@pytest.mark.parametrize(
+    ("channel", "values", "expected"),
+    [
+        ("frame_acceleration", np.full(2500, 0.3), [("error", "constant")]),
+        ("damper_temperature", np.full(2500, 21.0), [("warning", "constant")]),
+        ("current_command", np.full(2500, 0.5), []),
+        ("frame_acceleration", 0.02 * MOVING, [("warning", "silent")]),
+        ("floor_acceleration", 0.002 * MOVING, []),
+        ("coil_current", 0.5 + 0.2 * MOVING, []),
+        ("coil_current", 0.6 + 0.4 * MOVING, [("warning", "range")]),
+        ("coil_current", 31.0 * np.abs(MOVING), [("error", "unit")]),
+        ("current_command", -0.3 * np.abs(MOVING), [("error", "sign")]),
+        ("damper_temperature", 40.0 + MOVING, []),
+        ("damper_temperature", 313.0 + MOVING, [("error", "unit")]),
+        ("damper_temperature", -41.0 + 0.1 * MOVING, [("error", "unit")]),
+    ],
+)
+def test_ranges(under_test, channel, values, expected):
+    run = under_test({channel: values}, RATE, NOISE)
+    assert kinds(check_ranges, run) == [(*found, channel) for found in expected]
+
+
+def test_a_temperature_in_kelvin_is_named_so_and_one_beyond_it_is_not(under_test):
+    for start, said in ((300.0, True), (600.0, False)):
+        (issue,) = check_ranges(under_test({"damper_temperature": start + MOVING}, RATE, NOISE))
+        assert ("kelvin" in issue.sentence) is said
+
+
+def test_flat_tops_are_errors_where_many_rows_stand_there_and_warnings_where_few_do(under_test):
+    spike = np.where(np.abs(np.arange(2500) - 1000) < 3, 4.0, MOVING)
+    for clipped, limit, severity in ((np.minimum(MOVING, 1.5), 1.5, "error"), (spike, 4.0, "warning")):
+        found = list(check_shapes(under_test({"frame_acceleration": clipped}, RATE, NOISE)))
+        assert [(issue.severity, issue.kind) for issue in found] == [(severity, "clipped")]
+        assert f"{np.sum(clipped == limit)} rows stand at its extreme {limit:.4g}" in found[0].sentence
+
+
+def test_a_channel_that_moves_freely_has_no_shape_to_name(under_test):
+    assert kinds(check_shapes, under_test({"frame_acceleration": MOVING}, RATE, NOISE)) == []
+
+
+def test_a_stuck_stretch_is_placed_in_time_and_a_shorter_one_is_none(under_test):
+    for seconds, expected in ((0.6, ["stuck"]), (0.4, [])):
+        rows = slice(500, 500 + round(seconds * RATE))
+        values = MOVING.copy()
+        values[rows] = values[500]
+        found = list(check_shapes(under_test({"frame_acceleration": values}, RATE, NOISE)))
+        assert [issue.kind for issue in found] == expected
+        assert all("is stuck from 2 to 2.6 s" in issue.sentence for issue in found)
+
+
+def test_held_values_are_told_with_their_rows_unless_they_are_coarser_than_the_noise(under_test):
+    held = np.repeat(MOVING[::4], 4)
+    (issue,) = check_shapes(under_test({"frame_acceleration": held}, RATE, NOISE))
+    assert (issue.severity, issue.kind) == ("warning", "held") and "for 4 rows" in issue.sentence
+    coarse = np.round(np.repeat(MOVING[::4], 4), 1)
+    assert kinds(check_shapes, under_test({"frame_acceleration": coarse}, RATE, NOISE)) == []

@@ -1,0 +1,60 @@
+"""A fault is named where its correction takes the contradiction away, with the channel and what is wrong."""
+
+import numpy as np
+import pytest
+
+from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
+from seatsim.recordings.quality.run_under_test import RunUnderTest
+from seatsim.recordings.recording import load_recording
+from seatsim.scenario.loading import single
+
+
+@pytest.fixture(scope="module")
+def run(sound):
+    recording = load_recording(sound)
+    return RunUnderTest("run-1", recording.table("run-1"), recording, single(recording.nominal))
+
+
+def with_channel(run, **channels):
+    return run._replace(table={**run.table, **channels})
+
+
+def test_a_sound_run_contradicts_nothing(run):
+    assert list(check_consistency(run)) == [] and list(check_exchanged_currents(run)) == []
+
+
+@pytest.mark.parametrize(
+    ("channel", "factor", "kind", "words"),
+    [("damper_force", -1.0, "sign", "its sign is swapped"), ("floor_acceleration", -1.0, "sign", "its sign is swapped"),
+     ("suspension_displacement", 1000.0, "unit", "in mm"), ("floor_acceleration", 1 / 9.81, "unit", "in g")],
+)  # fmt: skip
+def test_a_wrong_scale_is_named(run, channel, factor, kind, words):
+    (issue,) = check_consistency(with_channel(run, **{channel: factor * run.table[channel]}))
+    assert (issue.severity, issue.kind, issue.channel, issue.run) == ("error", kind, channel, "run-1")
+    assert words in issue.sentence
+
+
+def test_a_late_coil_current_is_a_warning_and_a_late_motion_an_error(run):
+    for channel, seconds, severity in (("coil_current", 0.16, "warning"), ("driver_acceleration", 0.1, "error")):
+        late = np.roll(run.table[channel], round(seconds * run.rate))
+        (issue,) = check_consistency(with_channel(run, **{channel: late}))
+        assert (issue.severity, issue.kind, issue.channel) == (severity, "late", channel)
+        assert f"is {seconds:g} s late" in issue.sentence
+
+
+@pytest.mark.parametrize(("channel", "factor"), [("damper_force", 1.3), ("frame_acceleration", 0.8)])
+def test_a_calibration_error_is_no_fault_of_the_data(run, channel, factor):
+    assert list(check_consistency(with_channel(run, **{channel: factor * run.table[channel]}))) == []
+
+
+def test_exchanged_currents_are_told_by_the_coil_alone(run):
+    table = run.table
+    swapped = with_channel(run, current_command=table["coil_current"], coil_current=table["current_command"])
+    (issue,) = check_exchanged_currents(swapped)
+    assert (issue.kind, issue.severity, issue.channel) == ("exchange", "error", "current_command")
+    assert "current_command and coil_current: are exchanged" in issue.sentence
+
+
+def test_without_a_command_no_exchange_is_looked_for(run):
+    table = {name: values for name, values in run.table.items() if name != "current_command"}
+    assert list(check_exchanged_currents(run._replace(table=table))) == []

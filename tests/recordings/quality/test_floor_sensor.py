@@ -1,0 +1,38 @@
+"""An accelerometer that stands still where the floor moves is told from one that follows."""
+
+import numpy as np
+import pytest
+
+from seatsim.recordings.quality.floor_sensor import check_floor_sensor, follows_floor
+from seatsim.recordings.recording import load_recording
+
+from ...faulty_recordings import RATE, blurred, limited, rewrite, stepped, with_play
+
+
+@pytest.mark.parametrize("frequency", [0.5, 2.0, 10.0])
+def test_the_floor_of_a_sine_test_is_followed(copy, frequency):
+    rewrite(copy, blurred(lambda values: 2.0 * np.sin(2 * np.pi * frequency / RATE * np.arange(len(values)))))
+    assert follows_floor(load_recording(copy))
+
+
+@pytest.fixture
+def swinging():
+    time = np.arange(5000) / RATE
+    motion = 2.0 * np.sin(2 * np.pi * 1.3 * time) + 1.5 * np.sin(2 * np.pi * 3.7 * time)
+    return motion + 0.01 * np.random.default_rng(3).standard_normal(len(time))
+
+
+@pytest.mark.parametrize(("fault", "kind"), [(stepped, "steps"), (with_play, "steps"), (limited, "limit")])
+def test_the_kind_of_a_fault_is_named(under_test, swinging, fault, kind):
+    import pandas as pd
+
+    noise = 0.01 * np.random.default_rng(4).standard_normal(len(swinging))
+    faulty = np.asarray(fault(pd.Series(swinging))) + noise
+    found = list(check_floor_sensor(under_test({"floor_acceleration": faulty}, RATE, {"floor_acceleration": 0.01})))
+    assert found and {(issue.kind, issue.severity) for issue in found} == {(kind, "warning")}
+
+
+def test_a_floor_that_is_followed_or_rests_has_no_issue(under_test, swinging):
+    for values in (swinging, 0.01 * np.random.default_rng(5).standard_normal(5000)):
+        run = under_test({"floor_acceleration": values}, RATE, {"floor_acceleration": 0.01})
+        assert list(check_floor_sensor(run)) == []

@@ -1,0 +1,123 @@
+"""What is wrong with whole runs: clock, length, duplicates, repeats, rest, noise and degrees Fahrenheit."""
+
+import dataclasses
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from seatsim.recordings.quality.issue import Issue, issue_in_all_runs, select_errors
+from seatsim.recordings.quality.run_under_test import is_at_rest
+from seatsim.recordings.quality.runs import check_all_runs, check_clock
+
+RATE = 250.0
+
+
+def motion(seed, seconds=12.0):
+    return np.random.default_rng(seed).standard_normal(round(seconds * RATE))
+
+
+def found(*runs):
+    return [(issue.severity, issue.kind, issue.run) for issue in check_all_runs(runs)]
+
+
+@pytest.fixture
+def runs(under_test):
+    """Two runs of white motion, whose noise is stated as it is."""
+    noise = {"floor_acceleration": 1.0, "driver_acceleration": 1.0}
+    return [
+        under_test({"floor_acceleration": 9.0 * np.sin(np.arange(3000) / (20.0 + k)) + motion(k),
+                    "driver_acceleration": 9.0 * np.sin(np.arange(3000) / (30.0 + k)) + motion(k + 5)},
+                   RATE, noise, name)
+        for k, name in enumerate("ab")
+    ]  # fmt: skip
+
+
+def test_two_sound_runs_have_no_issue(runs):
+    assert found(*runs) == []
+
+
+def test_runs_that_are_too_short_together_are_errors_or_warnings(runs):
+    def cut(seconds):
+        return [run._replace(table={n: v[: round(seconds * RATE)] for n, v in run.table.items()}) for run in runs]
+
+    assert found(*cut(6.1)) == []
+    assert ("warning", "short", None) in found(*cut(5.9))
+    assert ("warning", "short", None) in found(*cut(3.1))
+    assert ("error", "short", None) in found(*cut(2.9))
+    assert ("error", "short", "a") in found(*cut(1.02)) and ("error", "short", "a") not in found(*cut(1.03))
+
+
+def test_a_single_run_and_a_duplicate_are_named(runs):
+    assert found(runs[0]) == [("warning", "single", "a")]
+    assert ("error", "duplicate", "b") in found(runs[0], runs[1]._replace(table=runs[0].table))
+
+
+def test_a_repeat_may_be_shifted_but_not_another_motion(runs):
+    first, second = runs
+    named = {"b": second.recording.runs["b"]._replace(repeat_of="a")}
+    second = second._replace(recording=dataclasses.replace(second.recording, runs=named))
+    assert ("error", "repeat", "b") in found(first, second)
+    shifted = {name: np.roll(values, 100) + 0.1 * motion(9) for name, values in first.table.items()}
+    assert found(first, second._replace(table=shifted)) == []
+
+
+def test_a_run_at_rest_is_a_warning_all_at_rest_an_error_and_a_dead_floor_an_error(runs):
+    first, second = runs
+    still = {name: motion(7 + k) for k, name in enumerate(first.table)}
+    assert found(first, second._replace(table=still)) == [("warning", "still", "b")]
+    other = {name: motion(17 + k) for k, name in enumerate(first.table)}
+    resting = found(first._replace(table=other), second._replace(table=still))
+    assert resting == [("error", "still", "a"), ("error", "still", "b")]
+    dead = {**second.table, "floor_acceleration": motion(3)}
+    assert found(first, second._replace(table=dead)) == [("error", "still", "b")]
+
+
+@pytest.mark.parametrize(("factor", "is_said"), [(0.3, True), (0.5, False), (2.5, False), (4.5, True)])
+def test_noise_is_said_where_it_is_more_than_three_times_off(runs, factor, is_said):
+    """White noise of a size that is `factor` times what is stated."""
+    for run in runs:
+        entry = run.recording.channels["driver_acceleration"]
+        run.recording.channels["driver_acceleration"] = entry._replace(noise_rms=1.0 / factor)
+    assert (("warning", "noise", None) in found(*runs)) is is_said
+
+
+def test_degrees_fahrenheit_are_told_by_the_nominal_temperature(runs):
+    for low, is_said in ((68.0, True), (60.0, False), (25.0, False)):
+        warm = [run._replace(table={**run.table, "damper_temperature": low + np.arange(3000) / 100}) for run in runs]
+        units = [issue for issue in check_all_runs(warm) if issue.kind == "unit"]
+        assert [issue.channel for issue in units] == ["damper_temperature"] * is_said
+
+
+@pytest.mark.parametrize(
+    ("clock", "expected"),
+    [(lambda t: t, []), (lambda t: 2.0 * t, [("error", "rate")]), (lambda t: 1.01 * t, [("error", "rate")]),
+     (lambda t: t + 0.04 * (t > 3.0), [("warning", "jump")]), (lambda t: t + 0.4 * (t > 3.0), [("error", "jump")])],
+)  # fmt: skip
+def test_a_clock_is_held_against_the_sample_rate(runs, tmp_path, clock, expected):
+    run = runs[0]._replace(recording=dataclasses.replace(runs[0].recording, folder=tmp_path))
+    pd.DataFrame({"time": clock(np.arange(3000) / RATE), **run.table}).to_csv(tmp_path / "a.csv", index=False)
+    issues = list(check_clock(run))
+    assert [(issue.severity, issue.kind) for issue in issues] == expected
+    assert all("3.00" in issue.sentence for issue in issues if issue.kind == "jump")
+
+
+def test_a_table_without_a_clock_is_taken_at_its_word(runs, tmp_path):
+    run = runs[0]._replace(recording=dataclasses.replace(runs[0].recording, folder=tmp_path))
+    pd.DataFrame(run.table).to_csv(tmp_path / "a.csv", index=False)
+    assert list(check_clock(run)) == []
+
+
+def test_issues_name_their_place(runs):
+    assert runs[0].issue("note", "k", "is so").sentence == "a: is so"
+    assert runs[0].issue("note", "k", "is so", "damper_force") == Issue(
+        "note", "k", "a, damper_force: is so", "damper_force", "a"
+    )
+    assert issue_in_all_runs("error", "k", "are so", "damper_force").sentence == "all runs, damper_force: are so"
+    both = [issue_in_all_runs("error", "k", "x"), issue_in_all_runs("warning", "k", "x")]
+    assert select_errors(both) == both[:1]
+
+
+def test_rest_is_three_times_the_noise():
+    values = np.array([-1.0, 1.0])
+    assert is_at_rest(values, 0.34) and not is_at_rest(values, 0.33)

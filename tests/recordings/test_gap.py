@@ -1,0 +1,120 @@
+"""The gap is what its definition says, and it refuses and warns exactly as the diagnosis does."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import seatsim
+from seatsim.cli.app import main
+from seatsim.recordings.gap import gap, measure_gap, pool_runs
+from seatsim.recordings.quality.examination import examine
+from seatsim.recordings.recording import load_recording
+from seatsim.scenario.loading import single
+
+from ..faulty_recordings import FAULTS, NOISE, WARNINGS, edit, rewrite, scaled, shifted
+
+
+def refusal(ask):
+    with pytest.raises(seatsim.InputError) as refused:
+        ask()
+    return str(refused.value)
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_gap_and_diagnosis_refuse_a_fault_in_the_same_sentence_which_names_it(copy, name):
+    fault, channel, words = FAULTS[name]
+    rewrite(copy, fault)
+    sentence = refusal(lambda: seatsim.gap(copy / "nominal.yaml", copy))
+    assert sentence == refusal(lambda: seatsim.diagnose(copy))
+    assert words in sentence and "\n" not in sentence
+    assert channel is None or channel in sentence
+
+
+def test_a_wrong_sample_rate_is_refused_by_both(copy):
+    edit(copy, lambda header: header.update(sample_rate=500.0))
+    sentence = refusal(lambda: seatsim.gap(copy / "nominal.yaml", copy))
+    assert sentence == refusal(lambda: seatsim.diagnose(copy))
+    assert "rows are 0.004 s apart where sample_rate 500" in sentence
+
+
+@pytest.mark.parametrize("name", WARNINGS)
+def test_a_warning_of_the_examination_is_a_note_of_the_gap(copy, name):
+    fault, _, words = WARNINGS[name]
+    rewrite(copy, fault)
+    found = seatsim.gap(copy / "nominal.yaml", copy)
+    assert list(found.notes) == examine(load_recording(copy)).sentences
+    assert any(words in sentence for sentence in found.notes)
+    assert found.as_dict()["notes"] == list(found.notes)
+
+
+def test_a_sound_recording_has_no_notes_and_any_scenario_is_held_against_it(copy):
+    assert seatsim.gap(copy / "nominal.yaml", copy).notes == ()
+    other = copy / "other.yaml"
+    other.write_text((copy / "nominal.yaml").read_text().replace("driver_mass: 80.0", "driver_mass: 120.0"))
+    assert seatsim.gap(other, copy).overall > seatsim.gap(copy / "nominal.yaml", copy).overall
+
+
+def test_the_command_prints_the_warnings_and_writes_them(copy, tmp_path, monkeypatch, capsys):
+    fault, _, words = WARNINGS["noisier than stated"]
+    rewrite(copy, fault)
+    call = ["seatsim", "gap", copy / "nominal.yaml", copy, "--out", tmp_path / "out"]
+    monkeypatch.setattr("sys.argv", [str(argument) for argument in call])
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    assert stopped.value.code == 0
+    shown = " ".join("".join(capsys.readouterr()).split())
+    assert f"note: all runs, driver_acceleration: {words}" in shown
+    (note,) = json.loads((tmp_path / "out" / "gap.json").read_text())["notes"]
+    assert words in note
+
+
+def test_the_command_refuses_and_writes_nothing(copy, tmp_path, monkeypatch, capsys):
+    rewrite(copy, scaled("suspension_displacement", 1000.0))
+    call = ["seatsim", "gap", copy / "nominal.yaml", copy, "--out", tmp_path / "out"]
+    monkeypatch.setattr("sys.argv", [str(argument) for argument in call])
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    assert stopped.value.code == 2 and not (tmp_path / "out").exists()
+    assert "suspension_displacement" in "".join(capsys.readouterr())
+
+
+def test_the_inner_measure_examines_nothing(copy):
+    rewrite(copy, shifted("damper_temperature", 273.15))
+    recording, nominal = load_recording(copy), single(copy / "nominal.yaml")
+    assert measure_gap(nominal, recording).notes == ()
+    with pytest.raises(seatsim.InputError, match="kelvin"):
+        gap(nominal, recording)
+
+
+def test_the_figures_are_those_of_the_definition(copy):
+    """Against the tables alone: a channel moved by three standard deviations of itself has a gap of three."""
+    recording, nominal = load_recording(copy), single(copy / "nominal.yaml")
+    measured, simulated = pool_runs(nominal, recording, ["run-1", "run-2"])
+    tables = [pd.read_csv(copy / f"{run}.csv.gz")[250:] for run in ("run-1", "run-2")]
+    found = measure_gap(nominal, recording)
+    for name, values in measured.items():
+        pooled = np.concatenate([table[name].to_numpy() for table in tables])
+        assert np.array_equal(values, pooled)
+        error = np.sqrt(np.mean((pooled - simulated[name]) ** 2))
+        assert found.channels[name] == pytest.approx(error / np.std(pooled), rel=1e-12)
+        assert found.floor["channels"][name] == pytest.approx(NOISE[name] / np.std(pooled), rel=1e-12)
+    assert found.overall**2 == pytest.approx(np.mean(np.square(list(found.channels.values()))), rel=1e-12)
+    assert found.floor["overall"] < found.overall < 2 * found.floor["overall"]
+    k = "driver_acceleration"
+    rewrite(copy, lambda frame: frame.assign(**{k: frame[k] + 3.0 * np.std(measured[k])}))
+    assert measure_gap(nominal, recording).channels[k] == pytest.approx(3.0, rel=1e-2)
+
+
+def test_channels_that_hardly_stand_above_their_noise_are_not_compared(copy):
+    recording, nominal = load_recording(copy), single(copy / "nominal.yaml")
+    assert "damper_force" in measure_gap(nominal, recording).channels
+    force = pool_runs(nominal, recording, ["run-1"])[0]["damper_force"]
+    for factor, compared in ((0.34, False), (0.32, True)):
+        noise = factor * float(np.std(force))
+        edit(copy, lambda header, noise=noise: header["channels"]["damper_force"].update(noise_rms=noise))
+        assert ("damper_force" in measure_gap(nominal, load_recording(copy), ["run-1"]).channels) is compared
+    edit(copy, lambda header: [entry.update(noise_rms=1e6) for entry in header["channels"].values()])
+    with pytest.raises(seatsim.InputError, match="nothing to compare"):
+        measure_gap(nominal, load_recording(copy))

@@ -1,0 +1,86 @@
+"""What drove a rig is read off its table: linear between rows, commands held, steps that divide the rows."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.signal import bilinear, lfilter
+
+from seatsim.recordings.compared import COMPARED, LEFT_OUT, select_compared, stands_out
+from seatsim.recordings.inputs import recorded_inputs
+from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Header, Recording, RunEntry
+from seatsim.simulation.inputs import BenchInputs, SeatInputs
+
+
+def recording_of(rig, table, rate, gain=None):
+    units = SEAT_CHANNELS if rig == "seat" else BENCH_CHANNELS
+    channels = {name: ChannelEntry(units[name], 0.5) for name in table}
+    return Recording(Path("nowhere"), Header(rig, rate, "nominal.yaml"), {"a": RunEntry("a", "a.csv")}, channels, gain)
+
+
+TABLE = {
+    "floor_acceleration": np.array([0.0, 4.0, -2.0]), "current_command": np.array([0.2, 0.6, 0.9]),
+    "coil_current": np.array([0.1, 0.5, 0.3]), "damper_temperature": np.array([20.0, 24.0, 26.0]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("largest", "parts"), [(0.01, 1), (0.004, 1), (0.0035, 2), (0.002, 2), (0.001, 4)])
+def test_the_step_is_the_largest_that_divides_the_rows(largest, parts):
+    inputs = recorded_inputs(recording_of("seat", TABLE, 250.0), TABLE, largest)
+    assert isinstance(inputs, SeatInputs)
+    assert inputs.interval == 0.004
+    assert inputs.floor.step == 0.004 / parts
+    assert len(inputs.floor.acceleration) == 2 * parts + 1
+
+
+def test_a_seat_is_driven_linearly_between_rows_with_commands_held():
+    inputs = recorded_inputs(recording_of("seat", TABLE, 250.0), TABLE, 0.002)
+    floor = inputs.floor
+    assert floor.acceleration == pytest.approx([0.0, 2.0, 4.0, 1.0, -2.0])
+    assert floor.command == pytest.approx([0.2, 0.2, 0.6, 0.6, 0.9])
+    assert floor.coil_current == pytest.approx([0.1, 0.3, 0.5, 0.4, 0.3])
+    assert floor.temperature == pytest.approx([20.0, 22.0, 24.0, 25.0, 26.0])
+    assert all(force.size == 0 for force in inputs.forces)
+
+
+def test_what_is_not_recorded_is_absent():
+    table = {"floor_acceleration": TABLE["floor_acceleration"]}
+    floor = recorded_inputs(recording_of("seat", table, 250.0), table, 0.002).floor
+    assert (floor.command, floor.coil_current, floor.temperature) == (None, None, None)
+
+
+def test_velocity_and_displacement_are_leaky_integrals_of_the_acceleration():
+    """Against scipy's bilinear transform of 1 / (s + 2 pi 0.05)."""
+    acceleration = np.sin(2 * np.pi * np.arange(1000) / 250.0)
+    floor = recorded_inputs(recording_of("seat", {"floor_acceleration": acceleration}, 250.0),
+                            {"floor_acceleration": acceleration}, 0.004).floor  # fmt: skip
+    leaky = bilinear([1.0], [1.0, 2 * np.pi * 0.05], fs=250.0)
+    velocity = lfilter(*leaky, acceleration)
+    assert floor.velocity == pytest.approx(velocity, abs=1e-12)
+    assert floor.displacement == pytest.approx(lfilter(*leaky, velocity), abs=1e-12)
+
+
+def test_a_bench_is_driven_row_by_row():
+    rows = np.arange(4.0)
+    table = {"displacement": rows, "velocity": rows + 10, "command_voltage": rows + 20, "coil_current": rows + 30,
+             "damper_temperature": rows + 40, "damper_force": rows + 50}  # fmt: skip
+    inputs = recorded_inputs(recording_of("damper_bench", table, 500.0, gain=0.4), table, 0.001)
+    assert isinstance(inputs, BenchInputs)
+    assert (inputs.interval, inputs.displacement_noise, inputs.voltage_gain) == (0.002, 0.5, 0.4)
+    assert inputs.current_command is None
+    for name in ("displacement", "velocity", "command_voltage", "coil_current", "damper_temperature"):
+        assert getattr(inputs, name) is table[name]
+
+
+def test_compared_are_the_outputs_after_the_first_second():
+    table = {name: np.arange(1000.0) for name in SEAT_CHANNELS}
+    found = select_compared(table, "seat", 250.0)
+    assert tuple(found) == COMPARED["seat"]
+    assert LEFT_OUT == 1.0 and all(values[0] == 250.0 and len(values) == 750 for values in found.values())
+    assert tuple(select_compared(table, "damper_bench", 250.0)) == ("damper_force", "coil_current")
+
+
+def test_a_channel_stands_out_from_three_times_its_noise():
+    values = np.array([-1.0, 1.0])
+    assert stands_out(values, 0.33) and not stands_out(values, 0.34)
+    assert not stands_out(np.ones(5), 0.0) and not stands_out(np.zeros(0), 0.0)

@@ -1,0 +1,214 @@
+"""One way from a scenario and inputs to what sensors say, on a seat and on a bench."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numba import typeof
+from scipy.integrate import solve_ivp
+
+from seatsim.compilation import cached
+from seatsim.effects.base import off
+from seatsim.excitations.base import Floor
+from seatsim.scenario.loading import load, single
+from seatsim.scenario.scenario import Start
+from seatsim.schema.errors import InputError
+from seatsim.schema.registry import find
+from seatsim.simulation.inputs import BenchInputs, Forces, SeatInputs
+from seatsim.simulation.respond import SEAT_OUTPUTS, respond
+from seatsim.simulation.simulate import simulate
+
+SEAT = """\
+plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
+        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
+damper: {model: bingham, parameters: {c_a: 500.0, c_b: 0.0, fc_a: 0.0, fc_b: 0.0, f0: 0.0, v_ref: 0.004}}
+actuator: {rate: 130.0, max_current: 1.0}
+temperature: 20.0
+controller: {law: replay}
+excitation: {kind: recording}
+"""
+STEP = 0.001
+
+
+@pytest.fixture(scope="module")
+def seat(tmp_path_factory):
+    """A seat whose damper is linear: 500 N s/m beside the 150 N s/m of the suspension."""
+    path = tmp_path_factory.mktemp("respond") / "seat.yaml"
+    path.write_text(SEAT)
+    return load(path)[0]
+
+
+@pytest.fixture(scope="module")
+def inputs():
+    time = STEP * np.arange(2001)
+    shaken, still = np.sin(2 * np.pi * 2.0 * time) * np.minimum(time, 1.0), np.zeros(len(time))
+    command = 0.5 * (time > 0.5)
+    return SeatInputs(Floor(STEP, shaken, still, still, command), 5 * STEP)
+
+
+def linear(inputs):
+    """The seat as scipy solves it: outputs at the rows."""
+    time = inputs.floor.time
+
+    def motion(t, y):
+        x, v, xc, vc = y  # suspension, driver against frame
+        a = np.interp(t, time, inputs.floor.acceleration)
+        push, lift = (np.interp(t, time, f) if len(f) else 0.0 for f in inputs.forces)
+        cushion = 60000.0 * xc + 1500.0 * vc
+        frame = (-4600.0 * x - 650.0 * v + cushion + push) / 20.0
+        driver = (-cushion + lift) / 80.0
+        return v, frame - a, vc, driver - frame
+
+    rows = time[::5]
+    y = solve_ivp(motion, (0.0, time[-1]), np.zeros(4), t_eval=rows, rtol=1e-9, atol=1e-12, max_step=STEP).y
+    rates = np.array([motion(t, column) for t, column in zip(rows, y.T, strict=True)]).T
+    frame = rates[1] + inputs.floor.acceleration[::5]
+    return {"suspension_displacement": y[0], "frame_acceleration": frame, "driver_acceleration": rates[3] + frame,
+            "damper_force": 500.0 * y[1]}  # fmt: skip
+
+
+@pytest.mark.parametrize("forces", [Forces(), Forces(frame=20.0 * np.cos(7.0 * STEP * np.arange(2001))),
+                                    Forces(driver=20.0 * np.cos(7.0 * STEP * np.arange(2001)))])  # fmt: skip
+def test_a_linear_seat_answers_as_the_equations_of_motion_say(seat, inputs, forces):
+    driven = inputs._replace(forces=forces)
+    answer, expected = respond(seat, driven), linear(driven)
+    assert tuple(answer) == SEAT_OUTPUTS
+    for name, values in expected.items():
+        assert answer[name] == pytest.approx(values, abs=2e-3 * np.max(np.abs(values)))
+
+
+def test_the_coil_follows_the_command_with_its_rate(seat, inputs):
+    current = respond(seat, inputs)["coil_current"]
+    rows = inputs.floor.time[::5]
+    late = np.maximum(0.0, rows - 0.501)
+    assert current == pytest.approx(0.5 * (1.0 - np.exp(-130.0 * late)), abs=1e-9)
+
+
+def test_where_no_command_is_recorded_the_coil_current_drives(seat, inputs):
+    flowing = 0.3 + 0.1 * np.sin(inputs.floor.time)
+    floor = inputs.floor._replace(command=None, coil_current=flowing)
+    assert respond(seat, inputs._replace(floor=floor))["coil_current"] == pytest.approx(flowing[::5], abs=1e-12)
+
+
+def test_it_is_the_simulation_read_at_the_rows(seat, inputs):
+    history = simulate(replace(seat, solver=seat.solver._replace(step=STEP)), inputs.floor)
+    for every in (1, 5):
+        answer = respond(seat, inputs._replace(interval=every * STEP))
+        for name in SEAT_OUTPUTS:
+            assert np.array_equal(answer[name], history[name][::every])
+
+
+def test_the_rig_starts_at_rest_wherever_the_scenario_puts_it(seat, inputs):
+    moved = replace(seat, start=Start(0.02, 0.1))
+    assert np.array_equal(respond(moved, inputs)["damper_force"], respond(seat, inputs)["damper_force"])
+
+
+def test_what_sensors_say_is_what_effects_make_of_it(seat, inputs):
+    true = respond(seat, inputs)
+    gain = find("effect", "sensor.gain")("driver_acceleration", 0.25)
+    answer = respond(replace(seat, effects=(gain,)), inputs)
+    assert answer["driver_acceleration"] == pytest.approx(1.25 * true["driver_acceleration"], rel=1e-12)
+    assert np.array_equal(answer["frame_acceleration"], true["frame_acceleration"])
+    floor = find("effect", "sensor.gain")("floor_acceleration", 1.0)
+    halved = respond(replace(seat, effects=(floor,)), inputs)
+    assert halved["driver_acceleration"] == pytest.approx(0.5 * true["driver_acceleration"], abs=1e-6)
+
+
+@pytest.fixture(scope="module")
+def hysteretic(sound):
+    """A seat with a Bouc-Wen damper: the loop that carries all effects is compiled for it in other tests too."""
+    return single(sound / "nominal.yaml")
+
+
+def test_carrying_all_effects_changes_no_number(hysteretic, inputs):
+    bare, carried = respond(hysteretic, inputs), respond(hysteretic, inputs, carry_all_effects=True)
+    for name in SEAT_OUTPUTS:
+        assert carried[name] == pytest.approx(bare[name], abs=1e-9 * np.max(np.abs(bare[name])))
+
+
+def test_rigs_that_carry_all_effects_share_one_compiled_loop(hysteretic, inputs, monkeypatch):
+    """Effects on damper, seat, plant, coil and temperature: the types that the loop is called with stay the same."""
+    called = set()
+
+    def compiled(loop, parts):
+        return lambda *args: called.add((tuple(parts), typeof(args))) or cached.compiled(loop, parts)(*args)
+
+    monkeypatch.setattr("seatsim.simulation.simulate.compiled", compiled)
+    names = ["damper.seal_friction", "suspension.friction", "driver.mass", "coil.lag", "damper.thermal_fade"]
+    for effects in ((), *((off(find("effect", name)),) for name in names)):
+        respond(replace(hysteretic, effects=effects), inputs, carry_all_effects=True)
+    assert len(called) == 1
+
+
+@pytest.fixture
+def bench(seat):
+    return replace(seat, plant=None, control=None)
+
+
+ROWS = 0.002 * np.arange(1500)
+MOVED = BenchInputs(0.002, 0.01 * np.sin(8.0 * ROWS))
+
+
+def test_a_bench_answers_with_the_damper_at_the_speed_of_its_displacement(bench):
+    answer = respond(bench, MOVED)
+    assert tuple(answer) == ("damper_force", "coil_current")
+    assert answer["damper_force"][5:-5] == pytest.approx(500.0 * 0.08 * np.cos(8.0 * ROWS)[5:-5], abs=1e-3)
+    assert np.all(answer["coil_current"] == 0.0)
+
+
+def test_a_recorded_velocity_is_taken_before_the_slope_of_the_displacement(bench):
+    answer = respond(bench, MOVED._replace(velocity=np.full(1500, 0.2)))
+    assert answer["damper_force"] == pytest.approx(100.0, rel=1e-9)
+
+
+def test_noise_of_a_displacement_is_smoothed_out(bench):
+    noisy = MOVED.displacement + 1e-5 * np.random.default_rng(0).standard_normal(1500)
+    errors = [
+        np.std(respond(bench, MOVED._replace(displacement=noisy, displacement_noise=noise))["damper_force"]
+               - 500.0 * 0.08 * np.cos(8.0 * ROWS))
+        for noise in (0.0, 1e-5)
+    ]  # fmt: skip
+    assert errors[1] < 0.1 * errors[0]
+
+
+def test_a_command_is_held_and_followed_from_the_recorded_current_on(bench):
+    command = np.where(ROWS < 1.0, 0.2, 0.8)
+    start = np.full(1500, 0.6)
+    current = respond(bench, MOVED._replace(current_command=command, coil_current=start))["coil_current"]
+    first = 0.2 + 0.4 * np.exp(-130.0 * ROWS)
+    after = 0.8 - 0.6 * np.exp(-130.0 * np.maximum(ROWS - 1.0, 0.0))
+    assert current == pytest.approx(np.where(ROWS < 1.0, first, after), abs=1e-9)
+
+
+def test_a_command_voltage_counts_with_its_gain_and_a_command_before_it(bench):
+    volts = np.full(1500, 2.0)
+    by_voltage = respond(bench, MOVED._replace(command_voltage=volts, voltage_gain=0.3))["coil_current"]
+    assert by_voltage[-1] == pytest.approx(0.6, rel=1e-9)
+    both = MOVED._replace(command_voltage=volts, voltage_gain=0.3, current_command=np.full(1500, 0.1))
+    assert respond(bench, both)["coil_current"][-1] == pytest.approx(0.1, rel=1e-9)
+    too_much = respond(bench, MOVED._replace(current_command=np.full(1500, 3.0)))["coil_current"]
+    assert too_much[-1] == pytest.approx(1.0, rel=1e-9)
+
+
+def test_readings_of_a_benchs_sensors_are_undone_on_its_inputs(bench):
+    gain = find("effect", "sensor.gain")("displacement", 1.0)
+    force = respond(replace(bench, effects=(gain,)), MOVED)["damper_force"]
+    assert force[5:-5] == pytest.approx(0.5 * respond(bench, MOVED)["damper_force"][5:-5], abs=1e-3)
+
+
+def test_a_bench_has_no_part_for_effects_of_the_seat(bench):
+    for name in ("suspension.friction", "driver.mass", "floor.unmeasured_input"):
+        with pytest.raises(InputError, match=f"no part on which {name} acts"):
+            respond(replace(bench, effects=(off(find("effect", name)),)), MOVED)
+
+
+def test_a_bench_cannot_be_shaken_as_a_seat(bench, inputs):
+    with pytest.raises(InputError, match="has no seat to simulate"):
+        respond(bench, inputs)
+
+
+def test_a_recorded_temperature_scales_the_damper(bench):
+    factors = bench.damper.factors._replace(viscous=-0.01)
+    warm = replace(bench, damper=replace(bench.damper, factors=factors))
+    by_row = respond(warm, MOVED._replace(damper_temperature=np.full(1500, 40.0)))["damper_force"]
+    assert by_row[5:-5] == pytest.approx(np.exp(-0.2) * respond(bench, MOVED)["damper_force"][5:-5], abs=1e-2)

@@ -1,0 +1,120 @@
+"""A run: its channels, its energy, its sampling, its warnings, and how several are put side by side."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seatsim.scenario.loading import load, single
+from seatsim.schema.errors import InputError, RunError
+from seatsim.schema.registry import specification_of
+from seatsim.simulation.result import UNITS, Channel, Result
+from seatsim.simulation.runs import compare, run, run_many, run_one
+from seatsim.simulation.simulate import History, simulate
+from seatsim.simulation.validity import list_warnings
+
+
+@pytest.fixture(scope="module")
+def scenario(kept_seat_file):
+    return load(kept_seat_file, {"excitation": {"kind": "sine", "amplitude": 0.02, "frequency": 1.0, "duration": 2.0}})[
+        0
+    ]
+
+
+@pytest.fixture(scope="module")
+def history(scenario):
+    return simulate(scenario)
+
+
+def test_every_channel_is_there_with_its_unit_and_in_its_order_of_time(scenario, history):
+    assert set(history.channels) == set(UNITS)
+    assert np.allclose(history["time"], 0.001 * np.arange(2001))
+    assert all(len(values) == 2001 for values in history.channels.values())
+
+
+def test_energy_is_conserved(history):
+    """What the floor put in is stored or dissipated in damper, suspension and cushion."""
+    spent = sum(history[f"energy_{part}"] for part in ("damper", "suspension", "cushion", "stored"))
+    assert spent == pytest.approx(history["energy_floor"], abs=5e-3 * np.max(np.abs(history["energy_floor"])))
+
+
+def test_the_energy_stored_is_that_of_masses_and_springs(scenario, history):
+    plant, k = scenario.plant, 1234
+    v, x = history["suspension_velocity"][k], history["suspension_displacement"][k]
+    driver, cushion = v + history["cushion_velocity"][k], history["cushion_displacement"][k]
+    stored = 0.5 * (plant.frame_mass * v**2 + plant.driver_mass * driver**2
+                    + plant.suspension_stiffness * x**2 + plant.cushion_stiffness * cushion**2)  # fmt: skip
+    assert history["energy_stored"][k] == pytest.approx(stored, rel=1e-12)
+
+
+def test_a_sampled_law_commands_every_sample_time(history):
+    changes = np.flatnonzero(np.diff(history["current_command"])) + 1
+    assert len(changes) > 10 and np.all(changes % 5 == 0)
+
+
+def test_a_sample_time_that_is_no_multiple_of_the_step_is_refused(scenario):
+    odd = replace(scenario, control=replace(scenario.control, sample_time=0.0033))
+    with pytest.raises(InputError, match=r"choose 0\.003 s"):
+        simulate(odd)
+
+
+def test_a_bench_cannot_be_simulated_as_a_seat(scenario):
+    with pytest.raises(InputError, match="no seat to simulate"):
+        simulate(replace(scenario, plant=None))
+
+
+def test_a_rig_that_runs_away_says_where(scenario):
+    falling = replace(scenario, plant=scenario.plant._replace(suspension_stiffness=-1e6, suspension_damping=-1e4))
+    with pytest.raises(RunError, match="no solution beyond 0"):
+        simulate(falling)
+
+
+def test_a_channel_carries_its_name_and_unit_over(scenario):
+    found = run(scenario)
+    force = found["damper_force"]
+    assert (force.name, force.unit) == ("damper_force", "N")
+    assert (force[10:20].unit, (2.0 * force).unit) == ("N", "N")
+    assert Channel(np.zeros(2), "x", "m").shape == (2,)
+
+
+def test_the_table_has_a_row_for_each_run_and_what_sets_it_apart(kept_seat_file):
+    short = {"excitation.duration": 2.0, "variants": {"soft": {"plant.driver_mass": 60.0}, "hard": {}}}
+    table = run(kept_seat_file, short).table
+    assert list(table["variant"]) == ["soft", "hard"] and list(table.columns[:2]) == ["scenario", "variant"]
+    single_runs = [run_one(one) for one in load(kept_seat_file, short)]
+    for name in ("driver_acceleration_rms", "suspension_displacement_rms"):
+        assert list(table[name]) == [one.metrics[name].value for one in single_runs]
+    assert len(compare([kept_seat_file, kept_seat_file], {"excitation.duration": 2.0}).runs) == 2
+    assert Result(single_runs)["time"][-1] == single_runs[0]["time"][-1]
+
+
+def test_many_runs_are_yielded_in_order_with_their_failures(scenario):
+    falling = replace(scenario, plant=scenario.plant._replace(suspension_stiffness=-1e6, suspension_damping=-1e4))
+    done = []
+    pairs = list(run_many([scenario, falling, scenario], done.append))
+    assert [pair[0] for pair in pairs] == [scenario, falling, scenario] and len(done) == 3
+    assert isinstance(pairs[1][1], RunError)
+    assert np.array_equal(pairs[0][1]["damper_force"], pairs[2][1]["damper_force"])
+
+
+def warned(scenario, share, speed=0.0, current=0.0):
+    """The warnings of a run of which a share is at a speed and a current."""
+    at = np.arange(1000) < 1000 * share
+    still = np.zeros(1000)
+    return list_warnings(scenario, History(0.001, {"suspension_velocity": speed * at, "coil_current": current * at,
+                                                   "suspension_displacement": still}))  # fmt: skip
+
+
+def test_a_range_left_for_more_than_a_hundredth_of_the_run_is_warned_of(kept_seat_file):
+    scenario = single(kept_seat_file)
+    stated = specification_of(type(scenario.damper.record))
+    fast, strong = 1.01 * stated.max_speed, 1.01 * stated.max_current
+    assert warned(scenario, 0.009, fast, strong) == ()
+    if np.isfinite(stated.max_speed):
+        (sentence,) = warned(scenario, 0.011, speed=-fast)
+        assert f"faster than {stated.max_speed:g} m/s" in sentence
+        geared = replace(scenario, plant=scenario.plant._replace(damper_ratio=0.5))
+        assert warned(geared, 0.011, speed=-fast) == ()
+    if np.isfinite(stated.max_current):
+        (sentence,) = warned(scenario, 0.011, current=strong)
+        assert f"above {stated.max_current:g} A" in sentence
