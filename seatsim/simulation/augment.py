@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on, off
+from seatsim.effects.base import ON_DAMPER, ON_SEAT, BeforeRun, acts_on, methods_of, off
 from seatsim.kernel.augmented import AugmentedDamper
-from seatsim.kernel.chain import Effects, state_of
+from seatsim.kernel.chain import Effects, state_at_rest
 from seatsim.schema.registry import find, names, specification_of
 
 Array = NDArray[np.float64]
 NONE = np.zeros(0)
 
 
-def having(effects: Sequence[Any], method: str) -> Iterator[Callable[..., Any]]:
-    """Yield that method of every effect that has it."""
-    return (getattr(effect, method) for effect in effects if hasattr(effect, method))
-
-
-def changed(effects: Sequence[Any], method: str, value: Any, *args: Any) -> Any:
+def changed(effects: Sequence[Any], method: BeforeRun, value: Any, *args: Any) -> Any:
     """Return `value` handed through that method of every effect that has it, as its last argument."""
-    for change in having(effects, method):
+    for change in methods_of(effects, method):
         value = change(*args, value)
     return value
 
@@ -65,12 +60,12 @@ def damper_with(record: Any, effects: Effects) -> tuple[Any, tuple[float, ...]]:
     initial: tuple[float, ...] = specification_of(type(record)).initial
     if not effects:
         return record, initial
-    return AugmentedDamper(record, effects), initial + state_of([type(effect) for effect in effects])
+    return AugmentedDamper(record, effects), initial + state_at_rest([type(effect) for effect in effects])
 
 
 def pushes(effects: Sequence[Any], time: Array, seed: int) -> Array:
     """Return the force on the frame in N that effects add, shape (N,), or of length 0 where none does."""
-    found = [push(time, seed) for push in having(effects, "push")]
+    found = [np.asarray(force(time, seed)) for force in methods_of(effects, "frame_force")]
     return np.sum(found, axis=0) if found else NONE
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, UnivariateSpline
 
 from seatsim.effects.base import ON_SEAT, acts_on
-from seatsim.kernel.lag import lagged
+from seatsim.kernel.coil_current import simulate_current
 from seatsim.recordings.recording import Recording
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import Thermal
@@ -34,7 +34,7 @@ def replay_bench(scenario: Scenario, recording: Recording, run: str) -> dict[str
     """
     effects = scenario.effects
     for effect in effects:
-        if acts_on(type(effect), (*ON_SEAT, "plant", "push")):
+        if acts_on(type(effect), (*ON_SEAT, "plant", "frame_force")):
             name = name_of("effect", type(effect))
             raise InputError(f"{scenario.name}: a damper bench has no part on which {name} acts; remove it")
     interval = 1.0 / recording.header.sample_rate
@@ -68,7 +68,7 @@ def _current(coil: Coil, table: Mapping[str, Array], gain: float | None, rows: A
     held = np.searchsorted(rows, fine - coil.delay + 1e-9 * rows[1], side="right") - 1
     start = table["coil_current"][0] if "coil_current" in table else 0.0
     wanted = np.where(held < 0, start, np.clip(command, 0.0, coil.max_current)[np.maximum(held, 0)])
-    return lagged(coil, wanted, fine[1], start)
+    return simulate_current(coil, wanted, fine[1], start)
 
 
 def _temperature(scenario: Scenario, table: Mapping[str, Array], rows: Array, fine: Array) -> Array:

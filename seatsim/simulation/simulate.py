@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from seatsim.compilation.cached import compiled
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.excitations.base import Floor
+from seatsim.kernel.assumed_model import AssumedModel, InverseModel, TrueModel
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.belief import Belief, Truth
-from seatsim.kernel.chain import state_of
-from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
+from seatsim.kernel.chain import state_at_rest
+from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.loop import run_loop
+from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
@@ -75,9 +77,9 @@ def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | No
         noise = scenario.control.sensors.noise(-(-len(floor.acceleration) // setup.timing.sample_every), scenario.seed)
         inputs = inputs._replace(sensed=at_rest(scenario.start.displacement), noise=noise)
     out = np.empty((len(floor.acceleration), len(CHANNELS)))
-    variable = setup.law, setup.belief.damper, setup.sensors
+    variable = setup.law, setup.inverse_model.damper, setup.sensors
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
-    states = (initial, _believed(setup.belief), specification_of(type(scenario.control.law)).initial)
+    states = (initial, _followed(setup.inverse_model), specification_of(type(scenario.control.law)).initial)
     reached = compiled(run_loop, parts)(setup, inputs, *states, out)
     notes = setup.law.notes() if hasattr(setup.law, "notes") else ()
     if reached < len(out):
@@ -88,7 +90,7 @@ def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | No
     return _history(setup.rig.plant, step, out, notes)
 
 
-def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -> tuple[Setup, tuple[float, ...]]:
+def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -> tuple[LoopSetup, tuple[float, ...]]:
     """Return the constant parts and the rig's state at rest; with a `recorded` temperature none is simulated."""
     on_damper, on_seat = in_loop(scenario.effects)
     damper, initial = damper_with(scenario.damper.record, on_damper)
@@ -103,9 +105,9 @@ def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -
     coil = changed(scenario.effects, "coil", scenario.coil)
     factors = changed(scenario.effects, "factors", scenario.damper.factors)
     sensors = control.sensors.instruments(scenario.solver.step, period) if control.sensors else Direct()
-    belief = _belief(scenario, control)
-    setup = Setup(rig, coil, factors, thermal, law, belief, timing, scenario.coil.max_current, sensors)
-    return setup, initial + state_of([type(effect) for effect in on_seat])
+    model = _inverse_model(scenario, control)
+    setup = LoopSetup(rig, coil, factors, thermal, law, model, timing, scenario.coil.max_current, sensors)
+    return setup, initial + state_at_rest([type(effect) for effect in on_seat])
 
 
 def _ready(law: Any, plant: Plant, coil: Coil, sample_time: float) -> Any:
@@ -115,23 +117,23 @@ def _ready(law: Any, plant: Plant, coil: Coil, sample_time: float) -> Any:
     return law.prepared(plant) if hasattr(law, "prepared") else law
 
 
-def _belief(scenario: Scenario, control: Control) -> Truth | Belief:
-    """Return what the inverse believes: the plant's damper, whose effects it does not know, unless stated otherwise."""
+def _inverse_model(scenario: Scenario, control: Control) -> InverseModel:
+    """Return the inverse's damper: the plant's, whose effects it does not know, unless stated otherwise."""
     if control.inverse is None:
         record = scenario.damper.record
         order = specification_of(type(record)).current_order
         if any(acts_on(type(effect), (*ON_DAMPER, "factors")) for effect in scenario.effects):
-            return Belief(record, order, scenario.damper.factors, np.nan)
-        return Truth(record, order)
+            return AssumedModel(record, order, scenario.damper.factors, np.nan)
+        return TrueModel(record, order)
     record, factors = control.inverse.damper.record, control.inverse.damper.factors
     temperature = control.inverse.temperature
-    return Belief(
+    return AssumedModel(
         record, specification_of(type(record)).current_order, factors, np.nan if temperature is None else temperature
     )
 
 
-def _believed(belief: Truth | Belief) -> tuple[float, ...]:
-    initial: tuple[float, ...] = specification_of(type(belief.damper)).initial
+def _followed(model: InverseModel) -> tuple[float, ...]:
+    initial: tuple[float, ...] = specification_of(type(model.damper)).initial
     return initial
 
 
@@ -147,7 +149,7 @@ def _sample_every(step: float, control: Control) -> int:
     return every
 
 
-def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> Inputs:
+def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> LoopInputs:
     step, effects, samples = scenario.solver.step, scenario.effects, len(floor.acceleration)
     acceleration = undone(effects, floor.acceleration, "floor_acceleration", step)
     fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
@@ -163,7 +165,7 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) 
     push = pushes(effects, floor.time, scenario.seed)
     if len(forces.push):
         push = push + forces.push if len(push) else forces.push
-    return Inputs(
+    return LoopInputs(
         acceleration, floor.velocity, temperature, command, prescribed, push, forces.lift, start, *scenario.start
     )
 
