@@ -24,7 +24,7 @@ Two crossings within one cell, a sixteenth of the permitted currents, are not se
 SERVED = 1e-6
 """Difference of given and wanted force, over the wanted force plus 1 N, up to which it counts as served."""
 STRAIGHT = 1e-10
-"""Difference of given and wanted force, over the wanted force plus 1 N, up to which the wanted one is served."""
+"""Curvature of a force-current map, over the size of its forces, below which it is rounding of a straight line."""
 CLOSE = 1e-6
 """N; difference from the wanted force at which a search ends."""
 TRIALS = 60
