@@ -81,7 +81,10 @@ def damper(
     fixed: tuple[str, ...] = (),
     smooth: bool = False,
 ) -> Callable[[T], T]:
-    """Register a record class as the damper `model: name`; see `DamperSpecification` for the facts."""
+    """Register a record class as the damper `model: name`; see `DamperSpecification` for the facts.
+
+    `factors` are the temperature factors that a scenario may leave out, none where they are not given.
+    """
     specification = DamperSpecification(
         source,
         initial,

@@ -1,7 +1,7 @@
 """Bingham dampers with springs in series: modified, and after Gamota and Filisko.
 
 The force is that of a spring, which the current reaches only through the state: an inverse does better with another
-model to believe in.
+model to assume.
 """
 
 from __future__ import annotations

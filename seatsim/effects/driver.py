@@ -14,7 +14,7 @@ from seatsim.schema.fields import param
 
 @effect("driver.mass", source="weighing", forms=({"change": 4.0}, {"change": -4.0}))
 class Mass(NamedTuple):
-    """An occupant heavier or lighter than believed."""
+    """An occupant heavier or lighter than the plant states."""
 
     change: Annotated[float, param("kg", "added mass", low=-1e3, high=1e3)]
 

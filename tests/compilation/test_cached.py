@@ -67,7 +67,7 @@ def test_code_tells_instructions_names_and_constants_apart():
     assert parts(lambda a: a + 1.0) == parts(lambda a: a + 1.0)
     assert parts(lambda a: a + 1.0) != parts(lambda a: a - 1.0)
     assert parts(lambda a: a + 1.0) != parts(lambda a: a + 2.0)
-    assert parts(lambda a: math.sin(a)) != parts(lambda a: math.cos(a))
+    assert parts(lambda a: math.sin(a) + a) != parts(lambda a: math.cos(a) + a)
     assert parts(lambda a: [lambda: 1.0][0]) != parts(lambda a: [lambda: 2.0][0])
 
 

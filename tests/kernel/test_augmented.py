@@ -17,7 +17,7 @@ from seatsim.rig.temperature import TemperatureScaling
 from .uncompiled import Hysteretic, Linear, Yielding, plugged
 
 WARM = TemperatureScaling(0.9, 0.8, 0.7)
-X, V, I = 0.01, 0.02, 0.5
+X, V, AMPS = 0.01, 0.02, 0.5
 DAMPER = Yielding()
 VISCOUS, YIELD = 400.0 * 0.9 * V, 0.7 * 350.0 * math.tanh(2.0)
 
@@ -102,15 +102,15 @@ class Mount(NamedTuple):
 
 
 def force(*effects, damper=DAMPER, v=V, z=()):
-    return AugmentedDamper(damper, effects).force(X, v, I, WARM, z)
+    return AugmentedDamper(damper, effects).force(X, v, AMPS, WARM, z)
 
 
 def rates(*effects, damper=DAMPER, v=V, z=()):
-    return AugmentedDamper(damper, effects).rates(X, v, I, WARM, z)
+    return AugmentedDamper(damper, effects).rates(X, v, AMPS, WARM, z)
 
 
 def limit(*effects, damper=DAMPER, v=V, z=()):
-    return AugmentedDamper(damper, effects).friction_limit(v, I, WARM, z)
+    return AugmentedDamper(damper, effects).friction_limit(v, AMPS, WARM, z)
 
 
 def test_without_effects_it_is_the_damper():
@@ -124,7 +124,7 @@ def test_a_gap_transmits_a_share_of_force_and_speed():
     assert force(Half(), v=-V) == pytest.approx(-0.25 * (VISCOUS + YIELD), rel=1e-12)
     found = rates(Half(), Beside(), damper=Hysteretic(), z=(0.1, 0.2, 0.2, 0.4))
     demanded = 300.0 * 0.9 * V + 2000.0 * 0.5 * 0.7 * 0.1 + 20.0
-    assert found == pytest.approx((50.0 * (0.5 * V - 0.1), X, X + V + I + demanded, 0.5 * V), rel=1e-12)
+    assert found == pytest.approx((50.0 * (0.5 * V - 0.1), X, X + V + AMPS + demanded, 0.5 * V), rel=1e-12)
     assert limit(Half(), damper=Linear(friction=30.0), v=-V) == pytest.approx(0.25 * 21.0)
 
 
@@ -167,11 +167,11 @@ def test_the_yield_part_is_split_into_mean_size_and_share(v):
     damper = Yielding(offset=8.0, coulomb_force=20.0)
     size = 0.7 * (350.0 + 30.0)
     share = (0.7 * 350.0 * math.tanh(v / 0.01) + math.copysign(21.0, v) * (v != 0.0)) / size
-    assert _split(damper, X, v, I, WARM, ()) == pytest.approx((5.6, size, share), rel=1e-9, abs=1e-12)
+    assert _split(damper, X, v, AMPS, WARM, ()) == pytest.approx((5.6, size, share), rel=1e-9, abs=1e-12)
 
 
 def test_without_a_yield_part_its_share_is_nothing():
-    assert _split(Linear(), X, V, I, WARM, ()) == (0.0, 0.0, 0.0)
+    assert _split(Linear(), X, V, AMPS, WARM, ()) == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("elongation", [0.0, 0.001, -0.002, 0.004])
@@ -179,8 +179,8 @@ def test_without_a_yield_part_its_share_is_nothing():
 def test_behind_a_mount_the_damper_bears_the_mounts_force(elongation, v):
     effects, z = (Mount(),), (elongation,)
     assert force(*effects, v=v, z=z) == pytest.approx(1e5 * elongation, rel=1e-12)
-    own = AugmentedDamper(DAMPER, ()).force(X, v, I, WARM, ())
-    u = _piston_speed(DAMPER, effects, X, v, I, WARM, (), z, own)
+    own = AugmentedDamper(DAMPER, ()).force(X, v, AMPS, WARM, ())
+    u = _piston_speed(DAMPER, effects, X, v, AMPS, WARM, (), z, own)
     borne = 400.0 * 0.9 * u + 0.7 * 350.0 * math.tanh(u / 0.01) + (u - v) * 1e5 / SETTLING
     assert borne == pytest.approx(1e5 * elongation, abs=0.011)
     assert rates(*effects, v=v, z=z) == pytest.approx((v - u,), rel=1e-12)
@@ -190,13 +190,13 @@ def test_a_linear_damper_behind_a_mount_has_a_speed_in_closed_form():
     v, elongation = 0.3, 0.0005
     damper = Linear(c=1000.0, b=0.0, k=0.0)
     slope = 1e5 / 5000.0
-    u = _piston_speed(damper, (Mount(),), X, v, I, WARM, (), (elongation,), 900.0 * v)
+    u = _piston_speed(damper, (Mount(),), X, v, AMPS, WARM, (), (elongation,), 900.0 * v)
     assert u == pytest.approx((50.0 + slope * v) / (900.0 + slope), abs=0.011 / 920.0)
 
 
 def test_a_gap_without_mount_moves_the_piston_by_its_share():
-    assert _piston_speed(DAMPER, (Half(),), X, V, I, WARM, (), (), 7.0) == pytest.approx(0.5 * V)
-    assert _piston_speed(DAMPER, (Half(),), X, V, I, WARM, (), (), -7.0) == pytest.approx(0.25 * V)
+    assert _piston_speed(DAMPER, (Half(),), X, V, AMPS, WARM, (), (), 7.0) == pytest.approx(0.5 * V)
+    assert _piston_speed(DAMPER, (Half(),), X, V, AMPS, WARM, (), (), -7.0) == pytest.approx(0.25 * V)
 
 
 def test_a_loop_is_compiled_of_the_damper_and_its_effects():

@@ -1,4 +1,4 @@
-"""The derivative of the rig's state: linear matrices, set-valued friction, what effects add, and the balance of energy."""
+"""The derivative of the rig's state: linear matrices, set-valued friction, effects, and the balance of energy."""
 
 import math
 from typing import NamedTuple
