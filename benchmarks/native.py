@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 from problem import DAMPER, GAIN, PLANT
 
-from seatsim.kernel.loop import CHANNELS, Setup
+from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.loop_inputs import LoopSetup
 
 FLAGS = ("-O3", "-march=native", "-std=c11", "-Wall", "-Wextra", "-shared", "-fPIC")
 LEAN_CHANNELS = (
@@ -23,7 +24,7 @@ Pointer = ctypes.POINTER(ctypes.c_double)
 
 
 class _Setup(ctypes.Structure):
-    """`Setup` of the C files: 34 doubles in their order, then the steps per sample of the law."""
+    """`LoopSetup` of the C files: 34 doubles in their order, then the steps per sample of the law."""
 
     _fields_ = (("values", ctypes.c_double * 34), ("sample_every", ctypes.c_long))
 
@@ -34,7 +35,7 @@ def available() -> bool:
 
 
 def native_run(
-    source: str, folder: Path, acceleration: np.ndarray, parts: Setup
+    source: str, folder: Path, acceleration: np.ndarray, parts: LoopSetup
 ) -> tuple[Callable[[], None], dict[str, np.ndarray]]:
     """Compile a C file into `folder`; return a function that runs it, and the channels that it fills."""
     library = folder / f"{source}.so"
@@ -54,7 +55,7 @@ def native_run(
     return run, dict(zip(RECORDED[source], history.T, strict=True))
 
 
-def _values(parts: Setup) -> _Setup:
+def _values(parts: LoopSetup) -> _Setup:
     d, coil, timing = DAMPER, parts.coil, parts.timing
     values = (
         *PLANT[:6], *d.c0, *d.c1, *d.alpha, d.k0, d.k1, d.x0, d.f0, d.A, d.beta, d.gamma, d.n, d.law_end,

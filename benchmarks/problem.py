@@ -10,8 +10,10 @@ from controllers.static_output_feedback import OutputFeedback
 from seatsim.compilation.cached import compiled
 from seatsim.dampers.bouc_wen import ModifiedBoucWen
 from seatsim.excitations.iso7096 import Iso7096
-from seatsim.kernel.belief import Truth
-from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
+from seatsim.kernel.assumed_model import TrueModel
+from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.loop import run_loop
+from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
@@ -29,17 +31,19 @@ def floor(duration: float) -> np.ndarray:
     return Iso7096(spectral_class="EM5", duration=duration).floor(STEP, seed=0).acceleration
 
 
-def setup(sample_every: int, tolerance: float = 1e-4) -> Setup:
+def setup(sample_every: int, tolerance: float = 1e-4) -> LoopSetup:
     """Return the run's constant parts; the law is sampled every `sample_every` steps."""
     rig = Rig(PLANT, DAMPER)
     timing = Timing(STEP, sample_every, tolerance, self_heating=False)
-    return Setup(rig, Coil(), TemperatureFactors(), Thermal(), GAIN, Truth(DAMPER, 0), timing, Coil().max_current)
+    return LoopSetup(
+        rig, Coil(), TemperatureFactors(), Thermal(), GAIN, TrueModel(DAMPER, 0), timing, Coil().max_current
+    )
 
 
-def seatsim_run(acceleration: np.ndarray, parts: Setup) -> tuple[Callable[[], None], np.ndarray]:
+def seatsim_run(acceleration: np.ndarray, parts: LoopSetup) -> tuple[Callable[[], None], np.ndarray]:
     """Return a function that runs seatsim's compiled loop, and the history that it fills."""
     none, samples = np.zeros(0), len(acceleration)
-    inputs = Inputs(acceleration, np.zeros(samples), np.full(samples, 20.0), none, none, none, none)
+    inputs = LoopInputs(acceleration, np.zeros(samples), np.full(samples, 20.0), none, none, none, none)
     history = np.empty((samples, len(CHANNELS)))
     loop = compiled(run_loop, (ModifiedBoucWen, OutputFeedback))
 

@@ -20,7 +20,7 @@ import numpy as np
 from native import available, native_run
 from problem import STEP, floor, seatsim_run, setup
 
-from seatsim.kernel.loop import CHANNELS
+from seatsim.kernel.channels import CHANNELS
 
 AGREEMENT = {"loop.c": 1e-9, "lean.c": 1e-2}
 """Largest difference of a channel from seatsim's, over its largest value; lean.c integrates the current numerically."""

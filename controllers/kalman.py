@@ -11,7 +11,7 @@ from scipy.linalg import expm, solve_discrete_are
 from controllers.linear import held
 from seatsim.compilation.jit import jit
 from seatsim.rig.control import Measurement
-from seatsim.rig.plant import Plant, StateSpace, state_space
+from seatsim.rig.plant import Plant, PlantMatrices, state_space
 from seatsim.schema.fields import param
 
 Array = NDArray[np.float64]
@@ -51,7 +51,7 @@ def estimator(plant: Plant, noise: Noise, sample_time: float) -> Estimator:
     return Estimator(_rows(flow), _rows(push.T)[0], _rows(s.C1), _rows(correction))
 
 
-def _spread(s: StateSpace, time: float, density: float) -> Array:
+def _spread(s: PlantMatrices, time: float, density: float) -> Array:
     """Return the covariance (4, 4) that a floor of white noise adds to the state over a sample (Van Loan 1978)."""
     n = len(s.A)
     both = expm(np.block([[-s.A, density * s.B1 @ s.B1.T], [np.zeros((n, n)), s.A.T]]) * time)

@@ -139,7 +139,7 @@ def _period(
         for _ in range(every):
             seat = flow @ seat + push[:, 0] * command
             if instruments:
-                progress = instruments.passed(0.0, seat[0], tuple(A @ seat), progress)
+                progress = instruments.advance_filters(0.0, seat[0], tuple(A @ seat), progress)
         return np.concatenate([seat, progress, own]), answer
 
     return one

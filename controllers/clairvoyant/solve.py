@@ -17,7 +17,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import name_of
 
-UNKNOWN = (*ON_DAMPER, *ON_SEAT, "factors", "temperature", "push", "plant")
+UNKNOWN = (*ON_DAMPER, *ON_SEAT, "factors", "temperature", "frame_force", "plant")
 """Hooks of effects that change what the bracket is of."""
 
 

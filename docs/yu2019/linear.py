@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from seatsim.excitations.iso7096 import acceleration_density
 from seatsim.excitations.road import LONGEST, SHORTEST, RoadClass, displacement_density
 from seatsim.excitations.vehicle import floor_response
-from seatsim.rig.plant import Plant, StateSpace, state_space
+from seatsim.rig.plant import Plant, PlantMatrices, state_space
 
 Array = NDArray[np.float64]
 Density = Callable[[Array], Array]
@@ -133,7 +133,7 @@ def literal(plant: Plant) -> Mapping[str, Array]:
     exact, printed = state_space(plant), state_space(plant, "yu2019")
     k = np.array([GAIN])
 
-    def closed(s: StateSpace, sign: float) -> Array:
+    def closed(s: PlantMatrices, sign: float) -> Array:
         return np.asarray(s.A + sign * s.B2 @ k @ s.C2)
 
     return {"eqs 13, 18": closed(exact, -1.0), "eq 19": closed(printed, -1.0), "opposing": closed(exact, 1.0)}

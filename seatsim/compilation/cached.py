@@ -18,7 +18,7 @@ from functools import cache
 from importlib.util import resolve_name
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
-from typing import Any
+from typing import TypeVar, cast
 
 import numba
 import numpy as np
@@ -26,20 +26,29 @@ import platformdirs
 
 from seatsim.compilation.jit import ARITHMETIC
 
+F = TypeVar("F", bound=Callable[..., object])
+
 _OUTSIDE = ("numba", "numpy", "scipy", "llvmlite", "pydantic", "control", "cvxpy")
+"""Libraries whose sources change with their version only: they are not part of the key."""
 _STANDARD = Path(sysconfig.get_path("stdlib"))
+_DIGITS = 20
+"""Hexadecimal digits of the key that are kept: 80 bits, in which no two of a user's models meet by chance."""
 _ONE_AT_A_TIME = threading.Lock()
 """Runs on threads share numba's setting of the cache folder, and Python 3.11 cannot parse on two of them at once."""
 
 
-def compiled(function: Callable[..., Any], plugged: Iterable[type]) -> Callable[..., Any]:
-    """Return the compiled `function`, cached on disk under its sources and those of the `plugged` classes."""
+def compiled(function: F, plugged: Iterable[type]) -> F:
+    """Return the compiled `function`, cached on disk under its sources and those of the `plugged` classes.
+
+    `plugged` are the classes of all records that `function` is called with and whose methods it calls: a class left out
+    may run from a stale cache. Where the folder cannot be written, or a source is not in a file, nothing is kept.
+    """
     with _ONE_AT_A_TIME:
-        return _compiled(function, frozenset(plugged))
+        return cast("F", _compiled(function, frozenset(plugged)))
 
 
 @cache
-def _compiled(function: Callable[..., Any], plugged: frozenset[type]) -> Callable[..., Any]:
+def _compiled(function: Callable[..., object], plugged: frozenset[type]) -> Callable[..., object]:
     modules = {sys.modules[part.__module__] for part in (function, *plugged)}
     folder = cache_folder() / digest(modules)
     # Without the folder numba would cache beside the source, where it may find stale code; a notebook has no source.
@@ -47,7 +56,7 @@ def _compiled(function: Callable[..., Any], plugged: frozenset[type]) -> Callabl
     previous = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(folder)
     try:
-        dispatcher: Callable[..., Any] = numba.njit(cache=on_disk, nogil=True, **ARITHMETIC)(function)
+        dispatcher: Callable[..., object] = numba.njit(cache=on_disk, nogil=True, **ARITHMETIC)(function)
     finally:
         numba.config.CACHE_DIR = previous
     return dispatcher
@@ -68,13 +77,17 @@ def cache_folder() -> Path:
 
 
 def digest(modules: Iterable[ModuleType]) -> str:
-    """Return a hash over the given modules and what these reach outside libraries: the files and what is loaded."""
+    """Return a hash over the given modules and what these reach outside libraries: the files and what is loaded.
+
+    Raises:
+        OSError: a source cannot be read any more.
+    """
     state = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
     for module in sorted(_reachable(modules), key=lambda module: module.__name__):
         state.update(f"{module.__file__}".encode() + Path(str(module.__file__)).read_bytes())
         for part in _loaded(module):
             state.update(part)
-    return state.hexdigest()[:20]
+    return state.hexdigest()[:_DIGITS]
 
 
 def _reachable(modules: Iterable[ModuleType]) -> set[ModuleType]:
@@ -118,7 +131,7 @@ def _loaded(module: ModuleType) -> Iterator[bytes]:
             yield f"{name} {_constant(value)}".encode()
 
 
-def _constant(value: Any) -> str:
+def _constant(value: object) -> str:
     """Return a number, or a tuple or array of numbers, in full; nothing of other values."""
     if isinstance(value, np.ndarray):
         return f"{value.dtype.str} {value.shape} {value.tobytes().hex()}"
@@ -128,20 +141,24 @@ def _constant(value: Any) -> str:
 
 
 def _code(code: CodeType) -> Iterator[bytes]:
+    """Yield what a function does: its instructions, the names it uses and its constants, those of inner ones too."""
     yield code.co_code + repr(code.co_names).encode()
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
             yield from _code(constant)
         else:
+            # The order of a set differs between processes, and with it the key would.
             yield repr(sorted(constant, key=repr) if isinstance(constant, frozenset) else constant).encode()
 
 
 def _source(module: ModuleType) -> Path | None:
+    """Return the file of a module that was written in Python, None of any other (built in, typed into a notebook)."""
     file = getattr(module, "__file__", None)
     return Path(file) if file and file.endswith(".py") else None
 
 
 def _changes(module: ModuleType) -> bool:
+    """Whether a module may be edited: it is neither of the standard library nor of one that is named outside."""
     file = _source(module)
     if file is None or module.__name__.partition(".")[0] in _OUTSIDE:
         return False

@@ -2,7 +2,7 @@
 
     def force(self, x, v, i, scaling, z):   force in N, positive when it opposes extension
     def rates(self, x, v, i, scaling, z):   time derivative of the state z (a tuple of floats)
-    def coulomb(self, i, heat):          magnitude in N of a set-valued friction beside `force` (optional)
+    def coulomb(self, i, scaling):          magnitude in N of a set-valued friction beside `force` (optional)
 
 with x [m], v = x' [m/s], current i [A], and `scaling` the factors of the temperature by which the model multiplies its
 viscous, elastic and yield terms (`seatsim.rig.temperature.TemperatureScaling`). Methods are compiled by numba: plain
@@ -12,13 +12,13 @@ arithmetic and `math` only; what they call from their module is decorated with `
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal, NamedTuple, Protocol, TypeVar
+from typing import Literal, NamedTuple, Protocol, TypeVar
 
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.registry import register
 
 T = TypeVar("T", bound=type)
-State = tuple[float, ...]
 
 Confidence = Literal["published", "recalled", "reading", "derived"]
 CONFIDENCE: dict[Confidence, str] = {
@@ -33,7 +33,7 @@ CONFIDENCE: dict[Confidence, str] = {
 class Damper(Protocol):
     """The part of a damper that every model has; see the module for the optional methods."""
 
-    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: Any) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return the damper force in N."""
 
 
@@ -81,7 +81,10 @@ def damper(
     fixed: tuple[str, ...] = (),
     smooth: bool = False,
 ) -> Callable[[T], T]:
-    """Register a record class as the damper `model: name`; see `DamperSpecification` for the facts."""
+    """Register a record class as the damper `model: name`; see `DamperSpecification` for the facts.
+
+    `factors` are the temperature factors that a scenario may leave out, none where they are not given.
+    """
     specification = DamperSpecification(
         source,
         initial,

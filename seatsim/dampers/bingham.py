@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.dampers.base import State, damper
+from seatsim.dampers.base import damper
 from seatsim.dampers.pieces import CurrentLaw, cubic
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 

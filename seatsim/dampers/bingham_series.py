@@ -1,16 +1,17 @@
 """Bingham dampers with springs in series: modified, and after Gamota and Filisko.
 
 The force is that of a spring, which the current reaches only through the state: an inverse does better with another
-model to believe in.
+model to assume.
 """
 
 from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-from seatsim.dampers.base import State, damper
+from seatsim.dampers.base import damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
 from seatsim.dampers.pieces_series import slip
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 

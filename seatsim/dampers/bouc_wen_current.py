@@ -6,9 +6,10 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.base import State, damper
+from seatsim.dampers.base import damper
 from seatsim.dampers.bouc_wen_variants import NORMALISED, normalised_rate
 from seatsim.dampers.pieces import BRANCH_MEMORY, UTFSM, branch_rate
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.base import State, damper
+from seatsim.dampers.base import damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
@@ -51,13 +52,12 @@ def ellis_force(v: float, damping: float, height: float, exponent: float) -> flo
 
 
 @jit
-def series_force(d: Any, v: float, i: float, scaling: TemperatureScaling, stop: float) -> float:
+def series_force(d: Ellis, v: float, i: float, scaling: TemperatureScaling, stop: float) -> float:
     """Return the force q in N through fluid and play, where the stops of the play push with `stop` N."""
     play = d.c_y * scaling.viscous
     damping = 1.0 / (1.0 / (d.c_p * scaling.viscous) + 1.0 / play)
     height = max(cubic(d.K, i), LEAST_FORCE) * scaling.yielding
-    force: float = ellis_force(v + stop / play, damping, height, max(d.p_a + d.p_b * i, LEAST_EXPONENT))
-    return force
+    return ellis_force(v + stop / play, damping, height, max(d.p_a + d.p_b * i, LEAST_EXPONENT))
 
 
 @damper(

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.dampers.base import State, damper
+from seatsim.dampers.base import damper
 from seatsim.dampers.pieces import UTFSM, CurrentLaw, cubic
 from seatsim.dampers.pieces_series import SETTLING
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
@@ -40,7 +41,7 @@ class HydroMechanical(NamedTuple):
     seal's friction fs is set-valued; k_g is the accumulator's. R and P_y are cubic laws, held beyond `law_end`.
 
     The current acts through the flow, so that the force at a given state does not depend on it: an inverse needs
-    another model to believe in. A is geometry, which the force does not tell from the other parameters. The
+    another model to assume. A is geometry, which the force does not tell from the other parameters. The
     defaults are derived by us (see `pieces.UTFSM`), with A, C, L and fs chosen; rms error 22, 40, 71, 95,
     136 N at 0, 0.25, 0.5, 0.75, 1 A. Valid to 0.13 m/s, 1 A and 20 Hz. Temperature scales R and L (viscous), 1/C
     and k_g (elastic), P_y and fs (yield).

@@ -6,7 +6,7 @@ import math
 from typing import Annotated
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.base import State
+from seatsim.rig.state import State
 from seatsim.schema.fields import param
 
 QuadraticLaw = tuple[

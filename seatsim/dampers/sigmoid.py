@@ -6,9 +6,10 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.dampers.base import State, damper
+from seatsim.dampers.base import damper
 from seatsim.dampers.hysteresis_division import envelope_rate
 from seatsim.dampers.pieces import BRANCH_STATE, UTFSM, branch, branch_rate
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 

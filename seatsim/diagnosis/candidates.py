@@ -87,7 +87,7 @@ def _starts(candidate: Candidate, limit_starts: Sequence[float]) -> list[Candida
 
 def _fits(cls: Any, problem: DiagnosisProblem) -> bool:
     """Whether the effect has something to act on in this recording."""
-    if problem.bench and acts_on(cls, (*ON_SEAT, "plant", "push")):
+    if problem.bench and acts_on(cls, (*ON_SEAT, "plant", "frame_force")):
         return False
     recorded = problem.recording.channels
     commanded = "current_command" in recorded or "command_voltage" in recorded

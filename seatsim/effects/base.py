@@ -3,25 +3,41 @@
 An effect is a record of parameters, named `block.effect`. It acts through whichever of these methods it has; each
 returns its argument unchanged where the parameters are off.
 
-Before a run, in Python:
+Before a run, in Python, on arrays of shape (N,):
 
-    plant(self, plant)                  parameters of the seat
-    coil(self, coil)                    parameters of the coil
-    factors(self, factors)              temperature factors of the damper
-    temperature(self, step, values)     temperature of the fluid out of that of the thermocouple
-    push(self, time, seed)              force on the frame in N, added to what other effects push
+    plant(self, plant)                      parameters of the seat
+    coil(self, coil)                        parameters of the coil
+    factors(self, factors)                  temperature factors of the damper
+    temperature(self, step, values)         temperature [degC] of the fluid out of that of the thermocouple
+    frame_force(self, time, seed)           force on the frame in N, added to that of other effects
     reading(self, channel, step, values)    what a sensor says out of what is true
     truth(self, channel, step, values)      what is true out of what a sensor says
 
-In the time loop, compiled by numba, with `z` the effect's own state:
+In the time loop, compiled by numba, with `z` the effect's own state. On the damper, whose end moves at v [m/s] under
+the current i [A] and whose piston moves at u [m/s]:
 
-    on the damper       conditioned(self, scaling, v, z)   yield_current(self, i, z)   yield_speed(self, v, z)
-                        yield_shape(self, shape, target, late, z)   yield_force(self, force, z)
-                        engaged(self, h, v, pull, z)   mount_force(self, force, z)   mount_stiffness(self, z)
-                        added_force(self, x, v, z)   stiction(self, z)   rates(self, x, v, u, i, pull, target, z)
-    on the seat         suspension_force(self, plant, x, v, z)   linkage_friction(self, z)
-                        cushion_force(self, force, plant, xc, vc, z)
-                        inner_mass(self, plant, z)   inner_force(self, plant, z)   rates(self, plant, motion, z)
+    part_scaling(self, scaling, v, z)       factors of the viscous, elastic and yield parts of the force
+    yield_current(self, i, z)               current that the yield part feels, in A
+    yield_speed(self, v, z)                 speed whose yield part `yield_shape` gets as `late`, in m/s
+    yield_shape(self, shape, target, late, z)   yield part over its full size, NaN where the damper's own law holds;
+                                            `target` is the damper's own at v, `late` that at the yield speed
+    yield_force(self, force, z)             yield part in N, out of what it would be in both directions alike
+    transmitted_share(self, h, v, demanded, z)  share of speed and force that a gap transmits, 0 to 1, of a damper that
+                                            would bear `demanded` newton without it
+    mount_force(self, force, z)             force in N of an elastic mount in series, NaN where there is none
+    mount_stiffness(self, z)                its stiffness in N/m
+    added_force(self, x, v, z)              force in N beside the damper's
+    stiction(self, z)                       limit in N of a set-valued friction beside the damper's
+    rates(self, x, v, u, i, demanded, target, z)    time derivative of z
+
+On the seat, with the plant, suspension x [m], v [m/s] and cushion xc, vc:
+
+    suspension_force(self, plant, x, v, z)  force in N beside the spring's, positive against extension
+    linkage_friction(self, z)               limit in N of a set-valued friction in the linkage
+    cushion_force(self, force, plant, xc, vc, z)    force of the cushion in N, positive in tension
+    inner_mass(self, plant, z)              mass in kg that hangs within the driver's
+    inner_force(self, plant, z)             force in N with which it pushes the driver's body upward
+    rates(self, plant, motion, z)           time derivative of z; `motion` is a `seatsim.kernel.rig.SeatMotion`
 """
 
 from __future__ import annotations
@@ -30,16 +46,20 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
+from seatsim.kernel.hooks import method_of
+from seatsim.rig.state import State
 from seatsim.schema.registry import register, specification_of
 
 T = TypeVar("T", bound=type)
 Values = Mapping[str, float]
 
 ON_DAMPER = (
-    "conditioned", "engaged", "mount_force", "mount_stiffness", "yield_current", "yield_speed", "yield_shape",
-    "yield_force", "added_force", "stiction",
+    "part_scaling", "transmitted_share", "mount_force", "mount_stiffness", "yield_current", "yield_speed",
+    "yield_shape", "yield_force", "added_force", "stiction",
 )  # fmt: skip
+"""Hooks of the time loop by which an effect acts on the damper."""
 ON_SEAT = ("suspension_force", "linkage_friction", "cushion_force", "inner_mass", "inner_force")
+"""Hooks of the time loop by which an effect acts on suspension, cushion or driver."""
 
 
 class Form(NamedTuple):
@@ -58,28 +78,31 @@ class EffectSpecification(NamedTuple):
 
     source: of the law. initial: its state at rest. off: parameters at which the rig is unchanged, where that is not
     zero. forms: functional forms in which a recording may show it; what a form does not name stays off. suits: whether
-    it can be missing in a model whose damper is `record`. by_channel: it acts on one recorded channel, which its
+    it can be missing in a model with the given damper record. by_channel: it acts on one recorded channel, which its
     parameter `channel` names.
     """
 
     source: str
-    initial: tuple[float, ...]
+    initial: State
     off: Values
     forms: tuple[Form, ...]
-    suits: Callable[[Any], bool]
+    suits: Callable[[object], bool]
     by_channel: bool
 
 
 def effect(
     name: str,
     source: str = "",
-    initial: tuple[float, ...] = (),
+    initial: State = (),
     off: Values | None = None,
     forms: tuple[Form | Values, ...] = (),
-    suits: Callable[[Any], bool] = lambda damper: True,
+    suits: Callable[[object], bool] = lambda damper: True,
     by_channel: bool = False,
 ) -> Callable[[T], T]:
-    """Register a record class as `effect: name`, where the part before the dot is the block it lives in."""
+    """Register a record class as `effect: name`, where the part before the dot is the block it lives in.
+
+    The rest is that of `EffectSpecification`; a form without fixed parameters may be given by its free ones alone.
+    """
     stated = tuple(form if isinstance(form, Form) else Form(form) for form in forms)
     return register("effect", name, EffectSpecification(source, initial, off or {}, stated, suits, by_channel))
 
@@ -91,5 +114,5 @@ def off(cls: Any) -> Any:
 
 
 def acts_on(cls: type, hooks: tuple[str, ...]) -> bool:
-    """Whether an effect has one of these hooks of the time loop."""
-    return any(hasattr(cls, hook) for hook in hooks)
+    """Whether an effect has one of these hooks."""
+    return any(method_of(cls, hook) for hook in hooks)

@@ -14,7 +14,7 @@ from seatsim.schema.fields import param
     source="first-order lag; eddy currents as a second, faster pole",
     forms=({"time": 0.003}, {"time": 0.003, "second": 0.5}),
 )
-class Lag(NamedTuple):
+class CoilLag(NamedTuple):
     """A coil slower than nominal: its time constant grows, `1 / rate + time`, rising and falling alike.
 
     A second pole, of the time constant `second time`, acts as a delay of that length.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from seatsim.effects.base import Form, effect
-from seatsim.effects.laws import State
 from seatsim.rig.plant import Plant
+from seatsim.rig.state import State
 from seatsim.schema.fields import param
 
 

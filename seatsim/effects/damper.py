@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.effects.base import Form, effect
-from seatsim.effects.laws import FRICTIONS, State, dahl_rate
+from seatsim.effects.laws import FRICTIONS, dahl_rate
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 from seatsim.schema.registry import specification_of
@@ -65,7 +66,7 @@ class Asymmetry(NamedTuple):
         """Return the yield force in N, given what it would be in both directions alike."""
         return force * (1.0 + self.pulling * self.offset) + self.pulling * abs(force)
 
-    def conditioned(self, scaling: TemperatureScaling, v: float, z: State) -> TemperatureScaling:
+    def part_scaling(self, scaling: TemperatureScaling, v: float, z: State) -> TemperatureScaling:
         """Return the factors of the damper's parts at a speed."""
         if self.viscous == 0.0 and self.yielding == 0.0:
             return scaling
@@ -102,7 +103,7 @@ class SealFriction(NamedTuple):
         """Return the friction in N that builds up over a travel."""
         return self.force * z[0] / (1.0 + self.lubrication * abs(v)) if self.presliding > 0.0 else 0.0
 
-    def rates(self, x: float, v: float, u: float, i: float, pull: float, target: float, z: State) -> State:
+    def rates(self, x: float, v: float, u: float, i: float, demanded: float, target: float, z: State) -> State:
         """Return z'."""
         return (dahl_rate(self.presliding, v, z[0]),)
 
@@ -135,14 +136,15 @@ class FreePlay(NamedTuple):
     stiffness: Annotated[float, param("N/m", "stiffness of the mount; 0: rigid", low=0, high=1e9)] = 0.0
     turning: Annotated[float, param("m/s", "speed from which motion opens the gap; 0: force", low=0, high=1)] = 0.0
 
-    def engaged(self, h: float, v: float, pull: float, z: State) -> float:
-        """Return the share of speed and force that gets through, of a damper that pulls with `pull` newton."""
+    def transmitted_share(self, h: float, v: float, demanded: float, z: State) -> float:
+        """Return the share h of speed and force that gets through; `demanded` [N] is the force without the gap."""
         if self.gap <= 0.0:
             return h
         if self.turning <= 0.0:
-            return h * _passed(self.gap, self.softness, pull, z[0])
+            return h * _transmitted_share(self.gap, self.softness, demanded, z[0])
         w = math.tanh(v / self.turning)
-        up, down = _passed(self.gap, self.softness, 1.0, z[0]), _passed(self.gap, self.softness, -1.0, z[0])
+        up = _transmitted_share(self.gap, self.softness, 1.0, z[0])
+        down = _transmitted_share(self.gap, self.softness, -1.0, z[0])
         return 0.5 * h * ((1.0 + w) * up + (1.0 - w) * down)
 
     def mount_stiffness(self, z: State) -> float:
@@ -155,20 +157,20 @@ class FreePlay(NamedTuple):
             return force
         return math.copysign(self.stiffness * max(0.0, abs(z[0]) - 0.5 * self.gap), z[0])
 
-    def rates(self, x: float, v: float, u: float, i: float, pull: float, target: float, z: State) -> State:
+    def rates(self, x: float, v: float, u: float, i: float, demanded: float, target: float, z: State) -> State:
         """Return g'."""
         return (v - u,)
 
 
 @jit
-def _passed(gap: float, softness: float, pull: float, g: float) -> float:
+def _transmitted_share(gap: float, softness: float, demanded: float, g: float) -> float:
     """Return h, the share of speed and force that gets through the gap."""
-    missing = 0.5 * gap - g * math.copysign(1.0, pull)
+    missing = 0.5 * gap - g * math.copysign(1.0, demanded)
     s = min(1.0, max(0.0, 1.0 - missing / max(softness * gap, SHORTEST)))
     return s * s * (3.0 - 2.0 * s)
 
 
-def _without_state(damper: Any) -> bool:
+def _without_state(damper: object) -> bool:
     """Whether a damper has no hysteresis of its own."""
     return not specification_of(type(damper)).initial
 
@@ -208,7 +210,7 @@ class PreyieldHysteresis(NamedTuple):
         built = late if self.behind > 0.0 else z[0]
         return self.share * built + (1.0 - self.share) * target
 
-    def rates(self, x: float, v: float, u: float, i: float, pull: float, target: float, z: State) -> State:
+    def rates(self, x: float, v: float, u: float, i: float, demanded: float, target: float, z: State) -> State:
         """Return (z', u')."""
         rate = abs(v) / self.travel if self.travel > 0.0 else 0.0
         if self.lag > 0.0:

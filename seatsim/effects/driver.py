@@ -6,15 +6,15 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.effects.base import Form, effect
-from seatsim.effects.laws import State
-from seatsim.kernel.rig import Motion
+from seatsim.kernel.rig import SeatMotion
 from seatsim.rig.plant import Plant
+from seatsim.rig.state import State
 from seatsim.schema.fields import param
 
 
 @effect("driver.mass", source="weighing", forms=({"change": 4.0}, {"change": -4.0}))
 class Mass(NamedTuple):
-    """An occupant heavier or lighter than believed."""
+    """An occupant heavier or lighter than the plant states."""
 
     change: Annotated[float, param("kg", "added mass", low=-1e3, high=1e3)]
 
@@ -50,8 +50,8 @@ class Biodynamics(NamedTuple):
         omega = 2.0 * math.pi * self.frequency
         return self.share * plant.driver_mass * omega * (omega * z[0] + 2.0 * self.damping * z[1])
 
-    def rates(self, plant: Plant, motion: Motion, z: State) -> State:
+    def rates(self, plant: Plant, motion: SeatMotion, z: State) -> State:
         """Return the rates of inner displacement and velocity."""
         omega = 2.0 * math.pi * self.frequency
-        pull = omega * (omega * z[0] + 2.0 * self.damping * z[1])
-        return (z[1], -pull - motion.driver) if self.share > 0.0 else (0.0, 0.0)
+        restoring = omega * (omega * z[0] + 2.0 * self.damping * z[1])
+        return (z[1], -restoring - motion.driver) if self.share > 0.0 else (0.0, 0.0)

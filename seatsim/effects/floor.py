@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from seatsim.effects.base import effect
 from seatsim.schema.fields import param
+
+Array = NDArray[np.float64]
 
 
 @effect(
@@ -27,10 +32,8 @@ class UnmeasuredInput(NamedTuple):
     frequency: Annotated[float, param("Hz", "frequency of the tone", above=0, high=1e3)] = 10.0
     phase: Annotated[float, param("rad", "phase of the tone at time zero", low=-10, high=10)] = 0.0
 
-    def push(self, time: Any, seed: int) -> Any:
+    def frame_force(self, time: Array, seed: int) -> Array:
         """Return the force on the frame in N at times of equal distance in s, shape (N,)."""
-        import numpy as np
-
         steady = self.tone * np.sin(2.0 * math.pi * self.frequency * time + self.phase)
         if self.rms <= 0.0 or len(time) < 2:
             return steady

@@ -6,7 +6,6 @@ import math
 
 from seatsim.compilation.jit import jit
 
-State = tuple[float, ...]
 REFERENCE_DEPTH = 0.01
 """m; depth at which buffers of every exponent are equally strong."""
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
 from seatsim.compilation.jit import jit
 from seatsim.effects.base import effect
-from seatsim.effects.laws import State
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.fields import param
+
+Array = NDArray[np.float64]
 
 FOLLOWING = 500.0
 """1/s; rate at which a play's memory is renewed where the current drags it along."""
@@ -76,7 +82,7 @@ class Remanence(NamedTuple):
         felt = 0.5 * (_play(z[0], i, wide) + _play(z[1], i, narrow))
         return felt + self.lift * min(self.width, max(felt, 0.0)) + after
 
-    def rates(self, x: float, v: float, u: float, i: float, pull: float, target: float, z: State) -> State:
+    def rates(self, x: float, v: float, u: float, i: float, demanded: float, target: float, z: State) -> State:
         """Return the rates of the two plays and of the current that fell."""
         fading = (self.decay if z[2] > i else FOLLOWING) * (i - z[2])
         if self.width <= 0.0:
@@ -116,12 +122,9 @@ class ThermalFade(NamedTuple):
         """Return the damper's temperature factors with the fade."""
         return factors._replace(viscous=factors.viscous - self.viscous, yield_force=factors.yield_force - self.yielding)
 
-    def temperature(self, step: float, values: Any) -> Any:
+    def temperature(self, step: float, values: Array) -> Array:
         """Return the temperature of the fluid in degC out of that of the thermocouple, shape (N,)."""
         if self.lag <= 0.0:
             return values + self.rise
-        import numpy as np
-        from scipy.ndimage import uniform_filter1d
-
         smooth = uniform_filter1d(uniform_filter1d(values, round(SMOOTHING / step)), round(SMOOTHING / step))
         return smooth + self.lag * np.gradient(smooth, step) + self.rise

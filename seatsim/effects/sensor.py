@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 from scipy.signal import lfilter, lfilter_zi
 
 from seatsim.effects.base import Form, effect
-from seatsim.rig.sensors import lag
+from seatsim.rig.sensors import discretise_lag
 from seatsim.schema.fields import param
 
-Channel = Literal[
+Array = NDArray[np.float64]
+ChannelName = Literal[
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "displacement",
     "damper_force", "coil_current",
 ]  # fmt: skip
-Named = Annotated[Channel, Field(description="the recorded channel that is wrong")]
+ChannelField = Annotated[ChannelName, Field(description="the recorded channel that is wrong")]
+SCALES = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement": 0.01, "displacement": 0.01}
+"""A channel's scale in its unit, a tenth or so of what it reads on a shaken seat; 1 m/s^2 for an acceleration."""
 LOGGED = ("current_command", "coil_current")
 """Channels of the controller's log."""
+SHORTEST_LAG = 1e-6
+"""s; a shorter lag is none: no row would tell, and its step would be stiff beyond rounding."""
+ROUNDING = 1e-6
+"""Rows by which a delay may exceed a whole number of rows and still count as that many."""
 LATE = (0.001, 0.003, 0.006, 0.011, 0.018, 0.028, 0.042)
 EARLY = tuple(-shift for shift in LATE)
 """Shifts in s that a fit starts from: with a current that steps it finds the truth from near it alone."""
@@ -28,14 +36,14 @@ EARLY = tuple(-shift for shift in LATE)
 class Gain(NamedTuple):
     """One channel reads with a wrong scale: `(1 + error)` times the truth."""
 
-    channel: Named
+    channel: ChannelField
     error: Annotated[float, param("-", "relative error of the scale", above=-1, high=10)]
 
-    def reading(self, channel: str, step: float, values: Any) -> Any:
+    def reading(self, channel: str, step: float, values: Array) -> Array:
         """Return what the sensor says, shape (N,)."""
         return values * (1.0 + self.error) if channel == self.channel else values
 
-    def truth(self, channel: str, step: float, values: Any) -> Any:
+    def truth(self, channel: str, step: float, values: Array) -> Array:
         """Return what is true, shape (N,)."""
         return values / (1.0 + self.error) if channel == self.channel else values
 
@@ -49,41 +57,43 @@ class Bias(NamedTuple):
     The scale is 1 m/s^2, 10 mm, 100 N or 0.1 A, by channel.
     """
 
-    channel: Named
+    channel: ChannelField
     share: Annotated[float, param("-", "offset over the channel's scale", low=-1e3, high=1e3)]
     drift: Annotated[float, param("1/s", "drift over the channel's scale", low=-1e3, high=1e3)] = 0.0
 
-    def reading(self, channel: str, step: float, values: Any) -> Any:
+    def reading(self, channel: str, step: float, values: Array) -> Array:
         """Return what the sensor says, shape (N,)."""
-        return values + self._offset(step, values) if channel == self.channel else values
+        return values + self._offset(step, len(values)) if channel == self.channel else values
 
-    def truth(self, channel: str, step: float, values: Any) -> Any:
+    def truth(self, channel: str, step: float, values: Array) -> Array:
         """Return what is true, shape (N,)."""
-        return values - self._offset(step, values) if channel == self.channel else values
+        return values - self._offset(step, len(values)) if channel == self.channel else values
 
-    def _offset(self, step: float, values: Any) -> Any:
-        scales = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement": 0.01, "displacement": 0.01}
-        return scales.get(self.channel, 1.0) * (self.share + self.drift * step * np.arange(len(values)))
+    def _offset(self, step: float, count: int) -> Array:
+        """Return the offset in the channel's unit at `count` rows."""
+        rows = np.arange(count, dtype=np.float64)
+        return SCALES.get(self.channel, 1.0) * (self.share + self.drift * step * rows)
 
 
 @effect("sensor.lag", source="first-order low-pass", by_channel=True, forms=({"time": 0.004},))
-class Lag(NamedTuple):
+class SensorLag(NamedTuple):
     """One channel reads through a low-pass of first order: `time r' = truth - r`."""
 
-    channel: Named
+    channel: ChannelField
     time: Annotated[float, param("s", "time constant", low=0, high=1)]
 
-    def reading(self, channel: str, step: float, values: Any) -> Any:
+    def reading(self, channel: str, step: float, values: Array) -> Array:
         """Return what the sensor says, shape (N,): the truth taken as linear between samples."""
-        if channel != self.channel or self.time <= 1e-6:
+        if channel != self.channel or self.time <= SHORTEST_LAG:
             return values
-        one = lag(1.0 / self.time, step)
+        one = discretise_lag(1.0 / self.time, step)
         numerator, denominator = [one.new, one.old], [1.0, -one.keep]
-        return lfilter(numerator, denominator, values, zi=lfilter_zi(numerator, denominator) * values[0])[0]
+        start = lfilter_zi(numerator, denominator) * values[0]
+        return np.asarray(lfilter(numerator, denominator, values, zi=start)[0], dtype=np.float64)
 
-    def truth(self, channel: str, step: float, values: Any) -> Any:
+    def truth(self, channel: str, step: float, values: Array) -> Array:
         """Return what is true, shape (N,): the reading and its slope over two rows."""
-        if channel != self.channel or self.time <= 1e-6:
+        if channel != self.channel or self.time <= SHORTEST_LAG:
             return values
         return values + self.time * np.gradient(values, step)
 
@@ -109,20 +119,21 @@ class ClockSkew(NamedTuple):
     drift: Annotated[float, param("-", "growth of the delay per second", low=-0.01, high=0.01)] = 0.0
     hold: Annotated[float, param("-", "1: commands change at the log's rows, 0: at any time", low=0, high=1)] = 0.0
 
-    def reading(self, channel: str, step: float, values: Any) -> Any:
+    def reading(self, channel: str, step: float, values: Array) -> Array:
         """Return what the log says, shape (N,)."""
         if channel not in LOGGED:
             return values
         rows = np.arange(len(values)) * step
         return np.interp(rows - self.shift - self.drift * rows, rows, values)
 
-    def truth(self, channel: str, step: float, values: Any) -> Any:
+    def truth(self, channel: str, step: float, values: Array) -> Array:
         """Return what was commanded or flowed, shape (N,)."""
         if channel not in LOGGED:
             return values
         rows = np.arange(len(values)) * step
         late = self.shift + self.drift * rows
         if channel == "current_command" and self.hold > 0.0:
-            index = np.arange(len(values)) + np.ceil(late / step - 1e-6).astype(int)
-            return values[np.clip(index, 0, len(values) - 1)]
+            index = np.arange(len(values)) + np.ceil(late / step - ROUNDING).astype(int)
+            held: Array = values[np.clip(index, 0, len(values) - 1)]
+            return held
         return np.interp(rows + late, rows, values)

@@ -6,9 +6,10 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.effects.base import Form, effect
-from seatsim.effects.laws import FRICTIONS, State, buffer, dahl_rate
-from seatsim.kernel.rig import Motion
+from seatsim.effects.laws import FRICTIONS, buffer, dahl_rate
+from seatsim.kernel.rig import SeatMotion
 from seatsim.rig.plant import Plant
+from seatsim.rig.state import State
 from seatsim.schema.fields import param
 
 
@@ -37,7 +38,7 @@ class Friction(NamedTuple):
         """Return the friction in N that builds up over a travel."""
         return self.force * z[0] / (1.0 + self.lubrication * abs(v)) if self.presliding > 0.0 else 0.0
 
-    def rates(self, plant: Plant, motion: Motion, z: State) -> State:
+    def rates(self, plant: Plant, motion: SeatMotion, z: State) -> State:
         """Return z'."""
         return (dahl_rate(self.presliding, motion.v, z[0]),)
 

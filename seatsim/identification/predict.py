@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from seatsim.compilation.cached import compiled
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
-from seatsim.kernel.lag import lagged
+from seatsim.kernel.coil_current import simulate_current
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
@@ -94,7 +94,7 @@ def predicted(bench: Bench, drive: Drive, most: int = MOST_PARTS, tolerance: flo
     """
     current = drive.current
     if drive.commanded:
-        current = lagged(Coil(bench.rise, rate_fall=bench.fall), current, 0.5 * drive.step, current[0])
+        current = simulate_current(Coil(bench.rise, rate_fall=bench.fall), current, 0.5 * drive.step, current[0])
     out = np.full(len(drive.force), math.nan)
     run = compiled(run_bench, classes_of(bench.damper))
     state = specification_of(type(bench.damper)).initial

@@ -1,110 +1,121 @@
 """A damper with effects: a damper record that the kernel treats like any other.
 
     P   = F_damper(x, v, i) with the yield part at the current i_y that it feels, or of a shape of its own
-    F   = h P + added forces, u = h v          h: share that a free play hands on, u: speed of the piston
+    F   = h P + added forces, u = h v          h: share that a free play transmits, u: speed of the piston
     F   = S + added forces, P(u) = S           behind an elastic mount with the force S
 
-The yield part is what a damper loses when its temperature factor `yielding` is zero.
+P is the demanded force: what the damper would bear without play or mount. The yield part is what a damper loses when
+its temperature factor `yielding` is zero.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel.chain import Effects, before, folded, joined, own, summed
-from seatsim.kernel.generic import Tuple, coulomb, force, rates
+from seatsim.kernel.chain import Effects, effect_state, fold_hook, join_hook, leading_state, sum_hook
+from seatsim.kernel.generic import coulomb, force, rates
+from seatsim.kernel.protocols import DamperModel
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 
 FAST = 10.0
-"""m/s; speed at which a yield force has its full size."""
+"""m/s; speed at which a yield force has its full size: a hundred times any regularisation of the sign."""
 SETTLING = 5000.0
-"""1/s; greatest rate at which a mount's force settles to the damper's, for the sake of the time steps."""
-NEAR, TRIALS = 0.01, 40
-"""N, how exactly the forces of mount and damper agree; and the most trials for it."""
+"""1/s; greatest rate at which a mount's force settles to the damper's.
 
-conditioned = folded("conditioned")
-engaged = folded("engaged")
-mount_force = folded("mount_force")
-mount_stiffness = summed("mount_stiffness")
-yield_current = folded("yield_current")
-yield_speed = folded("yield_speed")
-yield_shape = folded("yield_shape")
-yield_force = folded("yield_force")
-added_force = summed("added_force")
-stiction = summed("stiction")
-effect_rates = joined("rates")
+It keeps the rig explicit: a mount without damping on a piston without mass would settle at once. Motion of a seat is
+slower by a factor of about 50 at 16 Hz, so that the force is behind by some hundredths.
+"""
+FORCE_TOLERANCE, TRIALS = 0.01, 40
+"""N, how exactly the forces of mount and damper agree, below any load cell's noise; and the most trials for it."""
+
+part_scaling = fold_hook("part_scaling")
+transmitted_share = fold_hook("transmitted_share")
+mount_force = fold_hook("mount_force")
+mount_stiffness = sum_hook("mount_stiffness")
+yield_current = fold_hook("yield_current")
+yield_speed = fold_hook("yield_speed")
+yield_shape = fold_hook("yield_shape")
+yield_force = fold_hook("yield_force")
+added_force = sum_hook("added_force")
+stiction = sum_hook("stiction")
+effect_rates = join_hook("rates")
 
 
 class AugmentedDamper(NamedTuple):
-    """A damper record and a tuple of effects on it; the state is the damper's, then the effects'."""
+    """A damper record and a tuple of effects on it; the state is the damper's, then the effects'.
 
-    damper: Any
+    The hooks that effects may have are listed in `seatsim.effects.base`.
+    """
+
+    damper: DamperModel
     effects: Effects
 
-    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return the smooth force in N."""
-        effects, inner, outer = self.effects, before(self.effects, z), own(self.effects, z)
-        passed = mount_force(effects, outer, math.nan)
-        if math.isnan(passed):
-            pull = _pull(self.damper, effects, x, v, i, scaling, inner, outer)
-            passed = engaged(effects, outer, 1.0, v, pull) * pull
-        answer: float = passed + added_force(effects, outer, x, v)
-        return answer
+        effects, inner, outer = self.effects, leading_state(self.effects, z), effect_state(self.effects, z)
+        transmitted = mount_force(effects, outer, math.nan)
+        if math.isnan(transmitted):
+            demanded = _demanded_force(self.damper, effects, x, v, i, scaling, inner, outer)
+            transmitted = transmitted_share(effects, outer, 1.0, v, demanded) * demanded
+        return transmitted + added_force(effects, outer, x, v)
 
-    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> Tuple:
+    def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return the rates of the damper's state, then of the effects'."""
-        effects, inner, outer = self.effects, before(self.effects, z), own(self.effects, z)
-        pull = _pull(self.damper, effects, x, v, i, scaling, inner, outer)
-        u = _piston_speed(self.damper, effects, x, v, i, scaling, inner, outer, pull)
+        effects, inner, outer = self.effects, leading_state(self.effects, z), effect_state(self.effects, z)
+        demanded = _demanded_force(self.damper, effects, x, v, i, scaling, inner, outer)
+        u = _piston_speed(self.damper, effects, x, v, i, scaling, inner, outer, demanded)
         target = 0.0
         if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
-            felt = conditioned(effects, outer, scaling, v)
+            felt = part_scaling(effects, outer, scaling, v)
             target = _split(self.damper, x, v, yield_current(effects, outer, i), felt, inner).shape
-        theirs = effect_rates(effects, outer, x, v, u, i, pull, target)
-        answer: Tuple = rates(self.damper, x, u, i, scaling, inner) + theirs
-        return answer
+        theirs = effect_rates(effects, outer, x, v, u, i, demanded, target)
+        return rates(self.damper, x, u, i, scaling, inner) + theirs
 
-    def friction_limit(self, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> float:
+    def friction_limit(self, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return the limit of the set-valued friction in N: the yield force's, and what the effects add."""
-        effects, outer = self.effects, own(self.effects, z)
-        limit: float = stiction(effects, outer)
+        effects, outer = self.effects, effect_state(self.effects, z)
+        limit = stiction(effects, outer)
+        # A yield force that has a shape of its own is built up by the effect and is in `force` already.
         if math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
-            h = engaged(effects, outer, 1.0, v, v)
-            limit += h * coulomb(self.damper, yield_current(effects, outer, i), conditioned(effects, outer, scaling, v))
+            h = transmitted_share(effects, outer, 1.0, v, v)
+            felt = part_scaling(effects, outer, scaling, v)
+            limit += h * coulomb(self.damper, yield_current(effects, outer, i), felt)
         return limit
 
 
 @jit
 def _piston_speed(
-    damper: Any,
+    damper: DamperModel,
     effects: Effects,
     x: float,
     v: float,
     i: float,
     scaling: TemperatureScaling,
-    inner: Tuple,
-    outer: Tuple,
-    pull: float,
+    inner: State,
+    outer: State,
+    demanded: float,
 ) -> float:
-    """Return the piston's speed u in m/s, where the damper's end goes at v and would pull with `pull` at that speed.
+    """Return the piston's speed u in m/s, where the damper's end goes at v, at which it would bear `demanded` newton.
 
     Behind an elastic mount u solves `P(u) + (u - v) stiffness / SETTLING = S`, by false position (Illinois).
     """
-    passed = mount_force(effects, outer, math.nan)
-    if math.isnan(passed):
-        share: float = engaged(effects, outer, 1.0, v, pull)
-        return share * v
+    transmitted = mount_force(effects, outer, math.nan)
+    if math.isnan(transmitted):
+        return transmitted_share(effects, outer, 1.0, v, demanded) * v
     slope = mount_stiffness(effects, outer) / SETTLING
-    other, e_other = v, pull - passed
-    u: float = v - e_other / slope
-    e_u = _pull(damper, effects, x, u, i, scaling, inner, outer) + (u - v) * slope - passed
+    other, e_other = v, demanded - transmitted
+    u = v - e_other / slope
+    e_u = _demanded_force(damper, effects, x, u, i, scaling, inner, outer) + (u - v) * slope - transmitted
     for _ in range(TRIALS):
-        if abs(e_u) < NEAR or e_u == e_other:
+        if abs(e_u) < FORCE_TOLERANCE or e_u == e_other:
             break
         trial = u - e_u * (u - other) / (e_u - e_other)
-        e_trial = _pull(damper, effects, x, trial, i, scaling, inner, outer) + (trial - v) * slope - passed
+        e_trial = (
+            _demanded_force(damper, effects, x, trial, i, scaling, inner, outer) + (trial - v) * slope - transmitted
+        )
         if e_trial * e_u < 0.0:
             other, e_other = u, e_u
         else:
@@ -114,33 +125,46 @@ def _piston_speed(
 
 
 @jit
-def _pull(
-    damper: Any, effects: Effects, x: float, v: float, i: float, scaling: TemperatureScaling, inner: Tuple, outer: Tuple
+def _demanded_force(
+    damper: DamperModel,
+    effects: Effects,
+    x: float,
+    v: float,
+    i: float,
+    scaling: TemperatureScaling,
+    inner: State,
+    outer: State,
 ) -> float:
     """Return the damper's force in N before what is lost in a gap and added beside it."""
-    felt = conditioned(effects, outer, scaling, v)
+    felt = part_scaling(effects, outer, scaling, v)
     i_y = yield_current(effects, outer, i)
     rest = TemperatureScaling(felt.viscous, felt.stiffness, 0.0)
-    base: float = force(damper, x, v, i, rest, inner)
+    base = force(damper, x, v, i, rest, inner)
     if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
         part = _shaped(damper, effects, x, v, i_y, felt, inner, outer)
     elif i_y == i:
+        # By far the commonest case: it spares one evaluation of the damper.
         part = force(damper, x, v, i, felt, inner) - base
     else:
         part = _yield(damper, x, v, i_y, felt, rest, inner)
-    total: float = base + yield_force(effects, outer, part)
-    return total
+    return base + yield_force(effects, outer, part)
 
 
 @jit
 def _shaped(
-    damper: Any, effects: Effects, x: float, v: float, i: float, scaling: TemperatureScaling, inner: Tuple, outer: Tuple
+    damper: DamperModel,
+    effects: Effects,
+    x: float,
+    v: float,
+    i: float,
+    scaling: TemperatureScaling,
+    inner: State,
+    outer: State,
 ) -> float:
     """Return the yield part in N where it has a shape of its own."""
     parts = _split(damper, x, v, i, scaling, inner)
     late = _split(damper, x, yield_speed(effects, outer, v), i, scaling, inner).shape
-    part: float = parts.middle + parts.size * yield_shape(effects, outer, math.nan, parts.shape, late)
-    return part
+    return parts.middle + parts.size * yield_shape(effects, outer, math.nan, parts.shape, late)
 
 
 class YieldPart(NamedTuple):
@@ -152,7 +176,7 @@ class YieldPart(NamedTuple):
 
 
 @jit
-def _split(damper: Any, x: float, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> YieldPart:
+def _split(damper: DamperModel, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> YieldPart:
     """Return the yield part of a damper's force, with its set-valued friction."""
     rest = TemperatureScaling(scaling.viscous, scaling.stiffness, 0.0)
     rebound, compression = _yield(damper, x, FAST, i, scaling, rest, z), _yield(damper, x, -FAST, i, scaling, rest, z)
@@ -164,13 +188,13 @@ def _split(damper: Any, x: float, v: float, i: float, scaling: TemperatureScalin
 
 @jit
 def _yield(
-    damper: Any, x: float, v: float, i: float, scaling: TemperatureScaling, rest: TemperatureScaling, z: Tuple
+    damper: DamperModel, x: float, v: float, i: float, scaling: TemperatureScaling, rest: TemperatureScaling, z: State
 ) -> float:
-    part: float = force(damper, x, v, i, scaling, z) - force(damper, x, v, i, rest, z)
-    return part
+    """Return the yield part in N: what the damper loses with the factors `rest`, which are without yield force."""
+    return force(damper, x, v, i, scaling, z) - force(damper, x, v, i, rest, z)
 
 
-def classes_of(damper: Any) -> list[type]:
+def classes_of(damper: DamperModel) -> list[type]:
     """Return the classes that a loop with this damper is compiled of."""
     if isinstance(damper, AugmentedDamper):
         return [type(damper.damper), *map(type, damper.effects)]

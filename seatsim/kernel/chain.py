@@ -7,97 +7,126 @@ the tuple, one after another; a method `f(self, ..., z)` gets its own part of it
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from typing import Protocol, TypeVar, cast
 
 from numba import types
 from numba.extending import overload
 
 from seatsim.compilation.jit import INLINED, jit
-from seatsim.kernel.generic import Tuple
+from seatsim.kernel.hooks import method_of, record_class
+from seatsim.kernel.protocols import EffectRecord
+from seatsim.rig.state import State
 from seatsim.schema.registry import specification_of
 
-Effects = tuple[Any, ...]
+T = TypeVar("T")
+Effects = tuple[EffectRecord, ...]
 
 
-def state_of(classes: Sequence[type]) -> Tuple:
-    """Return the state at rest of records of these classes."""
+class SummedHook(Protocol):
+    """Sum of what the records answer."""
+
+    def __call__(self, effects: Effects, z: State, /, *arguments: object) -> float:
+        """Return the sum, 0 where none answers."""
+
+
+class FoldedHook(Protocol):
+    """A value that is handed from record to record."""
+
+    def __call__(self, effects: Effects, z: State, value: T, /, *arguments: object) -> T:
+        """Return `value` as the records leave it, unchanged where none answers."""
+
+
+class JoinedHook(Protocol):
+    """Tuples of the records, one after another."""
+
+    def __call__(self, effects: Effects, z: State, /, *arguments: object) -> State:
+        """Return the joined tuple, empty where none answers."""
+
+
+def state_at_rest(classes: Sequence[type]) -> State:
+    """Return the state at rest of records of these classes, one after another."""
     return tuple(value for cls in classes for value in specification_of(cls).initial)
 
 
-def _parts(classes: Sequence[type], name: str) -> Iterator[tuple[int, Callable[..., Any], slice]]:
+def _parts(classes: Sequence[type], name: str) -> Iterator[tuple[int, Callable[..., object], slice]]:
     """Yield index, method and part of the state of every class that has the method."""
     start = 0
     for index, cls in enumerate(classes):
         end = start + len(specification_of(cls).initial)
-        if hasattr(cls, name):
-            yield index, getattr(cls, name), slice(start, end)
+        method = method_of(cls, name)
+        if method:
+            yield index, method, slice(start, end)
         start = end
 
 
-def _chain(name: str, first: str, line: str, last: str) -> Callable[..., Any]:
-    """Make a generic function `f(effects, z, *args)` out of the source of its body.
+def _implementation(
+    classes: Sequence[type], name: str, first: str, line: str, last: str, count: int
+) -> Callable[..., object]:
+    """Build `impl(effects, z, a0, ...)` with `count` arguments: numba cannot loop over a tuple of several classes."""
+    arguments = [f"a{k}" for k in range(count)]
+    body, namespace = [first], cast("dict[str, object]", {})
+    for index, method, part in _parts(classes, name):
+        namespace[f"m{index}"] = jit(method)
+        given = ", ".join([f"effects[{index}]", *arguments, f"z[{part.start}:{part.stop}]"])
+        body.append(line.format(call=f"m{index}({given})"))
+    source = "\n    ".join([f"def impl({', '.join(['effects', 'z', *arguments])}):", *body, last])
+    exec(source, namespace)
+    return cast("Callable[..., object]", namespace["impl"])
+
+
+def _chain(name: str, first: str, line: str, last: str) -> Callable[..., object]:
+    """Make a generic function `f(effects, z, *arguments)` out of the source of its body.
 
     The body is `first`, then `line` for each record that has the method, then `last`; `{call}` in a line is the
     method's call, `r` the result so far, `a0, a1, ...` the arguments.
     """
 
-    def build(classes: Sequence[type], count: int) -> Callable[..., Any]:
-        arguments = [f"a{k}" for k in range(count)]
-        body, namespace = [first], {}
-        for index, method, part in _parts(classes, name):
-            namespace[f"m{index}"] = jit(method)
-            given = ", ".join([f"effects[{index}]", *arguments, f"z[{part.start}:{part.stop}]"])
-            body.append(line.format(call=f"m{index}({given})"))
-        source = "\n    ".join([f"def impl({', '.join(['effects', 'z', *arguments])}):", *body, last])
-        exec(source, namespace)
-        implementation: Callable[..., Any] = namespace["impl"]
-        return implementation
+    def generic(effects: Effects, z: State, *arguments: object) -> object:
+        classes = [type(effect) for effect in effects]
+        return _implementation(classes, name, first, line, last, len(arguments))(effects, z, *arguments)
 
-    def generic(effects: Effects, z: Tuple, *args: Any) -> Any:
-        return build([type(effect) for effect in effects], len(args))(effects, z, *args)
-
-    def resolve(effects: Any, z: Any, *args: Any) -> Callable[..., Any] | None:
+    def resolve(effects: types.Type, z: types.Type, *arguments: types.Type) -> Callable[..., object] | None:
         if not isinstance(effects, types.BaseTuple):
             return None
-        return build([kind.instance_class for kind in effects.types], len(args))
+        return _implementation([*map(record_class, effects.types)], name, first, line, last, len(arguments))
 
     generic.__name__ = generic.__qualname__ = name
     overload(generic, strict=False, jit_options=INLINED)(resolve)
     return generic
 
 
-def summed(name: str) -> Callable[..., Any]:
-    """Make the sum of the records' answers, 0 where none answers."""
-    return _chain(name, "r = 0.0", "r += {call}", "return r")
+def sum_hook(name: str) -> SummedHook:
+    """Make the sum of the records' answers to the hook `name`."""
+    return cast(SummedHook, _chain(name, "r = 0.0", "r += {call}", "return r"))
 
 
-def folded(name: str) -> Callable[..., Any]:
+def fold_hook(name: str) -> FoldedHook:
     """Make the function that hands its first argument from record to record, each of which may change it."""
-    return _chain(name, "", "a0 = {call}", "return a0")
+    return cast(FoldedHook, _chain(name, "", "a0 = {call}", "return a0"))
 
 
-def joined(name: str) -> Callable[..., Any]:
+def join_hook(name: str) -> JoinedHook:
     """Make the tuple of the records' tuples, one after another, as the states are."""
-    return _chain(name, "r = ()", "r = r + {call}", "return r")
+    return cast(JoinedHook, _chain(name, "r = ()", "r = r + {call}", "return r"))
 
 
-def before(effects: Effects, z: Tuple) -> Tuple:
+def leading_state(effects: Effects, z: State) -> State:
     """Return the head of a state, in front of the part that belongs to the effects."""
-    return z[: len(z) - len(state_of([type(effect) for effect in effects]))]
+    return z[: len(z) - len(state_at_rest([type(effect) for effect in effects]))]
 
 
-def own(effects: Effects, z: Tuple) -> Tuple:
+def effect_state(effects: Effects, z: State) -> State:
     """Return the tail of a state, which belongs to the effects."""
-    return z[len(z) - len(state_of([type(effect) for effect in effects])) :]
+    return z[len(z) - len(state_at_rest([type(effect) for effect in effects])) :]
 
 
-@overload(before, strict=False, jit_options=INLINED)
-def _before(effects: Any, z: Any) -> Callable[..., Any]:
-    end = len(z) - len(state_of([kind.instance_class for kind in effects.types]))
+@overload(leading_state, strict=False, jit_options=INLINED)
+def _leading_state(effects: types.Type, z: types.Type) -> Callable[[Effects, State], State]:
+    end = len(z) - len(state_at_rest([*map(record_class, effects.types)]))
     return lambda effects, z: z[:end]
 
 
-@overload(own, strict=False, jit_options=INLINED)
-def _own(effects: Any, z: Any) -> Callable[..., Any]:
-    start = len(z) - len(state_of([kind.instance_class for kind in effects.types]))
+@overload(effect_state, strict=False, jit_options=INLINED)
+def _effect_state(effects: types.Type, z: types.Type) -> Callable[[Effects, State], State]:
+    start = len(z) - len(state_at_rest([*map(record_class, effects.types)]))
     return lambda effects, z: z[start:]

@@ -3,23 +3,36 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel.generic import Tuple, force, friction_limit
+from seatsim.kernel.generic import force, friction_limit
+from seatsim.kernel.protocols import DamperModel
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 
 Array = NDArray[np.float64]
 
 CELLS = 16
-"""Cells of the grid on which a non-polynomial force-current map is searched for its first crossing."""
+"""Cells of the grid on which a non-polynomial force-current map is searched for its first crossing.
+
+Two crossings within one cell, a sixteenth of the permitted currents, are not seen.
+"""
+SERVED = 1e-6
+"""Difference of given and wanted force, over the wanted force plus 1 N, up to which it counts as served."""
+STRAIGHT = 1e-10
+"""Curvature of a force-current map, over the size of its forces, below which it is rounding of a straight line."""
+CLOSE = 1e-6
+"""N; difference from the wanted force at which a search ends."""
+TRIALS = 60
+"""Most trials of a search; the Illinois method needs about ten, bisection alone would be at rounding error by 60."""
 
 
-class Answer(NamedTuple):
-    """Current in A, the force in N that the believed damper gives with it, and 1.0 where that is the wanted force."""
+class InverseSolution(NamedTuple):
+    """Current in A, the force in N that the inverse's damper gives with it, and 1.0 where that is the wanted force."""
 
     current: float
     force: float
@@ -28,19 +41,20 @@ class Answer(NamedTuple):
 
 @jit
 def invert(
-    damper: Any,
+    damper: DamperModel,
     order: int,
     wanted: float,
     x: float,
     v: float,
     scaling: TemperatureScaling,
-    z: Tuple,
+    z: State,
     max_current: float,
     grid: Array,
-) -> Answer:
+) -> InverseSolution:
     """Return the least current in `[0, max_current]` whose force comes closest to `wanted` clipped to what can be done.
 
-    `grid`, shape (CELLS + 1,), is scratch.
+    x [m], v [m/s], `scaling` and z are motion, temperature factors and state with which the damper is evaluated, wanted
+    [N] is positive when it opposes extension, max_current [A] is above zero. `grid`, shape (CELLS + 1,), is scratch.
 
     Outside the dissipative quadrant (`wanted v <= 0`) the current is zero; inside, the wanted force is clipped to the
     range of forces over the permitted currents at this motion, temperature and state. Where the force is a polynomial
@@ -54,30 +68,36 @@ def invert(
         current = _closed_form(damper, wanted, x, v, scaling, z, max_current)
     else:
         current = _search(damper, wanted, x, v, scaling, z, max_current, grid)
-    got = total(damper, x, v, current, scaling, z)
-    served = 1.0 if abs(got - wanted) <= 1e-6 * (1.0 + abs(wanted)) else 0.0
-    return Answer(current, got, served)
+    got = total_force(damper, x, v, current, scaling, z)
+    served = 1.0 if abs(got - wanted) <= SERVED * (1.0 + abs(wanted)) else 0.0
+    return InverseSolution(current, got, served)
 
 
 @jit
-def total(damper: Any, x: float, v: float, i: float, scaling: TemperatureScaling, z: Tuple) -> float:
+def total_force(damper: DamperModel, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
     """Return the damper force in N with its set-valued friction, which is zero at v = 0."""
-    smooth: float = force(damper, x, v, i, scaling, z)
-    friction: float = friction_limit(damper, v, i, scaling, z)
+    smooth = force(damper, x, v, i, scaling, z)
+    friction = friction_limit(damper, v, i, scaling, z)
     return smooth + friction * (0.0 if v == 0.0 else math.copysign(1.0, v))
 
 
 @jit
 def _closed_form(
-    damper: Any, target: float, x: float, v: float, scaling: TemperatureScaling, z: Tuple, top: float
+    damper: DamperModel, target: float, x: float, v: float, scaling: TemperatureScaling, z: State, top: float
 ) -> float:
-    f0 = total(damper, x, v, 0.0, scaling, z)
-    f1 = total(damper, x, v, 0.5 * top, scaling, z)
-    f2 = total(damper, x, v, top, scaling, z)
+    """Return the current in `[0, top]` whose force is closest to the target, of a force of degree 2 at most.
+
+    With s = i / top the force is `f0 + b s + a s^2`, through its values at s = 0, 1/2 and 1.
+    """
+    f0 = total_force(damper, x, v, 0.0, scaling, z)
+    f1 = total_force(damper, x, v, 0.5 * top, scaling, z)
+    f2 = total_force(damper, x, v, top, scaling, z)
     a, b, c = 2.0 * (f0 - 2.0 * f1 + f2), 4.0 * f1 - 3.0 * f0 - f2, f0 - target
     size = abs(f0) + abs(f1) + abs(f2)
-    if abs(a) <= 1e-10 * size:
+    # A degree of 1 leaves a rounding error in a, whose second root would be far away or, by chance, near.
+    if abs(a) <= STRAIGHT * size:
         a = 0.0
+    # Where no root lies within 0 to 1, the closest force is that of an end or of the turning point.
     best = 0.0 if abs(c) <= abs(f2 - target) else 1.0
     turn = -0.5 * b / a if a != 0.0 else -1.0
     if 0.0 < turn < 1.0 and abs(c + turn * (b + a * turn)) < min(abs(c), abs(f2 - target)):
@@ -89,6 +109,7 @@ def _closed_form(
     square = b * b - 4.0 * a * c
     if square < 0.0:
         return best * top
+    # This form of the two roots does not subtract nearly equal numbers.
     q = -0.5 * (b + math.copysign(math.sqrt(square), b))
     r1 = q / a
     r2 = c / q if q != 0.0 else r1
@@ -102,11 +123,19 @@ def _closed_form(
 
 @jit
 def _search(
-    damper: Any, target: float, x: float, v: float, scaling: TemperatureScaling, z: Tuple, top: float, grid: Array
+    damper: DamperModel,
+    target: float,
+    x: float,
+    v: float,
+    scaling: TemperatureScaling,
+    z: State,
+    top: float,
+    grid: Array,
 ) -> float:
+    """Return the least current in `[0, top]` at which the grid tells that the target is met, or the closest one."""
     # The whole grid first: without an early exit the compiler evaluates several currents at once.
     for j in range(CELLS + 1):
-        grid[j] = total(damper, x, v, top * j / CELLS, scaling, z) - target
+        grid[j] = total_force(damper, x, v, top * j / CELLS, scaling, z) - target
     if grid[0] == 0.0:
         return 0.0
     for j in range(CELLS):
@@ -126,12 +155,12 @@ def _search(
 
 @jit
 def _turn(
-    damper: Any,
+    damper: DamperModel,
     target: float,
     x: float,
     v: float,
     scaling: TemperatureScaling,
-    z: Tuple,
+    z: State,
     top: float,
     grid: Array,
     best: int,
@@ -142,7 +171,7 @@ def _turn(
     """
     a, b = grid[best - 1] - grid[best], grid[best + 1] - grid[best]
     turn = top * (best + 0.5 * (a - b) / (a + b)) / CELLS if a + b != 0.0 else top * best / CELLS
-    f_turn = total(damper, x, v, turn, scaling, z) - target
+    f_turn = total_force(damper, x, v, turn, scaling, z) - target
     if grid[best] * f_turn <= 0.0:
         return _bracket(damper, target, x, v, scaling, z, top * (best - 1) / CELLS, grid[best - 1], turn, f_turn)
     return turn if abs(f_turn) < abs(grid[best]) else top * best / CELLS
@@ -150,24 +179,24 @@ def _turn(
 
 @jit
 def _bracket(
-    damper: Any,
+    damper: DamperModel,
     target: float,
     x: float,
     v: float,
     scaling: TemperatureScaling,
-    z: Tuple,
+    z: State,
     left: float,
     f_left: float,
     right: float,
     f_right: float,
 ) -> float:
-    """Return the root in `[left, right]` by the Illinois method, to 1e-6 N."""
+    """Return the root in `[left, right]` by the Illinois method, which halves the value of an end that stays put."""
     side = 0
     middle = right
-    for _ in range(60):
+    for _ in range(TRIALS):
         middle = (left * f_right - right * f_left) / (f_right - f_left)
-        f_middle = total(damper, x, v, middle, scaling, z) - target
-        if abs(f_middle) <= 1e-6:
+        f_middle = total_force(damper, x, v, middle, scaling, z) - target
+        if abs(f_middle) <= CLOSE:
             break
         if f_middle * f_left > 0.0:
             left, f_left = middle, f_middle

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel.chain import Effects, before, folded, joined, own, summed
-from seatsim.kernel.generic import Tuple, force, friction_limit, rates
+from seatsim.kernel.chain import Effects, effect_state, fold_hook, join_hook, leading_state, sum_hook
+from seatsim.kernel.generic import force, friction_limit, rates
+from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.plant import Plant
+from seatsim.rig.state import (
+    CUSHION_DISPLACEMENT,
+    CUSHION_VELOCITY,
+    DISPLACEMENT,
+    MECHANICAL,
+    VELOCITY,
+    State,
+)
 from seatsim.rig.temperature import TemperatureScaling
 
-MECHANICAL = 8
-"""Length of the mechanical state: x, v, xc, vc, then the work of floor, damper, suspension and cushion in J."""
-
-
-HELD = 2.0
+STICKING = 2.0
 """Value of `slip` for a suspension that the set-valued friction holds at rest; -1 and 1 are directions of sliding."""
 
 
-class Motion(NamedTuple):
+class SeatMotion(NamedTuple):
     """Motion of the seat: suspension x, v in m and m/s; cushion xc, vc; accelerations of frame and driver in m/s^2."""
 
     x: float
@@ -30,12 +35,12 @@ class Motion(NamedTuple):
     driver: float
 
 
-class Shake(NamedTuple):
-    """What shakes the seat: floor acceleration in m/s^2, forces on frame and driver in N, upward positive."""
+class Disturbance(NamedTuple):
+    """What excites the seat: floor acceleration in m/s^2, forces on frame and driver in N, upward positive."""
 
     floor: float
-    push: float
-    lift: float
+    frame_force: float
+    driver_force: float
 
 
 class Rig(NamedTuple):
@@ -47,20 +52,24 @@ class Rig(NamedTuple):
     """
 
     plant: Plant
-    damper: Any
+    damper: DamperModel
     effects: Effects = ()
 
 
-suspension_force = summed("suspension_force")
-linkage_friction = summed("linkage_friction")
-cushion_force = folded("cushion_force")
-inner_mass = summed("inner_mass")
-inner_force = summed("inner_force")
-effect_rates = joined("rates")
+suspension_force = sum_hook("suspension_force")
+linkage_friction = sum_hook("linkage_friction")
+cushion_force = fold_hook("cushion_force")
+inner_mass = sum_hook("inner_mass")
+inner_force = sum_hook("inner_force")
+effect_rates = join_hook("rates")
 
 
-class Flow(NamedTuple):
-    """What the derivative tells beside the rates: damper force, set-valued friction and its limit, all in N."""
+class RigForces(NamedTuple):
+    """What the derivative returns beside the rates: damper force, set-valued friction and its limit, all in N.
+
+    The damper force is that of the load cell at the damper; friction and limit are those on the suspension, damper and
+    linkage together.
+    """
 
     damper_force: float
     friction: float
@@ -69,50 +78,62 @@ class Flow(NamedTuple):
 
 @jit
 def derivative(
-    rig: Rig, s: Tuple, shake: Shake, current: float, scaling: TemperatureScaling, slip: float
-) -> tuple[Tuple, Flow]:
-    """Return the rates of the state `(x, v, xc, vc, works..., *z, *effects)` and the flow.
+    rig: Rig, s: State, disturbance: Disturbance, current: float, scaling: TemperatureScaling, slip: float
+) -> tuple[State, RigForces]:
+    """Return the rates of the state `(x, v, xc, vc, works..., *z, *effects)` and the forces.
 
-    x = zs - z0, xc = zc - zs. `slip` is the direction of sliding of the set-valued friction, -1 or 1, or HELD, where
-    the friction is the reaction that holds the suspension, whatever its limit. At 0 the sign of v decides, and at v = 0
+        ms zs'' = -kf x - cf v - effects + kc xc + cc vc - r Fd - friction + frame force
+        mb zc'' = -kc xc - cc vc + inner force + driver force,   mb = m - inner mass
+
+    x = zs - z0, xc = zc - zs in m; r is the damper's stroke per suspension displacement, Fd its force. `current` [A] is
+    that of the coil. `slip` is the direction of sliding of the set-valued friction, -1 or 1, or STICKING, where the
+    friction is the reaction that holds the suspension, whatever its limit. At 0 the sign of v decides, and at v = 0
     whether the reaction is within the limit.
+
+    Source: Yu et al. 2019 (Front. Mater. 6:227), eqs 13 and 14, with what effects add. The works are the integrals of
+    the powers, so that supplied less dissipated work is the energy stored (see `seatsim.rig.state`).
     """
     plant, effects = rig.plant, rig.effects
-    x, v, xc, vc = s[0], s[1], s[2], s[3]
-    z, ze = before(effects, s[8:]), own(effects, s[8:])
+    x, v, xc, vc = s[DISPLACEMENT], s[VELOCITY], s[CUSHION_DISPLACEMENT], s[CUSHION_VELOCITY]
+    z, ze = leading_state(effects, s[MECHANICAL:]), effect_state(effects, s[MECHANICAL:])
     ratio = plant.damper_ratio
     smooth = force(rig.damper, ratio * x, ratio * v, current, scaling, z)
     spring = plant.suspension_stiffness * x
     resistance = plant.suspension_damping * v + suspension_force(effects, ze, plant, x, v)
     linear = plant.cushion_stiffness * xc + plant.cushion_damping * vc
     cushion = cushion_force(effects, ze, linear, plant, xc, vc)
-    free = (cushion - spring - resistance - ratio * smooth + shake.push) / plant.frame_mass - shake.floor
+    push = disturbance.frame_force
+    free = (cushion - spring - resistance - ratio * smooth + push) / plant.frame_mass - disturbance.floor
 
     damper_limit = ratio * friction_limit(rig.damper, ratio * v, current, scaling, z)
     linkage = linkage_friction(effects, ze)
     limit = damper_limit + linkage
     friction, acceleration = _friction(free, v, slip, limit, plant.frame_mass)
+    # Held at rest the friction is below its limit; which part of it the load cell sees is not determined, so damper and
+    # linkage bear it in proportion to their limits.
     share = friction / limit if limit > 0.0 else 0.0
     damper_force = smooth + share * damper_limit / ratio
-    frame = acceleration + shake.floor
+    frame = acceleration + disturbance.floor
     body = plant.driver_mass - inner_mass(effects, ze, plant)
-    driver = (inner_force(effects, ze, plant) - cushion + shake.lift) / body
+    driver = (inner_force(effects, ze, plant) - cushion + disturbance.driver_force) / body
 
     works = (
-        shake.push * v + shake.lift * (v + vc) - (plant.frame_mass * v + plant.driver_mass * (v + vc)) * shake.floor,
+        disturbance.frame_force * v
+        + disturbance.driver_force * (v + vc)
+        - (plant.frame_mass * v + plant.driver_mass * (v + vc)) * disturbance.floor,
         ratio * damper_force * v,
         (resistance + share * linkage) * v,
         (cushion - plant.cushion_stiffness * xc) * vc,
     )
     dz = rates(rig.damper, ratio * x, ratio * v, current, scaling, z)
-    de = effect_rates(effects, ze, plant, Motion(x, v, xc, vc, frame, driver))
-    return (v, acceleration, vc, driver - frame) + works + dz + de, Flow(damper_force, friction, limit)
+    de = effect_rates(effects, ze, plant, SeatMotion(x, v, xc, vc, frame, driver))
+    return (v, acceleration, vc, driver - frame) + works + dz + de, RigForces(damper_force, friction, limit)
 
 
 @jit
 def _friction(free: float, v: float, slip: float, limit: float, mass: float) -> tuple[float, float]:
-    """Return the friction in N and the relative acceleration in m/s^2 under it."""
-    if slip == HELD:
+    """Return the friction in N and the relative acceleration in m/s^2 under it, of a mass with `free` without it."""
+    if slip == STICKING:
         return mass * free, 0.0
     if limit <= 0.0:
         return 0.0, free

@@ -11,31 +11,44 @@ import math
 from typing import NamedTuple
 
 from seatsim.compilation.jit import jit, jit_apart
-from seatsim.kernel.generic import Tuple, axpy, combine
-from seatsim.kernel.rig import HELD, Flow, Rig, Shake, derivative
+from seatsim.kernel.rig import STICKING, Disturbance, Rig, RigForces, derivative
+from seatsim.kernel.tuples import axpy, combine
 from seatsim.rig.coil import Coil, relax
+from seatsim.rig.state import CUSHION_DISPLACEMENT, CUSHION_VELOCITY, VELOCITY, State
 from seatsim.rig.temperature import TemperatureScaling
 
 relaxed = jit(relax)
-FLOOR_OF_ERROR_SCALE = 0.01
-"""m/s added to the speed that the tolerance is relative to."""
-SMALLEST = 2.0**-18
-"""Shortest sub-step as a fraction of the step."""
-SHARP = 1e-10
-"""Speed in m/s, and excess of the friction in N, to which the ends of sliding and of rest are resolved."""
-MOST = 1_000_000
-"""Most sub-steps of a step: a run that needs more has failed."""
-TRIES = 60
-"""Most sub-steps on the way to such an end."""
+SPEED_SCALE = 0.01
+"""m/s added to the speeds that the tolerance is relative to, so that a rig near rest needs no sub-steps."""
+SHORTEST = 2.0**-18
+"""Shortest sub-step as a fraction of the step; at 1 ms some 4 ns, in which no rig of a seat moves."""
+EVENT_TOLERANCE = 1e-10
+"""Speed in m/s, and excess of the friction in N, to which the ends of sliding and of sticking are resolved."""
+MOST_SUBSTEPS = 1_000_000
+"""Most sub-steps of a step: a run that needs more has failed. Four times what SHORTEST alone allows, for events."""
+MOST_TRIALS = 60
+"""Most sub-steps on the way to the end of a phase; bisection alone would be at rounding error by then."""
+SAFETY, LEAST, GREATEST = 0.9, 0.2, 4.0
+"""Factors on a next sub-step: what is taken of the one that would meet the tolerance, and the range of the change."""
+REJECTED_LEAST = 0.1
+"""Least factor on a sub-step whose error was too great: it may be shortened further than one that succeeded."""
+ERROR_EXPONENT = 0.25
+"""The error of the embedded solution, of order 3, grows with the fourth power of the sub-step."""
+NEGLIGIBLE = 1e-3
+"""Error in units of the tolerance below which a sub-step grows by GREATEST, without a power being taken."""
+DIVERGED = 1e12
+"""Error in units of the tolerance at which a solution counts as lost; a NaN fails the same comparison."""
+REMAINDER = 1e-12
+"""Share of what remains of a step that a sub-step may lack and still be taken as the last, against rounding of time."""
 
 
-class Drive(NamedTuple):
+class StepInputs(NamedTuple):
     """What acts on the rig during one step of `length` seconds.
 
-    Floor acceleration runs linearly from `floor` by `floor_rise`, forces on
-    frame and driver from `push` and `lift` by their rises. The coil relaxes from `current` towards `before` for
-    the first `split` seconds and towards `after` from then on; with a `prescribed` current it runs linearly to `after`.
-    `kept` is what half a step leaves of the distance to the command, of a rising and of a falling current.
+    Floor acceleration [m/s^2] runs linearly from `floor` by `floor_rise`, forces [N] on frame and driver from
+    `frame_force` and `driver_force` by their rises. The coil relaxes from `current` [A] towards the command `before`
+    for the first `split` seconds and towards `after` from then on; with a `prescribed` current it runs linearly to
+    `after`. `kept` is what half a step leaves of the distance to the command, of a rising and of a falling current.
     """
 
     length: float
@@ -47,150 +60,175 @@ class Drive(NamedTuple):
     split: float
     prescribed: bool
     kept: tuple[float, float]
-    push: float = 0.0
-    push_rise: float = 0.0
-    lift: float = 0.0
-    lift_rise: float = 0.0
+    frame_force: float = 0.0
+    frame_force_rise: float = 0.0
+    driver_force: float = 0.0
+    driver_force_rise: float = 0.0
 
 
-class Progress(NamedTuple):
-    """Where the integration stands: state, its rates and flow, sliding direction, last sub-step in s."""
+class IntegratorState(NamedTuple):
+    """Where the integration stands: state of the rig, its rates and forces, phase of the friction, next sub-step in s.
 
-    state: Tuple
-    rates: Tuple
-    flow: Flow
+    `slip` is 0 where there is no set-valued friction, -1 or 1 where the suspension slides, STICKING where it is held.
+    """
+
+    state: State
+    rates: State
+    forces: RigForces
     slip: float
     substep: float
 
 
 @jit
-def current_at(coil: Coil, drive: Drive, time: float) -> float:
-    """Return the coil current `time` seconds into the step."""
-    if drive.prescribed:
-        return drive.current + (drive.after - drive.current) * time / drive.length
-    if drive.split <= 0.0:
-        return relaxed(coil, drive.current, drive.after, time)
-    if time <= drive.split:
-        return relaxed(coil, drive.current, drive.before, time)
-    return relaxed(coil, relaxed(coil, drive.current, drive.before, drive.split), drive.after, time - drive.split)
+def current_at(coil: Coil, inputs: StepInputs, time: float) -> float:
+    """Return the coil current in A `time` seconds into the step, 0 to `inputs.length`; exact but for rounding."""
+    if inputs.prescribed:
+        return inputs.current + (inputs.after - inputs.current) * time / inputs.length
+    if inputs.split <= 0.0:
+        return relaxed(coil, inputs.current, inputs.after, time)
+    if time <= inputs.split:
+        return relaxed(coil, inputs.current, inputs.before, time)
+    return relaxed(coil, relaxed(coil, inputs.current, inputs.before, inputs.split), inputs.after, time - inputs.split)
 
 
 @jit
-def _currents(coil: Coil, drive: Drive, time: float, h: float) -> tuple[float, float]:
+def _currents(coil: Coil, inputs: StepInputs, time: float, h: float) -> tuple[float, float]:
     """Return the coil current in the middle and at the end of a sub-step of `h` from `time`."""
-    if h < drive.length or drive.split > 0.0 or drive.prescribed:
-        return current_at(coil, drive, time + 0.5 * h), current_at(coil, drive, time + h)
-    kept = drive.kept[0] if drive.after > drive.current else drive.kept[1]
-    middle = drive.after + (drive.current - drive.after) * kept
-    return middle, drive.after + (middle - drive.after) * kept
+    # A whole step with one command is by far the commonest: `kept` spares it two exponentials.
+    if h < inputs.length or inputs.split > 0.0 or inputs.prescribed:
+        return current_at(coil, inputs, time + 0.5 * h), current_at(coil, inputs, time + h)
+    kept = inputs.kept[0] if inputs.after > inputs.current else inputs.kept[1]
+    middle = inputs.after + (inputs.current - inputs.after) * kept
+    return middle, inputs.after + (middle - inputs.after) * kept
 
 
 @jit
-def shake_at(drive: Drive, time: float) -> Shake:
-    """Return what shakes the seat `time` seconds into the step."""
-    part = time / drive.length
-    return Shake(
-        drive.floor + drive.floor_rise * part, drive.push + drive.push_rise * part, drive.lift + drive.lift_rise * part
+def disturbance_at(inputs: StepInputs, time: float) -> Disturbance:
+    """Return what excites the seat `time` seconds into the step."""
+    part = time / inputs.length
+    return Disturbance(
+        inputs.floor + inputs.floor_rise * part,
+        inputs.frame_force + inputs.frame_force_rise * part,
+        inputs.driver_force + inputs.driver_force_rise * part,
     )
 
 
 @jit
 def start(
-    rig: Rig, state: Tuple, shake: Shake, current: float, scaling: TemperatureScaling, substep: float
-) -> Progress:
-    """Return the progress of a rig in `state`, sliding or at rest."""
-    rates, flow = derivative(rig, state, shake, current, scaling, 0.0)
-    return Progress(state, rates, flow, _phase(state, rates, flow), substep)
+    rig: Rig, state: State, disturbance: Disturbance, current: float, scaling: TemperatureScaling, substep: float
+) -> IntegratorState:
+    """Return where the integration stands at the beginning, of a rig in `state` that slides or is at rest.
+
+    `disturbance` and `current` [A] act at that instant; `substep` [s] is the first sub-step that is tried.
+    """
+    rates, forces = derivative(rig, state, disturbance, current, scaling, 0.0)
+    return IntegratorState(state, rates, forces, _phase(state, rates, forces), substep)
 
 
 @jit
-def _phase(state: Tuple, rates: Tuple, flow: Flow) -> float:
+def _phase(state: State, rates: State, forces: RigForces) -> float:
     """Return whether the suspension is held or in which direction it slides, 0 where there is no friction."""
-    if flow.friction_limit <= 0.0:
+    if forces.friction_limit <= 0.0:
         return 0.0
-    if state[1] == 0.0 and rates[1] == 0.0:
-        return HELD
-    return math.copysign(1.0, rates[1] if state[1] == 0.0 else state[1])
+    if state[VELOCITY] == 0.0 and rates[VELOCITY] == 0.0:
+        return STICKING
+    return math.copysign(1.0, rates[VELOCITY] if state[VELOCITY] == 0.0 else state[VELOCITY])
 
 
 @jit
-def _margin(slip: float, state: Tuple, flow: Flow) -> float:
+def _margin(slip: float, state: State, forces: RigForces) -> float:
     """Return how far the phase is from its end, below zero beyond it: friction left in N, or speed of sliding."""
-    if slip == HELD:
-        return flow.friction_limit - abs(flow.friction)
-    return slip * state[1]
+    if slip == STICKING:
+        return forces.friction_limit - abs(forces.friction)
+    return slip * state[VELOCITY]
 
 
 @jit
-def _try(
-    rig: Rig, coil: Coil, drive: Drive, scaling: TemperatureScaling, now: Progress, time: float, h: float
-) -> tuple[Tuple, Tuple, Flow, Tuple, float]:
-    """Return state, rates, flow after a sub-step of `h` from `time`, the fourth stage, and the current at the end."""
-    middle, end = shake_at(drive, time + 0.5 * h), shake_at(drive, time + h)
-    i_middle, i_end = _currents(coil, drive, time, h)
+def _substep(
+    rig: Rig, coil: Coil, inputs: StepInputs, scaling: TemperatureScaling, now: IntegratorState, time: float, h: float
+) -> tuple[State, State, RigForces, State, float]:
+    """Return state, rates, forces after a sub-step of `h` from `time`, the fourth stage, and the current at the end.
+
+    The phase of the friction stands for the whole sub-step; the caller looks whether it ended within.
+    """
+    middle, end = disturbance_at(inputs, time + 0.5 * h), disturbance_at(inputs, time + h)
+    i_middle, i_end = _currents(coil, inputs, time, h)
     k1, slip = now.rates, now.slip
     k2, _ = derivative(rig, axpy(now.state, 0.5 * h, k1), middle, i_middle, scaling, slip)
     k3, _ = derivative(rig, axpy(now.state, 0.5 * h, k2), middle, i_middle, scaling, slip)
     k4, _ = derivative(rig, axpy(now.state, h, k3), end, i_end, scaling, slip)
     state = combine(now.state, h, k1, k2, k3, k4)
-    rates, flow = derivative(rig, state, end, i_end, scaling, slip)
-    return state, rates, flow, k4, i_end
+    rates, forces = derivative(rig, state, end, i_end, scaling, slip)
+    return state, rates, forces, k4, i_end
 
 
 @jit
 def advance(
-    rig: Rig, coil: Coil, drive: Drive, scaling: TemperatureScaling, now: Progress, tolerance: float
-) -> tuple[Progress, float, bool]:
-    """Return the progress after one step, the current then, and whether the step succeeded."""
+    rig: Rig, coil: Coil, inputs: StepInputs, scaling: TemperatureScaling, now: IntegratorState, tolerance: float
+) -> tuple[IntegratorState, float, bool]:
+    """Return where the integration stands after one step, the current then in A, and whether the step succeeded.
+
+    A step fails where the error stays beyond `DIVERGED` even in the shortest sub-step, or is no number; what is
+    returned is then where it stood last. `tolerance` is the error in the velocities that a sub-step may add, relative
+    to their size plus `SPEED_SCALE`; above about 0.1 it bounds nothing.
+    """
     h = now.substep
-    if h == drive.length and now.flow.friction_limit <= 0.0:
-        state, rates, flow, k4, i_end = _try(rig, coil, drive, scaling, now, 0.0, h)
-        if flow.friction_limit <= 0.0 and _error(state, rates, k4, h, tolerance) <= 1.0:
-            return Progress(state, rates, flow, 0.0, h), i_end, True
-    return _divided(rig, coil, drive, scaling, now, tolerance)
+    # The common case, a rig without set-valued friction that needs one sub-step, stays free of the code for all others.
+    if h == inputs.length and now.forces.friction_limit <= 0.0:
+        state, rates, forces, k4, i_end = _substep(rig, coil, inputs, scaling, now, 0.0, h)
+        if forces.friction_limit <= 0.0 and _error(state, rates, k4, h, tolerance) <= 1.0:
+            return IntegratorState(state, rates, forces, 0.0, h), i_end, True
+    return _advance_divided(rig, coil, inputs, scaling, now, tolerance)
 
 
 @jit
-def _error(state: Tuple, rates: Tuple, k4: Tuple, h: float, tolerance: float) -> float:
-    """Return the estimated error in the velocities over a sub-step of `h`, in units of the tolerance."""
-    scale = tolerance * (FLOOR_OF_ERROR_SCALE + abs(state[1]) + abs(state[3]))
-    return h / 6.0 * (abs(k4[1] - rates[1]) + abs(k4[3] - rates[3])) / scale
+def _error(state: State, rates: State, k4: State, h: float, tolerance: float) -> float:
+    """Return the estimated error in the velocities over a sub-step of `h`, in units of the tolerance.
+
+    Only the velocities count: displacements are their integrals, and a damper's state shows in them by its force.
+    """
+    scale = tolerance * (SPEED_SCALE + abs(state[VELOCITY]) + abs(state[CUSHION_VELOCITY]))
+    return h / 6.0 * (abs(k4[VELOCITY] - rates[VELOCITY]) + abs(k4[CUSHION_VELOCITY] - rates[CUSHION_VELOCITY])) / scale
 
 
 @jit_apart
-def _divided(
-    rig: Rig, coil: Coil, drive: Drive, scaling: TemperatureScaling, now: Progress, tolerance: float
-) -> tuple[Progress, float, bool]:
+def _advance_divided(
+    rig: Rig, coil: Coil, inputs: StepInputs, scaling: TemperatureScaling, now: IntegratorState, tolerance: float
+) -> tuple[IntegratorState, float, bool]:
     """Advance by one step in as many sub-steps as it needs, with the set-valued friction."""
-    time, current, h = 0.0, drive.current, now.substep
-    remaining = drive.length
-    for _ in range(MOST):
-        last = h >= remaining * (1.0 - 1e-12)
+    time, current, h = 0.0, inputs.current, now.substep
+    remaining = inputs.length
+    for _ in range(MOST_SUBSTEPS):
+        last = h >= remaining * (1.0 - REMAINDER)
         if last:
             h = remaining
-        state, rates, flow, k4, i_end = _try(rig, coil, drive, scaling, now, time, h)
+        state, rates, forces, k4, i_end = _substep(rig, coil, inputs, scaling, now, time, h)
         error = _error(state, rates, k4, h, tolerance)
-        if not error <= 1.0 and h > SMALLEST * drive.length:
-            h *= max(0.1, 0.9 / error**0.25) if error < 1e12 else 0.1
+        # Written so that an error that is no number is rejected.
+        if not error <= 1.0 and h > SHORTEST * inputs.length:
+            h *= max(REJECTED_LEAST, SAFETY / error**ERROR_EXPONENT) if error < DIVERGED else REJECTED_LEAST
             continue
-        if not error < 1e12:
+        if not error < DIVERGED:
             return now, current, False
+        # The end of a phase shortens this sub-step, while the next one follows from what was tried.
         tried, slip = h, now.slip
-        if _margin(slip, state, flow) < 0.0:
-            h, state, flow, i_end = _end_of_phase(rig, coil, drive, scaling, now, time, h, state, flow)
+        if _margin(slip, state, forces) < 0.0:
+            h, state, forces, i_end = _end_of_phase(rig, coil, inputs, scaling, now, time, h, state, forces)
             last = last and h == tried
-            state = state[:1] + (0.0,) + state[2:]
-            slip = math.copysign(1.0, flow.friction) if slip == HELD else 0.0
-            rates, flow = derivative(rig, state, shake_at(drive, time + h), i_end, scaling, slip)
-        if slip == 0.0 or flow.friction_limit <= 0.0:
-            slip = _phase(state, rates, flow)
-        now = Progress(state, rates, flow, slip, h)
+            # Found to EVENT_TOLERANCE only: at rest the velocity is zero exactly, which is what marks a phase.
+            state = state[:VELOCITY] + (0.0,) + state[CUSHION_DISPLACEMENT:]
+            # A suspension that breaks loose slides the way it was pushed; one that came to rest may stick or turn.
+            slip = math.copysign(1.0, forces.friction) if slip == STICKING else 0.0
+            rates, forces = derivative(rig, state, disturbance_at(inputs, time + h), i_end, scaling, slip)
+        if slip == 0.0 or forces.friction_limit <= 0.0:
+            slip = _phase(state, rates, forces)
+        now = IntegratorState(state, rates, forces, slip, h)
         time += h
         current = i_end
-        remaining = 0.0 if last else drive.length - time
-        h = _longer(tried, error, drive.length)
+        remaining = 0.0 if last else inputs.length - time
+        h = _longer(tried, error, inputs.length)
         if remaining <= 0.0:
-            return Progress(now.state, now.rates, now.flow, now.slip, h), current, True
+            return IntegratorState(now.state, now.rates, now.forces, now.slip, h), current, True
     return now, current, False
 
 
@@ -198,26 +236,27 @@ def _divided(
 def _end_of_phase(
     rig: Rig,
     coil: Coil,
-    drive: Drive,
+    inputs: StepInputs,
     scaling: TemperatureScaling,
-    now: Progress,
+    now: IntegratorState,
     time: float,
     h: float,
-    state: Tuple,
-    flow: Flow,
-) -> tuple[float, Tuple, Flow, float]:
-    """Return the time until sliding or rest ends, the state, flow and current then, by the Illinois method.
+    state: State,
+    forces: RigForces,
+) -> tuple[float, State, RigForces, float]:
+    """Return the time until sliding or sticking ends, the state, forces and current then, by the Illinois method.
 
-    The end lies within `h`, after which `state` and `flow` were found.
+    The end lies within `h`, after which `state` and `forces` were found. A bracket that has no margin at its beginning
+    is bisected, since false position would stay there.
     """
     low, high, side = 0.0, h, 0
-    m_low, m_high = _margin(now.slip, now.state, now.flow), _margin(now.slip, state, flow)
-    i_end = drive.current
-    for _ in range(TRIES):
+    m_low, m_high = _margin(now.slip, now.state, now.forces), _margin(now.slip, state, forces)
+    i_end = inputs.current
+    for _ in range(MOST_TRIALS):
         h = (low * m_high - high * m_low) / (m_high - m_low) if m_low > 0.0 else 0.5 * (low + high)
-        state, _, flow, _, i_end = _try(rig, coil, drive, scaling, now, time, h)
-        margin = _margin(now.slip, state, flow)
-        if abs(margin) <= SHARP or high - low <= SMALLEST * drive.length:
+        state, _, forces, _, i_end = _substep(rig, coil, inputs, scaling, now, time, h)
+        margin = _margin(now.slip, state, forces)
+        if abs(margin) <= EVENT_TOLERANCE or high - low <= SHORTEST * inputs.length:
             break
         if margin > 0.0:
             m_high *= 0.5 if side > 0 else 1.0
@@ -225,7 +264,7 @@ def _end_of_phase(
         else:
             m_low *= 0.5 if side < 0 else 1.0
             high, m_high, side = h, margin, -1
-    return h, state, flow, i_end
+    return h, state, forces, i_end
 
 
 @jit
@@ -233,5 +272,5 @@ def _longer(h: float, error: float, length: float) -> float:
     """Return the next sub-step after one of `h` with the given error in units of the tolerance."""
     if h >= length:
         return length
-    factor = 4.0 if error < 1e-3 else min(4.0, max(0.2, 0.9 / error**0.25))
-    return min(max(h * factor, SMALLEST * length), length)
+    factor = GREATEST if error < NEGLIGIBLE else min(GREATEST, max(LEAST, SAFETY / error**ERROR_EXPONENT))
+    return min(max(h * factor, SHORTEST * length), length)

@@ -26,7 +26,10 @@ class Coil(NamedTuple):
 
 
 def relax(coil: Coil, current: float, command: float, time: float) -> float:
-    """Return the current `time` seconds after `current`, under a constant command (exact solution)."""
+    """Return the current in A `time` seconds after `current`, under a constant command in A (exact solution).
+
+    The command is taken as it is: its delay and its clipping to `max_current` are the caller's.
+    """
     fall = coil.rate_fall if coil.rate_fall > 0.0 else coil.rate
     rate = coil.rate if command > current else fall
     return command + (current - command) * math.exp(-rate * time)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.schema.fields import param
+
+if TYPE_CHECKING:
+    import control
 
 Array = NDArray[np.float64]
 
@@ -38,7 +41,7 @@ class Plant(NamedTuple):
     damper_ratio: Annotated[float, param("-", "damper stroke per suspension displacement", above=0, high=10)] = 1.0
 
 
-class StateSpace(NamedTuple):
+class PlantMatrices(NamedTuple):
     """Matrices of `x' = A x + B1 z0'' + B2 Fd`, `y = C2 x`, with x = (zs - z0, its rate, zc - zs, its rate).
 
     `C1 x` is (suspension displacement, driver acceleration); `B2` belongs to the damper force Fd of the sign
@@ -52,7 +55,7 @@ class StateSpace(NamedTuple):
     C2: Array
 
 
-def state_space(plant: Plant, variant: Literal["exact", "yu2019"] = "exact") -> StateSpace:
+def state_space(plant: Plant, variant: Literal["exact", "yu2019"] = "exact") -> PlantMatrices:
     """Return the plant's matrices, shapes A (4, 4), B1 (4, d), B2 (4, 1), C1 (2, 4), C2 (2, 4).
 
     `exact` follows from eqs 13 and 14 with one disturbance, the floor acceleration (d = 1). `yu2019` is what eq 15 of
@@ -71,15 +74,15 @@ def state_space(plant: Plant, variant: Literal["exact", "yu2019"] = "exact") -> 
         a = np.array([[0.0, 1.0, 0.0, 0.0], frame, [0.0, 0.0, 0.0, 1.0], driver])
         b1 = np.array([[0.0, 0.0], [-1.0, 0.0], [0.0, 0.0], [0.0, -1.0]])
         b2 = np.array([[0.0], [-ratio / ms], [0.0], [0.0]])
-        return StateSpace(a, b1, b2, c1, c2)
+        return PlantMatrices(a, b1, b2, c1, c2)
     cushion = [d - f for d, f in zip(driver, frame, strict=True)]
     a = np.array([[0.0, 1.0, 0.0, 0.0], frame, [0.0, 0.0, 0.0, 1.0], cushion])
     b1 = np.array([[0.0], [-1.0], [0.0], [0.0]])
     b2 = np.array([[0.0], [-ratio / ms], [0.0], [ratio / ms]])
-    return StateSpace(a, b1, b2, c1, c2)
+    return PlantMatrices(a, b1, b2, c1, c2)
 
 
-def control_system(plant: Plant) -> Any:
+def control_system(plant: Plant) -> control.StateSpace:
     """Return the exact plant as a `control.StateSpace` with named signals.
 
     Inputs: floor acceleration, damper force. Outputs: suspension displacement and velocity, frame and driver

@@ -13,19 +13,25 @@ from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
 from seatsim.rig.control import Measurement
+from seatsim.rig.state import CUSHION_VELOCITY, VELOCITY, State
 from seatsim.schema.fields import param
 
 Array = NDArray[np.float64]
-State = tuple[float, ...]
 
 READINGS = 4
 """Suspension displacement, then the accelerations of frame, driver and floor."""
 STREAM = 1
 """Key of the noise's random stream beside the seed, so that it is not the draw that made the floor."""
 
+# Order of the instruments' state: input and output of each anti-alias filter, then what the law's last sample left.
+X_TRUE, X_FILTERED, FRAME_TRUE, FRAME_FILTERED, DRIVER_TRUE, DRIVER_FILTERED, FLOOR_TRUE, FLOOR_FILTERED = range(8)
+X_READ, X_SLOW, FRAME_READ, FRAME_VELOCITY, DRIVER_READ, DRIVER_VELOCITY = range(8, 14)
+FILTERS, INSTRUMENTS = 8, 14
+"""Length of the anti-alias filters' part of the state, and of all of it."""
 
-class Lag(NamedTuple):
-    """One step of `y' = rate (u - y)`: `y <- keep y + old u0 + new u1`, exact for u linear from u0 to u1."""
+
+class LagStep(NamedTuple):
+    """A step of `y' = rate (u - y)`: `y <- keep y + old u0 + new u1`, exact for u linear from u0 to u1; rate in 1/s."""
 
     rate: float
     keep: float
@@ -33,15 +39,15 @@ class Lag(NamedTuple):
     new: float
 
 
-def lag(rate: float, time: float) -> Lag:
-    """Return the step over `time` seconds of a lag with a `rate` in 1/s."""
+def discretise_lag(rate: float, time: float) -> LagStep:
+    """Return the step over `time` seconds of a lag with a `rate` in 1/s, both above zero."""
     mean = -math.expm1(-rate * time) / (rate * time)
-    return Lag(rate, math.exp(-rate * time), mean - math.exp(-rate * time), 1.0 - mean)
+    return LagStep(rate, math.exp(-rate * time), mean - math.exp(-rate * time), 1.0 - mean)
 
 
 @jit
-def lagged(step: Lag, y: float, u0: float, u1: float) -> float:
-    """Return a lag's output after one step."""
+def advance_lag(step: LagStep, y: float, u0: float, u1: float) -> float:
+    """Return the output of a lag one step after `y`, where its input went linearly from `u0` to `u1`."""
     return step.keep * y + step.old * u0 + step.new * u1
 
 
@@ -56,36 +62,44 @@ class Instruments(NamedTuple):
     and last reading and velocity of frame and driver.
     """
 
-    alias: Lag
-    derivative: Lag
-    leak: Lag
+    alias: LagStep
+    derivative: LagStep
+    leak: LagStep
     floor: float
 
-    def passed(self, floor: float, x: float, rates: State, s: State) -> State:
+    def advance_filters(self, floor: float, x: float, rates: State, s: State) -> State:
         """Return the state after one step of the loop, in which the anti-alias filters move on.
 
-        `rates` is the derivative of the rig's state, whose entries 1 and 3 are the accelerations of x and cushion.
+        `floor` is the floor's acceleration in m/s^2, x the suspension displacement in m, `rates` the derivative of the
+        rig's state, whose velocities' entries are the accelerations of x and cushion.
         """
-        a, frame = self.alias, floor + rates[1]
-        driver = frame + rates[3]
+        a, frame = self.alias, floor + rates[VELOCITY]
+        driver = frame + rates[CUSHION_VELOCITY]
         filtered = (
-            x, lagged(a, s[1], s[0], x), frame, lagged(a, s[3], s[2], frame),
-            driver, lagged(a, s[5], s[4], driver), floor, lagged(a, s[7], s[6], floor),
+            x, advance_lag(a, s[X_FILTERED], s[X_TRUE], x),
+            frame, advance_lag(a, s[FRAME_FILTERED], s[FRAME_TRUE], frame),
+            driver, advance_lag(a, s[DRIVER_FILTERED], s[DRIVER_TRUE], driver),
+            floor, advance_lag(a, s[FLOOR_FILTERED], s[FLOOR_TRUE], floor),
         )  # fmt: skip
-        return filtered + s[8:]
+        return filtered + s[FILTERS:]
 
     def read(self, true: Measurement, noise: Array, sample: int, s: State) -> tuple[Measurement, State]:
         """Return what the law sees at one of its samples, with that row of the `noise`, and the state after it."""
-        x, f = s[1] + noise[sample, 0], s[3] + noise[sample, 1]
-        d, z = s[5] + noise[sample, 2], s[7] + noise[sample, 3] + self.floor
-        slow = lagged(self.derivative, s[9], s[8], x)
-        frame = self.leak.keep * s[11] + (self.leak.old * s[10] + self.leak.new * f) / self.leak.rate
-        driver = self.leak.keep * s[13] + (self.leak.old * s[12] + self.leak.new * d) / self.leak.rate
+        x, f = s[X_FILTERED] + noise[sample, 0], s[FRAME_FILTERED] + noise[sample, 1]
+        d, z = s[DRIVER_FILTERED] + noise[sample, 2], s[FLOOR_FILTERED] + noise[sample, 3] + self.floor
+        slow = advance_lag(self.derivative, s[X_SLOW], s[X_READ], x)
+        leak = self.leak
+        frame = leak.keep * s[FRAME_VELOCITY] + (leak.old * s[FRAME_READ] + leak.new * f) / leak.rate
+        driver = leak.keep * s[DRIVER_VELOCITY] + (leak.old * s[DRIVER_READ] + leak.new * d) / leak.rate
         v = self.derivative.rate * (x - slow)
         y = Measurement(
             true.time, x, v, frame, driver, z, f, d, true.damper_force, true.current, true.temperature, true.replayed
         )
-        return y, s[:8] + (x, slow, f, frame, d, driver)  # noqa: RUF005 - numba has no starred tuples
+        return y, s[:FILTERS] + (x, slow, f, frame, d, driver)  # noqa: RUF005 - numba has no starred tuples
+
+
+Sensing = Direct | Instruments
+"""What a law sees through."""
 
 
 class Sensors(NamedTuple):
@@ -112,9 +126,9 @@ class Sensors(NamedTuple):
     def instruments(self, step: float, period: float) -> Instruments:
         """Return the compiled form for a loop of `step` and a law of `period` seconds between samples."""
         return Instruments(
-            lag(math.tau * self.bandwidth, step),
-            lag(math.tau * self.derivative_bandwidth, period),
-            lag(math.tau * self.corner, period),
+            discretise_lag(math.tau * self.bandwidth, step),
+            discretise_lag(math.tau * self.derivative_bandwidth, period),
+            discretise_lag(math.tau * self.corner, period),
             0.0 if self.floor_accelerometer else math.nan,
         )
 
@@ -127,4 +141,7 @@ class Sensors(NamedTuple):
 
 def at_rest(displacement: float) -> State:
     """Return the instruments' state where everything stood still at a suspension displacement in m."""
-    return (displacement, displacement, *(0.0,) * 6, displacement, displacement, *(0.0,) * 4)
+    state = [0.0] * INSTRUMENTS
+    for index in (X_TRUE, X_FILTERED, X_READ, X_SLOW):
+        state[index] = displacement
+    return tuple(state)

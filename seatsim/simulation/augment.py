@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
-from seatsim.kernel.chain import Effects, state_of
+from seatsim.kernel.chain import Effects, state_at_rest
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.registry import find, names, specification_of
-from seatsim.simulation.effect_hooks import COIL, FACTORS, PLANT, PUSH, READING, TEMPERATURE, TRUTH
+from seatsim.simulation.effect_hooks import COIL, FACTORS, FRAME_FORCE, PLANT, READING, TEMPERATURE, TRUTH
 
 Array = NDArray[np.float64]
 NONE = np.zeros(0)
@@ -70,7 +70,7 @@ def read_sensors(effects: Sequence[object], step: float, true: Mapping[str, Arra
 
 def sum_frame_forces(effects: Sequence[object], time: Array, seed: int) -> Array:
     """Return the force on the frame in N that effects add, shape (N,), or of length 0 where none does."""
-    forces = [effect.push(time, seed) for effect in PUSH.of(effects)]
+    forces = [effect.frame_force(time, seed) for effect in FRAME_FORCE.of(effects)]
     return np.asarray(np.sum(forces, axis=0)) if forces else NONE
 
 
@@ -104,4 +104,4 @@ def augment_damper(record: tuple[object, ...], effects: Effects) -> tuple[tuple[
     initial: tuple[float, ...] = specification_of(type(record)).initial
     if not effects:
         return record, initial
-    return AugmentedDamper(record, effects), initial + state_of([type(effect) for effect in effects])
+    return AugmentedDamper(record, effects), initial + state_at_rest([type(effect) for effect in effects])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, UnivariateSpline
 
 from seatsim.effects.base import ON_SEAT, acts_on
-from seatsim.kernel.lag import lagged
+from seatsim.kernel.coil_current import simulate_current
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
@@ -61,7 +61,7 @@ def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: b
 def _check_effects(scenario: Scenario) -> None:
     """Raise InputError at the first effect that acts on seat, plant or frame."""
     for effect in scenario.effects:
-        if acts_on(type(effect), (*ON_SEAT, "plant", "push")):
+        if acts_on(type(effect), (*ON_SEAT, "plant", "frame_force")):
             name = name_of("effect", type(effect))
             raise InputError(f"{scenario.name}: a damper bench has no part on which {name} acts; remove it")
 
@@ -99,7 +99,7 @@ def _coil_current(coil: Coil, true: BenchInputs, rows: Array, fine: Array) -> Ar
     held = np.searchsorted(rows, fine - coil.delay + EARLY * rows[1], side="right") - 1
     start = 0.0 if true.coil_current is None else true.coil_current[0]
     wanted = np.where(held < 0, start, np.clip(command, 0.0, coil.max_current)[np.maximum(held, 0)])
-    return np.asarray(lagged(coil, wanted, fine[1], start))
+    return np.asarray(simulate_current(coil, wanted, fine[1], start))
 
 
 def _temperature(scenario: Scenario, true: BenchInputs, rows: Array, fine: Array) -> Array:

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from seatsim.compilation.cached import compiled
-from seatsim.dampers.base import DamperSpecification, State
+from seatsim.dampers.base import DamperSpecification
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
+from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of

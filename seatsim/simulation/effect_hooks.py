@@ -50,7 +50,7 @@ class ChangesTemperature(Protocol):
 class PushesFrame(Protocol):
     """An effect that pushes the frame."""
 
-    def push(self, time: Array, seed: int) -> Array:
+    def frame_force(self, time: Array, seed: int) -> Array:
         """Return the force in N at each time in s, shape (N,)."""
 
 
@@ -84,6 +84,6 @@ PLANT = Hook[ChangesPlant]("plant")
 COIL = Hook[ChangesCoil]("coil")
 FACTORS = Hook[ChangesFactors]("factors")
 TEMPERATURE = Hook[ChangesTemperature]("temperature")
-PUSH = Hook[PushesFrame]("push")
+FRAME_FORCE = Hook[PushesFrame]("frame_force")
 READING = Hook[ChangesReading]("reading")
 TRUTH = Hook[UndoesReading]("truth")

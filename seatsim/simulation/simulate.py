@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from seatsim.compilation.cached import compiled
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.excitations.base import Floor
+from seatsim.kernel.assumed_model import AssumedModel, InverseModel, TrueModel
 from seatsim.kernel.augmented import classes_of
-from seatsim.kernel.belief import Belief, Truth
-from seatsim.kernel.chain import state_of
-from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
+from seatsim.kernel.chain import state_at_rest
+from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.loop import run_loop
+from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, at_rest
@@ -83,9 +85,9 @@ def simulate(
         noise = scenario.control.sensors.noise(-(-len(floor.acceleration) // setup.timing.sample_every), scenario.seed)
         inputs = inputs._replace(sensed=at_rest(scenario.start.displacement), noise=noise)
     out = np.empty((len(floor.acceleration), len(CHANNELS)))
-    variable = setup.law, setup.belief.damper, setup.sensors
+    variable = setup.law, setup.inverse_model.damper, setup.sensors
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
-    states = (initial, _initial_state(setup.belief), specification_of(type(scenario.control.law)).initial)
+    states = (initial, _initial_state(setup.inverse_model), specification_of(type(scenario.control.law)).initial)
     reached = compiled(run_loop, parts)(setup, inputs, *states, out)
     if reached < len(out):
         raise RunError(
@@ -97,7 +99,7 @@ def simulate(
 
 def _setup(
     scenario: Scenario, plant: Plant, control: Control, is_recorded: bool, carry_all_effects: bool
-) -> tuple[Setup, tuple[float, ...]]:
+) -> tuple[LoopSetup, tuple[float, ...]]:
     """Return the constant parts and the rig's state at rest; where its temperature is recorded none is simulated."""
     on_damper, on_seat = select_in_loop(scenario.effects, carry_all_effects)
     damper, initial = augment_damper(scenario.damper.record, on_damper)
@@ -113,29 +115,29 @@ def _setup(
     coil = augment_coil(scenario.effects, scenario.coil)
     factors = augment_factors(scenario.effects, scenario.damper.factors)
     sensors = control.sensors.instruments(scenario.solver.step, period) if control.sensors else Direct()
-    belief = _assume_damper(scenario, control, carry_all_effects)
-    setup = Setup(rig, coil, factors, thermal, law, belief, timing, scenario.coil.max_current, sensors)
-    return setup, initial + state_of([type(effect) for effect in on_seat])
+    model = _assume_damper(scenario, control, carry_all_effects)
+    setup = LoopSetup(rig, coil, factors, thermal, law, model, timing, scenario.coil.max_current, sensors)
+    return setup, initial + state_at_rest([type(effect) for effect in on_seat])
 
 
-def _assume_damper(scenario: Scenario, control: Control, carry_all_effects: bool) -> Truth | Belief:
+def _assume_damper(scenario: Scenario, control: Control, carry_all_effects: bool) -> InverseModel:
     """Return the damper that the inverse assumes: the plant's without its effects, unless stated otherwise."""
     if control.inverse is None:
         record = scenario.damper.record
         order = specification_of(type(record)).current_order
-        # Where all effects are carried the kind of belief must not hang on those chosen: the loop is compiled for it.
+        # Where all effects are carried the kind of model must not hang on those chosen: the loop is compiled for it.
         if carry_all_effects or any(acts_on(type(effect), (*ON_DAMPER, "factors")) for effect in scenario.effects):
-            return Belief(record, order, scenario.damper.factors, np.nan)
-        return Truth(record, order)
+            return AssumedModel(record, order, scenario.damper.factors, np.nan)
+        return TrueModel(record, order)
     record, factors = control.inverse.damper.record, control.inverse.damper.factors
     temperature = control.inverse.temperature
-    return Belief(
+    return AssumedModel(
         record, specification_of(type(record)).current_order, factors, np.nan if temperature is None else temperature
     )
 
 
-def _initial_state(belief: Truth | Belief) -> tuple[float, ...]:
-    initial: tuple[float, ...] = specification_of(type(belief.damper)).initial
+def _initial_state(model: InverseModel) -> tuple[float, ...]:
+    initial: tuple[float, ...] = specification_of(type(model.damper)).initial
     return initial
 
 
@@ -152,7 +154,7 @@ def _count_steps(step: float, control: Control) -> int:
     return every
 
 
-def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> Inputs:
+def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> LoopInputs:
     step, effects, samples = scenario.solver.step, scenario.effects, len(floor.acceleration)
     acceleration = undo_reading(effects, floor.acceleration, "floor_acceleration", step)
     fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
@@ -168,7 +170,7 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) 
     push = sum_frame_forces(effects, floor.time, scenario.seed)
     if len(forces.frame):
         push = push + forces.frame if len(push) else forces.frame
-    return Inputs(
+    return LoopInputs(
         acceleration, floor.velocity, temperature, command, prescribed, push, forces.driver, start, *scenario.start
     )
 

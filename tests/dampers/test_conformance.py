@@ -10,7 +10,7 @@ import pytest
 
 from seatsim.dampers.base import CONFIDENCE, Confidence
 from seatsim.kernel import generic
-from seatsim.kernel.bench import FLOOR
+from seatsim.kernel.bench import FORCE_SCALE
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.fields import adapter, describe
 from seatsim.schema.registry import find
@@ -184,7 +184,7 @@ def test_steps_converge_at_the_order_of_the_model(model, specification):
             force = runge_kutta(model, specification, share * x[::thin], share * v[::thin], thin * step)
             now += [force[:: 2 ** (LEVELS - level)]]
         with np.errstate(over="ignore", invalid="ignore"):
-            found = [(f - g) / (FLOOR + np.abs(f)) for f, g in zip(now, before or now, strict=True)]
+            found = [(f - g) / (FORCE_SCALE + np.abs(f)) for f, g in zip(now, before or now, strict=True)]
             error = np.sqrt(np.mean(np.square(found)))
         errors += [error] if before and error < 0.01 else []
         if len(errors) > HALVINGS:

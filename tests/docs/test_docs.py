@@ -62,8 +62,9 @@ from seatsim import load, load_recording
 from seatsim.diagnosis.candidates import candidates
 from seatsim.diagnosis.problem import problem
 from seatsim.effects.base import off
-from seatsim.kernel.rig import MECHANICAL, Rig, Shake, derivative
-from seatsim.rig.temperature import Heat
+from seatsim.kernel.rig import Disturbance, Rig, derivative
+from seatsim.rig.state import MECHANICAL
+from seatsim.rig.temperature import TemperatureScaling
 
 effects = [{"effect": "example_2:AirDrag", "parameters": {"drag": 350.0}}]
 scenario, = load("quickstart", {"effects": effects, "variants": {}})
@@ -73,7 +74,7 @@ assert scenario.effects == (AirDrag(350.0),)
 def rates(*effects):
     rig = Rig(scenario.plant, scenario.damper.record, effects)
     state = (0.0, 0.3) + (0.0,) * (MECHANICAL - 2) + (0.0,)
-    return derivative(rig, state, Shake(0.0, 0.0, 0.0), 0.5, Heat(), 0.0)[0]
+    return derivative(rig, state, Disturbance(0.0, 0.0, 0.0), 0.5, TemperatureScaling(), 0.0)[0]
 
 
 change = rates(*scenario.effects)[1] - rates()[1]

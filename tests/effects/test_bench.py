@@ -60,7 +60,9 @@ def test_the_effects_of_a_bench_close_its_gap(folder):
     assert closed.overall < 0.01
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if acts_on(find("effect", name), (*ON_SEAT, "plant", "push"))])
+@pytest.mark.parametrize(
+    "name", [name for name in NAMES if acts_on(find("effect", name), (*ON_SEAT, "plant", "frame_force"))]
+)
 def test_effects_of_the_seat_are_refused_on_a_bench(folder, name):
     values = (starts(name) or [record(name, rms=10.0)])[0]._asdict()
     listed = ", ".join(f"{key}: {value!r}" for key, value in values.items())

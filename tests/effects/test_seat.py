@@ -139,14 +139,14 @@ def test_the_body_resonates_near_its_frequency(tmp_path):
 def test_the_unmeasured_force_has_its_size_and_band_and_follows_the_seed():
     effect = record("floor.unmeasured_input", rms=40.0, low=2.0, high=8.0)
     time = 1e-3 * np.arange(20001)
-    push = effect.push(time, 5)
+    push = effect.frame_force(time, 5)
     assert np.std(push) == pytest.approx(40.0, rel=1e-9)
-    assert np.array_equal(push, effect.push(time, 5)) and not np.allclose(push, effect.push(time, 6))
+    assert np.array_equal(push, effect.frame_force(time, 5)) and not np.allclose(push, effect.frame_force(time, 6))
     spectrum, frequency = np.abs(np.fft.rfft(push)) ** 2, np.fft.rfftfreq(len(time), 1e-3)
     inside = (frequency >= 2.0) & (frequency <= 8.0)
     assert np.sum(spectrum[~inside]) < 1e-20 * np.sum(spectrum)
     tone = record("floor.unmeasured_input", tone=30.0, frequency=4.0, phase=0.5)
-    assert tone.push(time, 5) == pytest.approx(30.0 * np.sin(8 * np.pi * time + 0.5))
+    assert tone.frame_force(time, 5) == pytest.approx(30.0 * np.sin(8 * np.pi * time + 0.5))
 
 
 def test_the_unmeasured_force_pushes_the_frame_and_no_channel_of_the_floor_shows_it(loose):
@@ -155,7 +155,7 @@ def test_the_unmeasured_force_pushes_the_frame_and_no_channel_of_the_floor_shows
     assert distance(history, again) == 0.0
     assert distance(history, shaken(replace(loose, seed=loose.seed + 1), effect)) > 1e-3
     assert np.array_equal(history["floor_acceleration"], shaken(loose)["floor_acceleration"])
-    assert -linkage(loose, history) == pytest.approx(effect.push(history["time"], loose.seed), abs=1e-6)
+    assert -linkage(loose, history) == pytest.approx(effect.frame_force(history["time"], loose.seed), abs=1e-6)
 
 
 def test_friction_holds_a_seat_that_is_released_within_its_limit(loose, tmp_path):

@@ -7,7 +7,7 @@ import pandas as pd
 
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.kernel.lag import lagged
+from seatsim.kernel.coil_current import simulate_current
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
@@ -31,7 +31,7 @@ def made(damper=BINGHAM, amplitude=0.01, frequency=2.0, current=0.0, seconds=2.0
     command = np.asarray(current(t) if callable(current) else current + 0.0 * t, dtype=float)
     if coil:
         command = np.repeat(command[::2], 2)[:-1]
-    flowing = lagged(Coil(coil[0], rate_fall=coil[1]), command, 0.5 * step, command[0]) if coil else command
+    flowing = simulate_current(Coil(coil[0], rate_fall=coil[1]), command, 0.5 * step, command[0]) if coil else command
     warm = 20.0 if temperature is None else temperature
     factors = factors or TemperatureFactors()
     force = bench_force(damper, x, v, flowing, warm, step, factors) + warming * (warm - factors.reference)

@@ -11,7 +11,7 @@ from seatsim.identification.judging import Further, foretold, further, judge
 from seatsim.identification.predict import Bench, drive, predicted
 from seatsim.identification.smoothing import sharpened, smoothed
 from seatsim.identification.split import Request, split
-from seatsim.kernel.lag import lagged
+from seatsim.kernel.coil_current import simulate_current
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.coil import Coil, relax
 from seatsim.rig.temperature import TemperatureFactors
@@ -69,7 +69,7 @@ def test_the_origin_of_the_displacement_is_taken_off():
 def test_a_command_drives_the_damper_through_the_coil():
     command, step = np.repeat([0.0, 1.0, 0.2], 40), 1e-3
     coil, now = Coil(rate=200.0, rate_fall=50.0), command[0]
-    current = lagged(coil, command, step, now)
+    current = simulate_current(coil, command, step, now)
     for k, wanted in enumerate(command):
         assert current[k] == pytest.approx(now, abs=1e-12)
         now = relax(coil, now, wanted, step)

@@ -4,9 +4,11 @@ import numpy as np
 
 from controllers.constant import Replay
 from seatsim.compilation.cached import compiled
-from seatsim.kernel.belief import Truth
-from seatsim.kernel.chain import state_of
-from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
+from seatsim.kernel.assumed_model import TrueModel
+from seatsim.kernel.chain import state_at_rest
+from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.loop import run_loop
+from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
@@ -22,9 +24,9 @@ METRICS = (
 )  # fmt: skip
 
 
-def truth(damper):
+def true_model(damper):
     """The inverse knows the damper."""
-    return Truth(damper, specification_of(type(damper)).current_order)
+    return TrueModel(damper, specification_of(type(damper)).current_order)
 
 
 def rough(duration, step=STEP, rms=1.0, seed=0, low=1.0, high=12.0):
@@ -42,23 +44,23 @@ def refined(rows, times):
 
 
 def run(
-    damper, law, floor, *, step=STEP, every=1, tolerance=1e-4, coil=COIL, plant=SEAT, belief=None,
+    damper, law, floor, *, step=STEP, every=1, tolerance=1e-4, coil=COIL, plant=SEAT, model=None,
     effects=(), thermal=None, factors=NO_HEAT, temperature=20.0, replayed=NONE,
     prescribed=NONE, **start,
 ):  # fmt: skip
     """Run and return the history by channel, with `velocity` of the floor taken by the trapezoidal rule."""
     rows = len(floor)
     velocity = np.concatenate([[0.0], np.cumsum(0.5 * (floor[1:] + floor[:-1])) * step])
-    inputs = Inputs(floor, velocity, np.full(rows, temperature), replayed, prescribed, NONE, NONE, **start)
+    inputs = LoopInputs(floor, velocity, np.full(rows, temperature), replayed, prescribed, NONE, NONE, **start)
     timing = Timing(step, every, tolerance, thermal is not None)
-    belief = truth(damper) if belief is None else belief
-    setup = Setup(
-        Rig(plant, damper, effects), coil, factors, thermal or Thermal(), law, belief, timing, coil.max_current
+    model = true_model(damper) if model is None else model
+    setup = LoopSetup(
+        Rig(plant, damper, effects), coil, factors, thermal or Thermal(), law, model, timing, coil.max_current
     )
     out = np.empty((rows, len(CHANNELS)))
-    loop = compiled(run_loop, (type(damper), type(law), type(belief.damper), *map(type, effects)))
-    rest, believed = (specification_of(type(part)).initial for part in (damper, belief.damper))
-    reached = loop(setup, inputs, rest + state_of([type(effect) for effect in effects]), believed, (), out)
+    loop = compiled(run_loop, (type(damper), type(law), type(model.damper), *map(type, effects)))
+    rest, followed = (specification_of(type(part)).initial for part in (damper, model.damper))
+    reached = loop(setup, inputs, rest + state_at_rest([type(effect) for effect in effects]), followed, (), out)
     assert reached == rows, f"stopped at row {reached} of {rows}"
     return dict(zip(CHANNELS, out.T, strict=True)) | {"floor_velocity": velocity}
 

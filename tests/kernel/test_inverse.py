@@ -6,8 +6,8 @@ import pytest
 from controllers.static_output_feedback import OutputFeedback
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
-from seatsim.kernel.belief import Belief
-from seatsim.kernel.inverse import CELLS, invert, total
+from seatsim.kernel.assumed_model import AssumedModel
+from seatsim.kernel.inverse import CELLS, invert, total_force
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.registry import specification_of
 
@@ -61,7 +61,7 @@ def test_the_least_current_that_serves(name):
     for wanted, x, v, z in draw(bounds, count):
         answer = ask(damper, wanted, x, v, z)
         assert 0.0 <= answer.current <= TOP
-        assert answer.force == pytest.approx(total(damper, x, v, answer.current, HEAT, z), rel=1e-12, abs=1e-9)
+        assert answer.force == pytest.approx(total_force(damper, x, v, answer.current, HEAT, z), rel=1e-12, abs=1e-9)
         if wanted * v <= 0.0:
             assert answer.current == 0.0
             continue
@@ -100,12 +100,12 @@ def test_no_current_outside_the_dissipative_quadrant(wanted, v):
         assert ask(damper, wanted, 0.0, v, (0.0,) * len(bounds)).current == 0.0
 
 
-def test_a_belief_that_is_true_asks_for_the_same_current():
+def test_an_assumed_model_that_is_true_asks_for_the_same_current():
     floor, law = rough(2.0, rms=1.5), OutputFeedback(2.0, 2147.6)
     knows = run(BoucWen(), law, floor, every=5)
-    believes = run(BoucWen(), law, floor, every=5, belief=Belief(BoucWen(), 1, TemperatureFactors(), np.nan))
-    assert rms(believes["coil_current"] - knows["coil_current"]) < 0.01 * rms(knows["coil_current"])
-    assert rms(believes["damper_force"] - knows["damper_force"]) < 1e-3 * rms(knows["damper_force"])
+    assumes = run(BoucWen(), law, floor, every=5, model=AssumedModel(BoucWen(), 1, TemperatureFactors(), np.nan))
+    assert rms(assumes["coil_current"] - knows["coil_current"]) < 0.01 * rms(knows["coil_current"])
+    assert rms(assumes["damper_force"] - knows["damper_force"]) < 1e-3 * rms(knows["damper_force"])
 
 
 def test_the_flag_says_whether_the_damper_gave_the_wanted_force():

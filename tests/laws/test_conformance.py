@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import seatsim
-from seatsim.kernel.generic import ask, update
+from seatsim.kernel.generic import evaluate_law, update
 from seatsim.rig.control import Measurement
 
 from .records import LAWS, NOT_LINEAR, REQUIRED, ready
@@ -66,12 +66,12 @@ def test_a_run_follows_its_seed_and_nothing_else(interpreted, kept_seat_file):
 @pytest.mark.parametrize("law", LAWS)
 def test_compiled_and_interpreted_answers_agree(law):
     record, state = ready(law)
-    answer = numba.njit(lambda law, y, s: (ask(law, y, s), update(law, y, s)))
+    answer = numba.njit(lambda law, y, s: (evaluate_law(law, y, s), update(law, y, s)))
     rng = np.random.default_rng(0)
     scale = [1, 0.02, 0.2, 0.2, 0.2, 1, 2, 2, 300, 0.5, 20, 1]
     for _ in range(20):
         y = Measurement(*(float(value) for value in scale * rng.standard_normal(12)))
         got, after = answer(record, y, state)
-        assert got == pytest.approx(ask(record, y, state), rel=1e-9, abs=1e-9)
+        assert got == pytest.approx(evaluate_law(record, y, state), rel=1e-9, abs=1e-9)
         state = update(record, y, state)
         np.testing.assert_allclose(after, state, rtol=1e-9, atol=1e-12)

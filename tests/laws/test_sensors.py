@@ -24,7 +24,7 @@ def readings(sensors, x, rates, floor):
     """What the law sees of N steps, a row a sample: displacement, velocities and accelerations."""
     made, s, rows = sensors.instruments(STEP, PERIOD), at_rest(0.0), []
     for k in range(len(x)):
-        s = made.passed(floor[k], x[k], rates[k], s)
+        s = made.advance_filters(floor[k], x[k], rates[k], s)
         if k % EVERY == 0:
             y, s = made.read(NOTHING, np.zeros((1, 4)), 0, s)
             rows.append(y)
@@ -71,7 +71,7 @@ def test_no_floor_accelerometer_unless_stated(motion):
 def test_a_displaced_start_is_no_motion():
     made, s = Sensors().instruments(STEP, PERIOD), at_rest(0.02)
     for _ in range(10):
-        y, s = made.read(NOTHING, np.zeros((1, 4)), 0, made.passed(0.0, 0.02, (0.0,) * 4, s))
+        y, s = made.read(NOTHING, np.zeros((1, 4)), 0, made.advance_filters(0.0, 0.02, (0.0,) * 4, s))
     assert y.velocity == pytest.approx(0.0, abs=1e-12)
 
 

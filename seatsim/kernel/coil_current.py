@@ -12,19 +12,19 @@ from seatsim.rig.coil import Coil
 Array = NDArray[np.float64]
 
 
-def lagged(coil: Coil, command: Array, step: float, start: float) -> Array:
+def simulate_current(coil: Coil, command: Array, step: float, start: float) -> Array:
     """Return the current in A, shape (N,), that follows a held command of shape (N,) from `start` on.
 
     command: in A, within the coil's limit, every `step` seconds, late by the coil's delay already. The solution is that
     of `coil.relax`, exact from one value of the command to the next.
     """
-    answer: Array = compiled(_lag, (Coil,))(coil, np.asarray(command, dtype=float), float(step), float(start))
-    return answer
+    run = compiled(follow_command, (Coil,))
+    return run(coil, np.asarray(command, dtype=float), float(step), float(start))
 
 
-def _lag(coil: Coil, command: Array, step: float, start: float) -> Array:
-    """Solve for `lagged`; to be compiled by `compiled`."""
-    out = np.empty_like(command)
+def follow_command(coil: Coil, command: Array, step: float, start: float) -> Array:
+    """Return what `simulate_current` does, uncompiled; the last value of the command has no time to act."""
+    out: Array = np.empty_like(command)
     out[0] = start
     for k in range(len(command) - 1):
         out[k + 1] = relaxed(coil, out[k], command[k], step)

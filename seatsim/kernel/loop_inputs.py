@@ -1,0 +1,117 @@
+"""What a run of the compiled loop is given: its constant parts, and what drives it sample by sample."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.compilation.jit import jit
+from seatsim.kernel.assumed_model import InverseModel
+from seatsim.kernel.channels import CURRENT_COMMAND
+from seatsim.kernel.protocols import CompiledLaw
+from seatsim.kernel.rig import Rig
+from seatsim.kernel.step import StepInputs
+from seatsim.rig.coil import Coil
+from seatsim.rig.sensors import READINGS, Direct, Sensing
+from seatsim.rig.state import State
+from seatsim.rig.temperature import TemperatureFactors, Thermal
+
+Array = NDArray[np.float64]
+
+
+class LoopInputs(NamedTuple):
+    """What drives a run, sampled every `step`, shape (N,) each; an array of length 0 is an input that is absent.
+
+    `replayed` is a recorded command for laws that replay it, `prescribed` a coil current that bypasses the coil,
+    `temperature` the damper's temperature in degC, `frame_force` and `driver_force` forces in N; the coil starts at
+    `start_current`, the suspension at `start_displacement` and `start_velocity`, the cushion at rest, the sensors at
+    `sensed`. `noise`, shape (M, READINGS), is that of the readings at the law's samples.
+    """
+
+    floor_acceleration: Array
+    floor_velocity: Array
+    temperature: Array
+    replayed: Array
+    prescribed: Array
+    frame_force: Array
+    driver_force: Array
+    start_current: float = 0.0
+    start_displacement: float = 0.0
+    start_velocity: float = 0.0
+    sensed: State = ()
+    noise: Array = np.zeros((0, READINGS))
+
+
+class Timing(NamedTuple):
+    """Step of the loop in s, steps per sample of the law, error tolerance, and whether temperature is a state."""
+
+    step: float
+    sample_every: int
+    tolerance: float
+    self_heating: bool
+
+
+class LoopSetup(NamedTuple):
+    """The constant parts of a run; `max_command` in A is the most that the controller asks for.
+
+    The law sees what `sensors` tell it: the true states, or what instruments make of them. Where it wants a force,
+    `inverse_model` is the damper that the inverse works with.
+    """
+
+    rig: Rig
+    coil: Coil
+    factors: TemperatureFactors
+    thermal: Thermal
+    law: CompiledLaw
+    inverse_model: InverseModel
+    timing: Timing
+    max_command: float
+    sensors: Sensing = Direct()
+
+
+@jit
+def sample_of(values: Array, k: int) -> float:
+    """Return sample `k` of an input, 0 where it is absent."""
+    return values[k] if len(values) > 0 else 0.0
+
+
+@jit
+def step_inputs(
+    setup: LoopSetup,
+    inputs: LoopInputs,
+    out: Array,
+    k: int,
+    current: float,
+    late: int,
+    split: float,
+    kept: tuple[float, float],
+) -> StepInputs:
+    """Return what acts on the rig from sample `k` to the next.
+
+    `out` holds the commands until sample k, which act `late` steps and `split` seconds later, no more than the coil's
+    driver can give; before the first of them acts, the coil's `start_current` stands. `kept` as in `StepInputs`.
+    """
+    first, most, prescribed = inputs.start_current, setup.coil.max_current, len(inputs.prescribed) > 0
+    before = min(out[k - late - 1, CURRENT_COMMAND] if k > late else first, most)
+    after = min(out[k - late, CURRENT_COMMAND] if k >= late else first, most)
+    if prescribed:
+        after = inputs.prescribed[k + 1]
+    floor = inputs.floor_acceleration[k]
+    frame_force, driver_force = sample_of(inputs.frame_force, k), sample_of(inputs.driver_force, k)
+    return StepInputs(
+        setup.timing.step,
+        floor,
+        inputs.floor_acceleration[k + 1] - floor,
+        current,
+        before,
+        after,
+        split,
+        prescribed,
+        kept,
+        frame_force,
+        sample_of(inputs.frame_force, k + 1) - frame_force,
+        driver_force,
+        sample_of(inputs.driver_force, k + 1) - driver_force,
+    )

@@ -1,0 +1,195 @@
+"""What the key of the cache is made of, module by module, without compiling anything."""
+
+import hashlib
+import math
+import sys
+import types
+from pathlib import Path
+
+import numba
+import numpy as np
+import pytest
+
+from seatsim.compilation import cached
+
+
+@pytest.fixture
+def module(tmp_path, monkeypatch):
+    """A function that makes a module out of its source, imported under a name."""
+
+    def make(name, text, package=""):
+        file = tmp_path / f"{name}.py"
+        file.write_text(text)
+        made = types.ModuleType(name)
+        made.__file__, made.__package__ = str(file), package
+        monkeypatch.setitem(sys.modules, name, made)
+        exec(compile(text, str(file), "exec"), vars(made))
+        return made
+
+    return make
+
+
+def test_the_folder_is_the_one_that_was_chosen(monkeypatch, tmp_path):
+    monkeypatch.setenv("SEATSIM_CACHE_DIR", str(tmp_path))
+    assert cached.cache_folder() == tmp_path
+    monkeypatch.delenv("SEATSIM_CACHE_DIR")
+    assert cached.cache_folder().name == "compiled" and cached.cache_folder().is_absolute()
+
+
+def test_a_folder_is_made_unless_it_cannot_be(tmp_path):
+    assert cached._usable(tmp_path / "a" / "b") and (tmp_path / "a" / "b").is_dir()
+    assert cached._usable(tmp_path / "a" / "b")
+    (tmp_path / "file").touch()
+    assert not cached._usable(tmp_path / "file" / "b")
+
+
+def test_a_folder_that_cannot_be_written_is_none(tmp_path, monkeypatch):
+    seen = []
+    monkeypatch.setattr(cached.os, "access", lambda folder, mode: seen.append(mode) or False)
+    assert not cached._usable(tmp_path)
+    assert seen == [cached.os.W_OK | cached.os.X_OK]
+
+
+def test_constants_are_written_in_full():
+    assert cached._constant(0.1 + 0.2) == "0.30000000000000004"
+    assert cached._constant((1, 2.5, (3j,))) == "(1, 2.5, (3j))"
+    assert cached._constant("text") == cached._constant(None) == ""
+    assert cached._constant(np.array([1.0])) != cached._constant(np.array([1.0 + 1e-15]))
+    assert cached._constant(np.zeros((2, 3))) != cached._constant(np.zeros((3, 2)))
+    assert cached._constant(np.zeros(1, np.float32)) != cached._constant(np.zeros(1, np.int32))
+
+
+def parts(function):
+    return b"|".join(cached._code(function.__code__))
+
+
+def test_code_tells_instructions_names_and_constants_apart():
+    assert parts(lambda a: a + 1.0) == parts(lambda a: a + 1.0)
+    assert parts(lambda a: a + 1.0) != parts(lambda a: a - 1.0)
+    assert parts(lambda a: a + 1.0) != parts(lambda a: a + 2.0)
+    assert parts(lambda a: math.sin(a) + a) != parts(lambda a: math.cos(a) + a)
+    assert parts(lambda a: [lambda: 1.0][0]) != parts(lambda a: [lambda: 2.0][0])
+
+
+def test_the_order_of_a_set_does_not_matter():
+    one, other = (lambda a: a in {"x", "y", "z"}), (lambda a: a in {"z", "y", "x"})
+    assert parts(one) == parts(other)
+    assert b"['x', 'y', 'z']" in parts(one)
+
+
+def test_what_is_loaded_of_a_module(module):
+    source = (
+        "SIZE = 2.5\nNAME = 'text'\ndef f(a):\n    return a * SIZE\nclass C:\n    def g(self):\n        return 7.25\n"
+    )
+    found = b"|".join(cached._loaded(module("loaded", source)))
+    assert b"SIZE 2.5" in found and b"NAME" not in found and b"__" not in found
+    assert b"7.25" in found
+    assert b"SIZE 3.5" in b"|".join(cached._loaded(module("loaded", source.replace("2.5", "3.5"))))
+
+
+def test_compiled_functions_and_classes_of_others(module):
+    made = module("holding", "import numba\nfrom pathlib import Path\nf = numba.njit(lambda a: a + 4.75)\n")
+    found = b"|".join(cached._loaded(made))
+    assert b"4.75" in found
+    assert b"read_bytes" not in found
+
+
+def test_imports_are_followed_but_those_within_functions_and_for_types(module):
+    made = module(
+        "importing",
+        "from __future__ import annotations\nimport math\nfrom typing import TYPE_CHECKING\n"
+        "if TYPE_CHECKING:\n    import decimal\nelse:\n    import fractions\n"
+        "try:\n    import json.decoder\nexcept ImportError:\n    import statistics\n"
+        "class C:\n    import string\n"
+        "def f():\n    import random\n",
+    )
+    found = set(cached._imported(made))
+    assert {"math", "typing", "typing.TYPE_CHECKING", "fractions", "json.decoder", "statistics", "string"} <= found
+    assert not {"decimal", "random"} & found
+
+
+def test_relative_imports_have_full_names(module):
+    made = module("relative", "", "seatsim.kernel")
+    Path(made.__file__).write_text("from .rig import Rig\nfrom ..rig.coil import Coil\n")
+    expected = {"seatsim.kernel.rig", "seatsim.kernel.rig.Rig", "seatsim.rig.coil", "seatsim.rig.coil.Coil"}
+    assert set(cached._imported(made)) == expected
+
+
+def test_libraries_do_not_change(module):
+    import json
+
+    assert not cached._changes(numba) and not cached._changes(np) and not cached._changes(json)
+    assert not cached._changes(sys) and not cached._changes(types.ModuleType("typed_in"))
+    assert cached._changes(cached) and cached._changes(module("own", ""))
+    outside = types.ModuleType("pydantic.fields")
+    outside.__file__ = cached.__file__
+    assert not cached._changes(outside)
+
+
+def test_installed_packages_may_change():
+    installed = types.ModuleType("bellows")
+    installed.__file__ = str(cached._STANDARD / "site-packages" / "bellows.py")
+    assert cached._changes(installed)
+
+
+def test_all_that_is_reached_counts(module):
+    low = module("low", "A = 1\n")
+    middle = module("middle", "import low\n")
+    top = module("top", "from middle import low\nimport math\nimport numpy\n")
+    assert cached._reachable([top]) == {top, middle, low}
+    assert cached._reachable([low]) == {low}
+
+
+def test_the_key_changes_with_every_file_and_with_what_is_loaded(module):
+    low, top = module("low", "A = 1\n"), module("top", "import low\n")
+    keys = [cached.digest([top])]
+    assert cached.digest([top]) == cached.digest([top, low]) == keys[0]
+    Path(low.__file__).write_text("A = 1 \n")
+    keys.append(cached.digest([top]))
+    low.A = 2
+    keys.append(cached.digest([top]))
+    assert len(set(keys)) == 3
+    assert all(len(key) == 20 and int(key, 16) >= 0 for key in keys)
+
+
+def test_the_key_holds_the_versions(module, monkeypatch):
+    top = module("top", "A = 1\n")
+    key = cached.digest([top])
+    monkeypatch.setattr(numba, "__version__", "0.0")
+    assert cached.digest([top]) != key
+    monkeypatch.undo()
+
+
+def test_the_key_is_that_of_a_known_hash(module):
+    top = module("top", "A = 1\n")
+    state = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
+    state.update(top.__file__.encode() + Path(top.__file__).read_bytes())
+    state.update(b"A 1")
+    assert cached.digest([top]) == state.hexdigest()[:20]
+
+
+def square(a):
+    return a * a
+
+
+def test_a_function_is_kept_where_all_sources_are_files(tmp_path, monkeypatch):
+    monkeypatch.setenv("SEATSIM_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(cached, "digest", lambda modules: "-".join(sorted(module.__name__ for module in modules)))
+    asked = []
+
+    def njit(**options):
+        asked.append(options | {"folder": numba.config.CACHE_DIR})
+        return lambda function: function
+
+    monkeypatch.setattr(cached.numba, "njit", njit)
+    previous = numba.config.CACHE_DIR
+    inside = type("Inside", (), {"__module__": "typed_in"})
+    monkeypatch.setitem(sys.modules, "typed_in", types.ModuleType("typed_in"))
+    for plugged, kept in (((), True), ((Path,), True), ((inside,), False)):
+        assert cached.compiled(square, plugged) is square
+        assert asked[-1]["cache"] is kept and asked[-1]["nogil"] and asked[-1]["error_model"] == "numpy"
+    assert asked[0]["folder"] == str(tmp_path / __name__)
+    assert previous == numba.config.CACHE_DIR
+    count = len(asked)
+    cached.compiled(square, [Path])
+    assert len(asked) == count

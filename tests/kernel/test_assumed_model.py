@@ -1,0 +1,81 @@
+"""What the inverse works with, and the state of an assumed damper that it follows."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from seatsim.dampers.bouc_wen import BoucWen
+from seatsim.kernel.assumed_model import AssumedModel, TrueModel, follow_state, model_scaling, model_state
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+
+from .uncompiled import Linear
+
+NONE, HOT = TemperatureScaling(), TemperatureScaling(0.8, 0.9, 0.7)
+FACTORS = TemperatureFactors(-0.01, 0.0, -0.02, 20.0)
+
+
+class Cubes(NamedTuple):
+    """Rates that are cubes of what drives them, which Simpson's rule integrates exactly along straight lines."""
+
+    def rates(self, x, v, i, scaling, z):
+        return (x**3, v**3, i + scaling.yielding)
+
+
+class Decay(NamedTuple):
+    """`z' = -rate z`."""
+
+    rate: float
+
+    def rates(self, x, v, i, scaling, z):
+        return (-self.rate * z[0],)
+
+
+def test_the_true_model_is_given_what_is_true():
+    model = TrueModel(Linear(), 1)
+    assert model_state(model, (1.0,), (2.0,)) == (1.0,)
+    assert model_scaling(model, HOT, 80.0) == HOT
+
+
+@pytest.mark.parametrize(("own", "measured", "felt"), [(math.nan, 60.0, 60.0), (35.0, 60.0, 35.0)])
+def test_an_assumed_model_has_a_state_and_a_temperature_of_its_own(own, measured, felt):
+    model = AssumedModel(Linear(), 1, FACTORS, own)
+    assert model_state(model, (1.0,), (2.0,)) == (2.0,)
+    expected = (math.exp(-0.01 * (felt - 20.0)), 1.0, math.exp(-0.02 * (felt - 20.0)))
+    assert model_scaling(model, HOT, measured) == pytest.approx(expected, rel=1e-14)
+
+
+def test_what_is_no_model_is_refused():
+    for call in (model_state, model_scaling):
+        with pytest.raises(TypeError, match="Linear is no model for the inverse"):
+            call(Linear(), (), ())
+
+
+def test_motion_runs_along_straight_lines_between_samples():
+    x0, x1, v0, v1, length = 0.2, 0.9, -0.5, 0.7, 0.4
+    found = follow_state(Cubes(), (1.0, 2.0, 3.0), x0, v0, x1, v1, 0.6, HOT, length)
+    quartic = [length * (b**4 - a**4) / (4.0 * (b - a)) for a, b in ((x0, x1), (v0, v1))]
+    expected = (1.0 + quartic[0], 2.0 + quartic[1], 3.0 + length * (0.6 + 0.7))
+    assert found == pytest.approx(expected, rel=1e-13)
+
+
+def test_two_steps_of_the_classical_method():
+    h = 0.5 * 0.3 * 4.0
+    factor = sum((-h) ** n / math.factorial(n) for n in range(5))
+    assert follow_state(Decay(4.0), (2.0,), 0.0, 0.0, 0.0, 0.0, 0.0, NONE, 0.3) == pytest.approx((2.0 * factor**2,))
+
+
+def test_the_state_of_a_bouc_wen_damper_is_followed():
+    d, z, step = BoucWen(), (0.0,), 1e-3
+    time = step * np.arange(201)
+    x, v = 0.01 * np.sin(20.0 * time), 0.2 * np.cos(20.0 * time)
+    for k in range(200):
+        z = follow_state(d, z, x[k], v[k], x[k + 1], v[k + 1], 0.5, NONE, step)
+
+    def rates(t, s):
+        return d.rates(0.01 * np.sin(20.0 * t), 0.2 * np.cos(20.0 * t), 0.5, NONE, tuple(s))
+
+    exact = solve_ivp(rates, (0.0, time[-1]), [0.0], rtol=1e-10, atol=1e-12).y[:, -1]
+    assert z == pytest.approx(exact, rel=1e-3)

@@ -1,0 +1,204 @@
+"""A damper with effects as plain Python: each hook changes its own part of force, rates and friction."""
+
+import math
+from typing import NamedTuple
+
+import pytest
+
+from seatsim.kernel.augmented import (
+    SETTLING,
+    AugmentedDamper,
+    _piston_speed,
+    _split,
+    classes_of,
+)
+from seatsim.rig.temperature import TemperatureScaling
+
+from .uncompiled import Hysteretic, Linear, Yielding, plugged
+
+WARM = TemperatureScaling(0.9, 0.8, 0.7)
+X, V, AMPS = 0.01, 0.02, 0.5
+DAMPER = Yielding()
+VISCOUS, YIELD = 400.0 * 0.9 * V, 0.7 * 350.0 * math.tanh(2.0)
+
+
+@plugged("half")
+class Half(NamedTuple):
+    """A gap that transmits a share, by the sign of what is demanded."""
+
+    share: float = 0.5
+
+    def transmitted_share(self, h, v, demanded, z):
+        return h * (self.share if demanded > 0.0 else 0.25)
+
+
+@plugged("scaled")
+class Scaled(NamedTuple):
+    """Other factors in rebound."""
+
+    def part_scaling(self, scaling, v, z):
+        rebound = 2.0 if v > 0.0 else 1.0
+        return TemperatureScaling(scaling.viscous * rebound, scaling.stiffness, scaling.yielding * 0.5)
+
+
+@plugged("saturated")
+class Saturated(NamedTuple):
+    """A yield part that feels less current."""
+
+    def yield_current(self, i, z):
+        return 0.6 * i
+
+
+@plugged("pulled")
+class Pulled(NamedTuple):
+    """A yield part that is stronger where it is positive."""
+
+    def yield_force(self, force, z):
+        return force + 0.1 * abs(force)
+
+
+@plugged("beside", initial=(0.2, 0.4))
+class Beside(NamedTuple):
+    """A force and a friction beside the damper's, and a state that notes what its rates are given."""
+
+    def added_force(self, x, v, z):
+        return 1000.0 * x + 10.0 * z[1]
+
+    def stiction(self, z):
+        return 25.0
+
+    def rates(self, x, v, u, i, demanded, target, z):
+        return (x + v + i + demanded, u + 100.0 * target)
+
+
+@plugged("late", initial=(0.3,))
+class Late(NamedTuple):
+    """A yield part that is built out of the damper's own, of that at a late speed, and of a state."""
+
+    def yield_speed(self, v, z):
+        return 0.25 * v
+
+    def yield_shape(self, shape, target, late, z):
+        return 0.5 * target + 0.3 * late + 0.2 * z[0]
+
+    def rates(self, x, v, u, i, demanded, target, z):
+        return (target - z[0],)
+
+
+@plugged("mount", initial=(0.001,))
+class Mount(NamedTuple):
+    """An elastic mount whose state is its elongation."""
+
+    stiffness: float = 1e5
+
+    def mount_force(self, force, z):
+        return self.stiffness * z[0]
+
+    def mount_stiffness(self, z):
+        return self.stiffness
+
+    def rates(self, x, v, u, i, demanded, target, z):
+        return (v - u,)
+
+
+def force(*effects, damper=DAMPER, v=V, z=()):
+    return AugmentedDamper(damper, effects).force(X, v, AMPS, WARM, z)
+
+
+def rates(*effects, damper=DAMPER, v=V, z=()):
+    return AugmentedDamper(damper, effects).rates(X, v, AMPS, WARM, z)
+
+
+def limit(*effects, damper=DAMPER, v=V, z=()):
+    return AugmentedDamper(damper, effects).friction_limit(v, AMPS, WARM, z)
+
+
+def test_without_effects_it_is_the_damper():
+    assert force() == pytest.approx(VISCOUS + YIELD, rel=1e-12)
+    assert rates(damper=Hysteretic(), z=(0.1, 0.2)) == pytest.approx((50.0 * (V - 0.1), X))
+    assert limit(damper=Linear(friction=30.0)) == pytest.approx(21.0)
+
+
+def test_a_gap_transmits_a_share_of_force_and_speed():
+    assert force(Half()) == pytest.approx(0.5 * (VISCOUS + YIELD), rel=1e-12)
+    assert force(Half(), v=-V) == pytest.approx(-0.25 * (VISCOUS + YIELD), rel=1e-12)
+    found = rates(Half(), Beside(), damper=Hysteretic(), z=(0.1, 0.2, 0.2, 0.4))
+    demanded = 300.0 * 0.9 * V + 2000.0 * 0.5 * 0.7 * 0.1 + 20.0
+    assert found == pytest.approx((50.0 * (0.5 * V - 0.1), X, X + V + AMPS + demanded, 0.5 * V), rel=1e-12)
+    assert limit(Half(), damper=Linear(friction=30.0), v=-V) == pytest.approx(0.25 * 21.0)
+
+
+def test_factors_act_on_the_parts():
+    assert force(Scaled()) == pytest.approx(2.0 * VISCOUS + 0.5 * YIELD, rel=1e-12)
+    assert force(Scaled(), v=-V) == pytest.approx(-VISCOUS - 0.5 * YIELD, rel=1e-12)
+    assert limit(Scaled(), damper=Linear(friction=30.0)) == pytest.approx(10.5)
+
+
+def test_the_yield_part_alone_feels_another_current():
+    expected = 0.7 * (50.0 + 600.0 * 0.3) * math.tanh(2.0)
+    assert force(Saturated()) == pytest.approx(VISCOUS + expected, rel=1e-12)
+    friction = Yielding(coulomb_force=20.0)
+    assert limit(Saturated(), damper=friction) == pytest.approx(20.0 * 1.3 * 0.7, rel=1e-12)
+
+
+def test_the_yield_part_alone_is_pulled():
+    assert force(Pulled()) == pytest.approx(VISCOUS + 1.1 * YIELD, rel=1e-12)
+    assert force(Pulled(), v=-V) == pytest.approx(-VISCOUS - 0.9 * YIELD, rel=1e-12)
+
+
+def test_force_and_friction_beside_the_damper():
+    assert force(Beside(), z=(0.2, 0.4)) == pytest.approx(VISCOUS + YIELD + 10.0 + 4.0, rel=1e-12)
+    assert limit(Beside(), damper=Linear(friction=30.0), z=(0.2, 0.4)) == pytest.approx(46.0)
+
+
+def test_a_yield_part_with_a_shape_of_its_own():
+    damper = Yielding(offset=8.0, coulomb_force=20.0)
+    size = 0.7 * (350.0 + 20.0 * 1.5)
+    target = (0.7 * 350.0 * math.tanh(2.0) + 0.7 * 30.0) / size
+    late = (0.7 * 350.0 * math.tanh(0.5) + 0.7 * 30.0) / size
+    expected = VISCOUS + 0.7 * 8.0 + size * (0.5 * target + 0.3 * late + 0.2 * 0.3)
+    assert force(Late(), damper=damper, z=(0.3,)) == pytest.approx(expected, rel=1e-9)
+    assert rates(Late(), damper=damper, z=(0.3,)) == pytest.approx((target - 0.3,), rel=1e-9)
+    assert limit(Late(), damper=damper, z=(0.3,)) == 0.0
+
+
+@pytest.mark.parametrize("v", [0.02, -0.02, 0.0])
+def test_the_yield_part_is_split_into_mean_size_and_share(v):
+    damper = Yielding(offset=8.0, coulomb_force=20.0)
+    size = 0.7 * (350.0 + 30.0)
+    share = (0.7 * 350.0 * math.tanh(v / 0.01) + math.copysign(21.0, v) * (v != 0.0)) / size
+    assert _split(damper, X, v, AMPS, WARM, ()) == pytest.approx((5.6, size, share), rel=1e-9, abs=1e-12)
+
+
+def test_without_a_yield_part_its_share_is_nothing():
+    assert _split(Linear(), X, V, AMPS, WARM, ()) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("elongation", [0.0, 0.001, -0.002, 0.004])
+@pytest.mark.parametrize("v", [0.02, -0.3])
+def test_behind_a_mount_the_damper_bears_the_mounts_force(elongation, v):
+    effects, z = (Mount(),), (elongation,)
+    assert force(*effects, v=v, z=z) == pytest.approx(1e5 * elongation, rel=1e-12)
+    own = AugmentedDamper(DAMPER, ()).force(X, v, AMPS, WARM, ())
+    u = _piston_speed(DAMPER, effects, X, v, AMPS, WARM, (), z, own)
+    borne = 400.0 * 0.9 * u + 0.7 * 350.0 * math.tanh(u / 0.01) + (u - v) * 1e5 / SETTLING
+    assert borne == pytest.approx(1e5 * elongation, abs=0.011)
+    assert rates(*effects, v=v, z=z) == pytest.approx((v - u,), rel=1e-12)
+
+
+def test_a_linear_damper_behind_a_mount_has_a_speed_in_closed_form():
+    v, elongation = 0.3, 0.0005
+    damper = Linear(c=1000.0, b=0.0, k=0.0)
+    slope = 1e5 / 5000.0
+    u = _piston_speed(damper, (Mount(),), X, v, AMPS, WARM, (), (elongation,), 900.0 * v)
+    assert u == pytest.approx((50.0 + slope * v) / (900.0 + slope), abs=0.011 / 920.0)
+
+
+def test_a_gap_without_mount_moves_the_piston_by_its_share():
+    assert _piston_speed(DAMPER, (Half(),), X, V, AMPS, WARM, (), (), 7.0) == pytest.approx(0.5 * V)
+    assert _piston_speed(DAMPER, (Half(),), X, V, AMPS, WARM, (), (), -7.0) == pytest.approx(0.25 * V)
+
+
+def test_a_loop_is_compiled_of_the_damper_and_its_effects():
+    assert classes_of(DAMPER) == [Yielding]
+    assert classes_of(AugmentedDamper(DAMPER, (Half(), Beside()))) == [Yielding, Half, Beside]

@@ -1,0 +1,53 @@
+"""The current that follows a known command, against exponentials written out."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatsim.kernel import coil_current
+from seatsim.kernel.coil_current import follow_command, simulate_current
+from seatsim.rig.coil import Coil
+
+STEP = 2e-3
+COIL = Coil(rate=150.0, rate_fall=60.0)
+
+
+def test_a_rise_and_a_fall():
+    command = np.repeat([0.8, 0.1], 20)
+    found = follow_command(COIL, command, STEP, 0.3)
+    time = STEP * np.arange(21)
+    rising = 0.8 - 0.5 * np.exp(-150.0 * time)
+    assert found[:21] == pytest.approx(rising, rel=1e-12)
+    falling = 0.1 + (rising[-1] - 0.1) * np.exp(-60.0 * time[:20])
+    assert found[20:] == pytest.approx(falling, rel=1e-12)
+
+
+def test_each_command_acts_from_its_row_to_the_next():
+    found = follow_command(COIL, np.array([1.0, 0.0, 1.0]), STEP, 0.0)
+    first = 1.0 - math.exp(-150.0 * STEP)
+    assert found.tolist() == pytest.approx([0.0, first, first * math.exp(-60.0 * STEP)], rel=1e-12)
+
+
+def test_one_row_is_the_start_alone():
+    assert follow_command(COIL, np.array([0.9]), STEP, 0.25).tolist() == [0.25]
+
+
+def test_the_command_is_left_as_it_was():
+    command = np.array([1.0, 0.5])
+    follow_command(COIL, command, STEP, 0.2)
+    assert command.tolist() == [1.0, 0.5]
+
+
+def test_numbers_of_every_kind_are_taken(monkeypatch):
+    plugged = []
+    monkeypatch.setattr(coil_current, "compiled", lambda function, classes: plugged.append(classes) or function)
+    found = simulate_current(COIL, [1, 0, 1], STEP, 0)
+    assert found.dtype == np.float64 and plugged == [(Coil,)]
+    assert found == pytest.approx(follow_command(COIL, np.array([1.0, 0.0, 1.0]), STEP, 0.0), abs=0)
+
+
+def test_compiled_it_is_the_same():
+    command = np.random.default_rng(2).uniform(0.0, 1.0, 50)
+    found = simulate_current(COIL, command, STEP, 0.4)
+    assert found == pytest.approx(follow_command(COIL, command, STEP, 0.4), rel=1e-13)

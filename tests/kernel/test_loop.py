@@ -1,0 +1,219 @@
+"""The time loop as plain Python: the order in which law, coil, rig and temperature act, and what it records."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatsim.kernel import channels, step
+from seatsim.kernel.assumed_model import AssumedModel, TrueModel
+from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.loop import _warming, run_loop
+from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
+from seatsim.kernel.rig import Rig
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
+from seatsim.rig.sensors import Direct, Sensors, at_rest
+from seatsim.rig.temperature import TemperatureFactors, Thermal
+
+from .uncompiled import Commanded, Feedback, Hysteretic, Linear
+
+PLANT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0, damper_ratio=0.8)
+COIL = Coil(rate=150.0, rate_fall=60.0)
+STEP, NONE = 1e-3, np.zeros(0)
+FACTORS = TemperatureFactors(-0.01, 0.0, -0.02, 20.0)
+
+
+@pytest.fixture(autouse=True)
+def uncompiled(monkeypatch):
+    """The only function of the loop that is compiled apart, as plain Python."""
+    monkeypatch.setattr(step, "_advance_divided", step._advance_divided.py_func)
+
+
+def run(
+    law, *, rows=40, damper=None, plant=PLANT, coil=COIL, every=1, model=None, top=1.0, thermal=None, sensors=None,
+    heating=False, law_state=(), rest=(), followed=(), floor=None, tolerance=1e-4, **inputs,
+):  # fmt: skip
+    """Run and return the history by channel, and the sample that was reached."""
+    damper = damper or Linear(k=0.0)
+    floor = 3.0 * np.sin(40.0 * STEP * np.arange(rows)) if floor is None else floor
+    velocity = np.concatenate([[0.0], np.cumsum(0.5 * STEP * (floor[1:] + floor[:-1]))])
+    given = {"temperature": np.full(rows, 20.0)} | dict.fromkeys(
+        ("replayed", "prescribed", "frame_force", "driver_force"), NONE
+    )
+    setup = LoopSetup(
+        Rig(plant, damper), coil, FACTORS, thermal or Thermal(), law, model or TrueModel(damper, 1),
+        Timing(STEP, every, tolerance, heating), top, sensors or Direct(),
+    )  # fmt: skip
+    out = np.full((rows, len(CHANNELS)), np.nan)
+    reached = run_loop(setup, LoopInputs(floor, velocity, **(given | inputs)), rest, followed, law_state, out)
+    return dict(zip(CHANNELS, out.T, strict=True)) | {"floor_velocity": velocity}, reached
+
+
+def test_the_rows_keep_the_seats_equations():
+    push, lift = np.full(40, 15.0), np.full(40, -9.0)
+    h, reached = run(Commanded(0.5), frame_force=push, driver_force=lift, start_displacement=0.01, start_velocity=0.1)
+    assert reached == 40
+    x, v, xc, vc = (h[f"{part}_{kind}"] for part in ("suspension", "cushion") for kind in ("displacement", "velocity"))
+    assert (x[0], v[0], xc[0], vc[0]) == (0.01, 0.1, 0.0, 0.0)
+    cushion = 60000.0 * xc + 1500.0 * vc
+    force = (800.0 + 300.0 * h["coil_current"]) * 0.8 * v
+    assert h["damper_force"] == pytest.approx(force, rel=1e-12)
+    frame = (cushion - 4600.0 * x - 150.0 * v - 0.8 * force + 15.0) / 20.0
+    assert h["frame_acceleration"] == pytest.approx(frame, rel=1e-9, abs=1e-12)
+    assert h["driver_acceleration"] == pytest.approx((-cushion - 9.0) / 80.0, rel=1e-9, abs=1e-9)
+    assert np.gradient(x, STEP)[1:-1] == pytest.approx(v[1:-1], abs=2e-3)
+    relative = h["driver_acceleration"] - h["frame_acceleration"]
+    assert np.gradient(vc, STEP)[1:-1] == pytest.approx(relative[1:-1], abs=0.1 * np.max(np.abs(relative)))
+
+
+def test_energy_is_kept():
+    h, _ = run(Commanded(0.5), rows=200, tolerance=1e-7)
+    v, w = h["suspension_velocity"][-1], h["cushion_velocity"][-1]
+    stored = 0.5 * (20.0 * v**2 + 80.0 * (v + w) ** 2)
+    stored += 0.5 * (4600.0 * h["suspension_displacement"][-1] ** 2 + 60000.0 * h["cushion_displacement"][-1] ** 2)
+    spent = sum(h[f"energy_{part}"][-1] for part in ("damper", "suspension", "cushion"))
+    assert h["energy_floor"][-1] == pytest.approx(spent + stored, rel=1e-7)
+    power = 0.8 * h["damper_force"] * h["suspension_velocity"]
+    assert h["energy_damper"][-1] == pytest.approx(np.trapezoid(power, dx=STEP), rel=1e-3)
+
+
+def test_a_law_is_asked_at_its_samples_and_its_command_stands_between():
+    damper = Linear(k=0.0)
+    h, _ = run(Feedback(1000.0), every=5, law_state=(0.0,), damper=damper)
+    asked = np.repeat(np.arange(0, 40, 5), 5)
+    v = h["suspension_velocity"]
+    assert h["wanted_force"] == pytest.approx(1000.0 * v[asked], rel=1e-12)
+    # The inverse of this damper is (1000 v - 800 r v) / (300 r v), beyond 1 A here: what it gives falls short.
+    needed = (1000.0 - 800.0 * 0.8) / (300.0 * 0.8)
+    assert needed > 1.0
+    assert h["current_command"][5:] == pytest.approx(np.full(35, 1.0))
+    assert np.all(h["force_served"][5:] == 0.0)
+    h, _ = run(Feedback(750.0), every=5, law_state=(0.0,))
+    assert h["current_command"][5:] == pytest.approx(np.full(35, (750.0 - 640.0) / 240.0), rel=1e-9)
+    assert np.all(h["force_served"][5:] == 1.0)
+
+
+@pytest.mark.parametrize(("current", "top", "command"), [(0.5, 1.0, 0.5), (1.5, 1.2, 1.2), (-0.5, 1.0, 0.0)])
+def test_a_current_that_is_asked_for_is_clipped(current, top, command):
+    h, _ = run(Commanded(current), top=top)
+    assert np.all(h["current_command"] == command)
+    assert np.all(np.isnan(h["wanted_force"])) and np.all(np.isnan(h["force_served"]))
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.002, 0.0025, 0.003 - 1e-14])
+def test_the_coil_follows_its_command_late(delay):
+    h, _ = run(Commanded(0.9), coil=COIL._replace(delay=delay), start_current=0.2)
+    time = STEP * np.arange(40) - delay
+    expected = np.where(time <= 1e-9, 0.2, 0.9 - 0.7 * np.exp(-150.0 * np.maximum(time, 0.0)))
+    assert h["coil_current"] == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_falling_current_falls_at_its_own_rate():
+    h, _ = run(Commanded(0.1), start_current=0.8)
+    assert h["coil_current"] == pytest.approx(0.1 + 0.7 * np.exp(-60.0 * STEP * np.arange(40)), rel=1e-9)
+
+
+def test_a_recorded_temperature_acts_on_the_damper():
+    temperature = np.linspace(20.0, 80.0, 40)
+    h, _ = run(Commanded(0.0), temperature=temperature)
+    assert h["damper_temperature"] == pytest.approx(temperature, abs=0)
+    # The force of a row is that at the end of the step before, at whose temperature it was found.
+    factor = np.exp(-0.01 * (np.concatenate([[20.0], temperature[:-1]]) - 20.0))
+    assert h["damper_force"] == pytest.approx(800.0 * factor * 0.8 * h["suspension_velocity"], rel=1e-9)
+
+
+def test_a_damper_warms_by_its_work_and_its_coil():
+    thermal = Thermal(start=30.0, ambient=20.0, heat_capacity=0.5, conductance=2.0)
+    h, _ = run(
+        Commanded(0.6), rows=100, thermal=thermal, heating=True, temperature=np.full(100, 30.0), start_current=0.6
+    )
+    T, work = h["damper_temperature"], h["energy_damper"]
+    assert T[0] == 30.0
+    gain = np.diff(work) + 5.0 * 0.36 * STEP - 2.0 * (T[:-1] - 20.0) * STEP
+    assert np.diff(T) == pytest.approx(gain / 0.5, rel=1e-9)
+    factor = np.exp(-0.01 * (np.concatenate([[30.0], T[:-1]]) - 20.0))
+    assert h["damper_force"] == pytest.approx(
+        (800.0 * factor + 180.0 * factor) * 0.8 * h["suspension_velocity"], rel=1e-9
+    )
+
+
+def test_warming_takes_the_mean_square_of_a_current_that_runs_straight():
+    thermal, coil = Thermal(20.0, 25.0, 400.0, 3.0), Coil(resistance=7.0)
+    current = np.linspace(0.2, 0.8, 100_001)
+    heat = 7.0 * np.mean(current**2) * 0.01
+    expected = (6.0 + heat - 3.0 * (40.0 - 25.0) * 0.01) / 400.0
+    for work in (6.0, -6.0):
+        assert _warming(thermal, coil, 40.0, work, 0.2, 0.8, 0.01) == pytest.approx(expected, rel=1e-6)
+
+
+def test_an_assumed_damper_is_followed_beside_the_true_one():
+    true, rest = Hysteretic(), (0.0, 0.0)
+    law = {"law_state": (0.0,), "damper": true, "rest": rest, "followed": rest, "rows": 120}
+    knows, _ = run(Feedback(500.0), model=TrueModel(true, 1), **law)
+    assumes, _ = run(Feedback(500.0), model=AssumedModel(true, 1, FACTORS, math.nan), **law)
+    assert assumes["current_command"] == pytest.approx(knows["current_command"], abs=5e-3)
+    assert np.mean((knows["current_command"] > 0.02) & (knows["current_command"] < 0.98)) > 0.05
+    hot, _ = run(Feedback(500.0), model=AssumedModel(true, 1, FACTORS, 80.0), **law)
+    assert np.max(np.abs(hot["current_command"] - knows["current_command"])) > 0.05
+
+
+def test_a_law_with_sensors_sees_filtered_readings():
+    sensors = Sensors(bandwidth=20.0)
+    made = sensors.instruments(STEP, 5 * STEP)
+    noise = np.zeros((8, 4))
+    noise[:, 0] = 0.001 * np.arange(8)
+    seen = []
+
+    class Spy(Commanded):
+        def update(self, y, state):
+            seen.append(y)
+            return state
+
+    h, _ = run(Spy(0.5), sensors=made, every=5, sensed=at_rest(0.0), noise=noise)
+    x, rate = 0.0, 2 * math.pi * 20.0
+    keep = math.exp(-rate * STEP)
+    mean = (1.0 - keep) / (rate * STEP)
+    filtered, past = [], 0.0
+    for now in h["suspension_displacement"]:
+        x, past = keep * x + (mean - keep) * past + (1.0 - mean) * now, now
+        filtered.append(x)
+    assert [y.displacement for y in seen] == pytest.approx(np.array(filtered)[::5] + noise[:, 0], rel=1e-9)
+    assert [y.time for y in seen] == pytest.approx(STEP * np.arange(0, 40, 5))
+
+
+def test_without_sensors_a_law_sees_what_is_recorded():
+    seen = []
+
+    class Spy(Commanded):
+        def update(self, y, state):
+            seen.append(y)
+            return state
+
+    replayed = np.arange(40.0)
+    h, _ = run(Spy(0.5), every=3, replayed=replayed)
+    rows = np.arange(0, 40, 3)
+    v, floor = h["suspension_velocity"], h["floor_velocity"]
+    expected = {
+        "time": STEP * np.arange(40), "displacement": h["suspension_displacement"], "velocity": v,
+        "frame_velocity": v + floor, "driver_velocity": v + floor + h["cushion_velocity"],
+        "floor_acceleration": h["floor_acceleration"], "frame_acceleration": h["frame_acceleration"],
+        "driver_acceleration": h["driver_acceleration"], "damper_force": h["damper_force"],
+        "current": h["coil_current"], "temperature": h["damper_temperature"], "replayed": replayed,
+    }  # fmt: skip
+    for name, values in expected.items():
+        assert [getattr(y, name) for y in seen] == pytest.approx(values[rows], rel=1e-12, abs=1e-15), name
+
+
+def test_a_lost_solution_stops_the_run():
+    floor = np.ones(30)
+    floor[12:] = np.nan
+    h, reached = run(Commanded(0.5), rows=30, floor=floor)
+    assert reached == 11
+    assert np.isfinite(h["frame_acceleration"][:12]).all() and np.isnan(h["frame_acceleration"][12:]).all()
+
+
+def test_the_floors_own_column():
+    h, _ = run(Commanded(0.5))
+    assert h["floor_acceleration"] == pytest.approx(3.0 * np.sin(40.0 * STEP * np.arange(40)), abs=0)
+    assert channels.FLOOR_ACCELERATION == 0

@@ -1,0 +1,135 @@
+"""The derivative of the rig's state: linear matrices, set-valued friction, effects, and the balance of energy."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from seatsim.kernel.rig import STICKING, Disturbance, Rig, _friction, derivative
+from seatsim.rig.plant import Plant, state_space
+from seatsim.rig.state import CUSHION_WORK, DAMPER_WORK, FLOOR_WORK, MECHANICAL, SUSPENSION_WORK
+from seatsim.rig.temperature import TemperatureScaling
+
+from .uncompiled import Hysteretic, Linear, plugged
+
+PLANT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0, damper_ratio=0.7)
+HOT = TemperatureScaling(0.8, 0.9, 0.7)
+STATE = (0.011, 0.23, -0.004, 0.17, 0.0, 0.0, 0.0, 0.0)
+DISTURBANCE = Disturbance(1.3, 25.0, -40.0)
+
+
+@plugged("seat effect", initial=(0.3,))
+class SeatEffect(NamedTuple):
+    """An effect that answers to every hook of the seat."""
+
+    inner: float = 12.0
+
+    def suspension_force(self, plant, x, v, z):
+        return 0.1 * plant.suspension_stiffness * x + 7.0 * v + z[0]
+
+    def linkage_friction(self, z):
+        return 30.0
+
+    def cushion_force(self, force, plant, xc, vc, z):
+        return 1.5 * force
+
+    def inner_mass(self, plant, z):
+        return self.inner
+
+    def inner_force(self, plant, z):
+        return 11.0
+
+    def rates(self, plant, motion, z):
+        return (motion.driver - motion.frame + motion.xc + motion.vc + motion.x + motion.v,)
+
+
+def test_without_effects_it_is_the_linear_seat():
+    rates, forces = derivative(Rig(PLANT, Linear(k=0.0)), STATE, Disturbance(1.3, 0.0, 0.0), 0.5, HOT, 0.0)
+    force = 950.0 * 0.8 * 0.7 * STATE[1]
+    s = state_space(PLANT)
+    expected = s.A @ STATE[:4] + s.B1[:, 0] * 1.3 + s.B2[:, 0] * force
+    assert rates[:4] == pytest.approx(expected, rel=1e-12)
+    assert forces == pytest.approx((force, 0.0, 0.0), rel=1e-12)
+
+
+def test_forces_from_outside_push_upward():
+    pushed, still = (derivative(Rig(PLANT, Linear()), STATE, d, 0.5, HOT, 0.0)[0] for d in (
+        Disturbance(1.3, 25.0, -40.0), Disturbance(1.3, 0.0, 0.0)))  # fmt: skip
+    change = np.subtract(pushed, still)
+    frame, driver = 25.0 / 20.0, -40.0 / 80.0
+    assert change[:4] == pytest.approx((0.0, frame, 0.0, driver - frame), rel=1e-12)
+
+
+def test_the_damper_moves_by_its_ratio_and_keeps_its_state():
+    state = (*STATE, 0.5, -0.2)
+    rates, forces = derivative(Rig(PLANT, Hysteretic()), state, DISTURBANCE, 0.4, HOT, 0.0)
+    x, v = 0.7 * STATE[0], 0.7 * STATE[1]
+    assert rates[MECHANICAL:] == pytest.approx((50.0 * (v - 0.5), x), rel=1e-12)
+    assert forces.damper_force == pytest.approx(300.0 * 0.8 * v + 2000.0 * 0.4 * 0.7 * 0.5 - 20.0, rel=1e-12)
+
+
+def test_effects_add_to_the_seat():
+    plant = PLANT._replace(damper_ratio=1.0)
+    rates, forces = derivative(Rig(plant, Linear(), (SeatEffect(),)), (*STATE, 0.3), DISTURBANCE, 0.5, HOT, 1.0)
+    x, v, xc, vc = STATE[:4]
+    damper = 950.0 * 0.8 * v + 900.0 * x
+    cushion = 1.5 * (60000.0 * xc + 1500.0 * vc)
+    resistance = 150.0 * v + 460.0 * x + 7.0 * v + 0.3
+    frame = (cushion - 4600.0 * x - resistance - damper - 30.0 + 25.0) / 20.0
+    driver = (11.0 - cushion - 40.0) / (80.0 - 12.0)
+    assert rates[:4] == pytest.approx((v, frame - 1.3, vc, driver - frame), rel=1e-12)
+    assert rates[MECHANICAL:] == pytest.approx((driver - frame + xc + vc + x + v,), rel=1e-12)
+    assert forces == pytest.approx((damper, 30.0, 30.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("slip", [1.0, -1.0])
+def test_damper_and_linkage_share_the_friction(slip):
+    plant = PLANT._replace(damper_ratio=0.5)
+    damper = Linear(friction=100.0)
+    smooth = derivative(Rig(plant, Linear(), (SeatEffect(),)), (*STATE, 0.3), DISTURBANCE, 0.5, HOT, slip)
+    rough = derivative(Rig(plant, damper, (SeatEffect(),)), (*STATE, 0.3), DISTURBANCE, 0.5, HOT, slip)
+    limit = 0.5 * 100.0 * 0.7
+    assert rough[1].friction_limit == pytest.approx(limit + 30.0)
+    assert rough[1].friction == pytest.approx(slip * (limit + 30.0))
+    assert rough[1].damper_force - smooth[1].damper_force == pytest.approx(slip * 70.0)
+    assert rough[0][1] - smooth[0][1] == pytest.approx(-slip * limit / 20.0)
+    assert rough[0][SUSPENSION_WORK] == pytest.approx(smooth[0][SUSPENSION_WORK])
+
+
+def test_supplied_less_dissipated_power_is_the_rate_of_the_energy_stored():
+    damper = Linear(k=0.0, friction=60.0)
+    rates, _ = derivative(Rig(PLANT, damper), STATE, DISTURBANCE, 0.5, HOT, 1.0)
+    (x, v, xc, vc), p = STATE[:4], PLANT
+    # Motion relative to the floor: its own acceleration acts on both masses as a force would.
+    stored = p.frame_mass * v * rates[1] + p.driver_mass * (v + vc) * (rates[1] + rates[3])
+    stored += p.suspension_stiffness * x * v + p.cushion_stiffness * xc * vc
+    spent = rates[DAMPER_WORK] + rates[SUSPENSION_WORK] + rates[CUSHION_WORK]
+    assert rates[FLOOR_WORK] - spent == pytest.approx(stored, rel=1e-12)
+    assert rates[DAMPER_WORK] == pytest.approx((950.0 * 0.8 * 0.7 * v + 60.0 * 0.7) * 0.7 * v, rel=1e-12)
+    assert rates[SUSPENSION_WORK] == pytest.approx(150.0 * v * v, rel=1e-12)
+    assert rates[CUSHION_WORK] == pytest.approx(1500.0 * vc * vc, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("free", "v", "slip", "limit", "friction", "acceleration"),
+    [
+        (3.0, 0.0, STICKING, 1.0, 60.0, 0.0),
+        (3.0, 0.2, 0.0, 0.0, 0.0, 3.0),
+        (3.0, 0.2, 1.0, -1.0, 0.0, 3.0),
+        (3.0, 0.0, 0.0, 60.0, 60.0, 0.0),
+        (-3.0, 0.0, 0.0, 60.0, -60.0, 0.0),
+        (3.0, 0.0, 0.0, 40.0, 40.0, 1.0),
+        (-3.0, 0.0, 0.0, 40.0, -40.0, -1.0),
+        (3.0, -0.2, 0.0, 40.0, -40.0, 5.0),
+        (3.0, 0.2, 0.0, 40.0, 40.0, 1.0),
+        (3.0, 0.2, -1.0, 40.0, -40.0, 5.0),
+        (3.0, -0.2, 1.0, 40.0, 40.0, 1.0),
+    ],
+)
+def test_friction_holds_or_opposes(free, v, slip, limit, friction, acceleration):
+    assert _friction(free, v, slip, limit, 20.0) == pytest.approx((friction, acceleration), abs=1e-12)
+
+
+def test_sticking_is_none_of_the_directions():
+    assert STICKING not in (-1.0, 0.0, 1.0) and math.isfinite(STICKING)
