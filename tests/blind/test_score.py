@@ -12,7 +12,7 @@ import pytest
 from rich.console import Console
 
 from seatsim.blind.score.measures import Rate, calibration_error, reliability
-from seatsim.blind.score.score import score, score_of
+from seatsim.blind.score.score import score, score_verdicts
 from seatsim.blind.score.tables import tables
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.blind.sealed import Sealed, new_key, seal
@@ -56,7 +56,7 @@ def test_figures_of_a_small_set() -> None:
         "e": Verdict("unknown", ("damper",), (), {}, isolable=(("damper", "suspension"),)),
         "f": Verdict("missing"),
     }
-    found = score_of(labels, said)
+    found = score_verdicts(labels, said)
     assert (found.right, found.false_alarms, found.outside_with_block) == (Rate(3, 6), Rate(1, 1), Rate(1, 2))
     assert (found.top1, found.block, found.block_coarse) == (Rate(1, 2), Rate(3, 5), Rate(4, 5))
     assert (found.two_recall, found.two_precision, found.detected) == (Rate(1, 2), Rate(1, 1), Rate(4, 5))
