@@ -18,8 +18,9 @@ from rich.table import Table
 from scipy.signal import butter, sosfiltfilt
 from threadpoolctl import threadpool_limits
 
+from seatsim.blind.labels import KINDS
 from seatsim.blind.score.measures import Rate
-from seatsim.blind.score.score import KINDS, score_of
+from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import read_verdict
 from seatsim.blind.sealed import unseal
 from seatsim.diagnosis.noise import Whitening, even
@@ -113,7 +114,7 @@ def show(title: str, base: Path, labels: Labels, methods: Sequence[str]) -> None
         missing = sum(verdict.verdict == "missing" for verdict in said.values())
         if missing == len(said):
             continue
-        score = score_of(labels, said)
+        score = score_verdicts(labels, said)
         rates = [score.right, *(score.kinds.get(kind, Rate(0, 0)) for kind in KINDS), score.block, score.false_alarms]
         name = f"{method} ({missing} missing)" if missing else method
         table.add_row(name, *(f"{r.value:.3f} {r.right}/{r.total}" if r.total else "-" for r in rates))

@@ -24,12 +24,12 @@ from cases import run
 from threadpoolctl import threadpool_limits
 
 import seatsim
-from seatsim.blind.make.case import RunPlan, Setting, drive, read
-from seatsim.blind.make.draw import Case, Order, draw_case
-from seatsim.blind.make.folder import recording_files, write_files
-from seatsim.blind.truth.commands import SCHEDULE
-from seatsim.blind.truth.rig import FINE, RATE
-from seatsim.blind.truth.truth import Changes
+from seatsim.blind.make.draw_case import Case, CaseSpecification, draw_case
+from seatsim.blind.make.folder import encode_recording, write_folder
+from seatsim.blind.truth.experiment import Experiment, RunPlan, read_channels, simulate_run
+from seatsim.blind.truth.faults.scenario import Changes
+from seatsim.blind.truth.physics.control_laws import SCHEDULE
+from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE
 from seatsim.diagnosis.design.experiment import Trial, menu
 from seatsim.diagnosis.problem import problem
 from seatsim.diagnosis.result import Diagnosis
@@ -51,7 +51,7 @@ def experimented(out: Path, k: int, effect: str, seed: int) -> str:
     """Write what came of one case."""
     folder, rng = out / f"case-{k + 1:04d}", np.random.default_rng([seed, k])
     with threadpool_limits(1):
-        case = draw_case(Order("one", (effect,), WITHOUT[effect]), rng)
+        case = draw_case(CaseSpecification("one", (effect,), WITHOUT[effect]), rng)
         record(case, folder, rng)
         first = seatsim.diagnose(folder)
         found = {"effects": case.label()["effects"], "first": said(first), "experiment": first.experiment}
@@ -70,28 +70,28 @@ def said(diagnosis: Diagnosis) -> dict[str, Any]:
 
 def record(case: Case, folder: Path, rng: np.random.Generator) -> None:
     """Write the runs of a case but the last, which is the unseen one."""
-    write_files(folder, recording_files(case.setting, case.shown, rng, list(range(len(case.setting.runs) - 1))))
+    write_folder(folder, encode_recording(case.experiment, case.readings, rng, range(len(case.experiment.runs) - 1)))
 
 
 def carried_out(case: Case, first: Diagnosis, folder: Path, after: Path, rng: np.random.Generator) -> list[str]:
     """Write the recording that holds the proposed experiment; return the effects that it rules out."""
     assert first.experiment
     changes = Changes()
-    for placed in case.placed:
-        changes += placed.changes
-    setting, ruled_out = case.setting, []
+    for fault in case.faults:
+        changes += fault.changes
+    setting, ruled_out = case.experiment, []
     if "calibrating" in first.experiment["reason"]:
-        changes = dataclasses.replace(changes, faults=())
+        changes = dataclasses.replace(changes, sensor_faults=())
         ruled_out = [name for group in first.indistinguishable for name in group if name.startswith("sensor.")]
     if first.experiment["name"] != "calibrate_sensor":
         trials = menu(problem(load_recording(folder)))
         setting = changed(setting, next(trial for trial in trials if trial.name == first.experiment["name"]))
-    shown = [read(setting, changes, k, drive(setting, changes, k)) for k in range(len(setting.runs))]
-    record(dataclasses.replace(case, setting=setting, shown=shown), after, rng)
+    shown = [read_channels(setting, changes, k, simulate_run(setting, changes, k)) for k in range(len(setting.runs))]
+    record(dataclasses.replace(case, experiment=setting, readings=shown), after, rng)
     return ruled_out
 
 
-def changed(setting: Setting, trial: Trial) -> Setting:
+def changed(setting: Experiment, trial: Trial) -> Experiment:
     """Return the rig and the runs of an entry of the menu."""
     if trial.extra:
         return dataclasses.replace(setting, channels=(*setting.channels, *trial.extra))
@@ -101,8 +101,8 @@ def changed(setting: Setting, trial: Trial) -> Setting:
     floor, command = trial.floor, trial.floor.command
     assert command is not None
     time = np.arange(len(floor.acceleration)) * floor.step
-    ground = np.interp(np.arange(0.0, time[-1], 1.0 / FINE), time, floor.acceleration)
-    schedule = np.interp(np.arange(0.0, time[-1], 1.0 / RATE), time, command)
+    ground = np.interp(np.arange(0.0, time[-1], 1.0 / EXCITATION_RATE), time, floor.acceleration)
+    schedule = np.interp(np.arange(0.0, time[-1], 1.0 / SAMPLE_RATE), time, command)
     hot = WARM if trial.name == "warm_up" else setting.runs[0].temperature
     plan = RunPlan("run-x", ground, np.array([SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0]), schedule, hot)
     return dataclasses.replace(setting, runs=(*setting.runs[:-1], plan, setting.runs[-1]))

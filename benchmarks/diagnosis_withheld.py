@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 from cases import run, worked
 from threadpoolctl import threadpool_limits
 
-from seatsim.blind.make.draw import Order
+from seatsim.blind.make.draw_case import CaseSpecification
 from seatsim.blind.make.make import make_case
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.cli.outputs.diagnosis import encode_diagnosis
@@ -55,7 +55,7 @@ class Case(NamedTuple):
 
 def made(k: int, effect: str, seed: int, out: Path) -> str:
     """Make one case; where the effect cannot be made material the makers take another, and its label says so."""
-    make_case(k, Order("one", (effect,)), seed, out, out / "labels")
+    make_case(k, CaseSpecification("one", (effect,)), seed, out, out / "labels")
     return f"made {case_name(k)}"
 
 

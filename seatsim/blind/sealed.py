@@ -6,27 +6,45 @@ import hashlib
 import io
 import json
 import zipfile
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TypedDict, cast
 
 from cryptography.fernet import Fernet, InvalidToken
 
+from seatsim.blind.labels import Label
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_text, write_whole
 
 LABELS = "labels.json"
+"""Name of the labels inside the sealed file."""
 SEAL = "seal.txt"
+"""Name of the hash beside the recordings."""
+
+
+class Provenance(TypedDict, total=False):
+    """What made a set; `seed_given` tells whether the seed was given or drawn."""
+
+    seed: int
+    seed_given: bool
+    cases: int
+    kinds: str | list[str] | None
+
+
+class _Head(TypedDict):
+    """Content of `labels.json`."""
+
+    made: Provenance
+    cases: dict[str, Label]
 
 
 @dataclass(frozen=True)
 class Sealed:
     """What a sealed file holds: labels by case, unseen recordings by case (files by name), and what made them."""
 
-    labels: dict[str, dict[str, Any]]
+    labels: dict[str, Label]
     unseen: dict[str, dict[str, bytes]]
-    made: dict[str, Any]
+    made: Provenance
 
     def extract(self, case: str, folder: Path) -> Path:
         """Write the unseen recording of a case into `folder`/`case` and return that."""
@@ -43,10 +61,17 @@ def new_key() -> str:
 
 
 def seal(path: Path, folder: Path, key: str, content: Sealed) -> str:
-    """Write the sealed file and its SHA-256 into `folder`/seal.txt; return the hash."""
+    """Write the sealed file and its SHA-256 into `folder`/seal.txt; return the hash.
+
+    The hash lies beside the recordings, so that labels cannot be exchanged for others after the diagnoses.
+
+    Raises:
+        InputError: a file cannot be written.
+    """
+    head: _Head = {"made": content.made, "cases": content.labels}
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(LABELS, json.dumps({"made": content.made, "cases": content.labels}))
+        archive.writestr(LABELS, json.dumps(head))
         for case, files in content.unseen.items():
             for name, data in files.items():
                 archive.writestr(f"unseen/{case}/{name}", data)
@@ -74,23 +99,20 @@ def unseal(path: Path, key: str, folder: Path | None = None) -> Sealed:
     except (InvalidToken, ValueError, UnicodeError) as error:
         raise InputError(f"{path}: the key does not open it; give the key that `blind make` printed") from error
     with zipfile.ZipFile(io.BytesIO(packed)) as archive:
-        head = json.loads(archive.read(LABELS))
+        # what opens was encrypted by `seal`, so its form need not be checked
+        head = cast(_Head, json.loads(archive.read(LABELS)))
         unseen: dict[str, dict[str, bytes]] = {}
         for entry in archive.namelist():
             if entry.startswith("unseen/"):
                 _, case, name = entry.split("/")
                 unseen.setdefault(case, {})[name] = archive.read(entry)
-    return Sealed(_labels(head["cases"]), unseen, head["made"])
-
-
-def _labels(cases: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    return {name: dict(label) for name, label in cases.items()}
+    return Sealed(head["cases"], unseen, head["made"])
 
 
 def _check_hash(path: Path, token: bytes, folder: Path) -> None:
     note = folder / SEAL
     if not note.is_file():
         raise InputError(f"{note}: not there; {folder} is not a folder that `blind make` finished")
-    words = note.read_text(encoding="utf-8").split()
+    words = note.read_text(encoding="utf-8").split()  # "sha256 HASH  NAME"
     if len(words) < 2 or words[1] != hashlib.sha256(token).hexdigest():
         raise InputError(f"{path}: is not the file sealed for {folder} (its SHA-256 differs from {SEAL})")

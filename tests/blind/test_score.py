@@ -5,14 +5,17 @@ from __future__ import annotations
 import io
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from rich.console import Console
 
+from seatsim.blind.score.cases import ScoredCase, describe_failure, missing_channels, strength_class
 from seatsim.blind.score.measures import Rate, calibration_error, reliability
-from seatsim.blind.score.score import score, score_of
+from seatsim.blind.score.score import score, score_verdicts
+from seatsim.blind.score.shrink import score_shrink
 from seatsim.blind.score.tables import tables
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.blind.sealed import Sealed, new_key, seal
@@ -56,7 +59,7 @@ def test_figures_of_a_small_set() -> None:
         "e": Verdict("unknown", ("damper",), (), {}, isolable=(("damper", "suspension"),)),
         "f": Verdict("missing"),
     }
-    found = score_of(labels, said)
+    found = score_verdicts(labels, said)
     assert (found.right, found.false_alarms, found.outside_with_block) == (Rate(3, 6), Rate(1, 1), Rate(1, 2))
     assert (found.top1, found.block, found.block_coarse) == (Rate(1, 2), Rate(3, 5), Rate(4, 5))
     assert (found.two_recall, found.two_precision, found.detected) == (Rate(1, 2), Rate(1, 1), Rate(4, 5))
@@ -94,3 +97,68 @@ def test_a_folder_is_scored_from_its_files(tmp_path: Path) -> None:
     place.write_text("[]")
     with pytest.raises(InputError, match="is not a diagnosis"):
         read_verdict(place)
+
+
+def test_classes_and_failures_of_cases() -> None:
+    assert [strength_class({**ONE, "materialities": [size, 9.0]})[0] for size in (1.2, 1.5, 3.0, 4.0)] == [
+        "1.5 x limit or less", "2.5 x limit or less", "4.0 x limit or less", "stronger",
+    ]  # fmt: skip
+    assert missing_channels({**ONE, "missing": ["damper_force", "coil_current"]}) == ["damper_force coil_current"]
+    assert missing_channels(ONE) == ["all channels"]
+    wrong = Verdict("known", ("coil", "damper", "floor"), ("a", "b", "c", "d"), selected=("a",), groups=(("a", "b"),))
+    failure = describe_failure(ScoredCase("case-0001", ONE, wrong))
+    assert (failure["named"], failure["where"], failure["groups"]) == (
+        ["a", "b", "c"],
+        ["coil", "damper"],
+        [["a", "b"]],
+    )
+    assert (failure["effects"], failure["verdict"], failure["missing"]) == (["damper.remanence"], "known", [])
+
+
+def test_shrink_claimed_and_reached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    gaps = {"nominal.yaml": 0.5, "good.yaml": 0.1, "bad.yaml": 0.4}
+
+    def gap(scenario: Path, recording: Path) -> SimpleNamespace:
+        assert (recording / "run-u.csv.gz").read_bytes() == b"unseen"
+        if scenario.name not in gaps:
+            raise InputError("cannot be replayed")
+        return SimpleNamespace(overall=gaps[scenario.name])
+
+    monkeypatch.setattr("seatsim.recordings.gap.gap", gap)
+    names = ["a", "b", "c", "d", "e"]
+    opened = Sealed(dict.fromkeys(names, ONE), {name: {"run-u.csv.gz": b"unseen"} for name in names}, {})
+    verdicts = {
+        "a": Verdict("known", shrink=0.7, shrink_interval=(0.6, 0.9), augmented=Path("good.yaml")),
+        "b": Verdict("unknown", shrink=0.5, shrink_interval=(0.4, 0.6), augmented=Path("bad.yaml")),
+        "c": Verdict("ambiguous", shrink=0.5, shrink_interval=(0.4, 0.6), augmented=Path("other.yaml")),
+        "d": Verdict("none", shrink=0.0, augmented=Path("good.yaml")),
+        "e": Verdict("known", augmented=Path("good.yaml")),
+    }
+    found = score_shrink(tmp_path, opened, verdicts, 1, None)
+    assert found is not None
+    assert [(name, claimed, covered) for name, claimed, _, covered in found.cases] == [
+        ("a", 0.7, True), ("b", 0.5, False), ("c", 0.5, None),
+    ]  # fmt: skip
+    assert [true for _, _, true, _ in found.cases][:2] == pytest.approx([0.8, 0.2])
+    assert found.mean_difference == pytest.approx(0.5 * (0.1 + 0.3)) and found.bias == pytest.approx(0.5 * (-0.1 + 0.3))
+    assert found.coverage == Rate(1, 2)
+    assert score_shrink(tmp_path, opened, dict.fromkeys(names, Verdict("known")), 1, None) is None
+
+
+def test_a_verdict_is_read_as_the_contract_has_it(tmp_path: Path) -> None:
+    path = tmp_path / "diagnosis.json"
+    assert read_verdict(path) == Verdict("missing")
+    data = {
+        "verdict": "ambiguous", "where": [{"block": "coil", "share": 0.9}, {"block": "damper", "share": 0.1}],
+        "causes": [{"effect": "a", "probability": 0.2}, {"effect": "b", "probability": 0.7}, {"effect": "c"}],
+        "selected": ["b"], "indistinguishable": [["b", "a"]], "isolable": [["coil", "damper"], ["driver"]],
+        "gap": {"shrink": 0.8, "shrink_interval": [0.7, 0.9]}, "augmented": "augmented.yaml",
+    }  # fmt: skip
+    path.write_text(json.dumps(data))
+    verdict = read_verdict(path)
+    assert (verdict.causes, verdict.named, verdict.group) == (("b", "a", "c"), "b", ("b", "a"))
+    assert verdict.probabilities == {"a": 0.2, "b": 0.7, "c": 0.0}
+    assert (verdict.blocks, verdict.shrink, verdict.shrink_interval) == (("coil", "damper"), 0.8, (0.7, 0.9))
+    assert verdict.augmented == tmp_path / "augmented.yaml"
+    path.write_text(json.dumps({"verdict": "none", "gap": {"shrink": None, "shrink_interval": [None, None]}}))
+    assert read_verdict(path) == Verdict("none", probabilities={})

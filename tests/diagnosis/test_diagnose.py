@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import seatsim
-from seatsim.blind.make import absorbed, case
+from seatsim.blind.make import draw_experiment, tolerance
 from seatsim.blind.make.make import make
 from seatsim.blind.sealed import unseal
 from seatsim.cli.app import app
@@ -20,9 +20,9 @@ def made(tmp_path_factory):
     """A faultless rig, one with a hidden effect, one with something outside the library, and their labels by kind."""
     folder = tmp_path_factory.mktemp("blind")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(case, "SECONDS", 12.0)
-        patch.setattr(case, "UNSEEN_SECONDS", 2.6)
-        patch.setattr(absorbed, "SECONDS", 4.0)
+        patch.setattr(draw_experiment, "SECONDS", 12.0)
+        patch.setattr(draw_experiment, "UNSEEN_SECONDS", 2.6)
+        patch.setattr(tolerance, "SECONDS", 4.0)
         key = make(3, 11, folder / "set", folder / "set.sealed", kinds=KINDS, processes=1)
     labels = unseal(folder / "set.sealed", key, folder / "set").labels
     return folder / "set", {label["kind"]: (name, label) for name, label in labels.items()}

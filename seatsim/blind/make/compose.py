@@ -7,42 +7,45 @@ from itertools import combinations
 
 from numpy.random import Generator
 
-from seatsim.blind.make.case import COMPARED
-from seatsim.blind.make.draw import KINDS, Order
-from seatsim.blind.truth.catalogue import forms_of
-from seatsim.blind.truth.truth import EFFECTS
+from seatsim.blind.labels import EFFECTS, KINDS, Kind
+from seatsim.blind.make.draw_case import CaseSpecification
+from seatsim.blind.truth.experiment import COMPARED
+from seatsim.blind.truth.faults.catalogue import scenarios_of
 from seatsim.schema.errors import InputError, nearest
 
 PRESETS = ("mixed", "null", "background")
 BACKGROUND = 6.0
-"""Random force on the frame of the preset `background`, N rms."""
+"""Random force on the frame of the preset `background`, N rms: half of that which counts as an effect of severity 1."""
 
 
-def compose(cases: int, kinds: str | Sequence[str] | None, rng: Generator) -> list[Order]:
-    """Return the orders of a set, shuffled.
+def compose(cases: int, kinds: str | Sequence[str] | None, rng: Generator) -> list[CaseSpecification]:
+    """Return the specifications of a set, shuffled.
 
     `mixed` (or None): a fifth none, a fifth two effects, a fifth outside, the rest one effect, the 24 effects equally
     often. `null`: faultless over every subset of channels. `background`: faultless, a random force on the frame, and a
     repeated run that shows it. A list of kinds is gone through in turn.
+
+    Raises:
+        InputError: there is no such preset or kind.
     """
     if kinds == "null":
         subsets = null_subsets()
-        orders = [Order("none", (), subsets[k % len(subsets)]) for k in range(cases)]
+        specifications = [CaseSpecification("none", (), subsets[k % len(subsets)]) for k in range(cases)]
     elif kinds == "background":
-        orders = [Order("none", background=BACKGROUND) for _ in range(cases)]
+        specifications = [CaseSpecification("none", background=BACKGROUND) for _ in range(cases)]
     else:
-        orders = _mixed(_kinds(cases, kinds), rng)
-    return [orders[k] for k in rng.permutation(cases)]
+        specifications = _specify(_kinds(cases, kinds), rng)
+    return [specifications[k] for k in rng.permutation(cases)]
 
 
 def null_subsets() -> list[tuple[str, ...]]:
     """Return every set of channels to leave out that leaves a floor, a current and something to compare."""
-    loose = (*COMPARED, "damper_temperature", "current_command")
-    subsets = [some for count in range(len(loose) + 1) for some in combinations(loose, count)]
-    return [some for some in subsets if _usable(some)]
+    optional = (*COMPARED, "damper_temperature", "current_command")
+    subsets = [some for count in range(len(optional) + 1) for some in combinations(optional, count)]
+    return [some for some in subsets if _leaves_enough(some)]
 
 
-def _usable(missing: tuple[str, ...]) -> bool:
+def _leaves_enough(missing: tuple[str, ...]) -> bool:
     gone = set(missing)
     if {"current_command", "coil_current"} <= gone:
         return False
@@ -50,28 +53,33 @@ def _usable(missing: tuple[str, ...]) -> bool:
     return not motion <= gone
 
 
-def _kinds(cases: int, kinds: str | Sequence[str] | None) -> list[str]:
+def _kinds(cases: int, kinds: str | Sequence[str] | None) -> list[Kind]:
+    """Return the kind of each case, before shuffling."""
     if kinds is None or kinds == "mixed":
         fifth = round(cases / 5)
-        return (["none"] * fifth + ["two"] * fifth + ["outside"] * fifth + ["one"] * max(cases - 3 * fifth, 0))[:cases]
+        parts: list[tuple[Kind, int]] = [
+            ("none", fifth), ("two", fifth), ("outside", fifth), ("one", max(cases - 3 * fifth, 0)),
+        ]  # fmt: skip
+        return [kind for kind, count in parts for _ in range(count)][:cases]
     if isinstance(kinds, str):
-        if kinds not in KINDS:
-            known = (*PRESETS, *KINDS)
-            raise InputError(f"kinds: {kinds!r} is not one of {', '.join(known)}{nearest(kinds, known)}")
-        kinds = [kinds]
-    for kind in kinds:
-        if kind not in KINDS:
-            raise InputError(f"kinds: {kind!r} is not one of {', '.join(KINDS)}{nearest(kind, KINDS)}")
-    return [kinds[k % len(kinds)] for k in range(cases)]
+        chosen = [_known_kind(kinds, (*PRESETS, *KINDS))]
+    else:
+        chosen = [_known_kind(kind, KINDS) for kind in kinds]
+    return [chosen[k % len(chosen)] for k in range(cases)]
 
 
-def _mixed(kinds: list[str], rng: Generator) -> list[Order]:
-    singles, pairs, outside = (
-        _Deck(EFFECTS, rng),
-        _Deck(EFFECTS, rng),
-        _Deck([t.name for t in forms_of("outside")], rng),
-    )
-    orders = []
+def _known_kind(name: str, known: Sequence[str]) -> Kind:
+    for kind in KINDS:
+        if kind == name:
+            return kind
+    raise InputError(f"kinds: {name!r} is not one of {', '.join(known)}{nearest(name, known)}")
+
+
+def _specify(kinds: list[Kind], rng: Generator) -> list[CaseSpecification]:
+    """Return a specification for each kind; effects and scenarios are dealt so that each comes equally often."""
+    singles, pairs = _Dealer(EFFECTS, rng), _Dealer(EFFECTS, rng)
+    outside = _Dealer([scenario.name for scenario in scenarios_of("outside")], rng)
+    specifications = []
     for kind in kinds:
         match kind:
             case "one":
@@ -81,21 +89,21 @@ def _mixed(kinds: list[str], rng: Generator) -> list[Order]:
                 names = (first, pairs.take(first))
             case "outside":
                 names = (outside.take(),)
-            case _:
+            case "none":
                 names = ()
-        orders.append(Order(kind, names))
-    return orders
+        specifications.append(CaseSpecification(kind, names))
+    return specifications
 
 
-class _Deck:
-    """Cards dealt until none is left, then shuffled anew: every name equally often."""
+class _Dealer:
+    """Names dealt until none is left, then shuffled anew: every name equally often."""
 
     def __init__(self, names: Sequence[str], rng: Generator) -> None:
         self.names, self.rng = list(names), rng
         self.left: list[str] = []
 
     def take(self, but: str = "") -> str:
-        """Deal a card that is not `but`."""
+        """Deal a name that is not `but`."""
         if not self.left or self.left == [but]:
             self.left = [self.names[k] for k in self.rng.permutation(len(self.names))]
         place = -1 if self.left[-1] != but else -2

@@ -5,16 +5,17 @@ from __future__ import annotations
 import gzip
 import io
 import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.random import Generator
 from ruamel.yaml import YAML
 
-from seatsim.blind.make.case import CHANNELS, RunPlan, Setting
-from seatsim.blind.truth.rig import RATE
-from seatsim.blind.truth.slots import Array
+from seatsim.blind.make.tolerance import TOLERANCE
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, RunPlan
+from seatsim.blind.truth.physics.rig import SAMPLE_RATE
+from seatsim.blind.truth.sensors import Readings
 
 UNITS = {
     "floor_acceleration": "m/s^2", "frame_acceleration": "m/s^2", "driver_acceleration": "m/s^2",
@@ -22,24 +23,26 @@ UNITS = {
     "damper_temperature": "degC",
 }  # fmt: skip
 DIGITS = {"suspension_displacement": 6, "damper_force": 1, "damper_temperature": 2}
-TOLERANCE = 0.02
+"""After the point, a tenth of the noise or less; all others have four."""
 EPOCH = 1_600_000_000
-"""Time stamp of every file, s."""
+"""Time stamp of every file, s: when a file was written would tell how long its case took to draw."""
 
 
-def nominal_scenario(setting: Setting) -> dict[str, Any]:
-    """Return the scenario as the owner believes it."""
-    n = setting.nominal
-    bingham = n["is_bingham"] == 1.0
+def nominal_scenario(experiment: Experiment) -> dict[str, object]:
+    """Return the scenario as the owner believes it, under the contract's keys."""
+    n = experiment.nominal
+    bingham = experiment.is_bingham
     letter = "fc" if bingham else "alpha"
     names = ("f0", "v_ref") if bingham else ("k0", "x0", "f0", "A", "beta", "gamma")
-    parameters: dict[str, Any] = {"c_a": n["c_a"], "c_b": n["c_b"], f"{letter}_a": n["y_a"], f"{letter}_b": n["y_b"]}
+    parameters: dict[str, float] = {
+        "c_a": n["c_a"], "c_b": n["c_b"], f"{letter}_a": n["y_a"], f"{letter}_b": n["y_b"],
+    }  # fmt: skip
     parameters |= {name: n[name] for name in names}
     if not bingham:
         parameters["n"] = int(n["n"])
     return {
         "plant": {
-            "frame_mass": n["ms"], "driver_mass": n["m"], "suspension_stiffness": n["kf"], 
+            "frame_mass": n["ms"], "driver_mass": n["m"], "suspension_stiffness": n["kf"],
             "suspension_damping": n["cf"], "cushion_stiffness": n["kc"], "cushion_damping": n["cc"],
         },
         "damper": {"model": "bingham" if bingham else "bouc_wen", "parameters": parameters},
@@ -50,37 +53,41 @@ def nominal_scenario(setting: Setting) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def header(setting: Setting, runs: list[RunPlan]) -> dict[str, Any]:
-    """Return `recording.yaml`."""
-    channels: dict[str, dict[str, Any]] = {}
-    for name in CHANNELS:
-        if name in setting.channels:
-            noise = {"noise_rms": setting.noise[name]} if name in setting.noise else {}
-            channels[name] = {"unit": UNITS[name]} | noise
+def recording_header(experiment: Experiment, runs: Sequence[RunPlan]) -> dict[str, object]:
+    """Return the content of `recording.yaml`."""
+    channels = {name: _channel_header(experiment, name) for name in CHANNELS if name in experiment.channels}
     entries = [
         {"name": run.name, "file": f"{run.name}.csv.gz"} | ({"repeat_of": run.repeat_of} if run.repeat_of else {})
         for run in runs
     ]
     return {
-        "rig": "seat", "sample_rate": RATE, "parameter_tolerance": TOLERANCE, "nominal": "nominal.yaml",
+        "rig": "seat", "sample_rate": SAMPLE_RATE, "parameter_tolerance": TOLERANCE, "nominal": "nominal.yaml",
         "runs": entries, "channels": channels,
     }  # fmt: skip
 
 
-def noisy(setting: Setting, shown: dict[str, Array], rng: Generator) -> dict[str, Array]:
-    """Return the recorded channels with white noise of the stated rms."""
-    out = {}
+def _channel_header(experiment: Experiment, name: str) -> dict[str, str | float]:
+    header: dict[str, str | float] = {"unit": UNITS[name]}
+    return header | {"noise_rms": experiment.noise[name]} if name in experiment.noise else header
+
+
+def add_noise(experiment: Experiment, readings: Readings, rng: Generator) -> Readings:
+    """Return the recorded channels with white noise of the stated rms.
+
+    Channels that are not recorded take their numbers of the generator too, so that the others' noise is the same.
+    """
+    noisy = {}
     for name in CHANNELS:
-        noise = rng.standard_normal(shown[name].size)
-        if name in setting.channels:
-            out[name] = shown[name] + setting.noise.get(name, 0.0) * noise
-    return out
+        noise = rng.standard_normal(readings[name].size)
+        if name in experiment.channels:
+            noisy[name] = readings[name] + experiment.noise.get(name, 0.0) * noise
+    return noisy
 
 
-def table_bytes(channels: dict[str, Array]) -> bytes:
+def encode_table(channels: Readings) -> bytes:
     """Return a run as a gzipped CSV whose bytes depend on nothing but the numbers."""
     rows = next(iter(channels.values())).size
-    columns = [np.char.mod("%.3f", np.arange(rows) / RATE)]
+    columns = [np.char.mod("%.3f", np.arange(rows) / SAMPLE_RATE)]
     columns += [np.char.mod(f"%.{DIGITS.get(name, 4)}f", values) for name, values in channels.items()]
     lines = [",".join(("time", *channels))] + [",".join(row) for row in zip(*columns, strict=True)]
     packed = io.BytesIO()
@@ -89,7 +96,7 @@ def table_bytes(channels: dict[str, Array]) -> bytes:
     return packed.getvalue()
 
 
-def yaml_bytes(value: dict[str, Any]) -> bytes:
+def encode_yaml(value: Mapping[str, object]) -> bytes:
     """Return a mapping as YAML."""
     stream = io.BytesIO()
     yaml = YAML()
@@ -98,21 +105,21 @@ def yaml_bytes(value: dict[str, Any]) -> bytes:
     return stream.getvalue()
 
 
-def recording_files(
-    setting: Setting, shown: list[dict[str, Array]], rng: Generator, runs: list[int]
+def encode_recording(
+    experiment: Experiment, readings: Sequence[Readings], rng: Generator, runs: Sequence[int]
 ) -> dict[str, bytes]:
-    """Return the files of a recording folder that holds these runs."""
-    plans = [setting.runs[k] for k in runs]
+    """Return the files of a recording folder that holds these runs, by name; the noise is drawn run by run."""
+    plans = [experiment.runs[k] for k in runs]
     files = {
-        "recording.yaml": yaml_bytes(header(setting, plans)),
-        "nominal.yaml": yaml_bytes(nominal_scenario(setting)),
+        "recording.yaml": encode_yaml(recording_header(experiment, plans)),
+        "nominal.yaml": encode_yaml(nominal_scenario(experiment)),
     }
     for k, plan in zip(runs, plans, strict=True):
-        files[f"{plan.name}.csv.gz"] = table_bytes(noisy(setting, shown[k], rng))
+        files[f"{plan.name}.csv.gz"] = encode_table(add_noise(experiment, readings[k], rng))
     return files
 
 
-def write_files(folder: Path, files: dict[str, bytes]) -> None:
+def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write a folder whole: under another name first, then renamed; its times tell nothing of how long a draw took."""
     part = folder.with_name(f".{folder.name}.part")
     part.mkdir(parents=True, exist_ok=True)

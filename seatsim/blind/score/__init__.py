@@ -1,1 +1,1 @@
-"""Comparison of verdicts with the sealed labels."""
+"""Verdicts compared with sealed labels; it knows the labels' words, and neither how cases are made nor simulated."""

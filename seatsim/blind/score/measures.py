@@ -10,6 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 BINS = 10
+"""Of the reliability table: each holds a tenth of all probabilities, 24 for each case."""
+Z_95 = 1.96
+"""Standard normal quantile of a two-sided 95 % interval."""
 
 
 @dataclass(frozen=True)
@@ -26,10 +29,10 @@ class Rate:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Wilson (1927): `(p + z^2/2n -+ z sqrt(p(1-p)/n + z^2/4n^2)) / (1 + z^2/n)`."""
+        """Wilson (1927): `(p + z^2/2n -+ z sqrt(p(1-p)/n + z^2/4n^2)) / (1 + z^2/n)`; it holds for few cases too."""
         if not self.total:
             return (math.nan, math.nan)
-        z, n, p = 1.96, self.total, self.right / self.total
+        z, n, p = Z_95, self.total, self.right / self.total
         centre = p + z * z / (2 * n)
         half = z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
         return (max((centre - half) / (1 + z * z / n), 0.0), min((centre + half) / (1 + z * z / n), 1.0))
@@ -39,7 +42,7 @@ class Rate:
         return {"right": self.right, "total": self.total, "share": self.value, "interval": list(self.interval)}
 
 
-def rate(flags: Sequence[bool]) -> Rate:
+def count_true(flags: Sequence[bool]) -> Rate:
     """Return how many flags are set."""
     return Rate(sum(bool(flag) for flag in flags), len(flags))
 
@@ -56,24 +59,25 @@ class Bin:
 
 
 def reliability(stated: NDArray[np.float64], true: NDArray[np.bool_], bins: int = BINS) -> list[Bin]:
-    """Return bins of equal mass (sorted by what was stated; ties stay in their order)."""
+    """Return bins of equal mass of probabilities and of what came true, shape (n,) each.
+
+    Sorted by what was stated; ties stay in their order. Equal mass, since most probabilities lie near zero and bins of
+    equal width would hold next to nothing.
+    """
     order = np.argsort(stated, kind="stable")
-    parts = [part for part in np.array_split(order, bins) if part.size]
-    return [
-        Bin(
-            float(np.mean(stated[part])), float(np.mean(true[part])), int(part.size), float(np.min(stated[part])),
-            float(np.max(stated[part])),
-        )
-        for part in parts
-    ]  # fmt: skip
+    return [_bin(stated[part], true[part]) for part in np.array_split(order, bins) if part.size]
+
+
+def _bin(stated: NDArray[np.float64], true: NDArray[np.bool_]) -> Bin:
+    return Bin(float(np.mean(stated)), float(np.mean(true)), stated.size, float(np.min(stated)), float(np.max(stated)))
 
 
 def calibration_error(table: Sequence[Bin]) -> float:
-    """Return the expected calibration error: mean over all of |stated - true| by bin."""
+    """Return the expected calibration error: mean over all of |stated - true| by bin (Naeini et al. 2015)."""
     total = sum(b.count for b in table)
     return sum(b.count * abs(b.stated - b.true) for b in table) / total if total else math.nan
 
 
-def brier(stated: NDArray[np.float64], true: NDArray[np.bool_]) -> float:
+def brier_score(stated: NDArray[np.float64], true: NDArray[np.bool_]) -> float:
     """Return the mean squared difference of probability and truth (Brier 1950)."""
     return float(np.mean((stated - true) ** 2)) if stated.size else math.nan

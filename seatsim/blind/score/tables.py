@@ -83,12 +83,12 @@ def _reliability(score: Score) -> Table:
 def _failures(score: Score, width: int) -> Table:
     table = _table("failures", "case", "truth", "limit x", "missing", "verdict", "named", "where")
     for failure in score.failures[:width]:
-        truth = ", ".join(failure["effects"]) or ", ".join(failure["forms"]) or "none"
+        true = ", ".join(failure["effects"]) or ", ".join(failure["forms"]) or "none"
         sizes = ", ".join(f"{size:.1f}" for size in failure["materialities"])
         named = ", ".join(failure["selected"] or failure["named"][:1])
         table.add_row(
             failure["case"],
-            truth,
+            true,
             sizes,
             ", ".join(failure["missing"]),
             failure["verdict"],

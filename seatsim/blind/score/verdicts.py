@@ -1,4 +1,4 @@
-"""What a diagnosis said of a case, and whether that is right (rules of issue 3's table of bars)."""
+"""What a diagnosis said of a case, and whether that is right."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import NotRequired, Required, TypedDict
 
+from seatsim.blind.labels import Label
 from seatsim.schema.errors import InputError
 
 NAMING = ("known", "ambiguous")
+"""Verdicts that name effects."""
 LARGEST_GROUP = 2
+"""Effects that a group may hold and still count as an answer: a workshop can check two."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,7 @@ class Verdict:
 
 
 def read_verdict(path: Path) -> Verdict:
-    """Read a diagnosis.
+    """Read a diagnosis; where there is none the verdict is `missing`.
 
     Raises:
         InputError: the file is not a JSON object with a verdict.
@@ -56,33 +59,72 @@ def read_verdict(path: Path) -> Verdict:
     if not path.is_file():
         return Verdict("missing")
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        return _parsed(data, path)
+        return _parse(json.loads(path.read_text(encoding="utf-8")), path)
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(f"{path}: is not a diagnosis as the contract has it: {error!r}") from error
 
 
-def _parsed(data: dict[str, Any], path: Path) -> Verdict:
-    ranked = sorted(data.get("causes") or [], key=lambda cause: -float(cause.get("probability") or 0.0))
-    gap = data.get("gap") or {}
-    interval = gap.get("shrink_interval")
-    shrink = gap.get("shrink")
-    augmented = data.get("augmented")
+class _Cause(TypedDict):
+    effect: str
+    probability: NotRequired[float | None]
+
+
+class _Place(TypedDict):
+    block: str
+
+
+class _Shrink(TypedDict, total=False):
+    shrink: float | None
+    shrink_interval: list[float | None] | None
+
+
+class _Diagnosis(TypedDict, total=False):
+    """The keys of `diagnosis.json` (contract, section 7) that are scored; all but the verdict may be absent or null."""
+
+    verdict: Required[str]
+    causes: list[_Cause] | None
+    where: list[_Place] | None
+    selected: list[str] | None
+    indistinguishable: list[list[str]] | None
+    isolable: list[list[str]] | None
+    gap: _Shrink | None
+    augmented: str | None
+
+
+def _parse(data: _Diagnosis, path: Path) -> Verdict:
+    """Return the verdict of JSON that may come from another tool, so every value is converted, or refused."""
+    ranked = sorted(data.get("causes") or [], key=lambda cause: -_probability(cause))
+    gap: _Shrink = data.get("gap") or {}
+    shrink, augmented = gap.get("shrink"), data.get("augmented")
     return Verdict(
         verdict=str(data["verdict"]),
         blocks=tuple(str(entry["block"]) for entry in data.get("where") or []),
         causes=tuple(str(cause["effect"]) for cause in ranked),
-        probabilities={str(cause["effect"]): float(cause.get("probability") or 0.0) for cause in ranked},
+        probabilities={str(cause["effect"]): _probability(cause) for cause in ranked},
         selected=tuple(str(name) for name in data.get("selected") or []),
-        groups=tuple(tuple(str(name) for name in group) for group in data.get("indistinguishable") or []),
-        isolable=tuple(tuple(str(name) for name in group) for group in data.get("isolable") or []),
+        groups=_groups(data.get("indistinguishable")),
+        isolable=_groups(data.get("isolable")),
         shrink=None if shrink is None else float(shrink),
-        shrink_interval=(float(interval[0]), float(interval[1])) if interval and None not in interval else None,
+        shrink_interval=_interval(gap.get("shrink_interval")),
         augmented=path.parent / str(augmented) if augmented else None,
     )
 
 
-def is_right(label: Mapping[str, Any], said: Verdict) -> bool:
+def _probability(cause: _Cause) -> float:
+    return float(cause.get("probability") or 0.0)
+
+
+def _groups(groups: list[list[str]] | None) -> tuple[tuple[str, ...], ...]:
+    return tuple(tuple(str(name) for name in group) for group in groups or [])
+
+
+def _interval(ends: list[float | None] | None) -> tuple[float, float] | None:
+    if not ends or ends[0] is None or ends[1] is None:
+        return None
+    return float(ends[0]), float(ends[1])
+
+
+def is_right(label: Label, verdict: Verdict) -> bool:
     """Tell whether a diagnosis is right.
 
     none: verdict none. One: named (known, ambiguous), and the first cause is it or a group of at most two holds it.
@@ -91,25 +133,27 @@ def is_right(label: Mapping[str, Any], said: Verdict) -> bool:
     effects = set(label["effects"])
     match label["kind"]:
         case "none":
-            return said.verdict == "none"
+            return verdict.verdict == "none"
         case "outside":
-            return said.verdict == "unknown"
+            return verdict.verdict == "unknown"
         case "two":
-            return said.verdict in NAMING and set(said.selected) == effects
-    if said.verdict not in NAMING or not said.causes:
+            return verdict.verdict in NAMING and set(verdict.selected) == effects
+    if verdict.verdict not in NAMING or not verdict.causes:
         return False
-    if said.causes[0] in effects:
+    if verdict.causes[0] in effects:
         return True
-    return any(len(group) <= LARGEST_GROUP and effects <= set(group) for group in said.groups)
+    return any(len(group) <= LARGEST_GROUP and effects <= set(group) for group in verdict.groups)
 
 
-def block_first(label: Mapping[str, Any], said: Verdict) -> bool:
+def is_block_first(label: Label, verdict: Verdict) -> bool:
     """Tell whether the first block is one where something is wrong."""
-    return bool(said.blocks) and said.blocks[0] in label["blocks"]
+    return bool(verdict.blocks) and verdict.blocks[0] in label["blocks"]
 
 
-def block_first_coarse(label: Mapping[str, Any], said: Verdict) -> bool:
-    """Tell the same, with blocks that the channels cannot tell apart taken for one."""
-    if block_first(label, said):
+def is_isolable_group_first(label: Label, verdict: Verdict) -> bool:
+    """Tell whether it is, with blocks that the channels cannot tell apart taken for one."""
+    if is_block_first(label, verdict):
         return True
-    return any(said.blocks[0] in group and set(label["blocks"]) & set(group) for group in said.isolable if said.blocks)
+    return any(
+        verdict.blocks[0] in group and set(label["blocks"]) & set(group) for group in verdict.isolable if verdict.blocks
+    )

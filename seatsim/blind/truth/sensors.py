@@ -1,8 +1,4 @@
-"""What the channels read: sensor faults on the true motion, at the rows. Sizes in the channel's unit, s, or shares.
-
-gain `(1+g) u`; gain_bent `(1+g) u` that fades with size; bias: offset plus drift; wander: slow random offset;
-lag_second: `w^2/(s^2 + 1.6 w s + w^2)`; lag_average: mean over a window; skew: the log's clock is off and may drift.
-"""
+"""What the channels read: sensor faults on the true motion, at the rows. Sizes in the channel's unit, s, or shares."""
 
 from __future__ import annotations
 
@@ -11,18 +7,25 @@ from collections.abc import Iterable
 import numpy as np
 from scipy.signal import bilinear, lfilter, lfilter_zi
 
-from seatsim.blind.truth.rig import FINE, RATE, Motion
-from seatsim.blind.truth.roads import coloured
-from seatsim.blind.truth.sensor import NEIGHBOUR
-from seatsim.blind.truth.slots import Array
-from seatsim.blind.truth.truth import Fault
+from seatsim.blind.truth.faults.scenario import SensorFault
+from seatsim.blind.truth.faults.sensor import NEIGHBOUR
+from seatsim.blind.truth.noise import coloured_noise
+from seatsim.blind.truth.physics.compiled import Array
+from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE, Motion
+
+Readings = dict[str, Array]
+"""What each channel reads in a run, shape (rows,) each."""
+ROUNDING = 1e-6
+"""Of a row: a time that lies on a row but for rounding counts as that row."""
+EVEN_RUN_DRIFT = 0.6
+"""Share of the clock's drift in runs of even number: a fault that is the same in all runs is easier to find."""
 
 
-def readings(motion: Motion, floor: Array, faults: Iterable[Fault], run: int) -> dict[str, Array]:
-    """Return what each channel reads, without noise."""
+def read_sensors(motion: Motion, floor: Array, faults: Iterable[SensorFault], run: int) -> Readings:
+    """Return what each channel reads, without noise; `floor` is the run's acceleration at 2 kHz, m/s^2."""
     rows = motion.frame.size
     true = {
-        "floor_acceleration": floor[:: round(FINE / RATE)][:rows].copy(),
+        "floor_acceleration": floor[:: round(EXCITATION_RATE / SAMPLE_RATE)][:rows].copy(),
         "frame_acceleration": motion.frame,
         "driver_acceleration": motion.driver,
         "suspension_displacement": motion.displacement,
@@ -34,26 +37,33 @@ def readings(motion: Motion, floor: Array, faults: Iterable[Fault], run: int) ->
     read = {name: values.copy() for name, values in true.items()}
     for fault in faults:
         if fault.kind == "skew":
-            read["current_command"], read["coil_current"] = skewed(motion, fault, run)
+            read["current_command"], read["coil_current"] = read_late_log(motion, fault, run)
         else:
-            read[fault.channel] = faulty(read[fault.channel], true[NEIGHBOUR[fault.channel]], fault, run)
+            read[fault.channel] = apply_fault(read[fault.channel], true[NEIGHBOUR[fault.channel]], fault, run)
     return read
 
 
-def skewed(motion: Motion, fault: Fault, run: int) -> tuple[Array, Array]:
-    """Return command and coil current as logged `size` seconds late; detail is the share that drifts away."""
-    time = np.arange(motion.frame.size) / RATE
-    late = fault.size * (1.0 - fault.detail * time / time[-1] * (1.0 if run % 2 else 0.6))
+def read_late_log(motion: Motion, fault: SensorFault, run: int) -> tuple[Array, Array]:
+    """Return command and coil current as logged `size` seconds late; `detail` is the share that drifts away.
+
+    The command is held between rows; the current is read between the steps of the integration.
+    """
+    time = np.arange(motion.frame.size) / SAMPLE_RATE
+    late = fault.size * (1.0 - fault.detail * time / time[-1] * (1.0 if run % 2 else EVEN_RUN_DRIFT))
     at = np.clip(time - late, 0.0, time[-1])
-    rows = np.floor(at * RATE + 1e-6).astype(int)
-    fine = np.arange(motion.fine_current.size) * (motion.command.size / (RATE * motion.fine_current.size))
+    rows = np.floor(at * SAMPLE_RATE + ROUNDING).astype(int)
+    fine = np.arange(motion.fine_current.size) * (motion.command.size / (SAMPLE_RATE * motion.fine_current.size))
     return motion.command[rows], np.interp(at, fine, motion.fine_current)
 
 
-def faulty(u: Array, other: Array, fault: Fault, run: int) -> Array:  # noqa: PLR0911 - one return per fault
-    """Return a channel read through a fault."""
+def apply_fault(u: Array, other: Array, fault: SensorFault, run: int) -> Array:  # noqa: PLR0911 - one return per fault
+    """Return a channel `u` read through a fault; `other` is what couples into it.
+
+    gain `(1 + g) u`; gain_bent `(1 + g) u` whose g fades with size; bias: offset plus drift; wander: offset plus slow
+    noise; lag_second: a second-order low-pass; lag_average: mean over a window; quantise, clip, backlash, crosstalk.
+    """
     size = fault.size
-    time = np.arange(u.size) / RATE
+    time = np.arange(u.size) / SAMPLE_RATE
     if size == 0.0:
         return u
     match fault.kind:
@@ -64,47 +74,49 @@ def faulty(u: Array, other: Array, fault: Fault, run: int) -> Array:  # noqa: PL
         case "bias":
             return np.asarray(u + size * (1.0 + (fault.detail - 0.4) * time / time[-1]))
         case "wander":
-            noise = coloured(
-                np.random.default_rng([fault.seed, run]), u.size, 0.02, 0.1 + 0.1 * fault.detail, -1.0, RATE
-            )
+            rng = np.random.default_rng([fault.seed, run])
+            noise = coloured_noise(rng, u.size, 0.02, 0.1 + 0.1 * fault.detail, -1.0, SAMPLE_RATE)
             return u + size * (0.6 + noise)
         case "lag_second":
-            return second_order(u, size)
+            return low_pass(u, size)
         case "lag_average":
-            return averaged(u, size)
+            return moving_average(u, size)
         case "quantise":
             return np.asarray(np.round(u / size) * size)
         case "clip":
             return np.clip(u, -size, size)
         case "backlash":
-            return backlash(u, size)
+            return follow_with_play(u, size)
         case "crosstalk":
             return u + size * other
     raise ValueError(fault.kind)
 
 
-def second_order(u: Array, delay: float) -> Array:
-    """Return a damped second-order low-pass (0.8 critical) whose delay at low frequency is `delay`, s."""
-    w = min(1.6 / delay, 0.9 * np.pi * RATE)
-    b, a = bilinear([w * w], [1.0, 1.6 * w, w * w], RATE)
+def low_pass(u: Array, delay: float) -> Array:
+    """Return u through `w^2 / (s^2 + 1.6 w s + w^2)`, whose delay at low frequency is `1.6 / w = delay`, s.
+
+    The corner stays below 0.9 of the Nyquist frequency, where the bilinear transform is still of use.
+    """
+    w = min(1.6 / delay, 0.9 * np.pi * SAMPLE_RATE)
+    b, a = bilinear([w * w], [1.0, 1.6 * w, w * w], SAMPLE_RATE)
     out, _ = lfilter(b, a, u, zi=lfilter_zi(b, a) * u[0])
     return np.asarray(out)
 
 
-def averaged(u: Array, delay: float) -> Array:
+def moving_average(u: Array, delay: float) -> Array:
     """Return the mean over the last `2 delay` seconds, the edge of the window between rows included in part."""
-    width = 2.0 * delay * RATE + 1.0
+    width = 2.0 * delay * SAMPLE_RATE + 1.0
     whole = int(width)
     taps = np.append(np.ones(whole), width - whole) / width
     padded = np.concatenate([np.full(taps.size - 1, u[0]), u])
     return np.convolve(padded, taps, "valid")
 
 
-def backlash(u: Array, width: float) -> Array:
+def follow_with_play(u: Array, width: float) -> Array:
     """Return what a follower with play of `width` reads."""
     out = np.empty_like(u)
-    held = u[0]
+    follower = u[0]
     for k, value in enumerate(u):
-        held = min(max(held, value - 0.5 * width), value + 0.5 * width)
-        out[k] = held
+        follower = min(max(follower, value - 0.5 * width), value + 0.5 * width)
+        out[k] = follower
     return out

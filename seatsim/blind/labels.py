@@ -1,0 +1,60 @@
+"""Words that a sealed label may hold: kinds of cases, the contract's effects, the blocks of a rig."""
+
+from __future__ import annotations
+
+from typing import Literal, Required, TypedDict, get_args
+
+Kind = Literal["none", "one", "two", "outside"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+"""No effect, one or two effects of the library, something outside the library."""
+Block = Literal["damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"]
+BLOCKS: tuple[Block, ...] = get_args(Block)
+EFFECTS = (
+    "damper.thermal_fade", "damper.gas_spring", "damper.asymmetry", "damper.preyield_hysteresis",
+    "damper.magnetic_saturation", "damper.remanence", "damper.free_play", "damper.seal_friction",
+    "coil.lag", "coil.asymmetric_lag", "coil.delay", "coil.current_limit",
+    "suspension.friction", "suspension.end_stop", "suspension.progressive_spring",
+    "cushion.hardening", "cushion.separation", "driver.mass", "driver.biodynamics", "floor.unmeasured_input",
+    "sensor.gain", "sensor.bias", "sensor.lag", "sensor.clock_skew",
+)  # fmt: skip
+"""The library of the contract, section 5, written again: the makers share no code with the candidates."""
+
+
+class Specification(TypedDict):
+    """What a case was ordered to be, as it stands in its label."""
+
+    kind: Kind
+    names: list[str]
+    missing: list[str] | None
+    background: float
+    scatter: float
+
+
+class Label(TypedDict, total=False):
+    """What is true of a case. Lists go in parallel, one entry for each fault; a hand-made label may hold less."""
+
+    kind: Required[Kind]
+    effects: Required[list[str]]
+    """Effects of the library that are at work; empty outside it."""
+    blocks: Required[list[str]]
+    """Block of each fault."""
+    forms: list[str]
+    """Name of each fault scenario."""
+    severities: list[float]
+    materialities: list[float]
+    """Of each fault beside the others; 1 is the material limit."""
+    net_materialities: list[float]
+    """The same, after what a refit inside the parameter tolerance takes away."""
+    shapes: list[dict[str, float]]
+    faulty_channels: list[str]
+    overlap: float
+    """Collinearity of the responses to two faults, 0..1."""
+    nominal: str
+    """Model of the nominal damper."""
+    missing: list[str]
+    """Channels that are not recorded."""
+    temperatures: list[float]
+    """Of the damper at the start of each run, degC."""
+    background: float
+    """Random force on the frame, N rms."""
+    order: Specification

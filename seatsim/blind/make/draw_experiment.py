@@ -1,0 +1,115 @@
+"""Draws a rig under test and its protocol: parameters, channels, noise, temperatures and runs."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.random import Generator
+
+from seatsim.blind.truth.excitation import draw_bumps, draw_current_steps, draw_road, draw_sweep
+from seatsim.blind.truth.experiment import Experiment, RunPlan
+from seatsim.blind.truth.faults.scenario import FrameForce
+from seatsim.blind.truth.physics import control_laws
+from seatsim.blind.truth.physics.compiled import Array
+from seatsim.blind.truth.physics.rig import SAMPLE_RATE
+
+SECONDS = 24.0
+"""Of a recorded run: about 30 periods of the suspension, as a drive over one stretch of road gives."""
+UNSEEN_SECONDS = 14.0
+SCATTER = 0.015
+"""Largest relative error of a nominal parameter; inside the stated tolerance of 2 %, so a faultless rig is one."""
+STEPPED = 0.4
+"""Share of the rigs whose current is stepped in every run, not controlled in some."""
+COLD = 0.65
+"""Share of the rigs, among those that need no warm run, that stay at 20 degC."""
+NOISE = {
+    "floor_acceleration": 0.01, "frame_acceleration": 0.03, "driver_acceleration": 0.015,
+    "suspension_displacement": 5e-5, "damper_force": 2.5, "coil_current": 0.003, "damper_temperature": 0.1,
+}  # fmt: skip
+"""Rms by channel, in its unit: common accelerometers, a laser, a load cell, a shunt, a thermocouple."""
+PLANT = {"ms": 20.0, "m": 80.0, "kf": 4600.0, "cf": 150.0, "kc": 60000.0, "cc": 1500.0}
+COIL = {"rate": 130.0, "i_max": 1.0}
+BOUC_WEN = {
+    "is_bingham": 0.0, "c_a": 250.0, "c_b": 350.0, "y_a": 45.0, "y_b": 620.0, "k0": 0.0, "x0": 0.0, "f0": 0.0,
+    "A": 2000.0, "beta": 1000.0, "gamma": 1000.0, "n": 2.0,
+}  # fmt: skip
+BINGHAM = {"is_bingham": 1.0, "c_a": 250.0, "c_b": 350.0, "y_a": 45.0, "y_b": 620.0, "f0": 0.0, "v_ref": 0.004}
+EXACT = ("is_bingham", "n", "i_max")
+"""Parameters that are choices, not measurements, and are never off."""
+ZERO_SCALE = {"k0": PLANT["kf"], "x0": 0.01, "f0": 100.0}
+"""What a relative error refers to where the nominal value is zero."""
+
+
+def scatter_parameters(nominal: Mapping[str, float], rng: Generator, width: float = SCATTER) -> dict[str, float]:
+    """Return true parameters: each nominal one off by up to `width`, those at zero by that share of their scale.
+
+    Every parameter takes one number of the generator, also those that stay exact.
+    """
+    true = dict(nominal)
+    for name, value in nominal.items():
+        off = width * rng.uniform(-1.0, 1.0)
+        if name not in EXACT:
+            true[name] = value * (1.0 + off) if value else off * ZERO_SCALE.get(name, 0.0)
+    return true
+
+
+def draw_experiment(
+    rng: Generator, bingham: bool, channels: tuple[str, ...], warm: bool = False, scatter: float = SCATTER,
+    background: float = 0.0,
+) -> Experiment:  # fmt: skip
+    """Draw a rig and its protocol.
+
+    `warm`: one recorded run is hot. `background` is the rms of a random force on the frame, N, which a repeated run
+    shows.
+    """
+    nominal = PLANT | (BINGHAM if bingham else BOUC_WEN) | COIL
+    true = scatter_parameters(nominal, rng, scatter)
+    level = rng.uniform(0.85, 1.2)
+    # noise is stated to three digits, and drawn as stated
+    noise = {name: float(f"{value * level:.3g}") for name, value in NOISE.items() if name in channels}
+    forces = (FrameForce("coloured", background, int(rng.integers(1, 10**6))),) if background else ()
+    return Experiment(nominal, true, channels, noise, _draw_runs(rng, warm, bool(background)), forces)
+
+
+def _draw_temperatures(rng: Generator, warm: bool, count: int) -> list[float]:
+    if not warm and rng.random() < COLD:
+        return [20.0] * count
+    levels = rng.choice([30.0, 45.0, 60.0], count) + rng.uniform(-2.0, 2.0)
+    if warm:
+        # one of the recorded runs, not the last, which is the unseen one
+        levels[rng.integers(count - 1)] = rng.uniform(55.0, 75.0)
+    return [float(level) for level in levels]
+
+
+def _draw_laws(rng: Generator) -> tuple[Array, Array]:
+    """Draw a skyhook and an output feedback: level A, dead band m/s; gains N/m and N s/m."""
+    skyhook = [control_laws.SKYHOOK, round(rng.uniform(0.7, 1.0), 2), rng.uniform(0.002, 0.02), 0.0, 0.0, 0.0]
+    stiffness, relative = -rng.uniform(0.0, 1500.0), rng.uniform(0.0, 200.0)
+    gains = [stiffness, relative, rng.uniform(900.0, 2200.0), rng.uniform(200.0, 900.0)]
+    return np.array(skyhook), np.array([control_laws.FEEDBACK, 0.9, *gains])
+
+
+def _draw_runs(rng: Generator, warm: bool, repeat: bool) -> tuple[RunPlan, ...]:
+    """Draw two runs on roads, one over bumps, the first again where `repeat`, and the unseen sweep.
+
+    The order of the draws is part of what a seed means; a set must be the same in every version.
+    """
+    rows, unseen = round(SECONDS * SAMPLE_RATE), round(UNSEEN_SECONDS * SAMPLE_RATE)
+    rms = rng.uniform(1.15, 1.7)
+    hot = _draw_temperatures(rng, warm, 4)
+    no_current = np.zeros(rows)
+    schedule = np.array([control_laws.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
+    skyhook, feedback = _draw_laws(rng)
+    top = rng.uniform(0.8, 1.0)
+    first = RunPlan("run-a", draw_road(rng, SECONDS, rms), schedule, draw_current_steps(rng, rows, top), hot[0])
+    laws = [(skyhook, no_current), (feedback, no_current)]
+    if rng.random() < STEPPED:
+        laws = [(schedule, draw_current_steps(rng, rows, top)) for _ in laws]
+    second = RunPlan("run-b", draw_road(rng, SECONDS, rms), *laws[0], hot[1])
+    third = RunPlan("run-c", draw_bumps(rng, SECONDS, rng.uniform(6.0, 8.5)), *laws[1], hot[2])
+    again = (dataclasses.replace(first, name="run-d", repeat_of="run-a"),) if repeat else ()
+    sweep = draw_sweep(rng, UNSEEN_SECONDS, 0.9 * rms)
+    last = RunPlan("run-u", sweep, schedule, draw_current_steps(rng, unseen, top), hot[3])
+    return (first, second, third, *again, last)

@@ -1,0 +1,56 @@
+"""Jobs in fresh processes, in one place."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from multiprocessing import get_context
+from typing import TypeVar, TypeVarTuple
+
+Result = TypeVar("Result")
+Arguments = TypeVarTuple("Arguments")
+Progress = Callable[[int, int], None]
+"""Called with jobs done and jobs in all."""
+
+
+def run_jobs(
+    function: Callable[[*Arguments], Result], jobs: Sequence[tuple[*Arguments]], processes: int,
+    progress: Progress | None = None,
+) -> list[Result]:  # fmt: skip
+    """Call a picklable function with each tuple of arguments and return the results in order.
+
+    Up to `processes` spawned processes share the jobs (a fork would copy the threads of BLAS and numba in an unknown
+    state); with one process, or one job, none is started. The first error, and Ctrl-C, cancels what has not begun.
+    """
+    if processes <= 1 or len(jobs) <= 1:
+        return _run_here(function, jobs, progress)
+    pool = ProcessPoolExecutor(min(processes, len(jobs)), mp_context=get_context("spawn"), initializer=_ignore_ctrl_c)
+    futures = [pool.submit(function, *job) for job in jobs]
+    waiting = set(futures)
+    try:
+        while waiting:
+            done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+            for future in done:
+                future.result()
+            if progress:
+                progress(len(jobs) - len(waiting), len(jobs))
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+    return [future.result() for future in futures]
+
+
+def _run_here(
+    function: Callable[[*Arguments], Result], jobs: Sequence[tuple[*Arguments]], progress: Progress | None
+) -> list[Result]:
+    results = []
+    for job in jobs:
+        results.append(function(*job))
+        if progress:
+            progress(len(results), len(jobs))
+    return results
+
+
+def _ignore_ctrl_c() -> None:
+    """Leave Ctrl-C to the parent, which ends its children in order."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

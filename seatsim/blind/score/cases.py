@@ -1,0 +1,110 @@
+"""Scored cases: label and verdict side by side, and how often verdicts are right by what the cases have in common."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypedDict
+
+from seatsim.blind.labels import Label
+from seatsim.blind.score.measures import Rate, count_true
+from seatsim.blind.score.verdicts import Verdict, is_right
+
+SIZES = (1.5, 2.5, 4.0)
+"""Upper edges, in material limits, of the classes by strength: just material, common, strong."""
+NAMED = 3
+"""Causes of a wrong verdict that are listed."""
+
+
+@dataclass(frozen=True)
+class ScoredCase:
+    """A case with its label and what a diagnosis said of it."""
+
+    name: str
+    label: Label
+    verdict: Verdict
+
+    @property
+    def right(self) -> bool:
+        """Whether the verdict is right."""
+        return is_right(self.label, self.verdict)
+
+
+class Failure(TypedDict):
+    """A case whose verdict is wrong, as it stands in `score.json`."""
+
+    case: str
+    kind: str
+    effects: list[str]
+    forms: list[str]
+    materialities: list[float]
+    missing: list[str]
+    verdict: str
+    named: list[str]
+    selected: list[str]
+    groups: list[list[str]]
+    where: list[str]
+
+
+def rate_right(cases: Iterable[ScoredCase]) -> Rate:
+    """Return how many verdicts are right."""
+    return count_true([case.right for case in cases])
+
+
+def rates_by(cases: Iterable[ScoredCase], classes_of: Callable[[Label], Sequence[str]]) -> dict[str, Rate]:
+    """Return how many verdicts are right by class, in the order of the alphabet; a case may belong to several."""
+    flags: dict[str, list[bool]] = {}
+    for case in cases:
+        for name in classes_of(case.label):
+            flags.setdefault(name, []).append(case.right)
+    return {name: count_true(flags[name]) for name in sorted(flags)}
+
+
+def strength_class(label: Label) -> list[str]:
+    """Return the class of a case by the materiality of its weakest fault."""
+    weakest = min(label.get("materialities") or [math.nan])
+    for edge in SIZES:
+        if weakest < edge:
+            return [f"{edge:.1f} x limit or less"]
+    return ["stronger"]
+
+
+def missing_channels(label: Label) -> list[str]:
+    """Return the class of a case by the channels that it lacks."""
+    return [" ".join(label.get("missing", [])) or "all channels"]
+
+
+def confusion(cases: Iterable[ScoredCase]) -> dict[str, dict[str, int]]:
+    """Return how often each name was given, most often first, by what is true."""
+    counts: dict[str, Counter[str]] = {}
+    for case in cases:
+        counts.setdefault(_true_name(case.label), Counter())[case.verdict.named] += 1
+    return {row: dict(counts[row].most_common()) for row in sorted(counts)}
+
+
+def _true_name(label: Label) -> str:
+    match label["kind"]:
+        case "one":
+            return label["effects"][0]
+        case "outside":
+            return f"outside ({label['blocks'][0]})"
+        case kind:
+            return kind
+
+
+def describe_failure(case: ScoredCase) -> Failure:
+    """Return what is true of a case whose verdict is wrong, and what was said."""
+    label, verdict = case.label, case.verdict
+    return {
+        "case": case.name, "kind": label["kind"], "effects": label["effects"], "forms": label.get("forms", []),
+        "materialities": label.get("materialities", []), "missing": label.get("missing", []),
+        "verdict": verdict.verdict, "named": list(verdict.causes[:NAMED]), "selected": list(verdict.selected),
+        "groups": [list(group) for group in verdict.groups], "where": list(verdict.blocks[:2]),
+    }  # fmt: skip
+
+
+def pair(labels: Mapping[str, Label], verdicts: Mapping[str, Verdict]) -> list[ScoredCase]:
+    """Return labels and verdicts of the same names side by side."""
+    return [ScoredCase(name, label, verdicts[name]) for name, label in labels.items()]

@@ -1,0 +1,82 @@
+"""By how much the gap really shrinks: the augmented scenario replayed on a run that the diagnosis was never given."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from seatsim.blind.processes import Progress, run_jobs
+from seatsim.blind.score.measures import Rate, count_true
+from seatsim.blind.score.verdicts import NAMING, Verdict
+from seatsim.blind.sealed import Sealed
+from seatsim.schema.errors import SeatsimError
+
+FEWEST_FOR_PROCESSES = 8
+"""Cases below which a new process costs more time, for its imports, than it saves."""
+CaseShrink = tuple[str, float, float, bool | None]
+"""Name, claimed shrink, true shrink (NaN: cannot be replayed), whether the interval holds (None: none is given)."""
+
+
+@dataclass(frozen=True)
+class ShrinkScore:
+    """Claimed against true shrink on the unseen runs: mean absolute and mean difference, coverage, and each case."""
+
+    mean_difference: float
+    bias: float
+    coverage: Rate
+    cases: list[CaseShrink]
+
+
+def score_shrink(
+    base: Path, opened: Sealed, verdicts: dict[str, Verdict], processes: int, progress: Progress | None
+) -> ShrinkScore | None:
+    """Return claimed against true shrink of the cases below `base` that claim one; None where none does."""
+    claims = [name for name in opened.labels if _claims_shrink(verdicts[name])]
+    if not claims:
+        return None
+    with tempfile.TemporaryDirectory() as temporary:
+        unseen = [opened.extract(name, Path(temporary)) for name in claims]
+        jobs = [
+            (base / name / "nominal.yaml", verdicts[name].augmented, folder)
+            for name, folder in zip(claims, unseen, strict=True)
+        ]
+        found = run_jobs(true_shrink, jobs, processes if len(jobs) >= FEWEST_FOR_PROCESSES else 1, progress)
+    return _compare([_compare_case(name, verdicts[name], true) for name, true in zip(claims, found, strict=True)])
+
+
+def _claims_shrink(verdict: Verdict) -> bool:
+    """Tell whether a verdict claims a shrink that can be checked; under `none` there is nothing to shrink."""
+    said = verdict.verdict in (*NAMING, "unknown")
+    return said and verdict.shrink is not None and verdict.augmented is not None
+
+
+def _compare_case(name: str, verdict: Verdict, true: float | None) -> CaseShrink:
+    interval = verdict.shrink_interval
+    covered = None if interval is None or true is None else interval[0] <= true <= interval[1]
+    return name, float(verdict.shrink or 0.0), math.nan if true is None else true, covered
+
+
+def _compare(cases: Sequence[CaseShrink]) -> ShrinkScore:
+    coverage = count_true([covered for *_, covered in cases if covered is not None])
+    off = np.array([claimed - true for _, claimed, true, _ in cases if math.isfinite(true)])
+    if not off.size:
+        return ShrinkScore(math.nan, math.nan, coverage, list(cases))
+    return ShrinkScore(float(np.mean(np.abs(off))), float(np.mean(off)), coverage, list(cases))
+
+
+def true_shrink(nominal: Path, augmented: Path | None, unseen: Path) -> float | None:
+    """Return `1 - after / before` of the overall gap on the unseen recording; None where it cannot be replayed."""
+    # here, since the gap brings the whole simulator with it, which only a score with unseen runs needs
+    from seatsim.recordings.gap import measure_gap
+
+    try:
+        before = measure_gap(nominal, unseen).overall
+        after = measure_gap(augmented or nominal, unseen).overall
+    except SeatsimError:
+        return None
+    return 1.0 - after / before

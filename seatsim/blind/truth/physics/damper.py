@@ -1,0 +1,132 @@
+"""Force of the true damper: the contract's two models as the nominal part, and what a real one does besides.
+
+Nominal (contract, section 2; N, m/s, A):  `F = (c_a + c_b i) v + k0 (x - x0) + (y_a + y_b i) z + f0`, with z the
+Bouc-Wen variable or `tanh(v / v_ref)`. Everything else is zero, or one, while its parameter is zero.
+"""
+
+from __future__ import annotations
+
+import math
+
+from seatsim.blind.truth.physics import state
+from seatsim.blind.truth.physics.compiled import Array, compiled
+from seatsim.blind.truth.physics.friction import FASTEST, MICRO_DAMPING, bristle_rate
+from seatsim.blind.truth.physics.magnetisation import yield_current
+from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.temperature import viscous_factor, yield_factor
+
+LEAST_GAS_COLUMN = 0.2
+"""Of the gas column: the travel of a seat never compresses it further, and the power stays finite."""
+CAVITY_SLOPE = 0.15
+"""Share of the force above the opening of the cavity that the fluid still carries."""
+CAVITY_LOSS = 0.9
+"""Largest share of the force that is lost while the cavity closes again."""
+CAVITY_SCALE = 1e-3
+"""m of open stroke over which that loss sets in."""
+SEAL_LOAD = 300.0
+"""N of damper force that presses the seal by one `seal_pressure`."""
+LARGEST_SEAL_LOAD = 3.0
+"""Loads beyond this press the seal no further."""
+
+
+@compiled
+def yield_variable(y: Array, v: float, p: Parameters) -> float:
+    """Return the yield variable z: Bouc-Wen state, `tanh(v / v_ref)`, or a hysteretic stand-in for the latter."""
+    if p.is_bingham == 0.0:
+        return float(y[state.Z])
+    nominal = math.tanh(v / p.v_ref)
+    if p.preyield_share == 0.0:
+        return nominal
+    late = y[state.PREYIELD] if p.preyield_time == 0.0 else math.tanh(y[state.PREYIELD] / p.v_ref)
+    return nominal + p.preyield_share * (late - nominal)
+
+
+@compiled
+def gas_force(x: float, p: Parameters) -> float:
+    """Return the force of the accumulator: polytropic `-F (1 + x / L)^-n`, or preload with a falling stiffness."""
+    if p.gas_law == 2.0:
+        return -p.gas_force + p.gas_rate * (x - 0.5 * x * x / p.gas_length)
+    if p.gas_force == 0.0:
+        return 0.0
+    return float(-p.gas_force * max(1.0 + x / p.gas_length, LEAST_GAS_COLUMN) ** (-p.gas_exponent))
+
+
+@compiled
+def viscous_damping(y: Array, v: float, p: Parameters) -> float:
+    """Return the viscous damping at the fluid's temperature, the direction and the speed, N s/m."""
+    viscous = p.c_a + p.c_b * y[state.CURRENT]
+    if p.fade_law != 0.0:
+        viscous *= viscous_factor(y[state.T_FLUID], p)
+    up = 0.5 * (1.0 + math.tanh(v / p.asym_speed))
+    viscous *= 1.0 + p.asym_viscous_up * up + p.asym_viscous_down * (1.0 - up)
+    if p.thinning_power != 0.0:
+        viscous *= (1.0 + (v / p.thinning_speed) ** 2) ** (-0.5 * p.thinning_power)
+    return float(viscous)
+
+
+@compiled
+def yield_force(y: Array, memory: Array, z: float, p: Parameters) -> float:
+    """Return the yield force at the fluid's temperature and the direction of z, N."""
+    strength = p.y_a + p.y_b * yield_current(y, memory, p)
+    if p.fade_law != 0.0:
+        strength *= yield_factor(y[state.T_FLUID], p)
+    up = 0.5 * (1.0 + min(max(z, -1.0), 1.0))
+    return float(strength * (1.0 + p.asym_yield_up * up + p.asym_yield_down * (1.0 - up)))
+
+
+@compiled
+def main_force(y: Array, memory: Array, x: float, v: float, p: Parameters) -> float:
+    """Return the force of fluid and field before seal and gas, N."""
+    z = yield_variable(y, v, p)
+    force = viscous_damping(y, v, p) * v + p.k0 * (x - p.x0) + yield_force(y, memory, z, p) * z + p.f0
+    force += p.orifice_damping * v * abs(v) + p.field_stiffness * y[state.CURRENT] * x
+    if p.bypass_share != 0.0:
+        force *= 1.0 - p.bypass_share * math.exp(-((x / p.bypass_length) ** 2))
+    if p.cavitation_force > 0.0:
+        if v > 0.0 and force > p.cavitation_force:
+            force = p.cavitation_force + CAVITY_SLOPE * (force - p.cavitation_force)
+        elif v < 0.0:
+            force *= 1.0 - CAVITY_LOSS * math.tanh(memory[state.CAVITY_VOLUME] / CAVITY_SCALE)
+    return float(force)
+
+
+@compiled
+def write_yield_rates(y: Array, rates: Array, v: float, p: Parameters) -> None:
+    """Write the rate of the yield variable.
+
+    Bouc-Wen: `z' = A v - beta v |z|^n - gamma |v| z |z|^(n-1)`; Dahl-like: `u' = |v| / length (tanh(v / v_ref) - u)`;
+    viscoelastic: the speed that the fluid feels lags the piston's by `preyield_time`.
+    """
+    if p.is_bingham == 0.0:
+        z = y[state.Z]
+        # the two common exponents without a power, which would be the dearest operation of the loop
+        size = abs(z) if p.n == 1.0 else abs(z) ** (p.n - 1.0)
+        if p.n == 2.0:
+            size = abs(z)
+        rates[state.Z] = p.A * v - p.beta * v * size * abs(z) - p.gamma * abs(v) * z * size
+    elif p.preyield_share != 0.0 and p.preyield_time == 0.0:
+        # a tenth of v_ref^2 keeps the state moving at rest; without it z would stay where the motion stopped
+        rate = min(math.sqrt(v * v + 0.1 * p.v_ref * p.v_ref) / p.preyield_length, FASTEST)
+        rates[state.PREYIELD] = rate * (math.tanh(v / p.v_ref) - y[state.PREYIELD])
+    elif p.preyield_share != 0.0:
+        rates[state.PREYIELD] = (v - y[state.PREYIELD]) / p.preyield_time
+
+
+@compiled
+def seal_force(y: Array, rates: Array, v: float, force: float, p: Parameters) -> float:
+    """Return the friction of the seal, which the damper's `force` presses on, N, and write the rate of its bristle."""
+    rate = bristle_rate(y[state.SEAL], v, p.seal_length, p.seal_stribeck, p.seal_speed)
+    rates[state.SEAL] = rate
+    sticking = math.exp(-((v / p.seal_speed) ** 2))
+    level = p.seal_force * (1.0 + p.seal_pressure * min(abs(force) / SEAL_LOAD, LARGEST_SEAL_LOAD))
+    return float(level * (y[state.SEAL] + MICRO_DAMPING * sticking * rate))
+
+
+@compiled
+def update_cavity(y: Array, memory: Array, x: float, v: float, h: float, p: Parameters) -> None:
+    """Carry the open stroke of the cavity over one step: it opens in extension and closes in compression."""
+    force = main_force(y, memory, x, v, p)
+    if v > 0.0 and force >= p.cavitation_force:
+        memory[state.CAVITY_VOLUME] += p.cavitation_fill * v * h * (1.0 - p.cavitation_force / force)
+    elif v < 0.0:
+        memory[state.CAVITY_VOLUME] = max(memory[state.CAVITY_VOLUME] + v * h, 0.0)

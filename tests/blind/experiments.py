@@ -1,0 +1,23 @@
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.blind.make.draw_experiment import draw_experiment
+from seatsim.blind.make.materiality import CommandedRuns
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, context_of, read_channels, simulate_run
+from seatsim.blind.truth.faults.scenario import Changes, Context
+
+
+class SmallExperiment(NamedTuple):
+    experiment: Experiment
+    context: Context
+    runs: CommandedRuns
+
+
+def small_experiment(bingham: bool = False, warm: bool = True, scatter: float = 0.0) -> SmallExperiment:
+    experiment = draw_experiment(np.random.default_rng(5), bingham, CHANNELS, warm, scatter)
+    motions = [simulate_run(experiment, Changes(), k) for k in range(3)]
+    context = context_of(experiment, [read_channels(experiment, Changes(), k, motions[k]) for k in range(3)])
+    return SmallExperiment(experiment, context, CommandedRuns(experiment, [motion.command for motion in motions]))

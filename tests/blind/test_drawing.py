@@ -1,0 +1,125 @@
+"""Sizes, severities, tolerance and files of drawn cases."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import math
+from collections import Counter
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from seatsim.blind.make import draw_case, draw_experiment, folder, materiality, severity
+from seatsim.blind.make.tolerance import ToleranceRefit, _bounded_least_squares
+from seatsim.blind.truth.faults.scenario import Changes, SensorFault
+
+from .experiments import small_experiment
+
+
+def test_parameters_are_scattered_inside_the_width() -> None:
+    nominal = draw_experiment.PLANT | draw_experiment.BOUC_WEN | draw_experiment.COIL
+    draws = [draw_experiment.scatter_parameters(nominal, np.random.default_rng(k), 0.01) for k in range(200)]
+    off = np.array([[true[name] / nominal[name] - 1.0 for name in ("kf", "c_a", "rate")] for true in draws])
+    assert 0.009 < np.max(np.abs(off)) <= 0.01
+    assert np.std(off) == pytest.approx(0.01 / math.sqrt(3.0), rel=0.1)
+    assert 0.9 < np.max([abs(true["f0"]) for true in draws]) <= 1.0
+    assert all(true["n"] == 2.0 and true["i_max"] == 1.0 for true in draws)
+
+
+def test_channels_are_missing_at_their_rates() -> None:
+    rng = np.random.default_rng(0)
+    missing = [draw_case.draw_missing_channels(rng) for _ in range(4000)]
+    shares = Counter(map(len, missing))
+    assert [shares[k] / 4000 for k in range(3)] == pytest.approx([0.6, 0.33, 0.07], abs=0.03)
+    single = Counter(some[0] for some in missing if len(some) == 1)
+    assert single["damper_force"] / single.total() == pytest.approx(0.5, abs=0.04)
+
+
+@pytest.mark.parametrize("power", [1.0, 1.4, 1.7])
+def test_a_severity_is_found_near_a_drawn_target(power: float) -> None:
+    sizes, off = [], []
+    for k in range(50):
+        found = severity.find_severity(lambda s: 0.4 * s**power, (0.01, 1e3), np.random.default_rng(k))
+        assert found is not None
+        off.append(abs(math.log(found[1] / severity.draw_target(np.random.default_rng(k)))))
+        assert found[1] == pytest.approx(0.4 * found[0] ** power)
+        sizes.append(found[1])
+    assert min(sizes) >= 1.03 and max(sizes) > 5.0
+    assert np.quantile(off, 0.9) < severity.LOG_TOLERANCE
+
+
+def test_a_severity_stays_inside_what_is_plausible_and_stable() -> None:
+    rng = np.random.default_rng
+    assert severity.find_severity(lambda s: 0.1 * s, (0.1, 5.0), rng(0)) is None
+    weak = severity.find_severity(lambda s: 0.4 * s, (0.1, 5.0), rng(1))
+    assert weak is not None and 1.03 <= weak[1] <= 2.0
+    unstable = severity.find_severity(lambda s: 2.0 * s if s < 0.9 else math.inf, (0.1, 50.0), rng(2))
+    assert unstable is not None and unstable[0] < 0.9
+    assert severity.find_severity(lambda s: math.inf, (0.5, 5.0), rng(0)) is None
+
+
+def test_targets_are_log_uniform() -> None:
+    rng = np.random.default_rng(0)
+    logs = np.log([severity.draw_target(rng) for _ in range(4000)])
+    assert logs.min() == pytest.approx(math.log(1.1), abs=0.01) and logs.max() == pytest.approx(math.log(8.0), abs=0.01)
+    assert np.mean(logs) == pytest.approx(0.5 * (math.log(1.1) + math.log(8.0)), abs=0.03)
+
+
+@pytest.mark.usefixtures("short")
+def test_materiality_of_a_gain_and_of_a_parameter() -> None:
+    experiment, _, runs = small_experiment()
+    gain = Changes(sensor_faults=(SensorFault("gain", "damper_force", 0.1),))
+    size, response = runs.materiality(gain, Changes())
+    force = np.concatenate([run["damper_force"][500:] for run in runs.read(Changes())])
+    limit = max(0.05 * 1.1 * np.std(force), experiment.noise["damper_force"])
+    assert size == pytest.approx(0.1 * materiality.rms(force) / limit)
+    assert np.count_nonzero(response) <= force.size
+    assert runs.materiality(Changes({"kf": -1e9}), Changes())[0] == math.inf
+    double = Changes(sensor_faults=(SensorFault("gain", "damper_force", 0.2),))
+    assert materiality.collinearity(response, runs.materiality(double, Changes())[1]) == pytest.approx(1.0)
+    assert materiality.collinearity(np.array([1.0, 0.0]), np.array([-3.0, 4.0])) == pytest.approx(0.6)
+
+
+@pytest.mark.usefixtures("short")
+def test_a_change_inside_the_tolerance_is_explained_and_one_beyond_it_is_not() -> None:
+    experiment, _, runs = small_experiment()
+    refit = ToleranceRefit(experiment, runs.commands)
+    inside = Changes({"c_a": 250.0 * 1.015, "m": 80.0 * 1.015})
+    far = Changes({"m": 80.0 * 1.3})
+    assert refit.unexplained_share(inside, Changes()) < 0.1
+    assert refit.unexplained_share(far, Changes()) > 0.5
+    gain = Changes(sensor_faults=(SensorFault("gain", "damper_force", 1e-4),))
+    assert refit.unexplained_share(gain, Changes()) == 1.0
+
+
+def test_the_bounded_refit_is_the_projection_onto_the_box() -> None:
+    rng = np.random.default_rng(0)
+    J, _ = np.linalg.qr(rng.standard_normal((60, 3)))
+    theta = np.array([0.4, -2.5, 0.9])
+    found = _bounded_least_squares(J, J @ theta + 0.0)
+    np.testing.assert_allclose(found, [0.4, -1.0, 0.9], atol=1e-6)
+
+
+@pytest.mark.usefixtures("short")
+def test_a_recording_holds_what_its_header_states() -> None:
+    experiment, _, _ = small_experiment()
+    quiet = {name: np.linspace(0.0, 1.0, 20_000) for name in folder.CHANNELS}
+    noisy = folder.add_noise(experiment, quiet, np.random.default_rng(0))
+    for name, noise in experiment.noise.items():
+        assert np.std(noisy[name] - quiet[name]) == pytest.approx(noise, rel=0.03)
+    np.testing.assert_array_equal(noisy["current_command"], quiet["current_command"])
+    files = folder.encode_recording(experiment, [quiet], np.random.default_rng(0), [0])
+    assert sorted(files) == ["nominal.yaml", "recording.yaml", "run-a.csv.gz"]
+    table = pd.read_csv(io.BytesIO(gzip.decompress(files["run-a.csv.gz"])))
+    assert list(table.columns) == ["time", *folder.CHANNELS]
+    np.testing.assert_allclose(table["time"], np.arange(20_000) / 500.0)
+    np.testing.assert_allclose(table["coil_current"], noisy["coil_current"], atol=6e-5)
+    np.testing.assert_allclose(table["suspension_displacement"], noisy["suspension_displacement"], atol=6e-7)
+    header = folder.recording_header(experiment, experiment.runs[:1])
+    assert header["channels"]["damper_force"] == {"unit": "N", "noise_rms": experiment.noise["damper_force"]}
+    assert header["channels"]["current_command"] == {"unit": "A"}
+    nominal = folder.nominal_scenario(experiment)
+    assert nominal["plant"]["suspension_stiffness"] == 4600.0 and nominal["actuator"]["rate"] == 130.0
+    assert nominal["damper"]["parameters"]["alpha_b"] == 620.0 and nominal["damper"]["model"] == "bouc_wen"
