@@ -25,7 +25,7 @@ HOLD = 0.005
 
 @register("bracket", "clairvoyant", None)
 @dataclass(frozen=True)
-class Bracket:
+class ClairvoyantBounds:
     """Bounds and runs of an ideal semi-active damper on one seat and floor, one for each weight; shape (K,) each.
 
     The criterion is J = aw^2 + weight x^2 with the RMS Wk-weighted acceleration of the driver aw in m/s^2 and the RMS
@@ -41,7 +41,7 @@ class Bracket:
     step: float
 
     @classmethod
-    def of(cls, scenario: Scenario, progress: Callable[[str], None] = lambda text: None) -> Bracket:
+    def of(cls, scenario: Scenario, progress: Callable[[str], None] = lambda text: None) -> ClairvoyantBounds:
         """Return the bracket of a scenario's seat, damper and floor."""
         return clairvoyant(scenario, progress=progress)
 
@@ -81,7 +81,7 @@ def clairvoyant(
     weights: ArrayLike = WEIGHTS,
     hold: float = HOLD,
     progress: Callable[[str], None] = lambda text: None,
-) -> Bracket:
+) -> ClairvoyantBounds:
     """Return the bracket of a scenario's seat, damper and floor; see docs/bracket.md for method and validity.
 
     Args:

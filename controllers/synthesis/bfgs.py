@@ -21,7 +21,7 @@ _ARMIJO, _CURVATURE = 1e-4, 0.5
 _LINE_STEPS = 40
 
 
-class Point(NamedTuple):
+class Iterate(NamedTuple):
     """A place with the function's value and gradient there."""
 
     x: Array
@@ -38,13 +38,13 @@ def minimise(
     patience: int = 20,
     progress: float = 1e-6,
     iterations: int = 1000,
-) -> Point:
+) -> Iterate:
     """Descend from `start`, where `function` must be finite; the first steps are steepest in x / unit.
 
     Ends where the value is at most `enough`, `patience` steps together gain less than `progress`, no step
     descends, or `time.monotonic()` passes `deadline`.
     """
-    here = Point(start, *function(start, np.inf))
+    here = Iterate(start, *function(start, np.inf))
     inverse = first = np.diag(unit**2)
     history = [here.value]
     fresh = True
@@ -65,16 +65,16 @@ def minimise(
     return here
 
 
-def _line_search(function: Function, here: Point, direction: Array) -> Point | None:
+def _line_search(function: Function, here: Iterate, direction: Array) -> Iterate | None:
     """Find a point with sufficient decrease and a flatter slope; None where nothing lower is found."""
     slope = float(here.gradient @ direction)
     if not slope < 0:
         return None
     low, high, step = 0.0, np.inf, 1.0
-    lowest: Point | None = None
+    lowest: Iterate | None = None
     for _ in range(_LINE_STEPS):
         x, ceiling = here.x + step * direction, here.value + _ARMIJO * step * slope
-        trial = Point(x, *function(x, ceiling))
+        trial = Iterate(x, *function(x, ceiling))
         if not trial.value < ceiling:
             high = step
         else:
@@ -85,7 +85,7 @@ def _line_search(function: Function, here: Point, direction: Array) -> Point | N
     return lowest
 
 
-def _update(inverse: Array, here: Point, following: Point, fresh: bool) -> Array:
+def _update(inverse: Array, here: Iterate, following: Iterate, fresh: bool) -> Array:
     """BFGS update of the inverse Hessian; the first one also sets its scale."""
     s, y = following.x - here.x, following.gradient - here.gradient
     curvature = float(s @ y)

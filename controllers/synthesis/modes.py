@@ -6,20 +6,18 @@ or rank [A - s I; C2] < n (y does not see it). With a structured gain it may sta
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.scaling import Scaled
+from controllers.synthesis.scaling import ScaledPlant
 from seatsim.schema.errors import SynthesisError
 
 _RANK_TOLERANCE = 1e-10
 _FIXED_TOLERANCE = 1e-7
 
 
-def require_stabilisable(scaled: Scaled) -> None:
+def require_stabilisable(scaled: ScaledPlant) -> None:
     """Return quietly where no mode forbids stabilisation.
 
     Raises:
@@ -37,7 +35,7 @@ def require_stabilisable(scaled: Scaled) -> None:
             raise _fixed(mode * scaled.rate, "is moved by no gain of this structure (a fixed mode)")
 
 
-def _loses_rank(wide: NDArray[Any]) -> bool:
+def _loses_rank(wide: NDArray[np.complex128]) -> bool:
     values = np.linalg.svd(wide, compute_uv=False)
     return bool(values[-1] <= _RANK_TOLERANCE * values[0])
 

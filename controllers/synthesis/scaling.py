@@ -17,7 +17,7 @@ from controllers.synthesis.plant import Array, GeneralisedPlant
 _SWEEPS = 30
 
 
-class Scaled(NamedTuple):
+class ScaledPlant(NamedTuple):
     """A plant in scaled coordinates, and the way back."""
 
     plant: GeneralisedPlant
@@ -34,7 +34,7 @@ class Scaled(NamedTuple):
         return gain / (self.controls[:, None] * self.measured)
 
 
-def scale(plant: GeneralisedPlant, like: Scaled | None = None) -> Scaled:
+def scale(plant: GeneralisedPlant, like: ScaledPlant | None = None) -> ScaledPlant:
     """Balance states against each other, B1 against C1, time against the poles; unit columns in B2, unit rows in C2.
 
     Units of control, measurement and time are those of `like` where it is given.
@@ -59,7 +59,7 @@ def scale(plant: GeneralisedPlant, like: Scaled | None = None) -> Scaled:
         plant.D21 * measured[:, None],
         plant.structure,
     )
-    return Scaled(moved, controls, measured, rate)
+    return ScaledPlant(moved, controls, measured, rate)
 
 
 def _input_output(plant: GeneralisedPlant, states: Array, rate: float) -> tuple[Array, Array]:

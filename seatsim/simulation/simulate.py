@@ -17,7 +17,7 @@ from seatsim.kernel.belief import Belief, Truth
 from seatsim.kernel.chain import state_of
 from seatsim.kernel.loop import CHANNELS, Inputs, Setup, Timing, run_loop
 from seatsim.kernel.rig import Rig
-from seatsim.rig.coil import Coil
+from seatsim.rig.control import LawWithNotes, prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, at_rest
 from seatsim.rig.temperature import Thermal
@@ -79,7 +79,7 @@ def simulate(scenario: Scenario, floor: Floor | None = None, forces: Forces | No
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
     states = (initial, _believed(setup.belief), specification_of(type(scenario.control.law)).initial)
     reached = compiled(run_loop, parts)(setup, inputs, *states, out)
-    notes = setup.law.notes() if hasattr(setup.law, "notes") else ()
+    notes = setup.law.notes() if isinstance(setup.law, LawWithNotes) else ()
     if reached < len(out):
         raise RunError(
             f"{scenario.title}: no solution beyond {reached * step:.3f} s, where it leaves all bounds; check the signs"
@@ -96,7 +96,7 @@ def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -
     with scenario.placed("controller"):
         sample_every = _sample_every(scenario.solver.step, control)
         period = sample_every * scenario.solver.step
-        law = _ready(control.law, plant, scenario.coil, period)
+        law = prepare_law(control.law, plant, scenario.coil, period)
     heated = isinstance(scenario.temperature, Thermal) and not recorded
     thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal()
     timing = Timing(scenario.solver.step, sample_every, scenario.solver.tolerance, heated)
@@ -106,13 +106,6 @@ def _setup(scenario: Scenario, plant: Plant, control: Control, recorded: bool) -
     belief = _belief(scenario, control)
     setup = Setup(rig, coil, factors, thermal, law, belief, timing, scenario.coil.max_current, sensors)
     return setup, initial + state_of([type(effect) for effect in on_seat])
-
-
-def _ready(law: Any, plant: Plant, coil: Coil, sample_time: float) -> Any:
-    """Return the compiled form of a law, designed for the nominal rig where the law asks for it."""
-    if hasattr(law, "sampled"):
-        return law.sampled(plant, coil, sample_time)
-    return law.prepared(plant) if hasattr(law, "prepared") else law
 
 
 def _belief(scenario: Scenario, control: Control) -> Truth | Belief:

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from controllers.clairvoyant import Bracket
+from controllers.clairvoyant import ClairvoyantBounds
 from seatsim.cli.app import main
 from seatsim.schema.errors import InputError
 
@@ -25,7 +25,7 @@ class Made:
     def of(scenario, progress):
         progress("at work")
         weights, travel = np.array([400.0, 3600.0]), np.array([0.012, 0.001])
-        return Bracket(weights, np.array([0.08, 0.15]), np.array([0.2, 0.4]), travel, np.zeros((2, 0)), 0.005)
+        return ClairvoyantBounds(weights, np.array([0.08, 0.15]), np.array([0.2, 0.4]), travel, np.zeros((2, 0)), 0.005)
 
 
 class Beaten:

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import seatsim
-from controllers.clairvoyant import Bracket, clairvoyant
-from controllers.clairvoyant.bound import lower_bound
-from controllers.clairvoyant.envelope import envelope
-from controllers.clairvoyant.feasible import best_run
-from controllers.clairvoyant.problem import Problem
-from controllers.clairvoyant.recursion import Lines
+from controllers.clairvoyant import ClairvoyantBounds, clairvoyant
+from controllers.clairvoyant.bound import find_lower_bound
+from controllers.clairvoyant.envelope import fit_envelope
+from controllers.clairvoyant.feasible import find_best_run
+from controllers.clairvoyant.problem import HeldForceProblem
+from controllers.clairvoyant.recursion import ForceBand
 from controllers.clairvoyant.transcription import transcribe
 from seatsim.schema.errors import InputError
 from seatsim.simulation.simulate import Forces, simulate
@@ -22,7 +22,7 @@ LAWS = {
     "soft": {"controller": {"law": "constant", "current": 0.0}},
     "hard": {"controller": {"law": "constant", "current": 1.0}},
 }
-BAND = Lines(c=250.0, f=45.0, b=600.0, a=665.0)
+BAND = ForceBand(c=250.0, f=45.0, b=600.0, a=665.0)
 WEIGHT = 30.0**2
 
 
@@ -38,7 +38,7 @@ def bracket(scenarios):
 
 def posed(scenario, duration=0.4, weight=WEIGHT):
     floor = scenario.excitation.floor(0.001, scenario.seed).acceleration[500 : 501 + round(1000 * duration)]
-    return Problem(transcribe(scenario.plant, floor, 0.001, 5, (0.0, 0.0)), weight)
+    return HeldForceProblem(transcribe(scenario.plant, floor, 0.001, 5, (0.0, 0.0)), weight)
 
 
 def dense(problem):
@@ -49,7 +49,7 @@ def dense(problem):
         states[k] = t.A @ states[k - 1]
         states[k, :, k - 1] += t.B
     y = np.concatenate([states, np.eye(n)[:, None, :]], axis=1)
-    p = problem.quadratic
+    p = problem.stage_matrices
     H, h = np.einsum("kif,ij,kjg->fg", y, p.Q, y), np.einsum("kif,ki->f", y, p.q)
     return H, h, t.acceleration.free + problem.weight * t.travel.free, np.einsum("i,kif->kf", p.V, y)
 
@@ -95,7 +95,7 @@ def test_lagrangian_is_that_of_the_dense_problem(scenarios):
     line = h + G.T @ ((alpha + beta) * c * w0 + 0.5 * f * (alpha - beta)) - 0.5 * (alpha + beta) * w0
     line -= D.T @ (nu * b * w0)
     constant = free + np.sum((alpha + beta) * c * w0**2 + f * (alpha - beta) * w0 + nu * (b**2 * w0**2 - a**2))
-    found = problem.lagrangian(BAND, np.array([alpha, beta, nu]), 0.0)
+    found = problem.minimise_lagrangian(BAND, np.array([alpha, beta, nu]), 0.0)
     assert found.bound == pytest.approx(constant - line @ np.linalg.solve(L, line), rel=1e-7)
     assert found.barrier == pytest.approx(np.linalg.slogdet(L)[1], rel=1e-9)
 
@@ -103,11 +103,11 @@ def test_lagrangian_is_that_of_the_dense_problem(scenarios):
 def test_derivatives_with_the_barrier(scenarios):
     problem, barrier = posed(scenarios[0]), 1e-5
     y = np.full((3, problem.intervals), 2e-7) * [[1.0], [0.7], [1e-3]]
-    by = problem.lagrangian(BAND, y, barrier).by
+    by = problem.minimise_lagrangian(BAND, y, barrier).by
     for row, k in ((0, 5), (0, 40), (1, 40), (2, 60)):
         step = np.zeros_like(y)
         step[row, k] = 1e-3 * y[row, k]
-        up, down = (problem.lagrangian(BAND, y + sign * step, barrier) for sign in (1, -1))
+        up, down = (problem.minimise_lagrangian(BAND, y + sign * step, barrier) for sign in (1, -1))
         rise = (up.bound + barrier * up.barrier - down.bound - barrier * down.barrier) / (2 * step[row, k])
         assert by[row, k] == pytest.approx(rise, rel=1e-4)
 
@@ -115,24 +115,26 @@ def test_derivatives_with_the_barrier(scenarios):
 def test_both_ends_meet_where_the_damper_has_no_choice(scenarios):
     """A band about F = c w leaves a dashpot, whose criterion follows from a linear system."""
     problem = posed(scenarios[0], 0.5)
-    band = Lines(c=800.0, f=0.0, b=800.0, a=4.0)
+    band = ForceBand(c=800.0, f=0.0, b=800.0, a=4.0)
     H, h, free, G = dense(problem)
     F = np.linalg.solve(np.eye(problem.intervals) - band.c * G, band.c * problem.transcription.free_velocity)
     dashpot = free + F @ H @ F + 2 * h @ F
-    run = best_run(problem, band)
+    run = find_best_run(problem, band)
     assert run.cost == pytest.approx(dashpot, rel=0.05)
-    assert lower_bound(problem, band, run.cost).value == pytest.approx(run.cost, rel=0.05)
+    assert find_lower_bound(problem, band, run.cost).value == pytest.approx(run.cost, rel=0.05)
 
 
 def test_envelope_of_a_viscous_and_friction_damper(scenarios):
-    found = envelope(scenarios[0].damper, 1.0, 20.0)
+    found = fit_envelope(scenarios[0].damper, 1.0, 20.0)
     assert found.inner == pytest.approx(BAND, rel=1e-6)
     assert found.outer.c * 0.3 + found.outer.f <= 250 * 0.3 + 45 + 1e-9
     assert found.outer.a + found.outer.b * 0.3 >= 665 + 600 * 0.3 - 1e-9
 
 
 def test_bound_is_the_highest_of_all_weights():
-    bracket = Bracket(np.array([1.0, 4.0]), np.array([2.0, 5.0]), np.array([1.5, 1.2]), np.array([0.5, 1.0]), None, 1.0)
+    bracket = ClairvoyantBounds(
+        np.array([1.0, 4.0]), np.array([2.0, 5.0]), np.array([1.5, 1.2]), np.array([0.5, 1.0]), None, 1.0
+    )
     assert bracket.bound(0.0) == pytest.approx(np.sqrt(5.0))
     assert bracket.bound([1.0, 10.0]) == pytest.approx([1.0, 0.0])
     assert bracket.best([0.75, 2.0]) == pytest.approx([1.35, 1.2])

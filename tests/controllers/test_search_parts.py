@@ -6,16 +6,16 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from controllers.synthesis.lmi import single_step_gain
+from controllers.synthesis.lmi import find_single_step_gain
 from controllers.synthesis.norm import hinf_norm
-from controllers.synthesis.objective import Objective
+from controllers.synthesis.objective import NormObjective
 from controllers.synthesis.scaling import scale
-from controllers.synthesis.starts import projected_state_feedback, starting_gains
+from controllers.synthesis.starts import generate_starting_gains, project_state_feedback
 
 
 def objective_of(plant, limit=50.0):
     limits = np.full(plant.free.shape, limit)
-    return Objective([plant], -limits, limits, np.ones_like(limits))
+    return NormObjective([plant], -limits, limits, np.ones_like(limits))
 
 
 def slopes(function, theta, step=1e-6):
@@ -59,37 +59,37 @@ def test_scaling_keeps_the_norm_and_maps_the_gain(seat):
 def test_starts_are_seeded_and_respect_the_structure(random_plant):
     plant = random_plant(0, structure=[[1, 0], [1, 1]])
     unit = np.full((2, 2), 8.0)
-    first, second = (list(islice(starting_gains([plant], unit, 5), 7)) for _ in range(2))
+    first, second = (list(islice(generate_starting_gains([plant], unit, 5), 7)) for _ in range(2))
     np.testing.assert_array_equal(first, second)
     assert not np.any(np.array(first)[:, 0, 0, 1])
 
 
 def test_sizes_of_changes_are_the_entries_own(random_plant):
     limits, unit = np.full((2, 2), 9.0), np.array([[1.0, 50.0], [1.0, 1.0]])
-    objective = Objective([random_plant(0, structure=[[1, 1], [0, 0]])], -limits, limits, unit)
+    objective = NormObjective([random_plant(0, structure=[[1, 1], [0, 0]])], -limits, limits, unit)
     np.testing.assert_allclose(objective.sizes(np.array([4.0, 0.0])), [4.0, 2.0])
     np.testing.assert_allclose(objective.sizes(np.zeros(2)), [1.0, 50.0])
 
 
 def test_projected_state_feedback_stabilises_where_the_state_is_measured(random_plant):
     plant = random_plant(1, n=3, ny=3)
-    assert plant.close(projected_state_feedback(plant)).abscissa < 0
+    assert plant.close(project_state_feedback(plant)).abscissa < 0
 
 
 @pytest.mark.parametrize("e1", [10.0, 30.0, 50.0])
 def test_convex_start_stabilises_the_seat(seat, e1):
     plant = scale(seat(e1)).plant
-    gain = single_step_gain(plant, 1.0, time.monotonic() + 20)
+    gain = find_single_step_gain(plant, 1.0, time.monotonic() + 20)
     assert hinf_norm(plant.close(gain)).value < hinf_norm(plant.close(0 * gain)).value
 
 
 def test_convex_start_takes_in_measurement_noise(random_plant):
     noisy = random_plant(3, n=2, ny=2, nu=1)
     object.__setattr__(noisy, "D12", 0 * noisy.D12)
-    gain = single_step_gain(noisy, 1.0, time.monotonic() + 20)
+    gain = find_single_step_gain(noisy, 1.0, time.monotonic() + 20)
     assert gain.shape == (1, 2) and noisy.close(gain).abscissa < 0
 
 
 def test_convex_start_knows_what_it_cannot(seat):
-    assert single_step_gain(scale(seat(30.0, structure=[[0, 1]])).plant, 1.0, time.monotonic() + 20) is None
-    assert single_step_gain(scale(seat(30.0)).plant, 1.0, time.monotonic() - 1) is None
+    assert find_single_step_gain(scale(seat(30.0, structure=[[0, 1]])).plant, 1.0, time.monotonic() + 20) is None
+    assert find_single_step_gain(scale(seat(30.0)).plant, 1.0, time.monotonic() - 1) is None

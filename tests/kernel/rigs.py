@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from controllers.constant import Replay
+from controllers.laws.constant import Replay
 from seatsim.compilation.cached import compiled
 from seatsim.kernel.belief import Truth
 from seatsim.kernel.chain import state_of

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from seatsim.schema.files import write_json, write_whole
-from seatsim.simulation.performance_bounds import distance
+from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import UNITS, Result, Run
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def _brackets(result: Result) -> list[dict[str, Any]]:
                     {
                         "scenario": run.scenario.name,
                         "label": dict(run.scenario.label),
-                        **distance(run, bracket)._asdict(),
+                        **measure_distance(run, bracket)._asdict(),
                     }
                     for run in runs
                 ],

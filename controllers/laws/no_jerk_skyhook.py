@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-from seatsim.rig.control import Measurement, law
+from seatsim.rig.control import Measurement, State, law
 from seatsim.schema.fields import param
 
-State = tuple[float, ...]
 SOURCE = (
     "Ahmadian, Song and Southward 2004, J. Vib. Acoust. 126:580, and US patent 6,115,658, which leave the shape of the"
     " factor open; |v| is chosen here"

@@ -6,32 +6,30 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from controllers.kalman import REST, Estimator, Noise, corrected, dot, estimator, predicted
-from controllers.quadratic import QuadraticWeights, state_feedback
+from controllers.optimal.kalman import AT_REST, KalmanFilter, Noise, correct, design_kalman_filter, dot, predict
+from controllers.optimal.regulator import QuadraticWeights, solve_regulator
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement, law
+from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
 from seatsim.schema.fields import param
-
-State = tuple[float, ...]
 
 
 class EstimateFeedback(NamedTuple):
     """Compiled form of LQG; its state is the predicted state of the seat."""
 
     gain: State
-    estimator: Estimator
+    kalman_filter: KalmanFilter
 
     def wanted_force(self, y: Measurement, state: State) -> float:
         """Return the wanted damper force in N."""
-        return dot(self.gain, corrected(self.estimator, y, state))
+        return dot(self.gain, correct(self.kalman_filter, y, state))
 
     def update(self, y: Measurement, state: State) -> State:
         """Return the prediction for the next sample."""
-        return predicted(self.estimator, y, state)
+        return predict(self.kalman_filter, y, state)
 
 
-@law("lqg", initial=REST, source="textbook linear-quadratic-Gaussian control; solved by python-control and scipy")
+@law("lqg", initial=AT_REST, source="textbook linear-quadratic-Gaussian control; solved by python-control and scipy")
 class Lqg(NamedTuple):
     """LQG: the LQR's gain on the state that a Kalman filter estimates from x, zc'' and the damper force."""
 
@@ -40,27 +38,29 @@ class Lqg(NamedTuple):
 
     def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> EstimateFeedback:
         """Return the compiled form for a plant and a sample time."""
-        return EstimateFeedback(state_feedback(plant, self.weights), estimator(plant, self.noise, sample_time))
+        return EstimateFeedback(
+            solve_regulator(plant, self.weights), design_kalman_filter(plant, self.noise, sample_time)
+        )
 
 
 class SwitchedFeedback(NamedTuple):
     """Compiled form of clipped-optimal control; its state is the predicted state of the seat."""
 
     gain: State
-    estimator: Estimator
+    kalman_filter: KalmanFilter
     on: float
 
     def wanted_current(self, y: Measurement, state: State) -> float:
         """Return the commanded current in A."""
-        wanted = dot(self.gain, corrected(self.estimator, y, state))
+        wanted = dot(self.gain, correct(self.kalman_filter, y, state))
         return self.on if (wanted - y.damper_force) * y.damper_force > 0.0 else 0.0
 
     def update(self, y: Measurement, state: State) -> State:
         """Return the prediction for the next sample."""
-        return predicted(self.estimator, y, state)
+        return predict(self.kalman_filter, y, state)
 
 
-@law("clipped_optimal", initial=REST, source="Dyke, Spencer, Sain and Carlson 1996, Smart Mater. Struct. 5:565")
+@law("clipped_optimal", initial=AT_REST, source="Dyke, Spencer, Sain and Carlson 1996, Smart Mater. Struct. 5:565")
 class ClippedOptimal(NamedTuple):
     """Clipped-optimal control: `i_cmd = on` where `(Fd* - Fd) Fd > 0`, else 0, with the LQG's force Fd*.
 
@@ -74,5 +74,5 @@ class ClippedOptimal(NamedTuple):
 
     def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> SwitchedFeedback:
         """Return the compiled form for a plant and a sample time."""
-        gain = state_feedback(plant, self.weights)
-        return SwitchedFeedback(gain, estimator(plant, self.noise, sample_time), self.on)
+        gain = solve_regulator(plant, self.weights)
+        return SwitchedFeedback(gain, design_kalman_filter(plant, self.noise, sample_time), self.on)

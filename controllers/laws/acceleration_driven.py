@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from seatsim.rig.control import Measurement, law
+from seatsim.rig.control import Measurement, State, law
 from seatsim.schema.fields import param
-
-State = tuple[float, ...]
 
 
 @law("acceleration_driven", source="Savaresi, Silani and Bittanti 2005, J. Dyn. Syst. Meas. Control 127")

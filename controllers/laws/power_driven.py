@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-from seatsim.rig.control import Measurement, law
+from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
 from seatsim.schema.fields import param
-
-State = tuple[float, ...]
 
 
 class SpringCancelling(NamedTuple):

@@ -6,11 +6,9 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement, law
+from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
 from seatsim.schema.fields import param
-
-State = tuple[float, ...]
 
 
 class SampledPid(NamedTuple):

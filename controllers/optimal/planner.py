@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_are
 
-from controllers.linear import held
-from controllers.quadratic import QuadraticWeights
+from controllers.linear_systems import zero_order_hold
+from controllers.optimal.regulator import QuadraticWeights
 from seatsim.rig.plant import Plant, state_space
 from seatsim.schema.fields import param
 
@@ -22,7 +22,7 @@ UNIT = 100.0
 PASSES = 2
 
 
-class Envelope(NamedTuple):
+class DeliverableForces(NamedTuple):
     """Forces that a damper can deliver at speed v: `(viscous |v| + yielding min(1, |v| / pre_yield))` in v's direction.
 
     From the softest to the stiffest setting. The defaults are those of the damper of the quickstart, 0 A and 1 A.
@@ -53,22 +53,22 @@ class Planner:
     """
 
     def __init__(
-        self, plant: Plant, weights: QuadraticWeights, envelope: Envelope, horizon: int, sample_time: float
+        self, plant: Plant, weights: QuadraticWeights, envelope: DeliverableForces, horizon: int, sample_time: float
     ) -> None:
         """Set up the programme for a horizon of N samples; matrices and factorisation are kept."""
         import osqp
         from scipy.sparse import csc_matrix, eye
 
         s = state_space(plant)
-        flow, push = held(s.A, s.B2, sample_time)
+        transition, input_gain = zero_order_hold(s.A, s.B2, sample_time)
         z = s.C1 * [[weights.travel], [weights.acceleration]]
         effort = weights.force**2
-        to_go = solve_discrete_are(flow, push, z.T @ z, np.array([[effort]]))
-        gain = -np.linalg.solve(push.T @ to_go @ push + effort, push.T @ to_go @ flow)
-        closed = [np.linalg.matrix_power(flow + push @ gain, j) for j in range(horizon)]
+        to_go = solve_discrete_are(transition, input_gain, z.T @ z, np.array([[effort]]))
+        gain = -np.linalg.solve(input_gain.T @ to_go @ input_gain + effort, input_gain.T @ to_go @ transition)
+        closed = [np.linalg.matrix_power(transition + input_gain @ gain, j) for j in range(horizon)]
         self.first = np.vstack([gain @ power for power in closed])
         self.ratio, self.envelope = plant.damper_ratio, envelope
-        self.free, self.forced = _condensed(flow, push, horizon)
+        self.free, self.forced = _condensed(transition, input_gain, horizon)
         cost = np.kron(np.eye(horizon), z.T @ z)
         cost[-4:, -4:] = to_go
         hessian = UNIT**2 * (self.forced.T @ cost @ self.forced + effort * np.eye(horizon))
@@ -103,13 +103,13 @@ class Planner:
         return self.envelope.limits(self.ratio * np.concatenate([state[1:2], planned[:-1]]))
 
 
-def _condensed(flow: Array, push: Array, horizon: int) -> tuple[Array, Array]:
+def _condensed(transition: Array, input_gain: Array, horizon: int) -> tuple[Array, Array]:
     """Return the maps (4 N, 4) and (4 N, N) from the state and from the forces to the states at samples 1..N."""
     powers = [np.eye(4)]
     for _ in range(horizon):
-        powers.append(flow @ powers[-1])
+        powers.append(transition @ powers[-1])
     forced = np.zeros((4 * horizon, horizon))
     for j in range(horizon):
         for k in range(j + 1):
-            forced[4 * j : 4 * j + 4, k] = (powers[j - k] @ push)[:, 0]
+            forced[4 * j : 4 * j + 4, k] = (powers[j - k] @ input_gain)[:, 0]
     return np.vstack(powers[1:]), forced

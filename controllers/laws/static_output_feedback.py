@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from controllers.margins import margins, sampled_radius
-from controllers.seat_plant import Lag, Weights, generalised
+from controllers.analysis.margins import compute_margins, compute_sampled_radius
+from controllers.seat_plant import ActuatorLag, Weights, build_generalised_plant
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement, law
+from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from controllers.synthesis import Design, GeneralisedPlant
 
 Array = NDArray[np.float64]
-State = tuple[float, ...]
 # Margins above this are crossings that rounding alone makes.
 _UNBOUNDED = 1e6
 SOURCE = "Yu et al. 2019, eqs 15-19, on the exact plant and with u = +K y for the damper force"
@@ -66,7 +65,9 @@ class StaticOutputFeedback(NamedTuple):
     displacement_gain: Annotated[
         bool, Field(description="whether the gain on x is free; no damper can give a stiffness in steady motion")
     ] = True
-    lag: Annotated[Lag | None, Field(description="lag from wanted to delivered force that the design knows of")] = None
+    lag: Annotated[
+        ActuatorLag | None, Field(description="lag from wanted to delivered force that the design knows of")
+    ] = None
 
     def prepared(self, plant: Plant) -> OutputFeedback:
         """Return the compiled form for a plant, after synthesis where weights are given."""
@@ -90,15 +91,15 @@ class StaticOutputFeedback(NamedTuple):
         drivers = [plant._replace(driver_mass=mass) for mass in self.masses or [plant.driver_mass]]
         weights = self.weights or Weights()
         return [
-            generalised(driver, weights, self.lag, self.displacement_gain, factor)
+            build_generalised_plant(driver, weights, self.lag, self.displacement_gain, factor)
             for driver in drivers
             for factor in self.force_factors
         ]
 
     def checks(self, plant: Plant, coil: Coil, sample_time: float, gain: Array) -> dict[str, str]:
         """Return, in words, the margins of the scenario's own loop with coil and delay, and of its sampled loop."""
-        found = margins(plant, gain, coil)
-        radius = sampled_radius(plant, gain, coil, sample_time, round(coil.delay / sample_time))
+        found = compute_margins(plant, gain, coil)
+        radius = compute_sampled_radius(plant, gain, coil, sample_time, round(coil.delay / sample_time))
         rises = "any" if found.gain > _UNBOUNDED else f"{found.gain:.3g}"
         turns = "any" if math.isinf(found.phase) else f"{found.phase:.3g} degrees"
         waits = "any" if math.isinf(found.delay) else f"{1000 * found.delay:.3g} ms"

@@ -8,16 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
-from controllers.linear import held
+from controllers.linear_systems import zero_order_hold
 from seatsim.compilation.jit import jit
-from seatsim.rig.control import Measurement
+from seatsim.rig.control import Measurement, State
 from seatsim.rig.plant import Plant, StateSpace, state_space
 from seatsim.schema.fields import param
 
 Array = NDArray[np.float64]
-State = tuple[float, ...]
 Rows = tuple[State, ...]
-REST: State = (0.0, 0.0, 0.0, 0.0)
+AT_REST: State = (0.0, 0.0, 0.0, 0.0)
 
 
 class Noise(NamedTuple):
@@ -31,32 +30,32 @@ class Noise(NamedTuple):
     acceleration: Annotated[float, param("m/s^2", "RMS noise of the driver's acceleration", above=0, high=1e3)] = 0.05
 
 
-class Estimator(NamedTuple):
-    """Compiled form: `x <- x + correction (y - seen x)`, then `x <- flow x + push Fd`, both at every sample."""
+class KalmanFilter(NamedTuple):
+    """Compiled form: at every sample `x <- x + correction (y - output x)`, then `x <- transition x + input_gain Fd`."""
 
-    flow: Rows
-    push: State
-    seen: Rows
+    transition: Rows
+    input_gain: State
+    output: Rows
     correction: Rows
 
 
-def estimator(plant: Plant, noise: Noise, sample_time: float) -> Estimator:
+def design_kalman_filter(plant: Plant, noise: Noise, sample_time: float) -> KalmanFilter:
     """Return the steady filter of the sampled seat, from the discrete Riccati equation."""
     s = state_space(plant)
-    flow, push = held(s.A, s.B2, sample_time)
-    spread = _spread(s, sample_time, noise.floor) + noise.force**2 * push @ push.T
+    transition, input_gain = zero_order_hold(s.A, s.B2, sample_time)
+    process_noise = _process_noise(s, sample_time, noise.floor) + noise.force**2 * input_gain @ input_gain.T
     reading = np.diag([noise.displacement**2, noise.acceleration**2])
-    p = solve_discrete_are(flow.T, s.C1.T, spread, reading)
+    p = solve_discrete_are(transition.T, s.C1.T, process_noise, reading)
     correction = np.linalg.solve(s.C1 @ p @ s.C1.T + reading, s.C1 @ p).astype(np.float64)
-    return Estimator(_rows(flow), _rows(push.T)[0], _rows(s.C1), _rows(correction))
+    return KalmanFilter(_rows(transition), _rows(input_gain.T)[0], _rows(s.C1), _rows(correction))
 
 
-def _spread(s: StateSpace, time: float, density: float) -> Array:
+def _process_noise(s: StateSpace, time: float, density: float) -> Array:
     """Return the covariance (4, 4) that a floor of white noise adds to the state over a sample (Van Loan 1978)."""
     n = len(s.A)
     both = expm(np.block([[-s.A, density * s.B1 @ s.B1.T], [np.zeros((n, n)), s.A.T]]) * time)
-    spread: Array = both[n:, n:].T @ both[:n, n:]
-    return spread
+    process_noise: Array = both[n:, n:].T @ both[:n, n:]
+    return process_noise
 
 
 def _rows(matrix: Array) -> Rows:
@@ -70,11 +69,11 @@ def dot(a: State, b: State) -> float:
 
 
 @jit
-def corrected(e: Estimator, y: Measurement, x: State) -> State:
+def correct(e: KalmanFilter, y: Measurement, x: State) -> State:
     """Return the estimated (x, v, zc - zs, its rate) with a sample's readings, from its prediction."""
     first, second = e.correction
-    a = y.displacement - dot(e.seen[0], x)
-    b = y.driver_acceleration - dot(e.seen[1], x)
+    a = y.displacement - dot(e.output[0], x)
+    b = y.driver_acceleration - dot(e.output[1], x)
     return (
         x[0] + first[0] * a + second[0] * b,
         x[1] + first[1] * a + second[1] * b,
@@ -84,12 +83,12 @@ def corrected(e: Estimator, y: Measurement, x: State) -> State:
 
 
 @jit
-def predicted(e: Estimator, y: Measurement, x: State) -> State:
+def predict(e: KalmanFilter, y: Measurement, x: State) -> State:
     """Return the prediction for the next sample from that for this one; the damper force read is held until then."""
-    now, force = corrected(e, y, x), y.damper_force
+    now, force = correct(e, y, x), y.damper_force
     return (
-        dot(e.flow[0], now) + e.push[0] * force,
-        dot(e.flow[1], now) + e.push[1] * force,
-        dot(e.flow[2], now) + e.push[2] * force,
-        dot(e.flow[3], now) + e.push[3] * force,
+        dot(e.transition[0], now) + e.input_gain[0] * force,
+        dot(e.transition[1], now) + e.input_gain[1] * force,
+        dot(e.transition[2], now) + e.input_gain[2] * force,
+        dot(e.transition[3], now) + e.input_gain[3] * force,
     )

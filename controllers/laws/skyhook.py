@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-from seatsim.rig.control import Measurement, law
+from seatsim.rig.control import Measurement, State, law
 from seatsim.schema.fields import param
 
-State = tuple[float, ...]
 SOURCE = "Karnopp, Crosby and Harwood 1974, J. Eng. Industry 96:619"
 
 

@@ -1,35 +1,14 @@
-"""Linear-quadratic regulator: full state feedback that trades the driver's acceleration against travel and force."""
+"""Linear-quadratic regulator on true states, without an observer."""
 
 from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-import numpy as np
 from pydantic import Field
 
-from seatsim.rig.control import Measurement, law
-from seatsim.rig.plant import Plant, state_space
-from seatsim.schema.fields import param
-
-State = tuple[float, ...]
-
-
-class QuadraticWeights(NamedTuple):
-    """Weights of `J = integral of (acceleration zc'')^2 + (travel x)^2 + (force Fd)^2 dt`."""
-
-    travel: Annotated[float, param("1/s^2", "weight of the suspension displacement", above=0, high=1e6)] = 20.0
-    acceleration: Annotated[float, param("-", "weight of the driver's acceleration", low=0, high=1e6)] = 1.0
-    force: Annotated[float, param("1/kg", "weight of the damper force", above=0, high=1e3)] = 7e-3
-
-
-def state_feedback(plant: Plant, weights: QuadraticWeights) -> State:
-    """Return the gain k of `Fd = k . (x, v, zc - zs, its rate)` that minimises the cost, from the Riccati equation."""
-    import control
-
-    s = state_space(plant)
-    z = s.C1 * [[weights.travel], [weights.acceleration]]
-    gain, _, _ = control.lqr(s.A, s.B2, z.T @ z, np.array([[weights.force**2]]))
-    return tuple(-float(value) for value in gain[0])
+from controllers.optimal.regulator import QuadraticWeights, solve_regulator
+from seatsim.rig.control import Measurement, State, law
+from seatsim.rig.plant import Plant
 
 
 class StateFeedback(NamedTuple):
@@ -58,5 +37,5 @@ class Lqr(NamedTuple):
 
     def prepared(self, plant: Plant) -> StateFeedback:
         """Return the compiled form for a plant."""
-        gain = state_feedback(plant, self.weights)
+        gain = solve_regulator(plant, self.weights)
         return StateFeedback(gain, plant.driver_mass, plant.cushion_stiffness, plant.cushion_damping)

@@ -1,22 +1,22 @@
 """The sampled loop of a law that is linear at small motion, with its own state and its sensors: poles and margins.
 
-The floor is at rest, the damper delivers the wanted force through the coil's lag, as in `controllers.margins`. The law
-is asked, not described: its matrices are its answers to small vectors.
+The floor is at rest, the damper delivers the wanted force through the coil's lag, as in `controllers.analysis.margins`.
+The law is asked, not described: its matrices are its answers to small vectors.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from controllers.linear import held
+from controllers.linear_systems import zero_order_hold
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement
+from seatsim.rig.control import CompiledLaw, ForceLaw, LawWithMemory, Measurement, State
 from seatsim.rig.plant import Plant, state_space
 from seatsim.rig.sensors import READINGS, Sensors, at_rest
 from seatsim.schema.errors import InputError
@@ -77,16 +77,16 @@ class SampledLoop(NamedTuple):
         return min(found)
 
 
-def seat_with_coil(plant: Plant, coil: Coil) -> tuple[Array, Array]:
+def build_seat_with_coil(plant: Plant, coil: Coil) -> tuple[Array, Array]:
     """Return (A, B), shapes (5, 5) and (5, 1), from the wanted force to (x, v, xc, vc, damper force)."""
     s = state_space(plant)
     A = np.block([[s.A, s.B2], [np.zeros((1, 4)), np.array([[-coil.rate]])]])
     return A, coil.rate * np.eye(5)[:, 4:]
 
 
-def sampled_loop(
-    law: Any,
-    initial: tuple[float, ...],
+def build_sampled_loop(
+    law: CompiledLaw,
+    initial: State,
     plant: Plant,
     coil: Coil,
     sample_time: float,
@@ -107,7 +107,9 @@ def sampled_loop(
     Raises:
         InputError: the law wants a current, or is not linear.
     """
-    period = _period(law, len(initial), plant, coil, round(sample_time / step), step, sensors)
+    if not isinstance(law, ForceLaw):
+        raise InputError(f"{type(law).__name__} wants a current; only a law that wants a force has a linear loop")
+    period = _sample_period(law, len(initial), plant, coil, round(sample_time / step), step, sensors)
     size = 5 + (len(at_rest(0.0)) if sensors else 0) + len(initial)
     columns = [period(SMALL * unit, 0.0) for unit in np.eye(size)]
     a, c = np.array([z for z, _ in columns]).T / SMALL, np.array([answer for _, answer in columns]) / SMALL
@@ -119,33 +121,32 @@ def sampled_loop(
 Period = Callable[[Array, float], tuple[Array, float]]
 
 
-def _period(
-    law: Any, memory: int, plant: Plant, coil: Coil, every: int, step: float, sensors: Sensors | None
+def _sample_period(
+    law: ForceLaw, memory: int, plant: Plant, coil: Coil, every: int, step: float, sensors: Sensors | None
 ) -> Period:
     """Return the function that carries (z, command) over one sample and says what the law wants at its beginning."""
-    if not hasattr(law, "wanted_force"):
-        raise InputError(f"{type(law).__name__} wants a current; only a law that wants a force has a linear loop")
-    A, B = seat_with_coil(plant, coil)
-    flow, push = held(A, B, step)
+    A, B = build_seat_with_coil(plant, coil)
+    transition, input_gain = zero_order_hold(A, B, step)
     instruments = sensors.instruments(step, every * step) if sensors else None
 
-    def one(z: Array, command: float) -> tuple[Array, float]:
-        seat, progress, own = z[:5], tuple(z[5 : len(z) - memory]), tuple(z[len(z) - memory :])
-        y = _true(A, seat)
+    def advance(z: Array, command: float) -> tuple[Array, float]:
+        seat, sensor_state, own = z[:5], tuple(z[5 : len(z) - memory]), tuple(z[len(z) - memory :])
+        y = _true_measurement(A, seat)
         if instruments:
-            y, progress = instruments.read(y, QUIET, 0, progress)
+            y, sensor_state = instruments.read(y, QUIET, 0, sensor_state)
         answer = law.wanted_force(y, own)
-        own = law.update(y, own) if memory else own
+        own = law.update(y, own) if isinstance(law, LawWithMemory) else own
+        # As in a run: the command of this instant holds until the next, while the sensors' filters see every step.
         for _ in range(every):
-            seat = flow @ seat + push[:, 0] * command
+            seat = transition @ seat + input_gain[:, 0] * command
             if instruments:
-                progress = instruments.passed(0.0, seat[0], tuple(A @ seat), progress)
-        return np.concatenate([seat, progress, own]), answer
+                sensor_state = instruments.passed(0.0, seat[0], tuple(A @ seat), sensor_state)
+        return np.concatenate([seat, sensor_state, own]), answer
 
-    return one
+    return advance
 
 
-def _true(A: Array, seat: Array) -> Measurement:
+def _true_measurement(A: Array, seat: Array) -> Measurement:
     """Return the true measurement over a floor at rest, from (x, v, xc, vc, damper force)."""
     x, v, _, vc, force = seat
     rates = A @ seat
@@ -154,6 +155,7 @@ def _true(A: Array, seat: Array) -> Measurement:
 
 def _require_linear(period: Period, a: Array, b: Array, c: Array) -> None:
     """Raise InputError where superposition does not give the answer to a vector of many entries."""
+    # Any vector without a zero entry will do; an answer in N over 1e-9 of motion is rounded to about 1e-3.
     some = np.cos(np.arange(len(a)) + 1.0)
     z, answer = period(SMALL * some, -0.7 * SMALL)
     if not (np.allclose(z / SMALL, a @ some - 0.7 * b) and np.allclose(answer / SMALL, c @ some, atol=1e-3)):

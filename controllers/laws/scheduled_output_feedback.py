@@ -7,14 +7,13 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from controllers.seat_plant import Lag, Weights
-from controllers.static_output_feedback import Factor, Gain, OutputFeedback, StaticOutputFeedback
-from seatsim.rig.control import Measurement, law
+from controllers.laws.static_output_feedback import Factor, Gain, OutputFeedback, StaticOutputFeedback
+from controllers.seat_plant import ActuatorLag, Weights
+from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 
-State = tuple[float, ...]
 Temperature = Annotated[float, param("degC", "temperature of a gain", low=-60, high=250)]
 
 
@@ -57,7 +56,9 @@ class ScheduledOutputFeedback(NamedTuple):
         tuple[Factor, ...] | None, Field(description="delivered over wanted force, one a temperature")
     ] = None
     displacement_gain: Annotated[bool, Field(description="whether the gain on x is free")] = True
-    lag: Annotated[Lag | None, Field(description="lag from wanted to delivered force that the design knows of")] = None
+    lag: Annotated[
+        ActuatorLag | None, Field(description="lag from wanted to delivered force that the design knows of")
+    ] = None
 
     def prepared(self, plant: Plant) -> Schedule:
         """Return the compiled form for a plant, after synthesis where weights are given."""

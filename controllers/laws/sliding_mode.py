@@ -6,11 +6,10 @@ import math
 from typing import Annotated, NamedTuple
 
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement, law
+from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
 from seatsim.schema.fields import param
 
-State = tuple[float, ...]
 SOURCE = "after Yokoyama, Hedrick and Toyama 2001, American Control Conference; surface and reference derived here"
 
 

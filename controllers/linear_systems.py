@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 Coefficients = tuple[float, float, float]
 
 
-class System(NamedTuple):
+class LinearSystem(NamedTuple):
     """A linear system `x' = A x + B u`, `y = C x + D u`; shapes (n, n), (n, m), (p, n), (p, m)."""
 
     A: Array
@@ -25,25 +25,25 @@ class System(NamedTuple):
     D: Array
 
 
-def unity(size: int) -> System:
+def pass_through(size: int) -> LinearSystem:
     """Return what passes `size` signals on as they are."""
-    return System(np.zeros((0, 0)), np.zeros((0, size)), np.zeros((size, 0)), np.eye(size))
+    return LinearSystem(np.zeros((0, 0)), np.zeros((0, size)), np.zeros((size, 0)), np.eye(size))
 
 
-def series(first: System, second: System) -> System:
+def connect_in_series(first: LinearSystem, second: LinearSystem) -> LinearSystem:
     """Return `first` followed by `second`; the states of `first` come first."""
     n, m = len(first.A), len(second.A)
     A = np.block([[first.A, np.zeros((n, m))], [second.B @ first.C, second.A]])
     B = np.vstack([first.B, second.B @ first.D])
-    return System(A, B, np.hstack([second.D @ first.C, second.C]), second.D @ first.D)
+    return LinearSystem(A, B, np.hstack([second.D @ first.C, second.C]), second.D @ first.D)
 
 
-def parallel(*systems: System) -> System:
+def connect_in_parallel(*systems: LinearSystem) -> LinearSystem:
     """Return systems side by side, each with its own inputs and outputs."""
-    return System(*(np.asarray(block_diag(*parts), dtype=float) for parts in zip(*systems, strict=True)))
+    return LinearSystem(*(np.asarray(block_diag(*parts), dtype=float) for parts in zip(*systems, strict=True)))
 
 
-def section(numerator: Coefficients, denominator: Coefficients) -> System:
+def second_order_section(numerator: Coefficients, denominator: Coefficients) -> LinearSystem:
     """Return the system of `(b0 + b1 s + b2 s^2) / (a0 + a1 s + a2 s^2)`, with s in rad/s.
 
     With u = s / w and w^2 = a0 / a2 it is `(n0 + n1 u + n2 u^2) / (1 + u / Q + u^2)`, whose two states are of one size.
@@ -52,19 +52,19 @@ def section(numerator: Coefficients, denominator: Coefficients) -> System:
     w = 1.0 / math.sqrt(a[2])
     n, loss = b * [1.0, w, w * w], a[1] * w
     A, B = w * np.array([[0.0, 1.0], [-1.0, -loss]]), np.array([[0.0], [w]])
-    return System(A, B, np.array([[n[0] - n[2], n[1] - n[2] * loss]]), np.array([[n[2]]]))
+    return LinearSystem(A, B, np.array([[n[0] - n[2], n[1] - n[2] * loss]]), np.array([[n[2]]]))
 
 
-def weighted(weighting: str) -> System:
+def frequency_weighting(weighting: str) -> LinearSystem:
     """Return a frequency weighting of ISO 2631-1 as a system: two states a factor, in the order of its equation.
 
     Raises:
         InputError: no weighting has this name.
     """
-    return reduce(series, (section(*factor) for factor in sections(weighting)))
+    return reduce(connect_in_series, (second_order_section(*factor) for factor in sections(weighting)))
 
 
-def held(A: Array, B: Array, time: float) -> tuple[Array, Array]:
+def zero_order_hold(A: Array, B: Array, time: float) -> tuple[Array, Array]:
     """Return the exact (F, G) of `x <- F x + G u` over `time` seconds of `x' = A x + B u` with u held.
 
     Shapes: A, F (n, n), B, G (n, m).

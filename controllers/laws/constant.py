@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-from seatsim.rig.control import Measurement, law
+from seatsim.rig.control import Measurement, State, law
 from seatsim.schema.fields import param
-
-State = tuple[float, ...]
 
 
 @law("constant")

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.linear import held
-from controllers.sampled_loop import SampledLoop, seat_with_coil
+from controllers.analysis.sampled_loop import SampledLoop, build_seat_with_coil
+from controllers.linear_systems import zero_order_hold
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant, state_space
 
@@ -28,7 +28,7 @@ class Margins(NamedTuple):
     delay: float
 
 
-def margins(plant: Plant, gain: Array, coil: Coil) -> Margins:
+def compute_margins(plant: Plant, gain: Array, coil: Coil) -> Margins:
     """Return the margins of the loop `L(s) = -K G(s) r / (s + r)`, with G from Fd to (x, v) and r the coil's rate.
 
     The delay margin is the least phase margin over its crossover frequency (rad/rad/s), over all crossovers.
@@ -50,12 +50,12 @@ def margins(plant: Plant, gain: Array, coil: Coil) -> Margins:
     )
 
 
-def sampled_radius(plant: Plant, gain: Array, coil: Coil, sample_time: float, delay_samples: int = 0) -> float:
+def compute_sampled_radius(plant: Plant, gain: Array, coil: Coil, sample_time: float, delay_samples: int = 0) -> float:
     """Return the spectral radius of the sampled loop (below 1: stable): coil as a state, command held between samples.
 
     The exact zero-order hold of plant and coil over `sample_time`, with `delay_samples` whole samples of delay.
     """
-    A, B = seat_with_coil(plant, coil)
-    flow, push = held(A, B, sample_time)
+    A, B = build_seat_with_coil(plant, coil)
+    transition, input_gain = zero_order_hold(A, B, sample_time)
     C = np.atleast_2d(gain) @ np.eye(2, len(A))
-    return SampledLoop(flow, push[:, 0], C[0], sample_time).radius(delay_samples)
+    return SampledLoop(transition, input_gain[:, 0], C[0], sample_time).radius(delay_samples)

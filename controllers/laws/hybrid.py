@@ -8,10 +8,8 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
-from seatsim.rig.control import Measurement, law
+from seatsim.rig.control import Measurement, State, law
 from seatsim.schema.fields import param
-
-State = tuple[float, ...]
 
 
 @law("groundhook", source="Valasek, Novak, Sika and Vaculin 1997, Veh. Syst. Dyn. 27:289; the floor as the wheel")
