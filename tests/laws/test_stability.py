@@ -81,7 +81,7 @@ def test_every_shipped_design_is_stable_on_its_sensors_with_a_sample_of_delay(sc
     control, initial = scenario.control, specification_of(type(scenario.control.law)).initial
     law = prepare_law(control.law, scenario.plant, scenario.coil, control.sample_time)
     if isinstance(law, SwitchedFeedback):  # whose linear design is that of the LQG it is clipped from
-        law = EstimateFeedback(law.gain, law.design_kalman_filter)
+        law = EstimateFeedback(law.gain, law.kalman_filter)
     found = build_sampled_loop(law, initial, scenario.plant, scenario.coil, control.sample_time, control.sensors)
     assert found.radius() < 1
     assert found.radius(delay_samples=1) < 1
