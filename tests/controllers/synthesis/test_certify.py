@@ -1,7 +1,6 @@
 """The bounded-real certificate and the lower bounds."""
 
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -9,9 +8,8 @@ from ruamel.yaml import YAML
 
 from controllers import synthesise
 from controllers.synthesis.bound import compute_pointwise_bound
-from controllers.synthesis.certify import certify, largest_lmi_eigenvalue
-from controllers.synthesis.exact import ExactMatrix
-from controllers.synthesis.norm import hinf_norm
+from controllers.synthesis.certify import certify, largest_lmi_eigenvalue, recentre
+from controllers.synthesis.norm import frequency_response, hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
 
 
@@ -66,11 +64,45 @@ def test_rational_arithmetic_confirms_and_refutes(designed, exact_certificates, 
     assert not exact_certificates.proven(plain["gain"], loop)
 
 
-def test_exact_matrices_do_not_round():
-    one = ExactMatrix.of(np.array([[1e-200, 1e200], [3.0, -0.1]]))
-    square = (one @ one - one @ one + one).rounded()
-    np.testing.assert_array_equal(square, [[1e-200, 1e200], [3.0, -0.1]])
-    assert (one @ one).rounded()[1, 1] == float(3 * Fraction(1e200) + Fraction(0.1) ** 2)
+def test_recentred_states_have_the_same_response_and_the_identity_as_proof(random_plant):
+    gain = np.random.default_rng(0).standard_normal((2, 2))
+    plant = stable(random_plant(0), gain)
+    proof = certify(plant, gain, hinf_norm(plant.close(gain)).value)
+    loop, omega = recentre(plant, gain, proof.factor), [0.0, 0.3, 3.0, 30.0]
+    wanted = frequency_response(plant.close(gain), omega)
+    np.testing.assert_allclose(frequency_response(loop, omega), wanted, rtol=1e-8)
+    g = proof.gamma
+    M = loop.A + loop.A.T + loop.C.T @ loop.C / g
+    M += (
+        (loop.B + loop.C.T @ loop.D / g)
+        @ np.linalg.inv(g * np.eye(2) - loop.D.T @ loop.D / g)
+        @ (loop.B + loop.C.T @ loop.D / g).T
+    )
+    assert -1.0 < np.linalg.eigvalsh(M)[-1] < 0
+
+
+def test_the_eigenvalue_is_that_of_the_scaled_matrix(random_plant):
+    gain = np.random.default_rng(1).standard_normal((2, 2))
+    plant = stable(random_plant(1), gain)
+    proof = certify(plant, gain, hinf_norm(plant.close(gain)).value)
+    loop = plant.close(gain)
+    A, B = proof.factor @ loop.A @ np.linalg.inv(proof.factor), proof.factor @ loop.B
+    C, g, rate = (
+        loop.C @ np.linalg.inv(proof.factor),
+        proof.gamma,
+        np.linalg.norm(proof.factor @ loop.A @ np.linalg.inv(proof.factor), 2),
+    )
+    scale = np.sqrt(g * rate)
+    M = np.block(
+        [
+            [(A + A.T) / rate, B / scale, C.T / scale],
+            [B.T / scale, -np.eye(2), loop.D.T / g],
+            [C / scale, loop.D / g, -np.eye(3)],
+        ]
+    )
+    largest = np.linalg.eigvalsh(M)[-1]
+    assert proof.largest_eigenvalue == pytest.approx(largest, abs=1e-12)
+    assert largest < proof.largest_eigenvalue < largest + 1e-12
 
 
 @pytest.mark.parametrize("seed", range(3))
