@@ -1,4 +1,4 @@
-"""Linear systems: put together, frequency weightings, and what they do under an input that is held."""
+"""Linear systems: connected, frequency weightings with states, and sampled with a zero-order hold."""
 
 from __future__ import annotations
 

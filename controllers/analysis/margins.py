@@ -40,6 +40,7 @@ def compute_margins(plant: Plant, gain: Array, coil: Coil) -> Margins:
     lag = control.ss(-coil.rate, coil.rate, 1.0, 0.0)
     loop = control.ss(s.A, s.B2, -k @ s.C2, 0.0) * lag
     gains, phases, _, _, crossings, _ = control.stability_margins(loop, returnall=True)
+    # Factors below 1 are reductions: the seat without control is stable, so the margin that is asked for is a rise.
     rising = [g for g in gains if g > 1.0]
     ahead = np.mod(np.asarray(phases), 360.0)
     delays = np.radians(ahead) / np.asarray(crossings)

@@ -24,6 +24,8 @@ SHARES = (0.3, 0.1, 0.03, 0.01)
 """Sizes of the barrier over the criterion, stage by stage."""
 STEPS = 120
 """Most steps of a barrier."""
+# Pairs kept by L-BFGS; largest change of a logarithm in one step; relative gain that ends an ascent, once the memory is
+# full; change of all logarithms while a start has no minimum: weaker multipliers are nearer to the convex criterion.
 _MEMORY, _LONGEST, _SETTLED, _RETREAT = 30, 2.0, 1e-6, 0.1
 _NU = 1e-9  # of the criterion a N^2, where the ascent starts
 

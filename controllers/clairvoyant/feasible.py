@@ -14,6 +14,7 @@ import numpy as np
 from controllers.clairvoyant.problem import ClairvoyantRun, HeldForceProblem
 from controllers.clairvoyant.recursion import Array, ForceBand
 
+# Most passes. The proximity grows from next to nothing to where no force changes any more, and the search ends.
 PASSES = 80
 _FIRST_PROXIMITY, _LAST_PROXIMITY, _SETTLED = 1e-13, 1e-7, 1e-7  # of the criterion, 1/N^2
 

@@ -18,6 +18,7 @@ from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
 from seatsim.schema.fields import param
 
+# Compiled code can hold no Python object: the law carries a number, under which its planner waits here until the notes.
 _planners: dict[int, Planner] = {}
 _numbers = itertools.count()
 

@@ -40,7 +40,13 @@ class KalmanFilter(NamedTuple):
 
 
 def design_kalman_filter(plant: Plant, noise: Noise, sample_time: float) -> KalmanFilter:
-    """Return the steady filter of the sampled seat, from the discrete Riccati equation."""
+    """Return the steady filter of the sampled seat, from the discrete Riccati equation.
+
+    Args:
+        plant: the seat, with state (x, v, zc - zs, its rate).
+        noise: densities and RMS values of what is not known.
+        sample_time: in s, over which the damper force is taken as held.
+    """
     s = state_space(plant)
     transition, input_gain = zero_order_hold(s.A, s.B2, sample_time)
     process_noise = _process_noise(s, sample_time, noise.floor) + noise.force**2 * input_gain @ input_gain.T

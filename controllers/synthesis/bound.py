@@ -52,6 +52,7 @@ def compute_pointwise_bound(plant: GeneralisedPlant, stabilising: Array) -> floa
 def _largest_unreached(path: Response, T: Response) -> float:
     """Largest singular value, over all frequencies, of what `path` (m, nz, nu) does not reach of T."""
     reached = path.shape[2]
+    # With as many inputs as outputs nothing is out of reach.
     if path.shape[1] <= reached:
         return 0.0
     basis = np.linalg.svd(path)[0][:, :, reached:]

@@ -21,10 +21,15 @@ from controllers.synthesis.starts import StartingGain
 
 # A loop this stable (in scaled time) is ready for the descent on its norm.
 _STABLE_ENOUGH = -1e-2
+# Stabilising may be slow where several poles are nearly rightmost, and giving up loses the start.
 _STABILISING_PATIENCE = 60
+# Gain in log gamma below which descents end: coarse to tell valleys apart, fine to reach their floor.
 _COARSE, _FINE = 1e-4, 1e-6
+# Valleys that are followed to the end, which costs more than to find them.
 _REFINED = 6
+# Candidates nearer to each other than this are taken for one valley: the coarse descent leaves as much.
 _SAME = 2e-3
+# Most turns of BFGS and polish; they end earlier where both together gain nothing.
 _TURNS = 8
 # A candidate that at its present pace would not reach the best one in this many turns is given up.
 _HOPE = 10.0

@@ -29,6 +29,7 @@ class ExactMatrix:
         return cls(whole, bits)
 
     def __matmul__(self, other: ExactMatrix) -> ExactMatrix:
+        # Python's integers grow as they must: numpy multiplies and adds them as objects, without overflow.
         return ExactMatrix(self.whole @ other.whole, self.bits + other.bits)
 
     def __add__(self, other: ExactMatrix) -> ExactMatrix:

@@ -16,11 +16,13 @@ from numpy.typing import NDArray
 
 from controllers.synthesis.plant import Array, GeneralisedPlant
 
+# The bound is solved again in the coordinates of its own solution until it settles.
 _PASSES, _SETTLED = 4, 1e-5
 # Eigenvalues of the Lyapunov matrix stay between 1 / width and width, in states where it is about the identity.
 _WIDTH = 1e3
+# A gain from the edge of the feasible set is badly conditioned; at twice the optimal g there is room to step back.
 _RELAXED = 2.0
-_STRICT = 1e-7
+_STRICT = 1e-7  # margin that turns < into <=, above the rounding of the solver
 
 
 def compute_full_order_bound(plant: GeneralisedPlant, factor: Array, gamma: float, deadline: float) -> float:

@@ -13,7 +13,9 @@ from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.scaling import ScaledPlant
 from seatsim.schema.errors import SynthesisError
 
+# Relative to the largest singular value, in scaled coordinates: some decades above rounding, far below any real path.
 _RANK_TOLERANCE = 1e-10
+# A fixed mode moves by rounding alone, which for a double eigenvalue is the root of machine precision.
 _FIXED_TOLERANCE = 1e-7
 
 
@@ -42,6 +44,7 @@ def _loses_rank(wide: NDArray[np.complex128]) -> bool:
 
 def _stays(plant: GeneralisedPlant, mode: complex) -> bool:
     """Whether three random gains of the structure all leave an eigenvalue at `mode`."""
+    # A mode that some gain moves is moved by almost every gain; three rule out an accident.
     random = np.random.default_rng(0)
     loops = [plant.close(random.standard_normal(plant.free.shape) * plant.free) for _ in range(3)]
     distances = [np.abs(loop.poles - mode).min() for loop in loops]

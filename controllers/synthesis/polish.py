@@ -21,10 +21,14 @@ from controllers.synthesis.objective import NormObjective, differentiate_singula
 from controllers.synthesis.plant import Array, Loop
 
 _ROUNDS = 40
+# Peaks this near to the highest can become the highest within a step, so that each is a constraint.
 _ACTIVE = 0.9
+# First and widest relative change of a gain in one round: the model is of first order.
 _TRUST = 0.3
 _WIDEST = 10.0
+# Reached over promised gain below which the trust region shrinks, and above which it grows (the usual values).
 _POOR, _GOOD = 0.1, 0.75
+# A step that promises less is not worth an evaluation of the norm.
 _PROGRESS = 1e-7
 
 

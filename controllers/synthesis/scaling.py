@@ -14,6 +14,7 @@ import numpy as np
 
 from controllers.synthesis.plant import Array, GeneralisedPlant
 
+# Steps are powers of two, so that sweeps end where no factor changes; a guard where they circle.
 _SWEEPS = 30
 
 
@@ -82,6 +83,7 @@ def _balancing_step(plant: GeneralisedPlant, states: Array, rate: float) -> Arra
 
 
 def _mean_rate(A: Array) -> float:
+    """Return the geometric mean of the poles' magnitudes in 1/s, without integrators; 1 where there is no other."""
     rates = np.abs(np.linalg.eigvals(A))
     moving = rates[rates > 1e-9 * max(rates.max(), 1e-300)]
     return float(np.exp(np.log(moving).mean())) if moving.size else 1.0

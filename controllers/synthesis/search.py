@@ -17,6 +17,7 @@ from controllers.synthesis.scaling import scale
 from controllers.synthesis.starts import StartingGain, generate_convex_start, generate_starting_gains
 from seatsim.schema.errors import SynthesisError
 
+# A few starts tell an easy problem, where all lead to the same value; where they do not, many more follow.
 _FIRST_STARTS, _MORE_STARTS = 6, 24
 # Shares of the time budget: starts are explored until the first (until the second where none is stable), the best
 # refined until the second, and improved upon until the third; the rest is for proofs.

@@ -62,5 +62,6 @@ def project_state_feedback(plant: GeneralisedPlant) -> Array | None:
         P = scipy.linalg.solve_continuous_are(plant.A, plant.B2, identity, np.eye(plant.control_count))
     except np.linalg.LinAlgError:
         return None
+    # u = -B2'P x is the optimum of the full state; the pseudo-inverse reads the state off y as well as y can tell.
     gain: Array = -plant.B2.T @ P @ np.linalg.pinv(plant.C2) * plant.free
     return gain

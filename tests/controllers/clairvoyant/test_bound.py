@@ -35,17 +35,17 @@ def test_multipliers_are_sums_of_hats_of_exponentials():
         np.testing.assert_allclose(row, hats @ values)
 
 
-def test_the_ascent_reaches_the_top_of_a_concave_function():
-    H, top = np.diag([1.0, 30.0, 200.0]), np.array([1.0, -0.5, 0.25])
+def test_the_ascent_comes_near_the_top_of_a_concave_function():
+    H, top = np.geomspace(1.0, 1e3, 40), np.random.default_rng(0).uniform(-1, 1, 40)
     calls = []
 
     def objective(y):
         calls.append(y)
-        d = y - top
-        return (-0.5 * d @ H @ d - np.sum(d**4), -H @ d - 4 * d**3) if np.abs(y).max() < 3 else None
+        return (5.0 - 0.5 * np.sum(H * (y - top) ** 2), -H * (y - top)) if np.abs(y).max() < 3 else None
 
-    np.testing.assert_allclose(_ascend(objective, np.array([-1.5, 1.0, -1.0])), top, atol=1e-4)
-    assert len(calls) < 150
+    reached = _ascend(objective, np.zeros(40))
+    assert objective(reached)[0] > 5.0 - 1e-4
+    assert len(calls) < 160
     np.testing.assert_array_equal(_ascend(lambda y: None, top), top)
 
 
@@ -70,7 +70,7 @@ def test_the_dual_function_has_the_gradient_of_its_value(problem, band):
         step = np.zeros_like(y)
         step[k] = 1e-4
         assert found[k] == pytest.approx((dual(y + step)[0] - dual(y - step)[0]) / 2e-4, rel=1e-4)
-    assert dual(y + np.repeat([20.0, 20.0, -50.0], hats.shape[1])) is None
+    assert dual(y + np.random.default_rng(0).uniform(-5, 15, len(y))) is None
 
 
 def test_the_bound_lies_below_every_run_and_above_that_of_constant_multipliers(problem, band, dense):
