@@ -19,10 +19,10 @@ import numpy as np
 import pandas as pd
 
 import seatsim
-from controllers.clairvoyant import Bracket, clairvoyant
+from controllers.clairvoyant import ClairvoyantBounds, clairvoyant
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.files import write_json, write_text
-from seatsim.simulation.performance_bounds import distance
+from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import run_many
 
@@ -51,7 +51,7 @@ def scenarios(path: str, excitation: dict[str, Any], temperature: float) -> list
     return seatsim.load(path, settings)
 
 
-def bracket(scenario: Any, name: str, hold: float, folder: Path) -> Bracket:
+def bracket(scenario: Any, name: str, hold: float, folder: Path) -> ClairvoyantBounds:
     """Return the bracket of a scenario, from its file where that is there."""
     settings = hashlib.sha256(f"{scenario.rig} {hold} {WEIGHTS.tolist()}".encode()).hexdigest()[:12]
     path = folder / f"bracket-{name.replace(' ', '-')}-{settings}.json"
@@ -59,13 +59,15 @@ def bracket(scenario: Any, name: str, hold: float, folder: Path) -> Bracket:
         write_json(path, clairvoyant(scenario, WEIGHTS, hold).as_dict())
     kept = json.loads(path.read_text(encoding="utf-8"))
     curves = (np.array(kept[key]) for key in ("weights", "lower", "acceleration", "travel"))
-    return Bracket(*curves, np.zeros((len(WEIGHTS), 0)), hold)
+    return ClairvoyantBounds(*curves, np.zeros((len(WEIGHTS), 0)), hold)
 
 
-def rows(found: Bracket, runs: list[Run], floor: str, temperature: float) -> list[dict[str, Any]]:
+def rows(found: ClairvoyantBounds, runs: list[Run], floor: str, temperature: float) -> list[dict[str, Any]]:
     """Return a row for each law: where it stands, and how far from the bracket at its own travel."""
     place = {"floor": floor, "temperature": temperature}
-    return [place | {"law": run.scenario.label.get("variant", "")} | distance(run, found)._asdict() for run in runs]
+    return [
+        place | {"law": run.scenario.label.get("variant", "")} | measure_distance(run, found)._asdict() for run in runs
+    ]
 
 
 def markdown(laws: pd.DataFrame, brackets: pd.DataFrame) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from controllers.static_output_feedback import OutputFeedback
+from controllers.laws.static_output_feedback import OutputFeedback
 from seatsim.compilation.cached import compiled
 from seatsim.dampers.bouc_wen import ModifiedBoucWen
 from seatsim.excitations.iso7096 import Iso7096

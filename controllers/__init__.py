@@ -1,8 +1,20 @@
-"""Control laws for semi-active seats, and the synthesis of H-infinity static output feedback."""
+"""Control laws for semi-active seats, their design, and bounds on what any law could reach.
+
+    laws/            what is asked at every sample, one file per family; nothing else stands there
+    analysis/        margins, poles and delay margin of a designed loop
+    optimal/         Riccati regulator, Kalman filter, predictive planning: theory that several laws share
+    synthesis/       H-infinity static output feedback of any linear plant, with a certificate
+    clairvoyant/     what the best semi-active damper could have done on a known floor
+    seat_plant       the seat as a plant for synthesis
+    linear_systems   linear systems, connected and sampled
+
+What belongs to the rig and is the same for every law (noise, delay, coil, inverse damper) stands in `seatsim`, which
+never imports this package: it finds it through the entry point `laws`.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from controllers.synthesis import Design, GeneralisedPlant, synthesise
@@ -10,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["Design", "GeneralisedPlant", "synthesise"]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     """Import the synthesis when it is first asked for: a run with a stated gain does not need it."""
     if name not in __all__:
         raise AttributeError(f"module 'controllers' has no attribute '{name}'")

@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from controllers.linear import System, parallel, section, series, unity, weighted
+from controllers.linear_systems import (
+    LinearSystem,
+    connect_in_parallel,
+    connect_in_series,
+    frequency_weighting,
+    pass_through,
+    second_order_section,
+)
 from seatsim.rig.plant import Plant, state_space
 from seatsim.schema.fields import param
 
@@ -28,7 +35,7 @@ class Weights(NamedTuple):
     ] = "none"
 
 
-class Lag(NamedTuple):
+class ActuatorLag(NamedTuple):
     """What the design knows of the way from the wanted force to the damper's: `exp(-delay s) rate / (s + rate)`.
 
     A controller that holds its command for a sample time T delays by about T/2: add it to the transport delay.
@@ -38,10 +45,10 @@ class Lag(NamedTuple):
     delay: Annotated[float, param("s", "transport delay and half the sample time", low=0, high=0.1)] = 0.0
 
 
-def generalised(
+def build_generalised_plant(
     plant: Plant,
     weights: Weights,
-    lag: Lag | None = None,
+    lag: ActuatorLag | None = None,
     displacement_gain: bool = True,
     force_factor: float = 1.0,
 ) -> GeneralisedPlant:
@@ -54,12 +61,14 @@ def generalised(
 
     s = state_space(plant)
     both = np.hstack([s.B1, s.B2])
-    seat = System(s.A, both, np.vstack([s.C1, s.C2]), np.zeros((4, 2)))
+    seat = LinearSystem(s.A, both, np.vstack([s.C1, s.C2]), np.zeros((4, 2)))
     if lag is not None:
-        seat = series(parallel(unity(1), actuator(lag)), seat)
+        seat = connect_in_series(connect_in_parallel(pass_through(1), build_actuator(lag)), seat)
     scale = np.diag([weights.travel, weights.acceleration, 1.0, 1.0])
     if weights.weighting != "none":
-        seat = series(seat, parallel(unity(1), weighted(weights.weighting), unity(2)))
+        seat = connect_in_series(
+            seat, connect_in_parallel(pass_through(1), frequency_weighting(weights.weighting), pass_through(2))
+        )
     A, B, C = seat.A, seat.B * [1.0, force_factor], scale @ seat.C
     return GeneralisedPlant(
         A,
@@ -74,10 +83,10 @@ def generalised(
     )
 
 
-def actuator(lag: Lag) -> System:
+def build_actuator(lag: ActuatorLag) -> LinearSystem:
     """Return the lag from the wanted force to the damper's."""
-    coil = System(*(np.array([[value]]) for value in (-lag.rate, lag.rate, 1.0, 0.0)))
+    coil = LinearSystem(*(np.array([[value]]) for value in (-lag.rate, lag.rate, 1.0, 0.0)))
     if lag.delay == 0:
         return coil
     d = lag.delay
-    return series(section((1.0, -d / 2, d * d / 12), (1.0, d / 2, d * d / 12)), coil)
+    return connect_in_series(second_order_section((1.0, -d / 2, d * d / 12), (1.0, d / 2, d * d / 12)), coil)

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse
 
-from controllers.clairvoyant.problem import Problem
-from controllers.clairvoyant.recursion import Array, Lines
+from controllers.clairvoyant.problem import HeldForceProblem
+from controllers.clairvoyant.recursion import Array, ForceBand
 
 SPACING = 0.02
 """s between the nodes of the multipliers."""
@@ -24,13 +24,15 @@ SHARES = (0.3, 0.1, 0.03, 0.01)
 """Sizes of the barrier over the criterion, stage by stage."""
 STEPS = 120
 """Most steps of a barrier."""
+# Pairs kept by L-BFGS; largest change of a logarithm in one step; relative gain that ends an ascent, once the memory is
+# full; change of all logarithms while a start has no minimum: weaker multipliers are nearer to the convex criterion.
 _MEMORY, _LONGEST, _SETTLED, _RETREAT = 30, 2.0, 1e-6, 0.1
 _NU = 1e-9  # of the criterion a N^2, where the ascent starts
 
-Objective = Callable[[Array], tuple[float, Array] | None]
+DualFunction = Callable[[Array], tuple[float, Array] | None]
 
 
-class Bound(NamedTuple):
+class LowerBound(NamedTuple):
     """A lower bound of J, the logarithms of the multipliers (3 nodes,), and the law (N, n+1) that L is least under."""
 
     value: float
@@ -38,29 +40,31 @@ class Bound(NamedTuple):
     gain: Array
 
 
-def lower_bound(problem: Problem, lines: Lines, size: float, start: Array | None = None) -> Bound:
+def find_lower_bound(problem: HeldForceProblem, band: ForceBand, size: float, start: Array | None = None) -> LowerBound:
     """Return a lower bound of J over all forces between the lines.
 
     `size` is about J; `start` are the logarithms found at another weight.
     """
-    hats = _hats(problem.intervals, problem.transcription.step)
-    y = _constant(problem, lines, hats, size) if start is None else start
-    while (best := _bound(problem, lines, hats, y)) is None:
+    hats = _build_hat_functions(problem.intervals, problem.transcription.step)
+    y = _find_constant_multipliers(problem, band, hats, size) if start is None else start
+    while (best := _evaluate_bound(problem, band, hats, y)) is None:
         y = y - _RETREAT
     for share in SHARES:
-        y = _ascended(_objective(problem, lines, hats, share * size / problem.intervals), best.logarithms)
-        reached = _bound(problem, lines, hats, y)
+        y = _ascend(_make_dual_function(problem, band, hats, share * size / problem.intervals), best.logarithms)
+        reached = _evaluate_bound(problem, band, hats, y)
         if reached and reached.value > best.value:
             best = reached
     return best
 
 
-def _bound(problem: Problem, lines: Lines, hats: scipy.sparse.csr_array, y: Array) -> Bound | None:
-    found = problem.lagrangian(lines, _spread(hats, y), 0.0)
-    return Bound(found.bound, y, found.gain) if found else None
+def _evaluate_bound(
+    problem: HeldForceProblem, band: ForceBand, hats: scipy.sparse.csr_array, y: Array
+) -> LowerBound | None:
+    found = problem.minimise_lagrangian(band, _sum_hats(hats, y), 0.0)
+    return LowerBound(found.bound, y, found.gain) if found else None
 
 
-def _hats(count: int, step: float) -> scipy.sparse.csr_array:
+def _build_hat_functions(count: int, step: float) -> scipy.sparse.csr_array:
     """Return what the hat functions of unit density sum up to in each of `count` intervals, shape (count, nodes)."""
     place = step / SPACING * (np.arange(count) + 0.5)
     left = place.astype(int)
@@ -71,13 +75,15 @@ def _hats(count: int, step: float) -> scipy.sparse.csr_array:
     return scipy.sparse.csr_array(entries, shape=(count, math.ceil(count * step / SPACING - 1e-9) + 1))
 
 
-def _spread(hats: scipy.sparse.csr_array, y: Array) -> Array:
+def _sum_hats(hats: scipy.sparse.csr_array, y: Array) -> Array:
     return np.ascontiguousarray((hats @ np.exp(y.reshape(3, -1)).T).T)
 
 
-def _objective(problem: Problem, lines: Lines, hats: scipy.sparse.csr_array, barrier: float) -> Objective:
+def _make_dual_function(
+    problem: HeldForceProblem, band: ForceBand, hats: scipy.sparse.csr_array, barrier: float
+) -> DualFunction:
     def objective(y: Array) -> tuple[float, Array] | None:
-        found = problem.lagrangian(lines, _spread(hats, y), barrier)
+        found = problem.minimise_lagrangian(band, _sum_hats(hats, y), barrier)
         if found is None:
             return None
         by: Array = (found.by @ hats) * np.exp(y.reshape(3, -1))
@@ -86,50 +92,52 @@ def _objective(problem: Problem, lines: Lines, hats: scipy.sparse.csr_array, bar
     return objective
 
 
-def _constant(problem: Problem, lines: Lines, hats: scipy.sparse.csr_array, size: float) -> Array:
+def _find_constant_multipliers(
+    problem: HeldForceProblem, band: ForceBand, hats: scipy.sparse.csr_array, size: float
+) -> Array:
     """Return the best of some multipliers that do not change with time: they bound the energy of the whole record."""
     share = size / (problem.intervals * problem.transcription.step)
     nodes = hats.shape[1]
     found = []
     for level in np.geomspace(1e-4, 1e-1, 10):
         y = np.log(np.repeat([0.5 * level * share, 0.5 * level * share, _NU * share], nodes))
-        value = problem.lagrangian(lines, _spread(hats, y), 0.0)
+        value = problem.minimise_lagrangian(band, _sum_hats(hats, y), 0.0)
         if value:
             found.append((value.bound, level, y))
     highest: Array = max(found, key=lambda entry: entry[:2])[2]
     return highest
 
 
-def _ascended(objective: Objective, y: Array) -> Array:
+def _ascend(objective: DualFunction, y: Array) -> Array:
     """Return where L-BFGS with backtracking comes to in `STEPS` steps, or when it settles."""
     here = objective(y)
     if here is None:
         return y
-    value, slope = here
+    value, gradient = here
     pairs: deque[tuple[Array, Array]] = deque(maxlen=_MEMORY)
     for _ in range(STEPS):
-        direction = _direction(slope, pairs)
+        direction = _find_direction(gradient, pairs)
         length, found = 1.0, None
         while length > 1e-6:
             found = objective(y + length * direction)
-            if found and found[0] >= value + 1e-4 * length * (direction @ slope):
+            if found and found[0] >= value + 1e-4 * length * (direction @ gradient):
                 break
             length, found = 0.4 * length, None
         if found is None:
             break
-        step, bend = length * direction, slope - found[1]
+        step, bend = length * direction, gradient - found[1]
         if step @ bend > 0:
             pairs.append((step, bend))
         y, gained = y + step, found[0] - value
-        value, slope = found
+        value, gradient = found
         if gained < _SETTLED * abs(value) and len(pairs) == _MEMORY:
             break
     return y
 
 
-def _direction(slope: Array, pairs: deque[tuple[Array, Array]]) -> Array:
+def _find_direction(gradient: Array, pairs: deque[tuple[Array, Array]]) -> Array:
     """Return the quasi-Newton direction (Nocedal and Wright, algorithm 7.4), no entry above `_LONGEST`."""
-    q, kept = slope.copy(), []
+    q, kept = gradient.copy(), []
     for step, bend in reversed(pairs):
         factor = (step @ q) / (step @ bend)
         kept.append(factor)

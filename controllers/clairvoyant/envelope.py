@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controllers.clairvoyant.recursion import Array, Lines
+from controllers.clairvoyant.recursion import Array, ForceBand
 from seatsim.scenario.scenario import DamperChoice
 from seatsim.schema.errors import InputError
 from seatsim.simulation.damper_bench import sine_test
@@ -14,21 +14,21 @@ from seatsim.simulation.damper_bench import sine_test
 TOP = 1.5
 """m/s; speed up to which the lines hold."""
 SPEEDS = np.array([0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.2, TOP])
-CURRENTS, SLOPES = 9, 201
+CURRENTS, SLOPES = 9, 201  # grids of the current and of the strip's slope, which is found to half a percent
 _STROKE, _FASTEST = 0.02, 2.0  # m and Hz: friction has its full size, and internal flows settle
 
 
-class Envelope(NamedTuple):
+class DamperEnvelope(NamedTuple):
     """Lines that hold every force of the damper between them (`outer`), and lines between which it has all (`inner`).
 
     They are about the same for a damper whose steady force is a viscous and a friction part.
     """
 
-    outer: Lines
-    inner: Lines
+    outer: ForceBand
+    inner: ForceBand
 
 
-def envelope(damper: DamperChoice, max_current: float, temperature: float) -> Envelope:
+def fit_envelope(damper: DamperChoice, max_current: float, temperature: float) -> DamperEnvelope:
     """Return the lines of a damper's steady force, at 0 to `max_current` A and a temperature in degC.
 
     The steady force at a speed is that of a sine test at its peak velocity, either way, where hysteresis is saturated
@@ -38,7 +38,10 @@ def envelope(damper: DamperChoice, max_current: float, temperature: float) -> En
         InputError: the damper is not dissipative there, or has no force to choose from.
     """
     forces = np.array(
-        [[_steady(damper, speed, i, temperature) for i in np.linspace(0, max_current, CURRENTS)] for speed in SPEEDS]
+        [
+            [_measure_steady_force(damper, speed, i, temperature) for i in np.linspace(0, max_current, CURRENTS)]
+            for speed in SPEEDS
+        ]
     )
     least, most = forces.min(axis=1), forces.max(axis=1)
     driving = (least < 0).any(axis=1)
@@ -51,20 +54,21 @@ def envelope(damper: DamperChoice, max_current: float, temperature: float) -> En
     c = max(0.0, min(float(np.polyfit(SPEEDS, least.mean(axis=1), 1)[0]), float((least / speeds).min())))
     b = max(0.0, float(np.polyfit(SPEEDS, most.mean(axis=1), 1)[0]))
     weakest, strongest = least - c * speeds, most - b * speeds
-    inner = Lines(c, float(weakest.max()), b, float(strongest.min()))
+    inner = ForceBand(c, float(weakest.max()), b, float(strongest.min()))
     if inner.a <= inner.f or inner.a + inner.b * TOP <= inner.f + inner.c * TOP:
         raise InputError("the damper's forces at no and at full current do not leave a straight band between them")
-    a, slope = min((_half_width(least, most, slope), slope) for slope in np.linspace(0, b, SLOPES))
-    return Envelope(Lines(c, float(weakest.min()), float(slope), a), inner)
+    # Of all strips that hold the forces, the narrowest: a wide one would loosen the bound at every speed.
+    a, slope = min((_find_half_width(least, most, slope), slope) for slope in np.linspace(0, b, SLOPES))
+    return DamperEnvelope(ForceBand(c, float(weakest.min()), float(slope), a), inner)
 
 
-def _half_width(least: Array, most: Array, slope: float) -> float:
+def _find_half_width(least: Array, most: Array, slope: float) -> float:
     """Return the least `a` with `abs(F - slope w) <= a` for all forces: the bound's third multiplier is of a strip."""
     middle = slope * SPEEDS[:, None]
     return float(max((most - middle).max(), (middle - least).max()))
 
 
-def _steady(damper: DamperChoice, speed: float, current: float, temperature: float) -> Array:
+def _measure_steady_force(damper: DamperChoice, speed: float, current: float, temperature: float) -> Array:
     """Return the resisting force in N while extending and while compressing."""
     stroke = max(_STROKE, speed / (2 * np.pi * _FASTEST))
     test = sine_test(damper.record, stroke, speed / (2 * np.pi * stroke), current, temperature, damper.factors)

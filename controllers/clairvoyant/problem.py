@@ -6,12 +6,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controllers.clairvoyant.recursion import Array, Lines, Modes, Quadratic, deliver, gradient, sweep
+from controllers.clairvoyant.recursion import (
+    Array,
+    ForceBand,
+    ForceModes,
+    StageMatrices,
+    differentiate,
+    minimise_backwards,
+    simulate_delivered,
+)
 from controllers.clairvoyant.transcription import Transcription
 from seatsim.compilation.cached import compiled
 
 
-class Run(NamedTuple):
+class ClairvoyantRun(NamedTuple):
     """A run under a held force: J, its two mean squares, force and mean damper velocity by interval, what sets it."""
 
     cost: float
@@ -19,10 +27,10 @@ class Run(NamedTuple):
     travel: float
     force: Array
     velocity: Array
-    modes: Modes
+    modes: ForceModes
 
 
-class Slope(NamedTuple):
+class LagrangianMinimum(NamedTuple):
     """The Lagrangian's minimum (a bound of J), the sum of log pivots, their derivatives by the multipliers, the law."""
 
     bound: float
@@ -31,50 +39,50 @@ class Slope(NamedTuple):
     gain: Array
 
 
-class Problem(NamedTuple):
+class HeldForceProblem(NamedTuple):
     """Minimise mean(aw^2) + weight mean(x^2) over the held force; `weight` in 1/s^4."""
 
     transcription: Transcription
     weight: float
 
     @property
-    def quadratic(self) -> Quadratic:
+    def stage_matrices(self) -> StageMatrices:
         """The matrices of the recursions."""
         t = self.transcription
         Q = t.acceleration.Q + self.weight * t.travel.Q
         q = t.acceleration.q + self.weight * t.travel.q
-        return Quadratic(np.column_stack([t.A, t.B]), Q, q, t.velocity, t.free_velocity)
+        return StageMatrices(np.column_stack([t.A, t.B]), Q, q, t.velocity, t.free_velocity)
 
     @property
     def intervals(self) -> int:
         """Number of intervals."""
         return len(self.transcription.free_velocity)
 
-    def lagrangian(self, lines: Lines, multipliers: Array, barrier: float) -> Slope | None:
+    def minimise_lagrangian(self, band: ForceBand, multipliers: Array, barrier: float) -> LagrangianMinimum | None:
         """Return the minimum of the Lagrangian with its derivatives; None where it has none."""
-        p, count, t = self.quadratic, self.intervals, self.transcription
+        p, count, t = self.stage_matrices, self.intervals, self.transcription
         gain, pivot, by = np.empty((count, len(p.V))), np.empty(count), np.empty((3, count))
         modes = np.zeros(count, dtype=np.int64)
-        least = compiled(sweep, ())(p, lines, multipliers, modes, 0.0, pivot, gain, pivot)
+        least = compiled(minimise_backwards, ())(p, band, multipliers, modes, 0.0, pivot, gain, pivot)
         if not np.isfinite(least):
             return None
-        compiled(gradient, ())(p, lines, gain, pivot, barrier, by)
+        compiled(differentiate, ())(p, band, gain, pivot, barrier, by)
         free = t.acceleration.free + self.weight * t.travel.free
-        return Slope(free + least, float(np.sum(np.log(pivot))), by, gain)
+        return LagrangianMinimum(free + least, float(np.sum(np.log(pivot))), by, gain)
 
-    def delivered(self, lines: Lines, gain: Array) -> Run:
+    def simulate(self, band: ForceBand, gain: Array) -> ClairvoyantRun:
         """Return the run under what the damper delivers of the force `gain . (s, 1)`, shape (N, n+1)."""
-        p, count, t = self.quadratic, self.intervals, self.transcription
+        p, count, t = self.stage_matrices, self.intervals, self.transcription
         force, velocity, states = np.empty(count), np.empty(count), np.empty((count, len(p.V) - 1))
         modes = np.zeros(count, dtype=np.int64)
-        compiled(deliver, ())(p, lines, gain, force, velocity, states, modes)
+        compiled(simulate_delivered, ())(p, band, gain, force, velocity, states, modes)
         y = np.column_stack([states, force])
         acceleration, travel = (m.free + float(np.sum(y * (y @ m.Q + 2 * m.q))) for m in (t.acceleration, t.travel))
-        return Run(acceleration + self.weight * travel, acceleration, travel, force, velocity, modes)
+        return ClairvoyantRun(acceleration + self.weight * travel, acceleration, travel, force, velocity, modes)
 
-    def improved(self, lines: Lines, run: Run, pull: float) -> Array:
+    def improve_law(self, band: ForceBand, run: ClairvoyantRun, proximity: float) -> Array:
         """Return the law that is best where every interval stays on what sets its force in `run`."""
-        p, count = self.quadratic, self.intervals
+        p, count = self.stage_matrices, self.intervals
         gain, pivot = np.empty((count, len(p.V))), np.empty(count)
-        compiled(sweep, ())(p, lines, np.zeros((3, count)), run.modes, pull, run.force, gain, pivot)
+        compiled(minimise_backwards, ())(p, band, np.zeros((3, count)), run.modes, proximity, run.force, gain, pivot)
         return gain

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from seatsim.compilation.jit import jit
 
 Array = NDArray[np.float64]
-Modes = NDArray[np.int64]
+ForceModes = NDArray[np.int64]
 
 FREE, LOWER, UPPER, STUCK = 0, 1, 2, 3
 """What sets the force of an interval: nothing, the least or the largest force (negative: at w < 0), or w = 0."""
 
 
-class Lines(NamedTuple):
+class ForceBand(NamedTuple):
     """Least force `f + c |w|` and largest force `a + b |w|` in N of a damper at the speed |w| in m/s."""
 
     c: float
@@ -31,7 +31,7 @@ class Lines(NamedTuple):
     a: float
 
 
-class Quadratic(NamedTuple):
+class StageMatrices(NamedTuple):
     """Transition `AB` (n, n+1), criterion `Q` (n+1, n+1) and `q` (N, n+1), damper velocity `V` (n+1), `w0` (N)."""
 
     AB: Array
@@ -41,23 +41,30 @@ class Quadratic(NamedTuple):
     w0: Array
 
 
-def sweep(
-    p: Quadratic, lines: Lines, multipliers: Array, modes: Modes, pull: float, force: Array, gain: Array, pivot: Array
+def minimise_backwards(
+    p: StageMatrices,
+    band: ForceBand,
+    multipliers: Array,
+    modes: ForceModes,
+    proximity: float,
+    force: Array,
+    gain: Array,
+    pivot: Array,
 ) -> float:
     """Fill `gain` (N, n+1) of the minimiser F = gain . (s, 1) and `pivot` (N,), backwards; return the minimum.
 
     `multipliers` (3, N) are alpha, beta, nu. The cost-to-go follows F = gain . (s, 1) where an interval is FREE, and
-    the damper's line or w = 0 elsewhere. `pull` adds pull (F - force)^2. Minus infinity: L has no minimum.
+    the damper's line or w = 0 elsewhere. `proximity` adds proximity (F - force)^2. Minus infinity: L has no minimum.
     """
     n, steps = p.AB.shape[0], len(p.w0)
     P, r, K = np.zeros((n, n)), np.zeros(n), np.zeros(n + 1)
     T, M, m = np.zeros((n, n + 1)), np.zeros((n + 1, n + 1)), np.zeros(n + 1)
     total = 0.0
     for k in range(steps - 1, -1, -1):
-        _stage(p, P, r, k, T, M, m)
-        total += _constraints(p, lines, multipliers, k, M, m)
-        M[n, n] += pull
-        m[n] -= pull * force[k]
+        _add_stage(p, P, r, k, T, M, m)
+        total += _add_constraints(p, band, multipliers, k, M, m)
+        M[n, n] += proximity
+        m[n] -= proximity * force[k]
         if not M[n, n] > 0.0:
             return -math.inf
         pivot[k] = M[n, n]
@@ -67,7 +74,7 @@ def sweep(
         gain[k] = K
         total -= float(m[n] * m[n] / M[n, n])
         if modes[k] != FREE:
-            _on_line(p, lines, modes[k], k, K)
+            _constrain_force(p, band, modes[k], k, K)
         for i in range(n):
             for j in range(n):
                 P[i, j] = M[i, j] + M[i, n] * K[j] + K[i] * (M[n, j] + M[n, n] * K[j])
@@ -76,7 +83,7 @@ def sweep(
 
 
 @jit
-def _stage(p: Quadratic, P: Array, r: Array, k: int, T: Array, M: Array, m: Array) -> None:
+def _add_stage(p: StageMatrices, P: Array, r: Array, k: int, T: Array, M: Array, m: Array) -> None:
     """Fill M and m with the criterion of interval k and the cost-to-go s' P s + 2 r' s behind it."""
     AB = p.AB
     n = AB.shape[0]
@@ -99,9 +106,9 @@ def _stage(p: Quadratic, P: Array, r: Array, k: int, T: Array, M: Array, m: Arra
 
 
 @jit
-def _constraints(p: Quadratic, lines: Lines, multipliers: Array, k: int, M: Array, m: Array) -> float:
+def _add_constraints(p: StageMatrices, band: ForceBand, multipliers: Array, k: int, M: Array, m: Array) -> float:
     """Add the terms of the multipliers to M and m; return their constant."""
-    c, f, b, a = lines
+    c, f, b, a = band
     n, V, o = p.AB.shape[0], p.V, p.w0[k]
     both, odd, nu = multipliers[0, k] + multipliers[1, k], multipliers[0, k] - multipliers[1, k], multipliers[2, k]
     linear = both * c * o + 0.5 * f * odd
@@ -118,25 +125,25 @@ def _constraints(p: Quadratic, lines: Lines, multipliers: Array, k: int, M: Arra
 
 
 @jit
-def _on_line(p: Quadratic, lines: Lines, mode: int, k: int, K: Array) -> None:
+def _constrain_force(p: StageMatrices, band: ForceBand, mode: int, k: int, K: Array) -> None:
     """Set K to the force on the damper's line at the sign of `mode`, or to that which holds w at 0."""
     n, V = p.AB.shape[0], p.V
     sign = 1.0 if mode > 0 else -1.0
-    slope, offset = (lines.c, lines.f) if abs(mode) == LOWER else (lines.b, lines.a)
+    slope, offset = (band.c, band.f) if abs(mode) == LOWER else (band.b, band.a)
     scale = slope / (1.0 - V[n] * slope) if mode != STUCK else -1.0 / V[n]
     for i in range(n):
         K[i] = scale * V[i]
     K[n] = scale * p.w0[k] + (sign * offset / (1.0 - V[n] * slope) if mode != STUCK else 0.0)
 
 
-def gradient(p: Quadratic, lines: Lines, gain: Array, pivot: Array, barrier: float, out: Array) -> None:
+def differentiate(p: StageMatrices, band: ForceBand, gain: Array, pivot: Array, barrier: float, out: Array) -> None:
     """Fill `out` (3, N) with the derivatives of min L + barrier sum log pivot by alpha, beta and nu.
 
     Those of the minimum are the constraints at the minimiser. Those of the sum, the log of the determinant of L's
     Hessian H, are the constraints' quadratic parts averaged over fluctuations of the force with covariance H^-1:
     the minimiser's law with white noise of variance 1 / pivot.
     """
-    c, f, b, a = lines
+    c, f, b, a = band
     n, steps, V = p.AB.shape[0], len(p.w0), p.V
     s, y = np.zeros(n), np.zeros(n + 1)
     S, R, closed = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
@@ -169,11 +176,11 @@ def gradient(p: Quadratic, lines: Lines, gain: Array, pivot: Array, barrier: flo
                 s[i] += p.AB[i, j] * y[j]
             for j in range(n):
                 closed[i, j] = p.AB[i, j] + p.AB[i, n] * K[j]
-        _spread(closed, noise, p.AB, S, R)
+        _propagate_covariance(closed, noise, p.AB, S, R)
 
 
 @jit
-def _spread(closed: Array, noise: float, AB: Array, S: Array, R: Array) -> None:
+def _propagate_covariance(closed: Array, noise: float, AB: Array, S: Array, R: Array) -> None:
     """Carry the covariance S of the fluctuating state over one interval: closed S closed' + noise B B'."""
     n = AB.shape[0]
     R[:] = 0.0
@@ -190,7 +197,9 @@ def _spread(closed: Array, noise: float, AB: Array, S: Array, R: Array) -> None:
             S[i, j] = x
 
 
-def deliver(p: Quadratic, lines: Lines, gain: Array, force: Array, w: Array, states: Array, modes: Modes) -> None:
+def simulate_delivered(
+    p: StageMatrices, band: ForceBand, gain: Array, force: Array, w: Array, states: Array, modes: ForceModes
+) -> None:
     """Run the seat forward under what the damper delivers of the force `gain . (s, 1)`, and fill the rest.
 
     Delivered is the closest of the forces on either side of w = 0 between the damper's lines, or the force that holds
@@ -204,7 +213,7 @@ def deliver(p: Quadratic, lines: Lines, gain: Array, force: Array, w: Array, sta
             states[k, i] = y[i]
             want += gain[k, i] * y[i]
             free += V[i] * y[i]
-        force[k], modes[k] = _closest(lines, want, free, -float(V[n]))
+        force[k], modes[k] = _find_closest_force(band, want, free, -float(V[n]))
         w[k] = free + V[n] * force[k] if modes[k] != STUCK else 0.0
         y[n] = force[k]
         s = p.AB @ y
@@ -212,9 +221,9 @@ def deliver(p: Quadratic, lines: Lines, gain: Array, force: Array, w: Array, sta
 
 
 @jit
-def _closest(lines: Lines, want: float, free: float, give: float) -> tuple[float, int]:
+def _find_closest_force(band: ForceBand, want: float, free: float, give: float) -> tuple[float, int]:
     """Return the deliverable force closest to `want`, where w = free - give F, and what sets it."""
-    c, f, b, a = lines
+    c, f, b, a = band
     best, mode, distance = free / give, STUCK, math.inf
     if abs(best) <= a:
         distance = abs(best - want)

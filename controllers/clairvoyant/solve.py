@@ -1,57 +1,126 @@
-"""From a scenario to its bracket."""
+"""From a scenario to the performance bounds of its seat, damper and floor."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from controllers.clairvoyant import Array, Bracket
-from controllers.clairvoyant.bound import Bound, lower_bound
-from controllers.clairvoyant.envelope import TOP, Envelope, envelope
-from controllers.clairvoyant.feasible import best_run
-from controllers.clairvoyant.problem import Problem, Run
+from controllers.clairvoyant.bound import LowerBound, find_lower_bound
+from controllers.clairvoyant.envelope import TOP, DamperEnvelope, fit_envelope
+from controllers.clairvoyant.feasible import find_best_run
+from controllers.clairvoyant.performance_bounds import Array, ClairvoyantBounds
+from controllers.clairvoyant.problem import ClairvoyantRun, HeldForceProblem
 from controllers.clairvoyant.transcription import Transcription, transcribe
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
-from seatsim.schema.registry import name_of
+from seatsim.schema.registry import name_of, register
 
+WEIGHTS = tuple(float(w) ** 2 for w in np.geomspace(12.0, 150.0, 7))
+"""Weights of the squared travel in 1/s^4, from a soft seat to short travel."""
+HOLD = 0.005
+"""s; the force is held so long, as in a controller that samples every 5 ms."""
 UNKNOWN = (*ON_DAMPER, *ON_SEAT, "factors", "temperature", "frame_force", "plant")
-"""Hooks of effects that change what the bracket is of."""
+"""Hooks of effects that change seat, damper or floor: the bounds are of the rig without them."""
 
 
-def solve(scenario: Scenario, weights: Array, hold: float, progress: Callable[[str], None]) -> Bracket:
-    """Return the bracket, from the middle weight outwards: each bound starts from its neighbour's multipliers."""
-    if weights.ndim != 1 or not len(weights) or not (np.isfinite(weights) & (weights > 0)).all():
+@register("bracket", "clairvoyant", None)
+class ClairvoyantMethod:
+    """The method by which `seatsim compare --bracket` computes bounds."""
+
+    @staticmethod
+    def of(scenario: Scenario, progress: Callable[[str], None]) -> ClairvoyantBounds:
+        """Return the performance bounds of a scenario's seat, damper and floor."""
+        return clairvoyant(scenario, progress=progress)
+
+
+def clairvoyant(
+    scenario: Scenario,
+    weights: ArrayLike = WEIGHTS,
+    hold: float = HOLD,
+    progress: Callable[[str], None] = lambda text: None,
+) -> ClairvoyantBounds:
+    """Return the performance bounds of a scenario's seat, damper and floor; docs/bracket.md has method and validity.
+
+    Args:
+        scenario: its law, coil rate and sample times play no part.
+        weights: of the squared travel in 1/s^4, above 0.
+        hold: time in s over which a force is held, a multiple of `solver.step`.
+        progress: is called with what is being done.
+
+    Raises:
+        InputError: the scenario has no seat or one that is not linear, its damper is not dissipative, or a number is
+            out of its range.
+    """
+    chosen = np.asarray(weights, dtype=np.float64)
+    if chosen.ndim != 1 or not len(chosen) or not (np.isfinite(chosen) & (chosen > 0)).all():
         raise InputError("the weights of a bracket are one or more numbers above 0, in 1/s^4")
-    transcription, band = _posed(scenario, hold)
-    middle, order = len(weights) // 2, np.argsort(weights)
-    found: dict[int, tuple[Bound, Run]] = {}
-    for place in sorted(range(len(weights)), key=lambda place: abs(place - middle)):
-        progress(f"{scenario.title}: bracket, weight {len(found) + 1} of {len(weights)}")
-        problem = Problem(transcription, float(weights[order[place]]))
-        near = found.get(place - 1 if place > middle else place + 1)
-        found[place] = _ends(problem, band, near[0].logarithms if near else None)
-    ends = [found[place] for place in np.argsort(order)]
+    transcription, band = _pose(scenario, hold)
+    rising = np.argsort(chosen)
+    found = _solve_outwards(
+        [HeldForceProblem(transcription, float(weight)) for weight in chosen[rising]],
+        band,
+        lambda done: progress(f"{scenario.title}: bracket, weight {done} of {len(chosen)}"),
+    )
+    ends = [found[place] for place in np.argsort(rising)]
     _check_speed([run for _, run in ends])
-    return Bracket(
-        weights, np.array([bound.value for bound, _ in ends]), np.sqrt([run.acceleration for _, run in ends]),
-        np.sqrt([run.travel for _, run in ends]), np.array([run.force for _, run in ends]), transcription.step,
-    )  # fmt: skip
+    return ClairvoyantBounds(
+        chosen,
+        np.array([bound.value for bound, _ in ends]),
+        np.sqrt([run.acceleration for _, run in ends]),
+        np.sqrt([run.travel for _, run in ends]),
+        np.array([run.force for _, run in ends]),
+        transcription.step,
+    )
 
 
-def _ends(problem: Problem, band: Envelope, start: Array | None) -> tuple[Bound, Run]:
+Ends = tuple[LowerBound, ClairvoyantRun]
+
+
+def _solve_outwards(
+    problems: Sequence[HeldForceProblem], band: DamperEnvelope, progress: Callable[[int], None]
+) -> dict[int, Ends]:
+    """Return both ends by the place of their problem, solved from the middle weight outwards.
+
+    Each bound starts from its neighbour's multipliers, which differ least between neighbouring weights.
+    """
+    middle = len(problems) // 2
+    found: dict[int, Ends] = {}
+    for place in sorted(range(len(problems)), key=lambda place: abs(place - middle)):
+        progress(len(found) + 1)
+        near = found.get(place - 1 if place > middle else place + 1)
+        found[place] = _find_both_ends(problems[place], band, near[0].logarithms if near else None)
+    return found
+
+
+def _find_both_ends(problem: HeldForceProblem, band: DamperEnvelope, start: Array | None) -> Ends:
     """Return the bound and the better of two runs: that from the weakest damper, and that from the bound's law."""
-    weakest = best_run(problem, band.inner)
-    bound = lower_bound(problem, band.outer, weakest.cost, start)
-    led = best_run(problem, band.inner, bound.gain)
+    weakest = find_best_run(problem, band.inner)
+    bound = find_lower_bound(problem, band.outer, weakest.cost, start)
+    led = find_best_run(problem, band.inner, bound.gain)
     return bound, min(weakest, led, key=lambda run: run.cost)
 
 
-def _posed(scenario: Scenario, hold: float) -> tuple[Transcription, Envelope]:
+def _pose(scenario: Scenario, hold: float) -> tuple[Transcription, DamperEnvelope]:
+    """Return the linear-quadratic problem of a scenario and the forces of its damper."""
     if scenario.plant is None:
         raise InputError(f"{scenario.name}: a damper bench has no seat, so it has no bracket")
+    temperature = _require_plain_rig(scenario)
+    step, every = scenario.solver.step, _count_held_samples(scenario.solver.step, hold)
+    floor = scenario.excitation.floor(step, scenario.seed)
+    if len(floor.acceleration) <= every:
+        raise InputError(f"{scenario.title}: the floor's record is shorter than the time over which a force is held")
+    if not floor.acceleration.any() and not any(scenario.start):
+        raise InputError(f"{scenario.title}: nothing moves, so there is nothing to bracket")
+    with scenario.placed("damper"):
+        band = fit_envelope(scenario.damper, scenario.coil.max_current, temperature)
+    return transcribe(scenario.plant, floor.acceleration, step, every, scenario.start), band
+
+
+def _require_plain_rig(scenario: Scenario) -> float:
+    """Return the damper's temperature in degC where seat, damper and floor are those that the bounds hold for."""
     for effect in scenario.effects:
         if acts_on(type(effect), UNKNOWN):
             name = name_of("effect", type(effect))
@@ -60,23 +129,20 @@ def _posed(scenario: Scenario, hold: float) -> tuple[Transcription, Envelope]:
             )
     if not isinstance(scenario.temperature, float | int):
         raise InputError(f"{scenario.title}: the bracket needs a damper of one temperature; state it as a number")
-    step = scenario.solver.step
+    return float(scenario.temperature)
+
+
+def _count_held_samples(step: float, hold: float) -> int:
+    """Return over how many samples of `step` seconds a force is held for `hold` seconds."""
     every = round(hold / step)
     if every < 1 or abs(every * step - hold) > 1e-9:
         raise InputError(
             f"hold {hold:g} s is not a multiple of solver.step {step:g} s; choose {max(1, every) * step:g} s"
         )
-    floor = scenario.excitation.floor(step, scenario.seed)
-    if len(floor.acceleration) <= every:
-        raise InputError(f"{scenario.title}: the floor's record is shorter than the time over which a force is held")
-    if not floor.acceleration.any() and not any(scenario.start):
-        raise InputError(f"{scenario.title}: nothing moves, so there is nothing to bracket")
-    with scenario.placed("damper"):
-        band = envelope(scenario.damper, scenario.coil.max_current, float(scenario.temperature))
-    return transcribe(scenario.plant, floor.acceleration, step, every, scenario.start), band
+    return every
 
 
-def _check_speed(runs: list[Run]) -> None:
+def _check_speed(runs: list[ClairvoyantRun]) -> None:
     top = max(float(np.max(np.abs(run.velocity))) for run in runs)
     if top > TOP:
         raise InputError(f"the damper moves at {top:.3g} m/s; the bracket's envelope holds to {TOP:g} m/s")

@@ -17,7 +17,14 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from controllers.linear import System, held, parallel, series, unity, weighted
+from controllers.linear_systems import (
+    LinearSystem,
+    connect_in_parallel,
+    connect_in_series,
+    frequency_weighting,
+    pass_through,
+    zero_order_hold,
+)
 from seatsim.metrics.weighting import weight
 from seatsim.rig.plant import Plant, state_space
 
@@ -56,9 +63,9 @@ def transcribe(plant: Plant, floor: Array, sample: float, every: int, start: tup
     time = sample * np.arange(used)
     response = scipy.signal.lsim((s.A, s.B1, s.C1, np.zeros((2, 1))), floor[:used], time, [*start, 0.0, 0.0])[1]
     travel, acceleration = np.ascontiguousarray(response.T)
-    seat = System(s.A, s.B2, s.C1, np.zeros((2, 1)))
-    A, B, C, _ = series(seat, parallel(unity(1), weighted("Wk")))
-    steps = [np.hstack(held(A, B, (j + 1) * sample)) for j in range(every)]
+    seat = LinearSystem(s.A, s.B2, s.C1, np.zeros((2, 1)))
+    A, B, C, _ = connect_in_series(seat, connect_in_parallel(pass_through(1), frequency_weighting("Wk")))
+    steps = [np.hstack(zero_order_hold(A, B, (j + 1) * sample)) for j in range(every)]
     last = steps[-1]
     rows = np.array([C @ step for step in steps])  # travel, weighted acceleration
     ratio = plant.damper_ratio / (every * sample)

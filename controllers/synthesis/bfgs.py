@@ -17,11 +17,13 @@ from controllers.synthesis.plant import Array
 
 Function = Callable[[Array, float], tuple[float, Array]]
 
+# The usual weak Wolfe constants. The curvature condition is loose on purpose: at a kink a strong one cannot be met.
 _ARMIJO, _CURVATURE = 1e-4, 0.5
+# Each step halves or doubles: 40 of them span twelve decades of step length.
 _LINE_STEPS = 40
 
 
-class Point(NamedTuple):
+class Iterate(NamedTuple):
     """A place with the function's value and gradient there."""
 
     x: Array
@@ -38,13 +40,23 @@ def minimise(
     patience: int = 20,
     progress: float = 1e-6,
     iterations: int = 1000,
-) -> Point:
+) -> Iterate:
     """Descend from `start`, where `function` must be finite; the first steps are steepest in x / unit.
 
-    Ends where the value is at most `enough`, `patience` steps together gain less than `progress`, no step
-    descends, or `time.monotonic()` passes `deadline`.
+    Args:
+        function: value and gradient (n,) at x (n,); above `ceiling` the value need only exceed it.
+        start: where to begin, (n,).
+        unit: natural size of a change of every entry, (n,).
+        deadline: by `time.monotonic()`.
+        enough: the search ends at this value or below.
+        patience: number of steps that together must gain `progress`, else the search ends.
+        progress: least gain of so many steps, in the value's unit.
+        iterations: most steps.
+
+    Returns:
+        The lowest point found, which no step lowered or one of the limits stopped.
     """
-    here = Point(start, *function(start, np.inf))
+    here = Iterate(start, *function(start, np.inf))
     inverse = first = np.diag(unit**2)
     history = [here.value]
     fresh = True
@@ -53,6 +65,7 @@ def minimise(
             break
         following = _line_search(function, here, -inverse @ here.gradient)
         if following is None:
+            # Steepest descent found nothing either: a minimum, or a kink that no direction leaves.
             if fresh:
                 break
             inverse, fresh = first, True
@@ -65,16 +78,16 @@ def minimise(
     return here
 
 
-def _line_search(function: Function, here: Point, direction: Array) -> Point | None:
+def _line_search(function: Function, here: Iterate, direction: Array) -> Iterate | None:
     """Find a point with sufficient decrease and a flatter slope; None where nothing lower is found."""
     slope = float(here.gradient @ direction)
     if not slope < 0:
         return None
     low, high, step = 0.0, np.inf, 1.0
-    lowest: Point | None = None
+    lowest: Iterate | None = None
     for _ in range(_LINE_STEPS):
         x, ceiling = here.x + step * direction, here.value + _ARMIJO * step * slope
-        trial = Point(x, *function(x, ceiling))
+        trial = Iterate(x, *function(x, ceiling))
         if not trial.value < ceiling:
             high = step
         else:
@@ -85,10 +98,11 @@ def _line_search(function: Function, here: Point, direction: Array) -> Point | N
     return lowest
 
 
-def _update(inverse: Array, here: Point, following: Point, fresh: bool) -> Array:
+def _update(inverse: Array, here: Iterate, following: Iterate, fresh: bool) -> Array:
     """BFGS update of the inverse Hessian; the first one also sets its scale."""
     s, y = following.x - here.x, following.gradient - here.gradient
     curvature = float(s @ y)
+    # Without curvature the update would lose positive definiteness, and with it descent.
     if not curvature > 1e-14 * float(np.linalg.norm(s) * np.linalg.norm(y)):
         return inverse
     if fresh:

@@ -16,14 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
-from controllers.synthesis.exact import Exact, close_exactly
-from controllers.synthesis.norm import balanced, hinf_norm
+from controllers.synthesis.exact import ExactMatrix, close_exactly
+from controllers.synthesis.norm import balance, hinf_norm
 from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
 
+# Excess of the certified gamma over the norm: the smallest that double precision can prove is taken.
 _DELTAS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 5e-2)
+# In states where the solution is the identity, the Riccati equation is best conditioned; three rounds settle.
 _RECENTRED = 3
 # Rounding of the eigenvalues of a symmetric matrix of order n, in units of n eps times its norm.
 _ROUNDING = 4
+# ||factor inverse - I|| below 1 proves that factor is regular; half of that leaves room for rounding.
 _REGULAR = 0.5
 
 
@@ -75,7 +78,7 @@ def largest_lmi_eigenvalue(plant: GeneralisedPlant, gain: Array, factor: Array, 
     if not np.isfinite(W).all():
         return np.inf
     A, B, C, D = close_exactly(plant, gain)
-    T, back = Exact.of(factor), Exact.of(W)
+    T, back = ExactMatrix.of(factor), ExactMatrix.of(W)
     one = T @ back
     flow, drive, seen = (one.T @ T @ A @ back).rounded(), (one.T @ T @ B).rounded(), (C @ back).rounded()
     rate = float(np.linalg.norm(flow, 2))
@@ -99,9 +102,9 @@ def recentre(plant: GeneralisedPlant, gain: Array, factor: Array) -> Loop:
     """Return the closed loop in the states `factor` x, in which P becomes the identity, free of the loop's rounding."""
     A, B, C, D = close_exactly(plant, gain)
     inverse = np.asarray(np.linalg.inv(factor), dtype=float)
-    T, back = Exact.of(factor), Exact.of(inverse)
+    T, back = ExactMatrix.of(factor), ExactMatrix.of(inverse)
     # The inverse of factor is back (I + E)^-1, with E = factor back - I as small as rounding.
-    E = (T @ back - Exact.of(np.eye(len(factor)))).rounded()
+    E = (T @ back - ExactMatrix.of(np.eye(len(factor)))).rounded()
     correction = np.linalg.inv(np.eye(len(factor)) + E)
     flow, seen = (T @ A @ back).rounded() @ correction, (C @ back).rounded() @ correction
     return Loop(flow, (T @ B).rounded(), seen, D.rounded())
@@ -109,7 +112,7 @@ def recentre(plant: GeneralisedPlant, gain: Array, factor: Array) -> Loop:
 
 def _bounded_real_factor(plant: GeneralisedPlant, gain: Array, level: float, delta: float) -> Array | None:
     """Solve the Riccati equation in balanced states, then again in those where its solution is the identity."""
-    factor = np.diag(1 / balanced(plant.close(gain))[1])
+    factor = np.diag(1 / balance(plant.close(gain))[1])
     answer = None
     for _ in range(_RECENTRED):
         try:

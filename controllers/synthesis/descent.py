@@ -14,17 +14,22 @@ from typing import NamedTuple
 import numpy as np
 
 from controllers.synthesis.bfgs import minimise
-from controllers.synthesis.objective import STABILITY_MARGIN, Objective
+from controllers.synthesis.objective import STABILITY_MARGIN, NormObjective
 from controllers.synthesis.plant import Array
 from controllers.synthesis.polish import polish
-from controllers.synthesis.starts import Start
+from controllers.synthesis.starts import StartingGain
 
 # A loop this stable (in scaled time) is ready for the descent on its norm.
 _STABLE_ENOUGH = -1e-2
+# Stabilising may be slow where several poles are nearly rightmost, and giving up loses the start.
 _STABILISING_PATIENCE = 60
+# Gain in log gamma below which descents end: coarse to tell valleys apart, fine to reach their floor.
 _COARSE, _FINE = 1e-4, 1e-6
+# Valleys that are followed to the end, which costs more than to find them.
 _REFINED = 6
+# Candidates nearer to each other than this are taken for one valley: the coarse descent leaves as much.
 _SAME = 2e-3
+# Most turns of BFGS and polish; they end earlier where both together gain nothing.
 _TURNS = 8
 # A candidate that at its present pace would not reach the best one in this many turns is given up.
 _HOPE = 10.0
@@ -33,14 +38,14 @@ _ABOUT = (0.1, 0.5, 2.0, 10.0)
 _FRUITLESS = 2
 
 
-class Candidate(NamedTuple):
+class StabilisingGain(NamedTuple):
     """Free entries of a stabilising gain and the norm of its loop."""
 
     gamma: float
     entries: Array
 
 
-def _gamma(candidate: Candidate) -> float:
+def _gamma(candidate: StabilisingGain) -> float:
     return candidate.gamma
 
 
@@ -50,7 +55,7 @@ class Descent(NamedTuple):
     `starts` counts what was tried.
     """
 
-    candidates: list[Candidate]
+    candidates: list[StabilisingGain]
     abscissa: float
     starts: int
 
@@ -65,9 +70,9 @@ class Descent(NamedTuple):
         return Descent(candidates, min(self.abscissa, more.abscissa), self.starts + more.starts)
 
 
-def explore(objective: Objective, starts: Iterable[Start], deadline: float) -> Descent:
+def explore(objective: NormObjective, starts: Iterable[StartingGain], deadline: float) -> Descent:
     """Descend coarsely from every start until the deadline."""
-    candidates: list[Candidate] = []
+    candidates: list[StabilisingGain] = []
     abscissa, tried = float("inf"), 0
     for start in starts:
         theta, unit = objective.angles(start.gain[objective.free]), start.unit[objective.free]
@@ -76,13 +81,13 @@ def explore(objective: Objective, starts: Iterable[Start], deadline: float) -> D
         if point.value < -STABILITY_MARGIN:
             lowest = minimise(objective.log_norm, point.x, unit, deadline, progress=_COARSE)
             entries = objective.entries(lowest.x)
-            candidates.append(Candidate(objective.norm(entries), entries))
+            candidates.append(StabilisingGain(objective.norm(entries), entries))
         if time.monotonic() > deadline:
             break
     return Descent(sorted(candidates, key=_gamma), abscissa, tried)
 
 
-def refine(objective: Objective, candidates: list[Candidate], deadline: float) -> Candidate:
+def refine(objective: NormObjective, candidates: list[StabilisingGain], deadline: float) -> StabilisingGain:
     """Lower the best few candidates to the end and return the best; of those in one valley, only one."""
     first, *others = _distinct(sorted(candidates, key=_gamma))[:_REFINED]
     best = _lower(objective, first, np.inf, deadline)
@@ -91,14 +96,16 @@ def refine(objective: Objective, candidates: list[Candidate], deadline: float) -
     return best
 
 
-def improve(objective: Objective, best: Candidate, seed: int, deadline: float) -> Candidate:
+def improve(objective: NormObjective, best: StabilisingGain, seed: int, deadline: float) -> StabilisingGain:
     """Descend from gains scattered about the best one, until rounds in a row gain nothing."""
     random = np.random.default_rng(seed)
     fruitless = 0
     while fruitless < _FRUITLESS and time.monotonic() < deadline and best.gamma > 0:
         sizes = objective.sizes(best.entries)
         step = random.standard_normal((len(_ABOUT), objective.size)) * np.array(_ABOUT)[:, None]
-        scattered = [Start(objective.gain(entries), objective.gain(sizes)) for entries in best.entries + step * sizes]
+        scattered = [
+            StartingGain(objective.gain(entries), objective.gain(sizes)) for entries in best.entries + step * sizes
+        ]
         found = explore(objective, scattered, deadline)
         lower = refine(objective, [best, *found.candidates], deadline)
         fruitless = 0 if lower.gamma < best.gamma * (1 - _COARSE) else fruitless + 1
@@ -106,22 +113,22 @@ def improve(objective: Objective, best: Candidate, seed: int, deadline: float) -
     return best
 
 
-def _distinct(candidates: list[Candidate]) -> list[Candidate]:
+def _distinct(candidates: list[StabilisingGain]) -> list[StabilisingGain]:
     """Candidates, best first, whose gamma differs by more than the coarse descent may leave."""
-    kept: list[Candidate] = []
+    kept: list[StabilisingGain] = []
     for candidate in candidates:
         if not kept or candidate.gamma > kept[-1].gamma * (1 + _SAME):
             kept.append(candidate)
     return kept
 
 
-def _lower(objective: Objective, candidate: Candidate, target: float, deadline: float) -> Candidate:
+def _lower(objective: NormObjective, candidate: StabilisingGain, target: float, deadline: float) -> StabilisingGain:
     """BFGS and polish in turn, until both together gain nothing or too little to come below `target`."""
     for _ in range(_TURNS):
         unit = objective.sizes(candidate.entries)
         point = minimise(objective.log_norm, objective.angles(candidate.entries), unit, deadline, progress=_FINE)
         entries = polish(objective, objective.entries(point.x), deadline)
-        lower = Candidate(objective.norm(entries), entries)
+        lower = StabilisingGain(objective.norm(entries), entries)
         gained = candidate.gamma - lower.gamma
         candidate = min(candidate, lower, key=_gamma)
         hopeless = candidate.gamma - target > _HOPE * gained

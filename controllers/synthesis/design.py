@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TypedDict, cast
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
@@ -108,23 +108,63 @@ def _yaml() -> YAML:
     return yaml
 
 
-def _to_plain(design: Design) -> dict[str, Any]:
+class _PlainProof(TypedDict):
+    """A certificate as it stands in the file."""
+
+    factor: list[list[float]]
+    gamma: float
+    delta: float
+    largest_eigenvalue: float
+
+
+class _ReadableProof(TypedDict):
+    """The worst loop's certificate as one reads it: P itself, rounded."""
+
+    gamma: float
+    delta: float
+    matrix: list[list[float]]
+
+
+class _PlainLoop(TypedDict):
+    """A loop as it stands in the file; `plant` holds its matrices and its structure by name."""
+
+    gamma: float
+    peak_frequency: float
+    norms_agree: bool
+    disk_margin: float
+    poles: list[list[float]]
+    certificate: _PlainProof | None
+    plant: dict[str, list[list[float]] | None]
+
+
+class _PlainDesign(TypedDict):
+    """A design as it stands in the file."""
+
+    gain: list[list[float]]
+    gamma: float
+    max_gain: float
+    lower_bound: float
+    certificate: _ReadableProof | None
+    loops: list[_PlainLoop]
+
+
+def _to_plain(design: Design) -> _PlainDesign:
     return {
         "gain": design.gain.tolist(),
         "gamma": design.gamma,
         "max_gain": design.max_gain,
         "lower_bound": design.lower_bound,
-        "certificate": _worst_proof(design.certificate),
-        "loops": [_plain_loop(loop) for loop in design.loops],
+        "certificate": _to_readable_proof(design.certificate),
+        "loops": [_to_plain_loop(loop) for loop in design.loops],
     }
 
 
-def _worst_proof(proof: Certificate | None) -> dict[str, Any] | None:
+def _to_readable_proof(proof: Certificate | None) -> _ReadableProof | None:
     """Return the worst loop's proof as one reads it: P, rounded; that which `load` reads stands with the loop."""
     return None if proof is None else {"gamma": proof.gamma, "delta": proof.delta, "matrix": proof.matrix.tolist()}
 
 
-def _plain_loop(loop: ClosedLoop) -> dict[str, Any]:
+def _to_plain_loop(loop: ClosedLoop) -> _PlainLoop:
     proof, free = loop.certificate, loop.plant.structure
     return {
         "gamma": loop.gamma,
@@ -132,36 +172,45 @@ def _plain_loop(loop: ClosedLoop) -> dict[str, Any]:
         "norms_agree": loop.norms_agree,
         "disk_margin": loop.disk_margin,
         "poles": [[float(pole.real), float(pole.imag)] for pole in loop.poles],
-        "certificate": proof and {**vars(proof), "factor": proof.factor.tolist()},
+        "certificate": None if proof is None else _to_plain_proof(proof),
         "plant": {name: getattr(loop.plant, name).tolist() for name in MATRICES}
         | {"structure": None if free is None else free.astype(int).tolist()},
     }
 
 
-def _from_plain(plain: Any) -> Design:
+def _to_plain_proof(proof: Certificate) -> _PlainProof:
+    return {
+        "factor": proof.factor.tolist(),
+        "gamma": proof.gamma,
+        "delta": proof.delta,
+        "largest_eigenvalue": proof.largest_eigenvalue,
+    }
+
+
+def _from_plain(plain: _PlainDesign) -> Design:
     return Design(
         gain=np.array(plain["gain"], dtype=float),
         max_gain=float(plain["max_gain"]),
         lower_bound=float(plain["lower_bound"]),
-        loops=tuple(_loop(loop) for loop in plain["loops"]),
+        loops=tuple(_from_plain_loop(loop) for loop in plain["loops"]),
     )
 
 
-def _loop(plain: Any) -> ClosedLoop:
+def _from_plain_loop(plain: _PlainLoop) -> ClosedLoop:
     poles = np.array(plain["poles"], dtype=float)
-    matrices = {name: plain["plant"][name] for name in (*MATRICES, "structure")}
+    matrices = [cast(ArrayLike, plain["plant"][name]) for name in MATRICES]
     return ClosedLoop(
-        plant=GeneralisedPlant(**matrices),
+        plant=GeneralisedPlant.from_matrices(matrices, plain["plant"]["structure"]),
         gamma=float(plain["gamma"]),
         peak_frequency=float(plain["peak_frequency"]),
         norms_agree=bool(plain["norms_agree"]),
-        certificate=plain["certificate"] and _proof(plain["certificate"]),
+        certificate=plain["certificate"] and _from_plain_proof(plain["certificate"]),
         disk_margin=float(plain["disk_margin"]),
         poles=poles[:, 0] + 1j * poles[:, 1],
     )
 
 
-def _proof(plain: Any) -> Certificate:
+def _from_plain_proof(plain: _PlainProof) -> Certificate:
     return Certificate(
         factor=np.array(plain["factor"], dtype=float),
         gamma=float(plain["gamma"]),

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 import warnings
-from typing import Any
 
 import cvxpy as cp
 import numpy as np
@@ -17,14 +16,16 @@ from numpy.typing import NDArray
 
 from controllers.synthesis.plant import Array, GeneralisedPlant
 
+# The bound is solved again in the coordinates of its own solution until it settles.
 _PASSES, _SETTLED = 4, 1e-5
 # Eigenvalues of the Lyapunov matrix stay between 1 / width and width, in states where it is about the identity.
 _WIDTH = 1e3
+# A gain from the edge of the feasible set is badly conditioned; at twice the optimal g there is room to step back.
 _RELAXED = 2.0
-_STRICT = 1e-7
+_STRICT = 1e-7  # margin that turns < into <=, above the rounding of the solver
 
 
-def full_order_bound(plant: GeneralisedPlant, factor: Array, gamma: float, deadline: float) -> float:
+def compute_full_order_bound(plant: GeneralisedPlant, factor: Array, gamma: float, deadline: float) -> float:
     """Return the best gamma that any linear controller reaches (order n suffices); 0 where the solver fails.
 
         minimise g over R, S:  [R I; I S] >= 0,
@@ -36,7 +37,7 @@ def full_order_bound(plant: GeneralisedPlant, factor: Array, gamma: float, deadl
     value settles.
     Source: Gahinet & Apkarian 1994, Int. J. Robust Nonlinear Control 4:421, theorem 4.3.
     """
-    p = _recentred(plant, factor, gamma)
+    p = _recentre(plant, factor, gamma)
     one = np.eye(p.order)
     r, s, value = one, one, 0.0
     for _ in range(_PASSES):
@@ -44,12 +45,12 @@ def full_order_bound(plant: GeneralisedPlant, factor: Array, gamma: float, deadl
         g, ri, si = cp.Variable(), np.linalg.inv(r), np.linalg.inv(s)
         constraints = [
             cp.bmat([[R, ri @ si.T], [si @ ri.T, S]]) >> 0,
-            _projected(_moved(_transposed(p), ri.T), R, g) << 0,
-            _projected(_moved(p, si.T), S, g) << 0,
+            _project(_change_states(_transpose(p), ri.T), R, g) << 0,
+            _project(_change_states(p, si.T), S, g) << 0,
         ]
         if not _solve(g, constraints, deadline):
             break
-        r, s = r @ _root(R.value), s @ _root(S.value)
+        r, s = r @ _symmetric_root(R.value), s @ _symmetric_root(S.value)
         settled = abs(value - float(g.value)) <= _SETTLED * float(g.value)
         value = float(g.value)
         if settled:
@@ -57,7 +58,7 @@ def full_order_bound(plant: GeneralisedPlant, factor: Array, gamma: float, deadl
     return gamma * value
 
 
-def single_step_gain(plant: GeneralisedPlant, gamma: float, deadline: float) -> Array | None:
+def find_single_step_gain(plant: GeneralisedPlant, gamma: float, deadline: float) -> Array | None:
     """Return a stabilising gain (nu, ny) from two convex problems, None where they have no solution.
 
         minimise g over X > 0, Y:
@@ -70,22 +71,24 @@ def single_step_gain(plant: GeneralisedPlant, gamma: float, deadline: float) -> 
     Source: Rubio-Massegu, Palacios-Quinonero, Rossell & Karimi 2013, Math. Probl. Eng. 2013:907056.
     """
     if np.any(plant.D21) and not np.any(plant.D12):
-        swapped = single_step_gain(_transposed(plant), gamma, deadline)
+        swapped = find_single_step_gain(_transpose(plant), gamma, deadline)
         return None if swapped is None else swapped.T
     if not plant.free.all() or np.linalg.matrix_rank(plant.C2) < plant.measured_count:
         return None
     X, Y = cp.Variable((plant.order, plant.order), symmetric=True), cp.Variable((plant.control_count, plant.order))
-    if not _lower(plant, gamma, X, Y, deadline):
+    if not _minimise_norm(plant, gamma, X, Y, deadline):
         return None
-    moved = _moved(plant, _root(X.value))
-    XR, YR, X, Y = _structured(moved)
-    if not _lower(moved, gamma, X, Y, deadline):
+    moved = _change_states(plant, _symmetric_root(X.value))
+    XR, YR, X, Y = _make_structured_variables(moved)
+    if not _minimise_norm(moved, gamma, X, Y, deadline):
         return None
     gain: Array = YR.value @ np.linalg.inv(XR.value)
     return gain
 
 
-def _structured(plant: GeneralisedPlant) -> tuple[Any, Any, Any, Any]:
+def _make_structured_variables(
+    plant: GeneralisedPlant,
+) -> tuple[cp.Variable, cp.Variable, cp.Expression, cp.Expression]:
     """Variables XR, YR and the expressions X, Y they make."""
     R, Q = np.linalg.pinv(plant.C2), scipy.linalg.null_space(plant.C2)
     ny = plant.measured_count
@@ -96,7 +99,7 @@ def _structured(plant: GeneralisedPlant) -> tuple[Any, Any, Any, Any]:
     return XR, YR, X, YR @ R.T
 
 
-def _lower(plant: GeneralisedPlant, gamma: float, X: Any, Y: Any, deadline: float) -> bool:
+def _minimise_norm(plant: GeneralisedPlant, gamma: float, X: cp.Expression, Y: cp.Expression, deadline: float) -> bool:
     """Minimise g over X and Y; then, at a somewhat larger g, move them away from the edge and its extremes."""
     g, margin = cp.Variable(), cp.Variable()
     one = np.eye(plant.order)
@@ -108,7 +111,9 @@ def _lower(plant: GeneralisedPlant, gamma: float, X: Any, Y: Any, deadline: floa
     return _solve(-margin, [H << -margin * np.eye(H.shape[0]), *sizes], deadline)
 
 
-def _bounded_real(plant: GeneralisedPlant, gamma: float, X: Any, Y: Any, g: Any) -> Any:
+def _bounded_real(
+    plant: GeneralisedPlant, gamma: float, X: cp.Expression, Y: cp.Expression, g: cp.Expression | float
+) -> cp.Expression:
     B1, D11 = plant.B1 / np.sqrt(gamma), plant.D11 / gamma
     flow, seen = plant.A @ X + plant.B2 @ Y, (plant.C1 @ X + plant.D12 @ Y) / np.sqrt(gamma)
     H = cp.bmat(
@@ -121,7 +126,7 @@ def _bounded_real(plant: GeneralisedPlant, gamma: float, X: Any, Y: Any, g: Any)
     return (H + H.T) / 2
 
 
-def _projected(plant: GeneralisedPlant, X: Any, g: Any) -> Any:
+def _project(plant: GeneralisedPlant, X: cp.Expression, g: cp.Expression) -> cp.Expression:
     """N' [A'X + X A, X B1, C1'; B1'X, -g I, D11'; C1, D11, -g I] N with N the kernel of [C2, D21, 0]."""
     A, B1, C1, D11 = plant.A, plant.B1, plant.C1, plant.D11
     full = cp.bmat(
@@ -137,15 +142,15 @@ def _projected(plant: GeneralisedPlant, X: Any, g: Any) -> Any:
     return (product + product.T) / 2
 
 
-def _recentred(plant: GeneralisedPlant, factor: Array, gamma: float) -> GeneralisedPlant:
+def _recentre(plant: GeneralisedPlant, factor: Array, gamma: float) -> GeneralisedPlant:
     """Return the plant in the states `factor` x, in time such that ||A|| = 1, with w and z such that gamma = 1.
 
     Columns of B2 and rows of C2 have unit length; gains are not kept track of.
     """
-    p = _moved(plant, np.linalg.inv(factor))
+    p = _change_states(plant, np.linalg.inv(factor))
     rate = np.linalg.norm(p.A, 2)
     state, size = np.sqrt(rate), np.sqrt(gamma)
-    controls, measured = _lengths(p.B2) / state, _lengths(p.C2.T)[:, None] / state
+    controls, measured = _column_lengths(p.B2) / state, _column_lengths(p.C2.T)[:, None] / state
     return GeneralisedPlant(
         p.A / rate,
         p.B1 / (state * size),
@@ -158,7 +163,7 @@ def _recentred(plant: GeneralisedPlant, factor: Array, gamma: float) -> Generali
     )
 
 
-def _moved(plant: GeneralisedPlant, T: NDArray[Any]) -> GeneralisedPlant:
+def _change_states(plant: GeneralisedPlant, T: NDArray[np.floating]) -> GeneralisedPlant:
     """Return the plant in states x~ with x = T x~."""
     inverse = np.linalg.inv(T)
     A, B1, B2 = inverse @ plant.A @ T, inverse @ plant.B1, inverse @ plant.B2
@@ -166,24 +171,24 @@ def _moved(plant: GeneralisedPlant, T: NDArray[Any]) -> GeneralisedPlant:
     return GeneralisedPlant(A, B1, B2, C1, C2, plant.D11, plant.D12, plant.D21, plant.structure)
 
 
-def _transposed(plant: GeneralisedPlant) -> GeneralisedPlant:
+def _transpose(plant: GeneralisedPlant) -> GeneralisedPlant:
     p = plant
     return GeneralisedPlant(p.A.T, p.C1.T, p.C2.T, p.B1.T, p.B2.T, p.D11.T, p.D21.T, p.D12.T, p.free.T)
 
 
-def _lengths(columns: Array) -> Array:
+def _column_lengths(columns: Array) -> Array:
     lengths: Array = np.linalg.norm(columns, axis=0)
     return np.where(lengths > 0, lengths, 1.0)
 
 
-def _root(matrix: Array) -> Array:
+def _symmetric_root(matrix: Array) -> Array:
     """Symmetric square root, kept invertible."""
     values, vectors = np.linalg.eigh(matrix)
     root: Array = vectors * np.sqrt(np.maximum(values, 1e-9 * values[-1])) @ vectors.T
     return root
 
 
-def _solve(objective: Any, constraints: list[Any], deadline: float) -> bool:
+def _solve(objective: cp.Expression, constraints: list[cp.Constraint], deadline: float) -> bool:
     left = deadline - time.monotonic()
     if left <= 0:
         return False

@@ -6,20 +6,20 @@ or rank [A - s I; C2] < n (y does not see it). With a structured gain it may sta
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.scaling import Scaled
+from controllers.synthesis.scaling import ScaledPlant
 from seatsim.schema.errors import SynthesisError
 
+# Relative to the largest singular value, in scaled coordinates: some decades above rounding, far below any real path.
 _RANK_TOLERANCE = 1e-10
+# A fixed mode moves by rounding alone, which for a double eigenvalue is the root of machine precision.
 _FIXED_TOLERANCE = 1e-7
 
 
-def require_stabilisable(scaled: Scaled) -> None:
+def require_stabilisable(scaled: ScaledPlant) -> None:
     """Return quietly where no mode forbids stabilisation.
 
     Raises:
@@ -37,13 +37,14 @@ def require_stabilisable(scaled: Scaled) -> None:
             raise _fixed(mode * scaled.rate, "is moved by no gain of this structure (a fixed mode)")
 
 
-def _loses_rank(wide: NDArray[Any]) -> bool:
+def _loses_rank(wide: NDArray[np.complex128]) -> bool:
     values = np.linalg.svd(wide, compute_uv=False)
     return bool(values[-1] <= _RANK_TOLERANCE * values[0])
 
 
 def _stays(plant: GeneralisedPlant, mode: complex) -> bool:
     """Whether three random gains of the structure all leave an eigenvalue at `mode`."""
+    # A mode that some gain moves is moved by almost every gain; three rule out an accident.
     random = np.random.default_rng(0)
     loops = [plant.close(random.standard_normal(plant.free.shape) * plant.free) for _ in range(3)]
     distances = [np.abs(loop.poles - mode).min() for loop in loops]

@@ -15,7 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from controllers.synthesis.plant import Array, Loop
 
+# Bisection converges quadratically: so many rounds are a guard against rounding that keeps it from settling.
 _ITERATIONS = 60
+# From three decades below the slowest pole to three above the fastest; peaks are then closed in upon by 4^_ZOOMS.
 _GRID_POINTS = 600
 _ZOOMS = 12
 _ROUNDING = 1e-9
@@ -30,7 +32,7 @@ class Peak(NamedTuple):
     frequency: float
 
 
-def response(loop: Loop, frequencies: ArrayLike) -> NDArray[np.complex128]:
+def frequency_response(loop: Loop, frequencies: ArrayLike) -> NDArray[np.complex128]:
     """Return T(j omega), shape (frequencies, nz, nw), at frequencies in rad/s; infinity is allowed."""
     omega = np.atleast_1d(np.asarray(frequencies, dtype=float))
     finite = np.isfinite(omega)
@@ -40,16 +42,16 @@ def response(loop: Loop, frequencies: ArrayLike) -> NDArray[np.complex128]:
     return answer
 
 
-def largest_gains(loop: Loop, frequencies: ArrayLike) -> Array:
+def largest_singular_values(loop: Loop, frequencies: ArrayLike) -> Array:
     """Return sigma_max(T(j omega)) at frequencies in rad/s."""
-    T = response(loop, frequencies)
+    T = frequency_response(loop, frequencies)
     if min(T.shape[1:]) == 1:
         return np.asarray(np.linalg.norm(T, axis=(1, 2)), dtype=float)
     values: Array = np.linalg.svd(T, compute_uv=False)[:, 0].astype(float)
     return values
 
 
-def balanced(loop: Loop) -> tuple[Loop, Array]:
+def balance(loop: Loop) -> tuple[Loop, Array]:
     """Return the loop in balanced states x~, and the factors of x = diag(factors) x~."""
     states: Array = scipy.linalg.lapack.dgebal(loop.A, scale=1, permute=0)[3]
     return Loop(loop.A * states / states[:, None], loop.B / states[:, None], loop.C * states, loop.D), states
@@ -64,26 +66,28 @@ def hinf_norm(
     rounding of the Hamiltonian's eigenvalues. `guesses` are frequencies to look at first. The search for a higher peak
     ends early above `enough`. A loop with a pole right of `-margin` has an infinite norm.
     """
-    loop, _ = balanced(loop)
+    loop, _ = balance(loop)
     poles = np.linalg.eigvals(loop.A)
     if poles.real.max() >= -margin:
         return Peak(np.inf, float(abs(poles[poles.real.argmax()].imag)))
     start = np.concatenate([[0.0, np.inf], np.abs(poles), np.abs(poles.imag), np.ravel(guesses)])
-    best = _highest(loop, np.unique(start))
+    best = _find_highest_peak(loop, np.unique(start))
     for _ in range(_ITERATIONS if best.value > 0 else 0):
         if best.value > enough:
             break
-        crossings = _crossings(loop, best.value * (1 + tolerance))
-        found = _highest(loop, np.concatenate([crossings, (crossings[1:] + crossings[:-1]) / 2, [best.frequency]]))
+        crossings = _find_crossings(loop, best.value * (1 + tolerance))
+        found = _find_highest_peak(
+            loop, np.concatenate([crossings, (crossings[1:] + crossings[:-1]) / 2, [best.frequency]])
+        )
         if found.value <= best.value * (1 + tolerance):
             break
         best = found
     return best
 
 
-def _highest(loop: Loop, frequencies: Array) -> Peak:
+def _find_highest_peak(loop: Loop, frequencies: Array) -> Peak:
     """Highest peak at some frequencies; only where the Frobenius norm is larger can a singular value be so."""
-    T = response(loop, frequencies)
+    T = frequency_response(loop, frequencies)
     sizes = np.linalg.norm(T, axis=(1, 2))
     place = int(sizes.argmax())
     value = float(np.linalg.svd(T[place], compute_uv=False)[0])
@@ -94,17 +98,17 @@ def _highest(loop: Loop, frequencies: Array) -> Peak:
     return Peak(value, float(frequencies[place]))
 
 
-def _crossings(loop: Loop, gamma: float) -> Array:
+def _find_crossings(loop: Loop, gamma: float) -> Array:
     """Frequencies where a singular value may equal gamma: Hamiltonian eigenvalues on or near the imaginary axis."""
     scaled = Loop(loop.A, loop.B / np.sqrt(gamma), loop.C / np.sqrt(gamma), loop.D / gamma)
-    values = _hamiltonian(scaled) if np.linalg.norm(scaled.D) < _WELL_BELOW else _pencil(scaled)
+    values = _hamiltonian_eigenvalues(scaled) if np.linalg.norm(scaled.D) < _WELL_BELOW else _pencil_eigenvalues(scaled)
     # Generous: a frequency too many costs one evaluation, a missed one would under-report the norm.
     near = np.abs(values.real) <= 1e-2 * np.abs(values)
     answer: Array = np.unique(np.abs(values.imag[near]))
     return answer
 
 
-def _hamiltonian(loop: Loop) -> NDArray[np.complex128]:
+def _hamiltonian_eigenvalues(loop: Loop) -> NDArray[np.complex128]:
     """Eigenvalues of the Hamiltonian matrix for gamma = 1."""
     A, B, C, D = loop
     n, nw = B.shape
@@ -116,7 +120,7 @@ def _hamiltonian(loop: Loop) -> NDArray[np.complex128]:
     return np.linalg.eigvals(flow).astype(np.complex128)
 
 
-def _pencil(loop: Loop) -> NDArray[np.complex128]:
+def _pencil_eigenvalues(loop: Loop) -> NDArray[np.complex128]:
     """Eigenvalues of the Hamiltonian matrix as those of a pencil in states, costates, w and z.
 
     No inverse of I - D'D is formed, which is nearly singular where the norm is attained at infinity. An orthogonal
@@ -144,24 +148,24 @@ def grid_norm(loop: Loop) -> Peak:
     Shares nothing with `hinf_norm` but the frequency response. It never over-reports; a peak far narrower than the
     damping of the poles could escape it.
     """
-    return max(local_peaks(loop, 0.5))
+    return max(find_local_peaks(loop, 0.5))
 
 
-def local_peaks(loop: Loop, level: float) -> list[Peak]:
+def find_local_peaks(loop: Loop, level: float) -> list[Peak]:
     """Return the peaks of sigma_max over frequency that reach `level` times the highest, zero and infinity included."""
-    omega = frequency_grid(loop)
-    values = largest_gains(loop, omega)
+    omega = build_frequency_grid(loop)
+    values = largest_singular_values(loop, omega)
     left, right = np.append(-np.inf, values[:-1]), np.append(values[1:], -np.inf)
     # On a plateau, rounding alone makes tops: one side at least must fall off by more.
     clear = (values >= np.maximum(left, right)) & (values > np.minimum(left, right) * (1 + _ROUNDING))
     tops = np.union1d(np.flatnonzero(clear & (values >= level * values.max())), values.argmax())
     # The grid ends with infinity, which has no neighbourhood to refine.
     inner = tops[tops < len(omega) - 2]
-    refined = _zoom(loop, omega[np.maximum(inner - 1, 0)], omega[inner + 1])
+    refined = _refine_peaks(loop, omega[np.maximum(inner - 1, 0)], omega[inner + 1])
     return refined + [Peak(float(values[top]), float(omega[top])) for top in tops]
 
 
-def frequency_grid(loop: Loop) -> Array:
+def build_frequency_grid(loop: Loop) -> Array:
     """Return frequencies from zero to infinity: dense on a logarithmic scale, and denser about every pole."""
     poles = loop.poles
     rates = np.abs(poles[np.abs(poles) > 0])
@@ -172,12 +176,12 @@ def frequency_grid(loop: Loop) -> Array:
     return omega
 
 
-def _zoom(loop: Loop, low: Array, high: Array) -> list[Peak]:
+def _refine_peaks(loop: Loop, low: Array, high: Array) -> list[Peak]:
     """Close in on the peak between each `low` and `high`, all at once, by a factor of four a round."""
     spread, rows = np.linspace(0, 1, 9), np.arange(len(low))
     for _ in range(_ZOOMS if len(low) else 0):
         omega = low[:, None] + (high - low)[:, None] * spread
-        values = largest_gains(loop, omega.ravel()).reshape(omega.shape)
+        values = largest_singular_values(loop, omega.ravel()).reshape(omega.shape)
         best = np.clip(values.argmax(axis=1), 1, len(spread) - 2)
         low, high = omega[rows, best - 1], omega[rows, best + 1]
     if not len(low):

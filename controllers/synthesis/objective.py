@@ -10,14 +10,16 @@ Source: Apkarian & Noll 2006, IEEE Trans. Autom. Control 51:71; Burke, Henrion, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from controllers.synthesis.norm import Peak, hinf_norm, response
+from controllers.synthesis.norm import Peak, frequency_response, hinf_norm
 from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
+
+Complex = NDArray[np.complex128]
 
 # In scaled time: loops this close to the edge of stability count as unstable.
 STABILITY_MARGIN = 1e-7
@@ -27,7 +29,7 @@ _INSIDE = 0.999
 _LEAST = 0.01
 
 
-class Objective:
+class NormObjective:
     """Abscissa and norm, the worst of one or several plants, by the free gains, in scaled coordinates.
 
     The free gains, a vector of length `size`, lie between `low` and `high` (nu, ny). The search runs over angles theta
@@ -46,9 +48,9 @@ class Objective:
         self._reach: Array = (self.high - self.low) / 2
         self.size = len(self.low)
 
-    def on(self, plants: Sequence[GeneralisedPlant]) -> Objective:
+    def on(self, plants: Sequence[GeneralisedPlant]) -> NormObjective:
         """Return the same objective on other plants."""
-        return Objective(plants, *self._limits)
+        return NormObjective(plants, *self._limits)
 
     def gain(self, entries: Array) -> Array:
         """Return the gain matrix with these free entries."""
@@ -105,7 +107,7 @@ class Objective:
                 highest, worst = peak, i
         if highest.value < 1e-300:
             return -np.inf, nothing
-        values, slopes = singular_values(self.plants[worst], loops[worst], highest.frequency, 1)
+        values, slopes = differentiate_singular_values(self.plants[worst], loops[worst], highest.frequency, 1)
         return float(np.log(highest.value)), self._by_theta(slopes[0, 0] / values[0, 0], theta)
 
     def _by_theta(self, slope: Array, theta: Array) -> Array:
@@ -113,25 +115,31 @@ class Objective:
         return answer
 
 
-def singular_values(plant: GeneralisedPlant, loop: Loop, frequencies: ArrayLike, count: int) -> tuple[Array, Array]:
+def differentiate_singular_values(
+    plant: GeneralisedPlant, loop: Loop, frequencies: ArrayLike, count: int
+) -> tuple[Array, Array]:
     """Return the `count` largest singular values of T, (m, count), and their gradients by K, (m, count, nu, ny)."""
-    U, values, Vh = np.linalg.svd(response(loop, frequencies), full_matrices=False)
-    from_control = response(Loop(loop.A, plant.B2, loop.C, plant.D12), frequencies)
-    to_measured = response(Loop(loop.A, loop.B, plant.C2, plant.D21), frequencies)
+    U, values, Vh = np.linalg.svd(frequency_response(loop, frequencies), full_matrices=False)
+    from_control = frequency_response(Loop(loop.A, plant.B2, loop.C, plant.D12), frequencies)
+    to_measured = frequency_response(Loop(loop.A, loop.B, plant.C2, plant.D21), frequencies)
     p = np.einsum("mzk,mzu->mku", U[:, :, :count].conj(), from_control)
     q = np.einsum("myw,mkw->mky", to_measured, Vh[:, :count].conj())
     return values[:, :count], np.real(p[..., :, None] * q[..., None, :])
 
 
+def _eigenvalues_and_vectors(A: Array) -> tuple[Complex, Complex, Complex]:
+    """Return eigenvalues (n,), left and right eigenvectors (n, n); scipy's stubs do not tell how many it returns."""
+    return cast("tuple[Complex, Complex, Complex]", scipy.linalg.eig(A, left=True, right=True))
+
+
 def _abscissa(plant: GeneralisedPlant, loop: Loop, ceiling: float) -> tuple[float, Array]:
     """Spectral abscissa and its gradient by K."""
-    values, left, right = cast(Any, scipy.linalg.eig(loop.A, left=True, right=True))
+    values, left, right = _eigenvalues_and_vectors(loop.A)
     place = int(values.real.argmax())
     if values.real[place] > ceiling:
         return float(values.real[place]), np.zeros(plant.free.shape)
     row, column = left[:, place].conj() @ plant.B2, plant.C2 @ right[:, place]
     overlap = left[:, place].conj() @ right[:, place]
     # A defective eigenvalue has an infinite slope; a large finite one leads the search away just as well.
-    if abs(overlap) < 1e-12:
-        overlap = 1e-12
-    return float(values.real[place]), np.real(np.outer(row, column) / overlap)
+    kept = 1e-12 if abs(overlap) < 1e-12 else overlap
+    return float(values.real[place]), np.real(np.outer(row, column) / kept)

@@ -10,8 +10,9 @@ B2, C2 are COMPleib's B, C.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol, cast, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -42,14 +43,29 @@ class Loop(NamedTuple):
         return float(np.linalg.eigvals(self.A).real.max())
 
 
-class StateSpace(Protocol):
-    """What is used of a `control.StateSpace` (or a continuous `scipy.signal.StateSpace`)."""
+@runtime_checkable
+class StateSpaceLike(Protocol):
+    """What is used of a `control.StateSpace` (or a continuous `scipy.signal.StateSpace`); both are untyped."""
 
-    A: Any
-    B: Any
-    C: Any
-    D: Any
-    dt: Any
+    @property
+    def A(self) -> ArrayLike:  # noqa: N802 - as in control and scipy
+        """State matrix (n, n)."""
+
+    @property
+    def B(self) -> ArrayLike:  # noqa: N802
+        """Input matrix (n, inputs)."""
+
+    @property
+    def C(self) -> ArrayLike:  # noqa: N802
+        """Output matrix (outputs, n)."""
+
+    @property
+    def D(self) -> ArrayLike:  # noqa: N802
+        """Direct path (outputs, inputs)."""
+
+    @property
+    def dt(self) -> float | bool | None:
+        """Sample time in s; 0 or None for continuous time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +128,7 @@ class GeneralisedPlant:
 
     @classmethod
     def from_state_space(
-        cls, system: StateSpace, disturbances: int, performance: int, structure: ArrayLike | None = None
+        cls, system: StateSpaceLike, disturbances: int, performance: int, structure: ArrayLike | None = None
     ) -> GeneralisedPlant:
         """Split a continuous-time system with inputs [w; u] and outputs [z; y].
 
@@ -129,11 +145,21 @@ class GeneralisedPlant:
         u, y = slice(disturbances, None), slice(performance, None)
         if np.any(D[y, u]):
             raise InputError("u reaches y directly (D22 is not zero); subtract D22 @ u from the measurement first")
-        mask: Any = structure
-        return cls(A, B[:, w], B[:, u], C[z], C[y], D[z, w], D[z, u], D[y, w], mask)
+        return cls.from_matrices((A, B[:, w], B[:, u], C[z], C[y], D[z, w], D[z, u], D[y, w]), structure)
+
+    @classmethod
+    def from_matrices(cls, matrices: Sequence[ArrayLike], structure: ArrayLike | None = None) -> GeneralisedPlant:
+        """Return the plant of eight matrices, in the order of `MATRICES`, given as arrays or as nested lists.
+
+        Raises:
+            InputError: as the class does.
+        """
+        A, B1, B2, C1, C2, D11, D12, D21 = (_matrix(*part) for part in zip(MATRICES, matrices, strict=True))
+        # The structure is converted with the plant, after the shapes that it has to fit.
+        return cls(A, B1, B2, C1, C2, D11, D12, D21, cast("NDArray[np.bool_] | None", structure))
 
 
-def _matrix(name: str, value: Any) -> Array:
+def _matrix(name: str, value: ArrayLike) -> Array:
     if np.iscomplexobj(value):
         raise InputError(f"{name} is complex; a matrix of real numbers is wanted")
     try:
@@ -162,7 +188,7 @@ def _check_shapes(plant: GeneralisedPlant) -> None:
             )
 
 
-def _structure(value: Any, shape: tuple[int, int]) -> NDArray[np.bool_] | None:
+def _structure(value: ArrayLike | None, shape: tuple[int, int]) -> NDArray[np.bool_] | None:
     if value is None:
         return None
     mask = _matrix("structure", value)

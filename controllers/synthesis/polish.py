@@ -11,24 +11,28 @@ from __future__ import annotations
 
 import time
 from functools import lru_cache
-from typing import Any
+from typing import cast
 
 import numpy as np
 from scipy.optimize import minimize
 
-from controllers.synthesis.norm import hinf_norm, largest_gains, local_peaks
-from controllers.synthesis.objective import Objective, singular_values
+from controllers.synthesis.norm import find_local_peaks, hinf_norm, largest_singular_values
+from controllers.synthesis.objective import NormObjective, differentiate_singular_values
 from controllers.synthesis.plant import Array, Loop
 
 _ROUNDS = 40
+# Peaks this near to the highest can become the highest within a step, so that each is a constraint.
 _ACTIVE = 0.9
+# First and widest relative change of a gain in one round: the model is of first order.
 _TRUST = 0.3
 _WIDEST = 10.0
+# Reached over promised gain below which the trust region shrinks, and above which it grows (the usual values).
 _POOR, _GOOD = 0.1, 0.75
+# A step that promises less is not worth an evaluation of the norm.
 _PROGRESS = 1e-7
 
 
-def polish(objective: Objective, entries: Array, deadline: float) -> Array:
+def polish(objective: NormObjective, entries: Array, deadline: float) -> Array:
     """Return free entries whose norm is no higher than at `entries`; unstable ones come back as they are."""
     level = objective.norm(entries)
     if not 0 < level < np.inf:
@@ -51,17 +55,17 @@ def polish(objective: Objective, entries: Array, deadline: float) -> Array:
     return entries
 
 
-def _peaks(objective: Objective, entries: Array, level: float) -> list[Array]:
+def _peaks(objective: NormObjective, entries: Array, level: float) -> list[Array]:
     """Frequencies of the active peaks of every plant; none of a plant that stays well below `level`."""
     found = []
     for loop in objective.loops(entries):
         highest = hinf_norm(loop)
-        peaks = [highest, *local_peaks(loop, _ACTIVE)] if highest.value >= _ACTIVE * level else []
+        peaks = [highest, *find_local_peaks(loop, _ACTIVE)] if highest.value >= _ACTIVE * level else []
         found.append(np.unique([peak.frequency for peak in peaks]))
     return found
 
 
-def _renewed(objective: Objective, entries: Array, old: list[Array], level: float) -> list[Array]:
+def _renewed(objective: NormObjective, entries: Array, old: list[Array], level: float) -> list[Array]:
     """Frequencies of the peaks now, and those old ones that are still nearly as high and not about the same."""
     new = _peaks(objective, entries, level)
     loops = objective.loops(entries)
@@ -72,11 +76,11 @@ def _still_high(loop: Loop, old: Array, new: Array, level: float) -> Array:
     if not len(old):
         return old
     apart = ~np.isclose(old[:, None], new, rtol=1e-5, atol=1e-9).any(axis=1)
-    return old[apart & (largest_gains(loop, old) >= _ACTIVE * level)]
+    return old[apart & (largest_singular_values(loop, old) >= _ACTIVE * level)]
 
 
 def _solve(
-    objective: Objective, entries: Array, frequencies: list[Array], level: float, trust: float
+    objective: NormObjective, entries: Array, frequencies: list[Array], level: float, trust: float
 ) -> tuple[Array, float]:
     """Lower the highest peak at fixed frequencies; return entries and that peak. Variables: steps, t / level - 1."""
     unit = objective.sizes(entries)
@@ -90,7 +94,7 @@ def _solve(
         return 1 + x[-1] - values / level, np.hstack([-slopes * unit / level, np.ones((values.size, 1))])
 
     try:
-        found: Any = minimize(  # type: ignore[call-overload]  # a dict of constraints
+        found = minimize(  # type: ignore[call-overload]  # a dict of constraints
             lambda x: x[-1],
             np.zeros(len(entries) + 1),
             jac=lambda x: np.eye(len(x))[-1],
@@ -102,17 +106,17 @@ def _solve(
     except np.linalg.LinAlgError:
         # A trial loop has a pole at one of the frequencies: nothing to gain this way.
         return entries, level
-    step = np.clip(found.x[:-1], low, high)
+    step = np.clip(cast(Array, found.x)[:-1], low, high)
     values, _ = _values(objective, entries + unit * step, frequencies)
     return entries + unit * step, float(values.max())
 
 
-def _values(objective: Objective, entries: Array, frequencies: list[Array]) -> tuple[Array, Array]:
+def _values(objective: NormObjective, entries: Array, frequencies: list[Array]) -> tuple[Array, Array]:
     """Two largest singular values at the frequencies of every plant, and their slopes by the entries."""
     values, slopes = [], []
     for plant, loop, omega in zip(objective.plants, objective.loops(entries), frequencies, strict=True):
         if len(omega):
-            v, s = singular_values(plant, loop, omega, min(2, *plant.D11.shape))
+            v, s = differentiate_singular_values(plant, loop, omega, min(2, *plant.D11.shape))
             values.append(v.ravel())
             slopes.append(s[..., objective.free].reshape(v.size, -1))
     return np.concatenate(values), np.concatenate(slopes)

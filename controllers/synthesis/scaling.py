@@ -14,10 +14,11 @@ import numpy as np
 
 from controllers.synthesis.plant import Array, GeneralisedPlant
 
+# Steps are powers of two, so that sweeps end where no factor changes; a guard where they circle.
 _SWEEPS = 30
 
 
-class Scaled(NamedTuple):
+class ScaledPlant(NamedTuple):
     """A plant in scaled coordinates, and the way back."""
 
     plant: GeneralisedPlant
@@ -34,7 +35,7 @@ class Scaled(NamedTuple):
         return gain / (self.controls[:, None] * self.measured)
 
 
-def scale(plant: GeneralisedPlant, like: Scaled | None = None) -> Scaled:
+def scale(plant: GeneralisedPlant, like: ScaledPlant | None = None) -> ScaledPlant:
     """Balance states against each other, B1 against C1, time against the poles; unit columns in B2, unit rows in C2.
 
     Units of control, measurement and time are those of `like` where it is given.
@@ -59,7 +60,7 @@ def scale(plant: GeneralisedPlant, like: Scaled | None = None) -> Scaled:
         plant.D21 * measured[:, None],
         plant.structure,
     )
-    return Scaled(moved, controls, measured, rate)
+    return ScaledPlant(moved, controls, measured, rate)
 
 
 def _input_output(plant: GeneralisedPlant, states: Array, rate: float) -> tuple[Array, Array]:
@@ -82,6 +83,7 @@ def _balancing_step(plant: GeneralisedPlant, states: Array, rate: float) -> Arra
 
 
 def _mean_rate(A: Array) -> float:
+    """Return the geometric mean of the poles' magnitudes in 1/s, without integrators; 1 where there is no other."""
     rates = np.abs(np.linalg.eigvals(A))
     moving = rates[rates > 1e-9 * max(rates.max(), 1e-300)]
     return float(np.exp(np.log(moving).mean())) if moving.size else 1.0

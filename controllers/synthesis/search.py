@@ -9,14 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controllers.synthesis.descent import Candidate, Descent, explore, improve, refine
+from controllers.synthesis.descent import Descent, StabilisingGain, explore, improve, refine
 from controllers.synthesis.modes import require_stabilisable
-from controllers.synthesis.objective import Objective
+from controllers.synthesis.objective import NormObjective
 from controllers.synthesis.plant import Array, GeneralisedPlant
 from controllers.synthesis.scaling import scale
-from controllers.synthesis.starts import Start, convex_start, starting_gains
+from controllers.synthesis.starts import StartingGain, generate_convex_start, generate_starting_gains
 from seatsim.schema.errors import SynthesisError
 
+# A few starts tell an easy problem, where all lead to the same value; where they do not, many more follow.
 _FIRST_STARTS, _MORE_STARTS = 6, 24
 # Shares of the time budget: starts are explored until the first (until the second where none is stable), the best
 # refined until the second, and improved upon until the third; the rest is for proofs.
@@ -28,10 +29,10 @@ _COVERED = 1 + 1e-7
 # Further starts go on while they lower the norm by more than this factor.
 _GAINED = 1 - 1e-4
 
-Told = Callable[[str], object]
+Progress = Callable[[str], object]
 
 
-class Clock(NamedTuple):
+class TimeBudget(NamedTuple):
     """When the search began, by `time.monotonic()`, and how many seconds it has."""
 
     begin: float
@@ -41,14 +42,14 @@ class Clock(NamedTuple):
         """Return the time at which a share of the budget is spent."""
         return self.begin + share * self.budget
 
-    def part(self, share: float) -> Clock:
+    def part(self, share: float) -> TimeBudget:
         """Return a clock that begins now, with a share of the time that is left."""
         now = time.monotonic()
-        return Clock(now, share * max(self.begin + self.budget - now, 0.0))
+        return TimeBudget(now, share * max(self.begin + self.budget - now, 0.0))
 
 
 def search(
-    plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], seed: int, clock: Clock, progress: Told
+    plants: Sequence[GeneralisedPlant], limits: tuple[Array, Array], seed: int, clock: TimeBudget, progress: Progress
 ) -> Array:
     """Return the best gain (nu, ny) found, between the two `limits` (nu, ny).
 
@@ -64,9 +65,9 @@ def search(
         require_stabilisable(each)
     low, high = (first.scaled_gain(limit) for limit in limits)
     unit = first.scaled_gain(np.ones(low.shape))
-    everything = Objective([each.plant for each in scaled], low, high, unit)
+    everything = NormObjective([each.plant for each in scaled], low, high, unit)
     chosen = sorted({0, len(scaled) - 1})
-    best: Candidate | None = None
+    best: StabilisingGain | None = None
     while True:
         objective = everything.on([scaled[i].plant for i in chosen])
         progress(f"plants {', '.join(map(str, chosen))} of {len(plants)}" if len(plants) > 1 else "searching")
@@ -84,14 +85,14 @@ def search(
         chosen.append(worst)
 
 
-def _starts(objective: Objective, known: Candidate | None, seed: int) -> Iterator[Start]:
-    starts = starting_gains(objective.plants, objective.gain(objective.unit), seed)
+def _starts(objective: NormObjective, known: StabilisingGain | None, seed: int) -> Iterator[StartingGain]:
+    starts = generate_starting_gains(objective.plants, objective.gain(objective.unit), seed)
     if known is None:
         return starts
-    return chain([Start(objective.gain(known.entries), objective.gain(objective.sizes(known.entries)))], starts)
+    return chain([StartingGain(objective.gain(known.entries), objective.gain(objective.sizes(known.entries)))], starts)
 
 
-def _explore(objective: Objective, starts: Iterator[Start], clock: Clock) -> Descent:
+def _explore(objective: NormObjective, starts: Iterator[StartingGain], clock: TimeBudget) -> Descent:
     """Descend from a few starts where all lead to the same value, from many where not, and on until one is stable."""
     deadline = clock.after(_EXPLORED)
     found = explore(objective, islice(starts, _FIRST_STARTS), deadline)
@@ -100,7 +101,7 @@ def _explore(objective: Objective, starts: Iterator[Start], clock: Clock) -> Des
     plant = objective.plants[0]
     size = float(np.linalg.norm(plant.B1) * np.linalg.norm(plant.C1)) or 1.0
     gamma = found.candidates[0].gamma if found.candidates else size
-    convex = convex_start(plant, max(gamma, 1e-9 * size), objective.gain(objective.unit), deadline)
+    convex = generate_convex_start(plant, max(gamma, 1e-9 * size), objective.gain(objective.unit), deadline)
     found = found.with_more(explore(objective, chain(convex, islice(starts, _MORE_STARTS)), deadline))
     while not found.candidates and time.monotonic() < clock.after(_REFINED):
         found = found.with_more(explore(objective, islice(starts, _FIRST_STARTS), clock.after(_REFINED)))
@@ -108,8 +109,13 @@ def _explore(objective: Objective, starts: Iterator[Start], clock: Clock) -> Des
 
 
 def _lowest(
-    objective: Objective, found: Descent, starts: Iterator[Start], seed: int, clock: Clock, progress: Told
-) -> Candidate:
+    objective: NormObjective,
+    found: Descent,
+    starts: Iterator[StartingGain],
+    seed: int,
+    clock: TimeBudget,
+    progress: Progress,
+) -> StabilisingGain:
     """Refine the candidates; where starts disagree, improve upon the best, and go on while further starts gain."""
     progress(f"{found.starts} starts, {len(found.candidates)} stabilised, gamma {found.candidates[0].gamma:.6g}")
     best = refine(objective, found.candidates, clock.after(_REFINED))

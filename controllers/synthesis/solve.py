@@ -5,15 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, overload
+from typing import cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from controllers.synthesis.bound import lower_bound, pointwise_bound
+from controllers.synthesis.bound import compute_lower_bound, compute_pointwise_bound
 from controllers.synthesis.design import Design
-from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant, StateSpace
-from controllers.synthesis.search import Clock, Told, search
+from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant, StateSpaceLike
+from controllers.synthesis.search import Progress, TimeBudget, search
 from controllers.synthesis.verify import verify
 from seatsim.schema.errors import InputError
 
@@ -27,11 +27,11 @@ def synthesise(
     bounds: tuple[ArrayLike, ArrayLike] | None = ...,
     time_budget: float = ...,
     seed: int = ...,
-    progress: Told = ...,
+    progress: Progress = ...,
 ) -> Design: ...
 @overload
 def synthesise(
-    A: StateSpace,
+    A: StateSpaceLike,
     /,
     *,
     split: tuple[int, int],
@@ -39,7 +39,7 @@ def synthesise(
     bounds: tuple[ArrayLike, ArrayLike] | None = ...,
     time_budget: float = ...,
     seed: int = ...,
-    progress: Told = ...,
+    progress: Progress = ...,
 ) -> Design: ...
 @overload
 def synthesise(
@@ -56,26 +56,26 @@ def synthesise(
     bounds: tuple[ArrayLike, ArrayLike] | None = ...,
     time_budget: float = ...,
     seed: int = ...,
-    progress: Told = ...,
+    progress: Progress = ...,
 ) -> Design: ...
 
 
 def synthesise(
-    A: Any,
-    B1: Any = None,
-    B2: Any = None,
-    C1: Any = None,
-    C2: Any = None,
-    D11: Any = None,
-    D12: Any = None,
-    D21: Any = None,
+    A: GeneralisedPlant | Sequence[GeneralisedPlant] | StateSpaceLike | ArrayLike,
+    B1: ArrayLike | None = None,
+    B2: ArrayLike | None = None,
+    C1: ArrayLike | None = None,
+    C2: ArrayLike | None = None,
+    D11: ArrayLike | None = None,
+    D12: ArrayLike | None = None,
+    D21: ArrayLike | None = None,
     *,
     split: tuple[int, int] | None = None,
     max_gain: float = 1e6,
     bounds: tuple[ArrayLike, ArrayLike] | None = None,
     time_budget: float = 60.0,
     seed: int = 0,
-    progress: Told = lambda text: None,
+    progress: Progress = lambda text: None,
 ) -> Design:
     """Find the static output feedback `u = gain @ y` with the smallest H-infinity norm from w to z.
 
@@ -94,37 +94,42 @@ def synthesise(
         SynthesisError: no gain can stabilise the plants, or none was found.
     """
     begin = time.monotonic()
-    plants = _as_plants((A, B1, B2, C1, C2, D11, D12, D21), split)
+    plants = _collect_plants(A, (B1, B2, C1, C2, D11, D12, D21), split)
     _check_options(max_gain, time_budget)
-    gain = search(plants, _limits(plants[0], max_gain, bounds), seed, Clock(begin, time_budget), progress)
+    gain = search(plants, _limits(plants[0], max_gain, bounds), seed, TimeBudget(begin, time_budget), progress)
     loops = tuple(verify(plant, gain) for plant in plants)
     design = Design(gain, float(max_gain), 0.0, loops)
     progress("the bound of any controller")
-    return replace(design, lower_bound=min(_least(design, begin + time_budget), design.gamma))
+    return replace(design, lower_bound=min(_find_largest_bound(design, begin + time_budget), design.gamma))
 
 
-def _least(design: Design, deadline: float) -> float:
+def _find_largest_bound(design: Design, deadline: float) -> float:
     """Largest bound from any plant: from frequencies for all, from the LMI for the worst."""
     worst = design.worst
-    bounds = [pointwise_bound(loop.plant, design.gain) for loop in design.loops]
-    return max(*bounds, lower_bound(worst.plant, design.gain, worst.certificate, deadline))
+    bounds = [compute_pointwise_bound(loop.plant, design.gain) for loop in design.loops]
+    return max(*bounds, compute_lower_bound(worst.plant, design.gain, worst.certificate, deadline))
 
 
-def _as_plants(parts: tuple[Any, ...], split: tuple[int, int] | None) -> list[GeneralisedPlant]:
-    first, rest = parts[0], parts[1:]
+def _collect_plants(
+    first: GeneralisedPlant | Sequence[GeneralisedPlant] | StateSpaceLike | ArrayLike,
+    others: Sequence[ArrayLike | None],
+    split: tuple[int, int] | None,
+) -> list[GeneralisedPlant]:
+    """Return the plants, whichever way they were given."""
     if isinstance(first, GeneralisedPlant):
         return [first]
     if isinstance(first, Sequence) and first and all(isinstance(plant, GeneralisedPlant) for plant in first):
-        _check_alike(first)
-        return list(first)
-    if hasattr(first, "dt"):
+        plants = list(cast("Sequence[GeneralisedPlant]", first))
+        _check_alike(plants)
+        return plants
+    if isinstance(first, StateSpaceLike):
         if split is None:
             raise InputError("a state space needs its split: split=(disturbance inputs, performance outputs)")
         return [GeneralisedPlant.from_state_space(first, *split)]
-    missing = [name for name, part in zip(MATRICES[1:], rest, strict=True) if part is None]
+    missing = [name for name, part in zip(MATRICES[1:], others, strict=True) if part is None]
     if missing:
         raise InputError(f"the plant lacks {', '.join(missing)}; give all of {', '.join(MATRICES)}, or a plant object")
-    return [GeneralisedPlant(*parts)]
+    return [GeneralisedPlant.from_matrices([cast(ArrayLike, first), *(part for part in others if part is not None)])]
 
 
 def _check_alike(plants: Sequence[GeneralisedPlant]) -> None:

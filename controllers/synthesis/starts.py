@@ -21,44 +21,47 @@ _SCALED_SPREADS = (1.0, 100.0, 10.0, 1000.0)
 _DECADES = (-1.5, 1.5)
 
 
-class Start(NamedTuple):
+class StartingGain(NamedTuple):
     """A gain and the sizes of the first changes from it, (nu, ny) each, in scaled coordinates."""
 
     gain: Array
     unit: Array
 
 
-def starting_gains(plants: Sequence[GeneralisedPlant], unit: Array, seed: int) -> Iterator[Start]:
+def generate_starting_gains(plants: Sequence[GeneralisedPlant], unit: Array, seed: int) -> Iterator[StartingGain]:
     """Yield starts without end, the same ones for the same seed; `unit` is the user's, in scaled coordinates."""
     free = plants[0].free
     ones = np.ones(free.shape)
-    yield Start(np.zeros(free.shape), unit)
-    yield from (Start(gain, ones) for gain in map(projected_state_feedback, plants) if gain is not None)
+    yield StartingGain(np.zeros(free.shape), unit)
+    yield from (StartingGain(gain, ones) for gain in map(project_state_feedback, plants) if gain is not None)
     random = np.random.default_rng(seed)
     for k in count():
         for own, spreads in ((unit, _SPREADS), (ones, _SCALED_SPREADS)):
             size = spreads[k % len(spreads)] * own
-            yield Start(size * random.standard_normal(free.shape) * free, size)
+            yield StartingGain(size * random.standard_normal(free.shape) * free, size)
         # Entries over decades of their own: some valleys join large gains with small ones.
         size = (ones, unit)[k % 2] * 10 ** random.uniform(*_DECADES, free.shape)
-        yield Start(random.choice([-1.0, 1.0], free.shape) * size * free, size)
+        yield StartingGain(random.choice([-1.0, 1.0], free.shape) * size * free, size)
 
 
-def convex_start(plant: GeneralisedPlant, gamma: float, unit: Array, deadline: float) -> Iterator[Start]:
+def generate_convex_start(
+    plant: GeneralisedPlant, gamma: float, unit: Array, deadline: float
+) -> Iterator[StartingGain]:
     """Yield the gain of the single-step LMI, or nothing where it has none; `gamma` is the norm's order of magnitude."""
-    from controllers.synthesis.lmi import single_step_gain
+    from controllers.synthesis.lmi import find_single_step_gain
 
-    gain = single_step_gain(plant, gamma, deadline)
+    gain = find_single_step_gain(plant, gamma, deadline)
     if gain is not None:
-        yield Start(gain, unit)
+        yield StartingGain(gain, unit)
 
 
-def projected_state_feedback(plant: GeneralisedPlant) -> Array | None:
+def project_state_feedback(plant: GeneralisedPlant) -> Array | None:
     """Return the output feedback nearest to the linear-quadratic state feedback, K = -B2'P pinv(C2); None without P."""
     identity = np.eye(plant.order)
     try:
         P = scipy.linalg.solve_continuous_are(plant.A, plant.B2, identity, np.eye(plant.control_count))
     except np.linalg.LinAlgError:
         return None
+    # u = -B2'P x is the optimum of the full state; the pseudo-inverse reads the state off y as well as y can tell.
     gain: Array = -plant.B2.T @ P @ np.linalg.pinv(plant.C2) * plant.free
     return gain

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, least_squares
 
 from controllers import synthesise
-from controllers.seat_plant import Weights, generalised
+from controllers.seat_plant import Weights, build_generalised_plant
 from seatsim.dampers.asymmetric import Yu2019
 from seatsim.dampers.hysteresis_division import Yu2017
 from seatsim.rig.plant import Plant
@@ -112,7 +112,7 @@ def seats_of_gain(mass: float, weight: float) -> tuple[float, float]:
     `cf + k2`: one synthesis, for any seat, gives them.
     """
     start = Plant(20.0, mass, 4000.0, 200.0, 60000.0, 1500.0)
-    gain = synthesise(generalised(start, Weights(travel=weight))).gain
+    gain = synthesise(build_generalised_plant(start, Weights(travel=weight))).gain
     return 4000.0 + float(gain[0, 0]) - GAIN[0], 200.0 + float(gain[0, 1]) - GAIN[1]
 
 

@@ -69,11 +69,11 @@ def synthesise(scenario: OneScenario, out_folder: Out = None, settings: Settings
     """Synthesise the H-infinity static output feedback of a scenario's plant and weights."""
     from seatsim.cli.design_table import design_table
     from seatsim.scenario.loading import single
-    from seatsim.scenario.synthesis import design_for
+    from seatsim.scenario.synthesis import synthesise_design
 
     chosen = single(scenario, pairs(settings, *SET))
     with show_progress() as progress:
-        design = design_for(chosen, progress)
+        design = synthesise_design(chosen, progress)
     out.print(design_table(design, chosen))
     folder = out_folder or Path("out") / chosen.name
     design.save(folder / "design.yaml")
@@ -238,12 +238,12 @@ def _present(runs: list[Run], folder: Path, bracket: bool) -> None:
 def _brackets(runs: list[Run]) -> dict[str, Any]:
     """Work out the brackets and print how far from them each run is; an interrupt keeps what there is."""
     from seatsim.cli.tables import distances
-    from seatsim.simulation.performance_bounds import beaten, brackets
+    from seatsim.simulation.performance_bounds import compute_performance_bounds, explain_runs_below_bound
 
     found: dict[str, Any] = {}
     with show_progress() as progress:
         try:
-            for rig, answer in brackets(runs, progress):
+            for rig, answer in compute_performance_bounds(runs, progress):
                 if isinstance(answer, InputError):
                     complain(f"no bracket: {answer}")
                 else:
@@ -252,5 +252,5 @@ def _brackets(runs: list[Run]) -> dict[str, Any]:
             warn(["interrupted: the brackets that were not finished are left out"])
     if found:
         out.print(distances(runs, found))
-    warn(beaten(runs, found))
+    warn(explain_runs_below_bound(runs, found))
     return found

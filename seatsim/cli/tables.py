@@ -11,7 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from seatsim.metrics.arrays import ratio
-from seatsim.simulation.performance_bounds import distance
+from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Run
 
 
@@ -61,7 +61,7 @@ def distances(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Table:
     for heading in ("above\nbound", "above\nbest", "bracket's\nwidth"):
         table.add_column(f"{heading}\n\\[%]", justify="right", vertical="bottom", no_wrap=True)
     for run in chosen:
-        d = distance(run, brackets[run.scenario.rig])
+        d = measure_distance(run, brackets[run.scenario.rig])
         cells = [_number(value, 3) for value in (d.acceleration, d.bound, d.best)]
         cells += [_number(1e2 * value, 1) for value in (d.above_bound, d.above_best, ratio(d.best, d.bound) - 1)]
         table.add_row(*(escape(_label(run, key)) for key in keys), *cells)

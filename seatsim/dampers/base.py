@@ -12,10 +12,10 @@ arithmetic and `math` only; what they call from their module is decorated with `
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal, NamedTuple, Protocol, TypeVar
+from typing import Literal, NamedTuple, TypeVar
 
 from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.registry import register
 
 T = TypeVar("T", bound=type)
@@ -28,13 +28,6 @@ CONFIDENCE: dict[Confidence, str] = {
     "derived": "composed here",
 }
 """How far a model's equation is that of its source; a docstring tells what else is of whom, parameters above all."""
-
-
-class Damper(Protocol):
-    """The part of a damper that every model has; see the module for the optional methods."""
-
-    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
-        """Return the damper force in N."""
 
 
 class DamperSpecification(NamedTuple):

@@ -9,8 +9,8 @@ from numba.extending import overload
 
 from seatsim.compilation.jit import INLINED, jit
 from seatsim.kernel.hooks import hook, record_class
-from seatsim.kernel.protocols import CompiledLaw, CurrentLaw, DamperModel, ForceLaw
-from seatsim.rig.control import Measurement
+from seatsim.kernel.protocols import DamperModel
+from seatsim.rig.control import CompiledLaw, CurrentLaw, ForceLaw, Measurement
 from seatsim.rig.sensors import Array, Sensing
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling, scaling

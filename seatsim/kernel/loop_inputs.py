@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from seatsim.compilation.jit import jit
 from seatsim.kernel.assumed_model import InverseModel
 from seatsim.kernel.channels import CURRENT_COMMAND
-from seatsim.kernel.protocols import CompiledLaw
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.step import StepInputs
 from seatsim.rig.coil import Coil
+from seatsim.rig.control import CompiledLaw
 from seatsim.rig.sensors import READINGS, Direct, Sensing
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, Thermal

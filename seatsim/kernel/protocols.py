@@ -6,9 +6,8 @@ a `typing.NamedTuple` with ordinary methods; its arguments are passed by positio
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
-from seatsim.rig.control import Measurement
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 
@@ -39,22 +38,3 @@ class DamperWithFriction(DamperModel, Protocol):
 
     def coulomb(self, i: float, scaling: TemperatureScaling, /) -> float:
         """Return the magnitude of the friction in N."""
-
-
-@runtime_checkable
-class ForceLaw(Protocol):
-    """A control law that wants a force, served through the inverse damper."""
-
-    def wanted_force(self, y: Measurement, state: State, /) -> float:
-        """Return the wanted damper force in N, positive when it opposes extension."""
-
-
-@runtime_checkable
-class CurrentLaw(Protocol):
-    """A control law that commands the current itself."""
-
-    def wanted_current(self, y: Measurement, state: State, /) -> float:
-        """Return the commanded coil current in A, before it is clipped to what the driver can do."""
-
-
-CompiledLaw = ForceLaw | CurrentLaw

@@ -3,18 +3,20 @@
 A law is a record (NamedTuple) of its keys. At every sampling instant it sees a `Measurement` and its own state, a tuple
 of floats, and answers with *one* of
 
-    def wanted_force(self, y, state):    wanted damper force in N, positive when it opposes extension
-    def wanted_current(self, y, state):  wanted coil current in A
+    def wanted_force(self, y, state):    wanted damper force in N, positive when it opposes extension   `ForceLaw`
+    def wanted_current(self, y, state):  wanted coil current in A                                       `CurrentLaw`
 
 and, where it has a state, with `def update(self, y, state)`, the state for the next instant. Methods are compiled by
 numba: plain arithmetic and `math` only. A law that wants a force is served through the inverse damper of the scenario.
 
 A law that is designed for its seat returns its compiled form, another such record, from *one* of
 
-    def prepared(self, plant)
-    def sampled(self, plant, coil, sample_time)     where the design needs the coil, or the time in s between samples
+    def prepared(self, plant)                                                                           `PreparedLaw`
+    def sampled(self, plant, coil, sample_time)     where the design needs the coil, or the time        `SampledLaw`
+                                                    in s between samples
 
-and a compiled form with `def notes(self)` returns sentences for the user after a run.
+and a compiled form with `def notes(self)` (`LawWithNotes`) returns sentences for the user after a run. A law whose
+design can be reported and saved fulfils `seatsim.rig.designs.SynthesisedLaw` too.
 
 `Measurement` holds the true states, unless the scenario gives the law sensors (see `seatsim.rig.sensors`).
 """
@@ -22,15 +24,23 @@ and a compiled form with `def notes(self)` returns sentences for the user after 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, Protocol, TypeVar, runtime_checkable
 
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
 from seatsim.schema.registry import register
 
 T = TypeVar("T", bound=type)
+State = tuple[float, ...]
+"""What a law remembers from one sampling instant to the next; empty where it has no memory."""
 
 
 class Measurement(NamedTuple):
-    """What a law sees at a sampling instant; SI units, degrees Celsius, upward positive."""
+    """What a law sees at a sampling instant; SI units, degrees Celsius, upward positive.
+
+    `displacement` and `velocity` are those of the suspension, positive in extension; `replayed` is the recorded
+    command in A, NaN where there is none.
+    """
 
     time: float
     displacement: float
@@ -46,14 +56,85 @@ class Measurement(NamedTuple):
     replayed: float
 
 
+@runtime_checkable
+class ForceLaw(Protocol):
+    """A compiled form that wants a damper force, which the inverse damper turns into a current."""
+
+    def wanted_force(self, y: Measurement, state: State) -> float:
+        """Return the wanted damper force in N, positive when it opposes extension."""
+
+
+@runtime_checkable
+class CurrentLaw(Protocol):
+    """A compiled form that wants a coil current."""
+
+    def wanted_current(self, y: Measurement, state: State) -> float:
+        """Return the wanted coil current in A; the loop clips it to what the coil can carry."""
+
+
+@runtime_checkable
+class LawWithMemory(Protocol):
+    """A compiled form whose answer depends on what it saw before."""
+
+    def update(self, y: Measurement, state: State) -> State:
+        """Return the state at the next sampling instant."""
+
+
+@runtime_checkable
+class LawWithNotes(Protocol):
+    """A compiled form that has something to say after a run."""
+
+    def notes(self) -> tuple[str, ...]:
+        """Return sentences for the user; asked once, after the run."""
+
+
+CompiledLaw = ForceLaw | CurrentLaw
+"""What the compiled loop asks at every sampling instant."""
+
+
+@runtime_checkable
+class PreparedLaw(Protocol):
+    """A law that is designed for the seat alone."""
+
+    def prepared(self, plant: Plant) -> CompiledLaw:
+        """Return the compiled form for a nominal seat."""
+
+
+@runtime_checkable
+class SampledLaw(Protocol):
+    """A law that is designed for the seat, the coil and the time between samples."""
+
+    def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> CompiledLaw:
+        """Return the compiled form for a nominal seat and coil, asked every `sample_time` seconds."""
+
+
+Law = CompiledLaw | PreparedLaw | SampledLaw
+"""What a scenario may name as its `law`."""
+
+
+def prepare_law(law: Law, plant: Plant, coil: Coil, sample_time: float) -> CompiledLaw:
+    """Return the compiled form of a law, designed for the nominal rig where the law asks for it.
+
+    Args:
+        law: the record that a scenario names.
+        plant: the nominal seat, which effects do not change: a designer does not know of them.
+        coil: the nominal coil.
+        sample_time: in s between two answers.
+    """
+    # The more a law asks for, the more its design knows: `sampled` comes before `prepared`.
+    if isinstance(law, SampledLaw):
+        return law.sampled(plant, coil, sample_time)
+    return law.prepared(plant) if isinstance(law, PreparedLaw) else law
+
+
 class LawSpecification(NamedTuple):
     """What is stated of a law: initial value of its state, whether it replays a recording row by row, its source."""
 
-    initial: tuple[float, ...]
+    initial: State
     replays: bool
     source: str
 
 
-def law(name: str, initial: tuple[float, ...] = (), replays: bool = False, source: str = "") -> Callable[[T], T]:
+def law(name: str, initial: State = (), replays: bool = False, source: str = "") -> Callable[[T], T]:
     """Register a record class as the control law `law: name` with the `initial` value of its state."""
     return register("law", name, LawSpecification(initial, replays, source))

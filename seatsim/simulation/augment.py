@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cache
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.chain import Effects, state_at_rest
+from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
@@ -90,7 +92,8 @@ def _carried(effects: Sequence[object], hooks: tuple[str, ...]) -> Effects:
     chosen = [effect for effect in effects if acts_on(type(effect), hooks)]
     first = {type(effect): effect for effect in reversed(chosen)}
     carried = [first.get(cls) or off(cls) for cls in registered]
-    return tuple(carried + [effect for effect in chosen if not any(effect is kept for kept in carried)])
+    further = [effect for effect in chosen if not any(effect is kept for kept in carried)]
+    return cast(Effects, (*carried, *further))
 
 
 @cache
@@ -99,7 +102,7 @@ def _acting(classes: tuple[type, ...], hooks: tuple[str, ...]) -> list[type]:
     return [cls for cls in classes if acts_on(cls, hooks)]
 
 
-def augment_damper(record: tuple[object, ...], effects: Effects) -> tuple[tuple[object, ...], tuple[float, ...]]:
+def augment_damper(record: DamperModel, effects: Effects) -> tuple[DamperModel, tuple[float, ...]]:
     """Return a damper's record with effects on it, and its state at rest."""
     initial: tuple[float, ...] = specification_of(type(record)).initial
     if not effects:

@@ -12,6 +12,7 @@ from seatsim.compilation.cached import compiled
 from seatsim.dampers.base import DamperSpecification
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
+from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError, RunError
@@ -62,7 +63,7 @@ class SineTest(NamedTuple):
 
 
 def sine_test(
-    damper: tuple[object, ...],
+    damper: DamperModel,
     amplitude: float,
     frequency: float,
     current: float,
@@ -98,7 +99,7 @@ def sine_test(
 
 
 def bench_force(
-    damper: tuple[object, ...],
+    damper: DamperModel,
     displacement: ArrayLike,
     velocity: ArrayLike,
     current: ArrayLike,

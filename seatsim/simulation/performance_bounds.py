@@ -1,21 +1,62 @@
-"""The brackets of some runs' rigs, from whichever plug-in gives them."""
+"""Bounds on what the best damper could have done on some runs' rigs, from whichever plug-in gives them.
+
+Plug-ins register under the kind `bracket`: a lower bound of the comfort criterion, and a run that comes close to it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple, Protocol, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from seatsim.metrics.arrays import ratio
+from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import find
 from seatsim.simulation.result import Run
 
+Array = NDArray[np.float64]
+
+
+class PerformanceBounds(Protocol):
+    """Bound and reached comfort of an ideal damper on one rig, by its travel; K runs, one for each weight."""
+
+    @property
+    def acceleration(self) -> Array:
+        """Wk-weighted RMS acceleration of the driver in the runs in m/s^2, shape (K,)."""
+
+    @property
+    def travel(self) -> Array:
+        """RMS travel of the runs in m, shape (K,)."""
+
+    @property
+    def width(self) -> Array:
+        """Relative distance between run and bound, shape (K,)."""
+
+    def bound(self, travel: ArrayLike) -> Array:
+        """Return the acceleration in m/s^2 below which no damper comes at an RMS travel in m."""
+
+    def best(self, travel: ArrayLike) -> Array:
+        """Return the acceleration in m/s^2 that an ideal damper reaches; NaN where the travel is too short."""
+
+    def as_dict(self) -> dict[str, list[float]]:
+        """Return the curves by name, for a file."""
+
+
+class BoundsMethod(Protocol):
+    """A registered way to compute performance bounds."""
+
+    def of(self, scenario: Scenario, progress: Callable[[str], None]) -> PerformanceBounds:
+        """Return the bounds of a scenario's rig; an InputError says why it has none."""
+
 
 class Distance(NamedTuple):
-    """Where a run stands: Wk-weighted RMS acceleration in m/s^2, RMS travel in m; at that travel the bracket's ends.
+    """Where a run stands: Wk-weighted RMS acceleration in m/s^2, RMS travel in m; at that travel both bounds.
 
     `bound` and `best` are in m/s^2, `above_bound` and `above_best` the run's acceleration over them, less 1. NaN where
-    the travel is shorter than that of any run of the bracket.
+    the travel is shorter than that of any run of the ideal damper.
     """
 
     acceleration: float
@@ -26,18 +67,20 @@ class Distance(NamedTuple):
     above_best: float
 
 
-def distance(run: Run, bracket: Any) -> Distance:
-    """Return how far a run is from the bracket of its rig."""
+def measure_distance(run: Run, bounds: PerformanceBounds) -> Distance:
+    """Return how far a run is from the performance bounds of its rig."""
     acceleration = run.metrics["driver_acceleration_weighted"].value
     travel = run.metrics["suspension_displacement_rms"].value
-    bound, best = float(bracket.bound(travel)), float(bracket.best(travel))
+    bound, best = float(bounds.bound(travel)), float(bounds.best(travel))
     return Distance(acceleration, travel, bound, best, ratio(acceleration, bound) - 1, ratio(acceleration, best) - 1)
 
 
-def beaten(runs: Sequence[Run], found: Mapping[str, Any]) -> list[str]:
-    """Return a sentence for each run below the bound of its rig: the bracket's damper has no memory."""
+def explain_runs_below_bound(runs: Sequence[Run], found: Mapping[str, PerformanceBounds]) -> list[str]:
+    """Return a sentence for each run below the bound of its rig: the ideal damper has no memory, a real one has."""
     below = [
-        run for run in runs if run.scenario.rig in found and distance(run, found[run.scenario.rig]).above_bound < 0
+        run
+        for run in runs
+        if run.scenario.rig in found and measure_distance(run, found[run.scenario.rig]).above_bound < 0
     ]
     return [
         f"{run.scenario.title} is below its bound, which holds for dampers without memory: in so short strokes the"
@@ -46,11 +89,17 @@ def beaten(runs: Sequence[Run], found: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def brackets(runs: Sequence[Run], progress: Callable[[str], None]) -> Iterator[tuple[str, Any]]:
-    """Yield the bracket of each rig with its `Scenario.rig`, or the InputError that says why it has none."""
-    kind: Any = find("bracket", "clairvoyant")
+def compute_performance_bounds(
+    runs: Sequence[Run], progress: Callable[[str], None]
+) -> Iterator[tuple[str, PerformanceBounds | InputError]]:
+    """Yield the bounds of each rig with its `Scenario.rig`, or the InputError that says why it has none.
+
+    Runs that share seat, damper, temperature, floor and effects share a rig: its bounds are computed once, since laws
+    play no part in them.
+    """
+    method = cast(BoundsMethod, find("bracket", "clairvoyant"))
     for rig, scenario in {run.scenario.rig: run.scenario for run in runs}.items():
         try:
-            yield rig, kind.of(scenario, progress)
+            yield rig, method.of(scenario, progress)
         except InputError as error:
             yield rig, error

@@ -18,6 +18,7 @@ from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
+from seatsim.rig.control import LawWithNotes, prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, at_rest
 from seatsim.rig.temperature import Thermal
@@ -35,7 +36,6 @@ from seatsim.simulation.augment import (
     undo_reading,
 )
 from seatsim.simulation.inputs import NONE, Forces
-from seatsim.simulation.law import collect_notes, prepare_law
 
 Array = NDArray[np.float64]
 DEFAULT_SAMPLE_TIME = 0.001
@@ -94,7 +94,8 @@ def simulate(
             f"{scenario.title}: no solution beyond {reached * step:.3f} s, where it leaves all bounds; check the signs"
             " of gains and stiffnesses, and the damper's parameters"
         )
-    return _history(setup.rig.plant, step, out, collect_notes(setup.law))
+    notes = setup.law.notes() if isinstance(setup.law, LawWithNotes) else ()
+    return _history(setup.rig.plant, step, out, notes)
 
 
 def _setup(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import seatsim
-from controllers.scheduled_output_feedback import ScheduledOutputFeedback
+from controllers.laws.scheduled_output_feedback import ScheduledOutputFeedback
 from controllers.seat_plant import Weights
 from seatsim.rig.plant import Plant
 from seatsim.schema.errors import InputError

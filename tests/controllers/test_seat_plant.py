@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from controllers.linear import System
-from controllers.seat_plant import Lag, Weights, actuator, generalised
-from controllers.static_output_feedback import StaticOutputFeedback
-from controllers.synthesis.norm import hinf_norm, response
+from controllers.laws.static_output_feedback import StaticOutputFeedback
+from controllers.linear_systems import LinearSystem
+from controllers.seat_plant import ActuatorLag, Weights, build_actuator, build_generalised_plant
+from controllers.synthesis.norm import frequency_response, hinf_norm
 from controllers.synthesis.plant import Loop
 from seatsim.metrics import weighting
 from seatsim.rig.coil import Coil
@@ -16,36 +16,36 @@ OMEGA = np.geomspace(0.5, 300.0, 40)
 
 
 def gains(system, omega=OMEGA):
-    return response(Loop(*system), omega)
+    return frequency_response(Loop(*system), omega)
 
 
 def test_actuator_lags_as_coil_and_delay():
-    lag = Lag(rate=130.0, delay=0.004)
+    lag = ActuatorLag(rate=130.0, delay=0.004)
     omega = np.geomspace(1.0, 1.0 / lag.delay, 20)
     exact = np.exp(-1j * omega * lag.delay) * lag.rate / (1j * omega + lag.rate)
-    np.testing.assert_allclose(gains(actuator(lag), omega)[:, 0, 0], exact, atol=2e-3)
-    assert len(actuator(Lag(delay=0.0)).A) == 1
+    np.testing.assert_allclose(gains(build_actuator(lag), omega)[:, 0, 0], exact, atol=2e-3)
+    assert len(build_actuator(ActuatorLag(delay=0.0)).A) == 1
 
 
 def test_without_extras_it_is_the_exact_seat():
-    plant, s = generalised(SEAT, Weights(travel=30.0)), state_space(SEAT)
+    plant, s = build_generalised_plant(SEAT, Weights(travel=30.0)), state_space(SEAT)
     np.testing.assert_array_equal(plant.A, s.A)
     np.testing.assert_array_equal(plant.B2, s.B2)
     np.testing.assert_array_equal(plant.C1, [[30.0], [1.0]] * s.C1)
 
 
 def test_every_path_with_lag_and_weighting():
-    bare = generalised(SEAT, Weights(travel=10.0, acceleration=2.0))
-    lag = Lag(rate=100.0, delay=0.002)
-    full = generalised(SEAT, Weights(10.0, 2.0, "Wk"), lag, force_factor=0.7)
+    bare = build_generalised_plant(SEAT, Weights(travel=10.0, acceleration=2.0))
+    lag = ActuatorLag(rate=100.0, delay=0.002)
+    full = build_generalised_plant(SEAT, Weights(10.0, 2.0, "Wk"), lag, force_factor=0.7)
 
     def paths(plant):
         B, C = np.hstack([plant.B1, plant.B2]), np.vstack([plant.C1, plant.C2])
-        return gains(System(plant.A, B, C, np.zeros((4, 2))))
+        return gains(LinearSystem(plant.A, B, C, np.zeros((4, 2))))
 
     H = weighting.frequency_response(OMEGA / (2 * np.pi), "Wk")
     rows, columns = np.ones((len(OMEGA), 4, 1), complex), np.ones((len(OMEGA), 1, 2), complex)
-    rows[:, 1, 0], columns[:, 0, 1] = H, 0.7 * gains(actuator(lag))[:, 0, 0]
+    rows[:, 1, 0], columns[:, 0, 1] = H, 0.7 * gains(build_actuator(lag))[:, 0, 0]
     np.testing.assert_allclose(paths(full), rows * paths(bare) * columns, rtol=1e-8, atol=1e-14)
 
 
@@ -63,7 +63,7 @@ def test_law_designs_for_the_worst_of_drivers_and_factors():
 
 
 def test_displacement_gain_may_be_left_out():
-    lag = Lag(delay=0.0025)
+    lag = ActuatorLag(delay=0.0025)
     law = StaticOutputFeedback(weights=Weights(30.0), displacement_gain=False, lag=lag)
     compiled = law.prepared(SEAT)
     assert compiled.k1 == 0 and compiled.k2 > 500

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from controllers.constant import Replay
+from controllers.laws.constant import Replay
 from seatsim.compilation.cached import compiled
 from seatsim.kernel.assumed_model import TrueModel
 from seatsim.kernel.chain import state_at_rest

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from controllers.skyhook import OnOffSkyhook
-from controllers.static_output_feedback import OutputFeedback
+from controllers.laws.skyhook import OnOffSkyhook
+from controllers.laws.static_output_feedback import OutputFeedback
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
 from seatsim.effects.suspension import Friction

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from controllers.static_output_feedback import OutputFeedback
+from controllers.laws.static_output_feedback import OutputFeedback
 from seatsim.dampers.bingham import Bingham
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
 from seatsim.kernel.assumed_model import AssumedModel

@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatsim.simulation.simulate import simulate as simulation
+import seatsim.simulation.simulate as simulation
 
 
 @pytest.fixture(scope="module")

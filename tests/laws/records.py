@@ -1,9 +1,9 @@
 """Every registered law, with the keys it must have, in the compiled form of the quickstart seat."""
 
 from seatsim.rig.coil import Coil
+from seatsim.rig.control import prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.schema import registry
-from seatsim.simulation.simulate import simulate as simulation
 
 REQUIRED = {
     "constant": {"current": 0.5},
@@ -23,4 +23,4 @@ def ready(name, sample_time=0.005, plant=SEAT, **keys):
     """Return the compiled form of a law and its state at rest."""
     cls = registry.find("law", name)
     law = cls(**REQUIRED.get(name, {}), **keys)
-    return simulation._ready(law, plant, COIL, sample_time), registry.specification_of(cls).initial
+    return prepare_law(law, plant, COIL, sample_time), registry.specification_of(cls).initial

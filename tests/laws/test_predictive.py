@@ -6,9 +6,9 @@ from scipy.linalg import solve_discrete_are
 from scipy.optimize import lsq_linear
 
 import seatsim
-from controllers.linear import held
-from controllers.planner import Envelope, Planner
-from controllers.quadratic import QuadraticWeights
+from controllers.linear_systems import zero_order_hold
+from controllers.optimal.planner import DeliverableForces, Planner
+from controllers.optimal.regulator import QuadraticWeights
 from seatsim.rig.plant import state_space
 
 from .records import SEAT
@@ -18,12 +18,12 @@ STATES = np.random.default_rng(5).standard_normal((40, 4)) * [0.02, 0.2, 0.003, 
 
 
 def planner(**envelope):
-    return Planner(SEAT, QuadraticWeights(), Envelope(**envelope), HORIZON, SAMPLE_TIME)
+    return Planner(SEAT, QuadraticWeights(), DeliverableForces(**envelope), HORIZON, SAMPLE_TIME)
 
 
 def regulator():
     s, w = state_space(SEAT), QuadraticWeights()
-    flow, push = held(s.A, s.B2, SAMPLE_TIME)
+    flow, push = zero_order_hold(s.A, s.B2, SAMPLE_TIME)
     z = s.C1 * [[w.travel], [w.acceleration]]
     p = solve_discrete_are(flow, push, z.T @ z, [[w.force**2]])
     gain = -np.linalg.solve(push.T @ p @ push + w.force**2, push.T @ p @ flow)[0]
@@ -57,7 +57,7 @@ def test_no_force_is_driven_and_the_same_state_gives_the_same_force():
     forces = [made.force(state) for state in STATES]
     assert np.all(np.array(forces) * STATES[:, 1] >= 0.0)
     assert [made.force(state) for state in STATES] == forces
-    low, high = Envelope().limits(STATES[:, 1])
+    low, high = DeliverableForces().limits(STATES[:, 1])
     assert np.all((forces >= low - 1e-9) & (forces <= high + 1e-9))
 
 

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from scipy.linalg import expm, solve_continuous_are
 
-from controllers.gaussian import EstimateFeedback, SwitchedFeedback
-from controllers.kalman import Noise, dot, estimator, predicted
-from controllers.margins import margins, sampled_radius
-from controllers.quadratic import QuadraticWeights, state_feedback
-from controllers.sampled_loop import sampled_loop
+from controllers.analysis.margins import compute_margins, compute_sampled_radius
+from controllers.analysis.sampled_loop import build_sampled_loop
+from controllers.laws.gaussian import EstimateFeedback, SwitchedFeedback
+from controllers.optimal.kalman import Noise, design_kalman_filter, dot, predict
+from controllers.optimal.regulator import QuadraticWeights, solve_regulator
+from seatsim.rig.control import prepare_law
 from seatsim.rig.plant import state_space
 from seatsim.rig.sensors import Sensors
 from seatsim.scenario.loading import load
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import name_of, specification_of
-from seatsim.simulation.law import prepare_law
 
 from .records import COIL, LINEAR, SEAT, ready
 
@@ -26,7 +26,7 @@ SHIPPED = [one for one in load("laws") if name_of("law", type(one.control.law)) 
 
 
 def loop(name, sample_time=SAMPLE_TIME, sensors=None, plant=SEAT):
-    return sampled_loop(*ready(name, sample_time, plant), plant, COIL, sample_time, sensors)
+    return build_sampled_loop(*ready(name, sample_time, plant), plant, COIL, sample_time, sensors)
 
 
 @pytest.mark.parametrize("mass", [50.0, 80.0, 120.0])
@@ -56,9 +56,11 @@ def test_the_general_loop_is_that_of_static_feedback():
     gain = np.array([[2.0, 2147.6]])
     found = loop("static_output_feedback")
     for late in (0, 1, 3):
-        assert found.radius(late) == pytest.approx(sampled_radius(SEAT, gain, COIL, SAMPLE_TIME, late), rel=1e-9)
+        assert found.radius(late) == pytest.approx(
+            compute_sampled_radius(SEAT, gain, COIL, SAMPLE_TIME, late), rel=1e-9
+        )
     # The hold delays by half a sample.
-    assert found.delay_margin() == pytest.approx(margins(SEAT, gain, COIL).delay - SAMPLE_TIME / 2, rel=1e-2)
+    assert found.delay_margin() == pytest.approx(compute_margins(SEAT, gain, COIL).delay - SAMPLE_TIME / 2, rel=1e-2)
 
 
 def test_the_delay_margin_is_where_stability_ends():
@@ -69,7 +71,7 @@ def test_the_delay_margin_is_where_stability_ends():
 
 def test_a_law_that_is_unstable_as_sampled_has_no_margin():
     plant = SEAT._replace(driver_mass=20.0)
-    found = sampled_loop(*ready("lqr", weights=QuadraticWeights(20.0, 1.0, 1e-3)), plant, COIL, SAMPLE_TIME)
+    found = build_sampled_loop(*ready("lqr", weights=QuadraticWeights(20.0, 1.0, 1e-3)), plant, COIL, SAMPLE_TIME)
     assert found.radius() > 1
     assert found.delay_margin() == 0
 
@@ -79,8 +81,8 @@ def test_every_shipped_design_is_stable_on_its_sensors_with_a_sample_of_delay(sc
     control, initial = scenario.control, specification_of(type(scenario.control.law)).initial
     law = prepare_law(control.law, scenario.plant, scenario.coil, control.sample_time)
     if isinstance(law, SwitchedFeedback):  # whose linear design is that of the LQG it is clipped from
-        law = EstimateFeedback(law.gain, law.estimator)
-    found = sampled_loop(law, initial, scenario.plant, scenario.coil, control.sample_time, control.sensors)
+        law = EstimateFeedback(law.gain, law.kalman_filter)
+    found = build_sampled_loop(law, initial, scenario.plant, scenario.coil, control.sample_time, control.sensors)
     assert found.radius() < 1
     assert found.radius(delay_samples=1) < 1
     assert found.delay_margin() > control.sample_time
@@ -93,7 +95,7 @@ def test_a_law_that_wants_a_current_has_no_linear_loop():
 
 def test_the_regulator_solves_the_riccati_equation():
     weights = QuadraticWeights()
-    s, k = state_space(SEAT), np.array([state_feedback(SEAT, weights)])
+    s, k = state_space(SEAT), np.array([solve_regulator(SEAT, weights)])
     z = s.C1 * [[weights.travel], [weights.acceleration]]
     p = solve_continuous_are(s.A, s.B2, z.T @ z, [[weights.force**2]])
     np.testing.assert_allclose(k, -s.B2.T @ p / weights.force**2, rtol=1e-6)
@@ -101,8 +103,8 @@ def test_the_regulator_solves_the_riccati_equation():
 
 def test_the_filter_is_the_limit_of_the_kalman_recursion():
     noise = Noise()
-    e = estimator(SEAT, noise, SAMPLE_TIME)
-    flow, push, seen = (np.array(part) for part in (e.flow, e.push, e.seen))
+    e = design_kalman_filter(SEAT, noise, SAMPLE_TIME)
+    flow, push, seen = (np.array(part) for part in (e.transition, e.input_gain, e.output))
     fine, s = SAMPLE_TIME / 400, state_space(SEAT)
     steps = [expm(s.A * fine * (k + 0.5)) @ s.B1 for k in range(400)]
     spread = noise.floor * fine * sum(b @ b.T for b in steps) + noise.force**2 * np.outer(push, push)
@@ -114,9 +116,9 @@ def test_the_filter_is_the_limit_of_the_kalman_recursion():
 
 
 def test_a_prediction_is_corrected_and_carried_on():
-    e, x = estimator(SEAT, Noise(), SAMPLE_TIME), (1.0, 2.0, 3.0, 4.0)
+    e, x = design_kalman_filter(SEAT, Noise(), SAMPLE_TIME), (1.0, 2.0, 3.0, 4.0)
     flow, push, seen, correction = (np.array(part) for part in e)
     y = SimpleNamespace(displacement=1.5, driver_acceleration=-700.0, damper_force=3.0)
     now = x + ([1.5, -700.0] - seen @ x) @ correction
-    np.testing.assert_allclose(predicted(e, y, x), flow @ now + 3.0 * push, rtol=1e-12)
-    assert dot(e.seen[0], x) == 1.0
+    np.testing.assert_allclose(predict(e, y, x), flow @ now + 3.0 * push, rtol=1e-12)
+    assert dot(e.output[0], x) == 1.0

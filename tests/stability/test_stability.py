@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import seatsim
-from controllers.margins import margins, sampled_radius
+from controllers.analysis.margins import compute_margins, compute_sampled_radius
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant, state_space
 
@@ -26,13 +26,13 @@ def test_the_closed_loop_is_hurwitz(mass):
 @pytest.mark.parametrize("sample_time", [0.001, 0.005])
 @pytest.mark.parametrize("mass", MASSES)
 def test_the_sampled_loop_is_stable_with_a_sample_of_delay(mass, sample_time):
-    assert sampled_radius(seat(mass), GAIN, COIL, sample_time) < 1
-    assert sampled_radius(seat(mass), GAIN, COIL, sample_time, delay_samples=1) < 1
+    assert compute_sampled_radius(seat(mass), GAIN, COIL, sample_time) < 1
+    assert compute_sampled_radius(seat(mass), GAIN, COIL, sample_time, delay_samples=1) < 1
 
 
 @pytest.mark.parametrize("mass", [40.0, 80.0, 150.0])
 def test_margins(mass, capsys):
-    found = margins(seat(mass), GAIN, COIL)
+    found = compute_margins(seat(mass), GAIN, COIL)
     with capsys.disabled():
         print(f"\n{mass:.0f} kg: gain {found.gain:.3g}, phase {found.phase:.1f} deg, delay {1e3 * found.delay:.1f} ms")
     assert found.gain > 2
@@ -41,10 +41,10 @@ def test_margins(mass, capsys):
 
 
 def test_the_delay_margin_is_where_the_sampled_loop_loses_stability():
-    delay = margins(seat(), GAIN, COIL).delay
+    delay = compute_margins(seat(), GAIN, COIL).delay
     step = 0.0005
-    assert sampled_radius(seat(), GAIN, COIL, step, delay_samples=int(0.97 * delay / step)) < 1
-    assert sampled_radius(seat(), GAIN, COIL, step, delay_samples=int(1.03 * delay / step)) > 1
+    assert compute_sampled_radius(seat(), GAIN, COIL, step, delay_samples=int(0.97 * delay / step)) < 1
+    assert compute_sampled_radius(seat(), GAIN, COIL, step, delay_samples=int(1.03 * delay / step)) > 1
 
 
 def test_the_literal_sign_of_the_paper_is_unstable():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from controllers import synthesise
-from controllers.seat_plant import Weights, generalised
+from controllers.seat_plant import Weights, build_generalised_plant
 from seatsim.scenario.loading import load
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -152,7 +152,7 @@ def test_acceleration_of_eq_15_does_not_depend_on_the_gain():
 
 
 def optimum(plant):
-    return synthesise(generalised(plant, Weights(travel=17.0))).gain[0]
+    return synthesise(build_generalised_plant(plant, Weights(travel=17.0))).gain[0]
 
 
 def test_the_published_gain_is_the_optimum_which_fixes_only_the_sums_of_spring_and_damper_with_it():

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatsim.schema.files import write_json, write_whole
-from seatsim.simulation.performance_bounds import distance
+from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import UNITS, Result, Run
 
 if TYPE_CHECKING:
@@ -54,8 +54,9 @@ def _encode_brackets(result: Result) -> list[dict[str, object]]:
     """Return for each rig its performance bounds, and for each of its runs how far from them it is."""
     found = []
     for rig, bracket in result.brackets.items():
-        runs = [_encode_name(run) | distance(run, bracket)._asdict() for run in result.runs if run.scenario.rig == rig]
-        found.append({**bracket.as_dict(), "runs": runs})
+        runs = [run for run in result.runs if run.scenario.rig == rig]
+        standing = [_encode_name(run) | measure_distance(run, bracket)._asdict() for run in runs]
+        found.append({**bracket.as_dict(), "runs": standing})
     return found
 
 

@@ -9,7 +9,8 @@ from typing import NamedTuple
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.dampers.base import Damper, DamperSpecification
+from seatsim.dampers.base import DamperSpecification
+from seatsim.kernel.protocols import DamperModel
 from seatsim.metrics import rms
 from seatsim.plots import labels, style
 from seatsim.plots.runs import naming
@@ -34,7 +35,7 @@ MOST = 4
 class InstalledDamper(NamedTuple):
     """A damper with its temperature factors, the actuator's largest current in A, and the runs that use it."""
 
-    record: Damper
+    record: DamperModel
     factors: TemperatureFactors
     max_current: float
     runs: list[Run]

@@ -1,0 +1,100 @@
+"""A steady Kalman filter of the seat's state, out of suspension displacement, driver acceleration and damper force."""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm, solve_discrete_are
+
+from controllers.linear_systems import zero_order_hold
+from seatsim.compilation.jit import jit
+from seatsim.rig.control import Measurement, State
+from seatsim.rig.plant import Plant, PlantMatrices, state_space
+from seatsim.schema.fields import param
+
+Array = NDArray[np.float64]
+Rows = tuple[State, ...]
+AT_REST: State = (0.0, 0.0, 0.0, 0.0)
+
+
+class Noise(NamedTuple):
+    """What the filter takes for noise: the floor's motion, the damper force between samples, the readings."""
+
+    floor: Annotated[
+        float, param("(m/s^2)^2/Hz", "two-sided density of the floor's acceleration, taken as white", above=0, high=1e4)
+    ] = 0.05
+    force: Annotated[float, param("N", "RMS error of the damper force held over a sample", low=0, high=1e5)] = 50.0
+    displacement: Annotated[float, param("m", "RMS noise of the displacement", above=0, high=1)] = 2e-4
+    acceleration: Annotated[float, param("m/s^2", "RMS noise of the driver's acceleration", above=0, high=1e3)] = 0.05
+
+
+class KalmanFilter(NamedTuple):
+    """Compiled form: at every sample `x <- x + correction (y - output x)`, then `x <- transition x + input_gain Fd`."""
+
+    transition: Rows
+    input_gain: State
+    output: Rows
+    correction: Rows
+
+
+def design_kalman_filter(plant: Plant, noise: Noise, sample_time: float) -> KalmanFilter:
+    """Return the steady filter of the sampled seat, from the discrete Riccati equation.
+
+    Args:
+        plant: the seat, with state (x, v, zc - zs, its rate).
+        noise: densities and RMS values of what is not known.
+        sample_time: in s, over which the damper force is taken as held.
+    """
+    s = state_space(plant)
+    transition, input_gain = zero_order_hold(s.A, s.B2, sample_time)
+    process_noise = _process_noise(s, sample_time, noise.floor) + noise.force**2 * input_gain @ input_gain.T
+    reading = np.diag([noise.displacement**2, noise.acceleration**2])
+    p = solve_discrete_are(transition.T, s.C1.T, process_noise, reading)
+    correction = np.linalg.solve(s.C1 @ p @ s.C1.T + reading, s.C1 @ p).astype(np.float64)
+    return KalmanFilter(_rows(transition), _rows(input_gain.T)[0], _rows(s.C1), _rows(correction))
+
+
+def _process_noise(s: PlantMatrices, time: float, density: float) -> Array:
+    """Return the covariance (4, 4) that a floor of white noise adds to the state over a sample (Van Loan 1978)."""
+    n = len(s.A)
+    both = expm(np.block([[-s.A, density * s.B1 @ s.B1.T], [np.zeros((n, n)), s.A.T]]) * time)
+    process_noise: Array = both[n:, n:].T @ both[:n, n:]
+    return process_noise
+
+
+def _rows(matrix: Array) -> Rows:
+    return tuple(tuple(float(value) for value in row) for row in matrix)
+
+
+@jit
+def dot(a: State, b: State) -> float:
+    """Return the product of two rows of four."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+
+
+@jit
+def correct(e: KalmanFilter, y: Measurement, x: State) -> State:
+    """Return the estimated (x, v, zc - zs, its rate) with a sample's readings, from its prediction."""
+    first, second = e.correction
+    a = y.displacement - dot(e.output[0], x)
+    b = y.driver_acceleration - dot(e.output[1], x)
+    return (
+        x[0] + first[0] * a + second[0] * b,
+        x[1] + first[1] * a + second[1] * b,
+        x[2] + first[2] * a + second[2] * b,
+        x[3] + first[3] * a + second[3] * b,
+    )
+
+
+@jit
+def predict(e: KalmanFilter, y: Measurement, x: State) -> State:
+    """Return the prediction for the next sample from that for this one; the damper force read is held until then."""
+    now, force = correct(e, y, x), y.damper_force
+    return (
+        dot(e.transition[0], now) + e.input_gain[0] * force,
+        dot(e.transition[1], now) + e.input_gain[1] * force,
+        dot(e.transition[2], now) + e.input_gain[2] * force,
+        dot(e.transition[3], now) + e.input_gain[3] * force,
+    )

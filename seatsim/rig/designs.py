@@ -1,0 +1,103 @@
+"""What is asked of a control law's design by what reports and saves it.
+
+Interfaces only: the classes that fulfil them stand with the synthesis, which `seatsim` never imports.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], object]
+"""Is called with a line on what a long computation does."""
+
+
+class NormProof(Protocol):
+    """A proof that the H-infinity norm of a stable loop lies below `gamma`."""
+
+    @property
+    def gamma(self) -> float:
+        """What the norm is proven to lie below."""
+
+
+class DesignedLoop(Protocol):
+    """What is known of one plant under the designed gain."""
+
+    @property
+    def gamma(self) -> float:
+        """H-infinity norm from disturbance to performance output."""
+
+    @property
+    def certificate(self) -> NormProof | None:
+        """Proof of the norm; None where there is none in double precision."""
+
+    @property
+    def disk_margin(self) -> float:
+        """Balanced disk margin at the control, 0 to 2."""
+
+    @property
+    def norms_agree(self) -> bool:
+        """Whether two independent computations of the norm agree to 1e-6."""
+
+
+class SynthesisedDesign(Protocol):
+    """A static output feedback with the loops that it closes, one a plant; figures are those of the worst loop."""
+
+    @property
+    def gain(self) -> Array:
+        """Gain (controls, measurements) in the user's units."""
+
+    @property
+    def max_gain(self) -> float:
+        """Largest magnitude that an entry of the gain may have."""
+
+    @property
+    def gamma(self) -> float:
+        """Largest H-infinity norm of the loops."""
+
+    @property
+    def lower_bound(self) -> float:
+        """What no linear controller of any order can go below."""
+
+    @property
+    def certificate(self) -> NormProof | None:
+        """Proof of `gamma`."""
+
+    @property
+    def peak_frequency(self) -> float:
+        """Frequency in rad/s at which the norm is attained."""
+
+    @property
+    def poles(self) -> NDArray[np.complex128]:
+        """Poles in rad/s."""
+
+    @property
+    def loops(self) -> Sequence[DesignedLoop]:
+        """Every plant under the gain."""
+
+    def save(self, path: str | Path) -> None:
+        """Write the design to a file, which appears whole or not at all."""
+
+
+@runtime_checkable
+class SynthesisedLaw(Protocol):
+    """A law whose gain is synthesised from weights, and can be reported and saved."""
+
+    def synthesis(self, plant: Plant, progress: Progress) -> SynthesisedDesign:
+        """Return the design for a seat."""
+
+
+@runtime_checkable
+class CheckedLaw(Protocol):
+    """A law that can say how its loop stands with a gain: margins, stability as sampled."""
+
+    def checks(self, plant: Plant, coil: Coil, sample_time: float, gain: Array) -> Mapping[str, str]:
+        """Return, by heading, sentences on the loop that a gain closes with seat, coil and sampling."""

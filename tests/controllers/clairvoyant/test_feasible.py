@@ -1,0 +1,75 @@
+"""The best run: better than every damper setting, no better than without limits, and a local minimum."""
+
+import numpy as np
+import pytest
+
+from controllers.clairvoyant import feasible
+from controllers.clairvoyant.feasible import find_best_run
+from controllers.clairvoyant.recursion import ForceBand
+
+
+def constant_laws(problem):
+    gain = np.zeros((problem.intervals, len(problem.transcription.velocity)))
+    for force in (-400.0, 0.0, 400.0):
+        gain[:, -1] = force
+        yield gain
+
+
+def test_it_beats_runs_of_stated_laws_and_not_the_optimum_without_limits(problem, dense, band):
+    run = find_best_run(problem, band)
+    for gain in constant_laws(problem):
+        assert run.cost < 0.999 * problem.simulate(band, gain).cost
+    H, h, free, _ = dense
+    assert run.cost > free - h @ np.linalg.solve(H + 1e-12 * np.eye(len(H)), h)
+
+
+def test_no_small_change_of_a_free_force_improves_it(problem, band):
+    run = find_best_run(problem, band)
+    # Its forces replayed as they are, clipped again where intervals leave their line.
+    gain = np.zeros((problem.intervals, len(problem.transcription.velocity)))
+    gain[:, -1] = run.force
+    assert problem.simulate(band, gain).cost == pytest.approx(run.cost, rel=1e-6)
+    for k in np.flatnonzero(run.modes == 0)[::7]:
+        for size in (-5.0, 5.0):
+            moved = gain.copy()
+            moved[k, -1] += size
+            assert problem.simulate(band, moved).cost > run.cost * (1 - 1e-6)
+
+
+def test_a_band_with_no_choice_is_a_dashpot(problem, dense):
+    band = ForceBand(c=800.0, f=0.0, b=800.0, a=4.0)
+    H, h, free, G = dense
+    F = np.linalg.solve(np.eye(problem.intervals) - 800.0 * G, 800.0 * problem.transcription.free_velocity)
+    assert find_best_run(problem, band).cost == pytest.approx(free + F @ H @ F + 2 * h @ F, rel=0.05)
+
+
+def test_a_start_is_used_and_never_made_worse(problem, band):
+    for gain in constant_laws(problem):
+        assert find_best_run(problem, band, gain).cost <= problem.simulate(band, gain).cost
+
+
+class Scripted:
+    """A problem of one interval whose runs cost what a list says; proximities that are asked for are kept."""
+
+    intervals = 1
+
+    def __init__(self, costs):
+        self.costs, self.asked = iter(costs), []
+        self.transcription = type("T", (), {"velocity": np.zeros(1)})()
+
+    def simulate(self, band, gain):
+        return type("R", (), {"cost": next(self.costs)})()
+
+    def improve_law(self, band, run, proximity):
+        self.asked.append(proximity)
+
+
+def test_the_proximity_grows_where_a_pass_does_not_improve_and_shrinks_where_it_does(monkeypatch):
+    script = Scripted([10.0, 11.0, 12.0, 13.0, 9.0, 8.0, 7.0, *[9.0] * 100])
+    assert find_best_run(script, None).cost == 7.0
+    np.testing.assert_allclose(script.asked[:8], [0, 1e-13, 4e-13, 1.6e-12, 3.2e-13, 6.4e-14, 0.0, 1e-13], rtol=1e-9)
+    assert max(script.asked) > 1e-7 and len(script.asked) < feasible.PASSES
+    tiny = Scripted([10.0, *(10.0 * (1 - 1e-9) for _ in range(100))])
+    assert find_best_run(tiny, None).cost == 10.0
+    endless = Scripted([float(1000 - k) for k in range(200)])
+    assert find_best_run(endless, None).cost == 1000.0 - feasible.PASSES

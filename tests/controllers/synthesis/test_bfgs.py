@@ -1,0 +1,109 @@
+"""BFGS on functions with known minima, its update by the secant equation, its line search by Wolfe's conditions."""
+
+import time
+
+import numpy as np
+import pytest
+
+from controllers.synthesis.bfgs import Iterate, _line_search, _update, minimise
+
+BOWL = np.array([[3.0, 1.0], [1.0, 40.0]])
+CENTRE = np.array([2.0, -1.0])
+
+
+class Counted:
+    """A function with its number of evaluations."""
+
+    def __init__(self, value, gradient):
+        self.value, self.gradient, self.calls = value, gradient, 0
+
+    def __call__(self, x, ceiling):
+        self.calls += 1
+        return float(self.value(x)), np.asarray(self.gradient(x), dtype=float)
+
+
+def bowl():
+    return Counted(lambda x: 0.5 * (x - CENTRE) @ BOWL @ (x - CENTRE), lambda x: BOWL @ (x - CENTRE))
+
+
+def rosenbrock():
+    return Counted(
+        lambda x: 100 * (x[1] - x[0] ** 2) ** 2 + (1 - x[0]) ** 2,
+        lambda x: [-400 * x[0] * (x[1] - x[0] ** 2) - 2 * (1 - x[0]), 200 * (x[1] - x[0] ** 2)],
+    )
+
+
+def valley():
+    """A valley with a kink along its floor, lowest at (1, 1)."""
+    return Counted(
+        lambda x: 8 * abs(x[0] ** 2 - x[1]) + (1 - x[0]) ** 2,
+        lambda x: np.sign(x[0] ** 2 - x[1]) * np.array([16 * x[0], -8.0]) - [2 * (1 - x[0]), 0.0],
+    )
+
+
+def later():
+    return time.monotonic() + 60
+
+
+@pytest.mark.parametrize(
+    ("make", "lowest", "error", "most"), [(bowl, CENTRE, 1e-6, 25), (rosenbrock, [1.0, 1.0], 1e-4, 80)]
+)
+def test_smooth_minima_are_found_in_few_evaluations(make, lowest, error, most):
+    function = make()
+    found = minimise(function, np.array([-1.2, 1.0]), np.ones(2), later(), progress=1e-12)
+    np.testing.assert_allclose(found.x, lowest, atol=error)
+    assert found.value == pytest.approx(function.value(found.x), abs=0)
+    assert function.calls < most
+
+
+def test_a_kink_is_no_obstacle():
+    function = valley()
+    found = minimise(function, np.array([-1.0, 2.0]), np.ones(2), later(), progress=1e-9)
+    np.testing.assert_allclose(found.x, [1.0, 1.0], atol=2e-2)
+
+
+def test_the_search_ends_when_it_has_enough_or_no_time_or_no_gain():
+    start = np.array([-1.2, 1.0])
+    assert 1.0 < minimise(rosenbrock(), start, np.ones(2), later(), enough=4.5).value <= 4.5
+    np.testing.assert_array_equal(minimise(rosenbrock(), start, np.ones(2), time.monotonic() - 1).x, start)
+    short, long = (minimise(rosenbrock(), start, np.ones(2), later(), patience=p, progress=0.5).value for p in (2, 9))
+    assert long < short
+    few = minimise(rosenbrock(), start, np.ones(2), later(), iterations=3)
+    assert few.value > 1.0
+    assert minimise(bowl(), CENTRE, np.ones(2), later()).value == 0.0
+
+
+def test_the_first_step_is_steepest_in_units():
+    plane = Counted(lambda x: x[0] + x[1], lambda x: [1.0, 1.0])
+    found = minimise(plane, np.zeros(2), np.array([1.0, 3.0]), later(), enough=-0.1)
+    assert found.x[1] == pytest.approx(9 * found.x[0])
+
+
+def test_the_update_solves_the_secant_equation():
+    here = Iterate(np.array([0.3, 0.4]), 0.0, BOWL @ [0.3, 0.4])
+    there = Iterate(np.array([-0.2, 0.9]), 0.0, BOWL @ [-0.2, 0.9])
+    for fresh in (False, True):
+        H = _update(np.eye(2), here, there, fresh)
+        np.testing.assert_allclose(H @ (there.gradient - here.gradient), there.x - here.x, rtol=1e-12)
+        np.testing.assert_allclose(H, H.T)
+        assert np.linalg.eigvalsh(H)[0] > 0
+    # The first update scales the unit matrix by s'y / y'y; across s and y the scale is all that is left.
+    s, y = there.x - here.x, there.gradient - here.gradient
+    H = _update(np.eye(2), here, there, True)
+    across = np.array([-y[1], y[0]])
+    correction = (s @ across) ** 2 / (s @ y) * 2
+    np.testing.assert_allclose(across @ H @ across, (s @ y) / (y @ y) * (across @ across) + correction, rtol=1e-12)
+    backwards = Iterate(there.x, 0.0, here.gradient - (there.gradient - here.gradient))
+    np.testing.assert_array_equal(_update(np.eye(2), here, backwards, False), np.eye(2))
+
+
+@pytest.mark.parametrize("length", [1e-3, 1.0, 50.0])
+def test_the_line_search_meets_the_weak_wolfe_conditions(length):
+    function = bowl()
+    here = Iterate(np.zeros(2), *function(np.zeros(2), np.inf))
+    direction = -length * here.gradient
+    found = _line_search(function, here, direction)
+    slope, step = here.gradient @ direction, np.linalg.norm(found.x) / np.linalg.norm(direction)
+    assert found.value <= here.value + 1e-4 * step * slope
+    assert found.gradient @ direction >= 0.5 * slope
+    assert _line_search(function, here, -direction) is None

@@ -1,0 +1,132 @@
+"""The bounded-real certificate and the lower bounds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+from controllers import synthesise
+from controllers.synthesis.bound import compute_pointwise_bound
+from controllers.synthesis.certify import certify, largest_lmi_eigenvalue, recentre
+from controllers.synthesis.norm import frequency_response, hinf_norm
+from controllers.synthesis.plant import GeneralisedPlant
+
+
+def stable(plant, gain):
+    shift = (plant.close(gain).abscissa + 0.3) * np.eye(plant.order)
+    return replace(plant, A=plant.A - shift)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_proves_the_norm_and_nothing_below(random_plant, seed):
+    gain = np.random.default_rng(seed).standard_normal((2, 2))
+    plant = stable(random_plant(seed), gain)
+    loop = plant.close(gain)
+    gamma = hinf_norm(loop).value
+    proof = certify(plant, gain, gamma)
+    assert proof.delta <= 1e-5
+    assert proof.gamma == pytest.approx(gamma * (1 + proof.delta))
+    P = proof.matrix
+    M = np.block(
+        [
+            [loop.A.T @ P + P @ loop.A, P @ loop.B, loop.C.T],
+            [loop.B.T @ P, -proof.gamma * np.eye(2), loop.D.T],
+            [loop.C, loop.D, -proof.gamma * np.eye(3)],
+        ]
+    )
+    assert np.linalg.eigvalsh(P)[0] > 0 > np.linalg.eigvalsh(M)[-1]
+    assert certify(plant, gain, gamma * 0.93) is None
+    assert largest_lmi_eigenvalue(plant, gain, proof.factor, gamma * 0.99) > 0
+    assert largest_lmi_eigenvalue(plant, gain, 0 * proof.factor, gamma) == np.inf
+
+
+def test_unstable_loop_has_no_certificate():
+    one = np.eye(1)
+    assert certify(GeneralisedPlant(one, one, one, one, one, 0 * one, 0 * one, 0 * one), 0 * one, 5.0) is None
+
+
+def test_certificate_survives_gains_that_cancel():
+    # Two large gains nearly cancel in A + B2 K C2; in doubles the closed loop's slow pole would be lost.
+    B2, C2 = np.array([[1.0, -1.0]]), np.ones((1, 1))
+    plant = GeneralisedPlant([[-1.0]], [[1.0]], B2, [[1.0]], C2, [[0.0]], np.zeros((1, 2)), [[0.0]])
+    proof = certify(plant, np.array([[1e16], [1e16]]), 1.0)
+    assert proof.delta <= 1e-6
+
+
+@pytest.mark.parametrize("e1", [10.0, 50.0])
+def test_rational_arithmetic_confirms_and_refutes(designed, exact_certificates, tmp_path, e1):
+    designed(e1).save(tmp_path / "design.yaml")
+    plain = YAML(typ="safe").load(tmp_path / "design.yaml")
+    loop = plain["loops"][0]
+    assert exact_certificates.proven(plain["gain"], loop)
+    loop["certificate"]["gamma"] = loop["gamma"] * (1 - 1e-6)
+    assert not exact_certificates.proven(plain["gain"], loop)
+
+
+def test_recentred_states_have_the_same_response_and_the_identity_as_proof(random_plant):
+    gain = np.random.default_rng(0).standard_normal((2, 2))
+    plant = stable(random_plant(0), gain)
+    proof = certify(plant, gain, hinf_norm(plant.close(gain)).value)
+    loop, omega = recentre(plant, gain, proof.factor), [0.0, 0.3, 3.0, 30.0]
+    wanted = frequency_response(plant.close(gain), omega)
+    np.testing.assert_allclose(frequency_response(loop, omega), wanted, rtol=1e-8)
+    g = proof.gamma
+    M = loop.A + loop.A.T + loop.C.T @ loop.C / g
+    M += (
+        (loop.B + loop.C.T @ loop.D / g)
+        @ np.linalg.inv(g * np.eye(2) - loop.D.T @ loop.D / g)
+        @ (loop.B + loop.C.T @ loop.D / g).T
+    )
+    assert -1.0 < np.linalg.eigvalsh(M)[-1] < 0
+
+
+def test_the_eigenvalue_is_that_of_the_scaled_matrix(random_plant):
+    gain = np.random.default_rng(1).standard_normal((2, 2))
+    plant = stable(random_plant(1), gain)
+    proof = certify(plant, gain, hinf_norm(plant.close(gain)).value)
+    loop = plant.close(gain)
+    A, B = proof.factor @ loop.A @ np.linalg.inv(proof.factor), proof.factor @ loop.B
+    C, g, rate = (
+        loop.C @ np.linalg.inv(proof.factor),
+        proof.gamma,
+        np.linalg.norm(proof.factor @ loop.A @ np.linalg.inv(proof.factor), 2),
+    )
+    scale = np.sqrt(g * rate)
+    M = np.block(
+        [
+            [(A + A.T) / rate, B / scale, C.T / scale],
+            [B.T / scale, -np.eye(2), loop.D.T / g],
+            [C / scale, loop.D / g, -np.eye(3)],
+        ]
+    )
+    largest = np.linalg.eigvalsh(M)[-1]
+    assert proof.largest_eigenvalue == pytest.approx(largest, abs=1e-12)
+    assert largest < proof.largest_eigenvalue < largest + 1e-12
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_bounds_stand_in_order(random_plant, seed):
+    plant = random_plant(seed, n=3)
+    design = synthesise(plant, time_budget=3.0)
+    assert (
+        0 < compute_pointwise_bound(plant, design.gain) <= design.lower_bound * (1 + 1e-6) <= design.gamma * (1 + 1e-6)
+    )
+
+
+def test_disturbance_without_effect():
+    one = np.eye(1)
+    design = synthesise(one, 0 * one, one, one, one, 0 * one, 0 * one, 0 * one)
+    assert design.gamma == design.lower_bound == 0
+    assert design.certificate is None
+    assert design.poles.real.max() < 0
+
+
+def test_bound_is_reached_where_the_whole_state_is_measured():
+    # x' = -x + w + u, z = (x, u), y = x: state feedback k gives 1/sqrt(2) at best, with k = -1.
+    one, column = np.eye(1), np.zeros((2, 1))
+    plant = GeneralisedPlant(-one, one, one, [[1], [0]], one, column, [[0], [1]], 0 * one)
+    design = synthesise(plant)
+    assert design.gamma == pytest.approx(np.sqrt(0.5), rel=1e-6)
+    np.testing.assert_allclose(design.gain, [[-1.0]], rtol=1e-3)
+    assert design.lower_bound == pytest.approx(design.gamma, rel=1e-5)

@@ -1,0 +1,52 @@
+"""Modes that no gain moves, by the tests of Popov, Belevitch and Hautus."""
+
+import numpy as np
+import pytest
+
+from controllers.synthesis.modes import require_stabilisable
+from controllers.synthesis.plant import GeneralisedPlant
+from controllers.synthesis.scaling import scale
+from seatsim.schema.errors import SynthesisError
+
+
+def plant(modes, B2, C2, structure=None):
+    n, B2, C2 = len(modes), np.array(B2, dtype=float), np.array(C2, dtype=float)
+    one, nu, ny = np.ones((n, 1)), B2.shape[1], len(C2)
+    A = np.diag(np.array(modes, dtype=float))
+    return GeneralisedPlant(A, one, B2, one.T, C2, [[0]], np.zeros((1, nu)), np.zeros((ny, 1)), structure)
+
+
+SEEN = [[1, 1, 1]]
+
+
+def test_stable_modes_may_be_out_of_reach():
+    require_stabilisable(scale(plant([-1, 2.5, -3], [[0], [1], [1]], SEEN)))
+    require_stabilisable(scale(plant([-1, 2.5, -3], [[1], [1], [1]], [[0, 1, 1]])))
+
+
+@pytest.mark.parametrize("mode", [0.0, 2.5])
+def test_modes_that_are_not_stable_may_not(mode):
+    with pytest.raises(SynthesisError, match=f"mode {mode:g} 1/s is not reached by the control input"):
+        require_stabilisable(scale(plant([-1, mode, -3], [[1], [0], [1]], SEEN)))
+    with pytest.raises(SynthesisError, match=f"mode {mode:g} 1/s is not seen by the measurement"):
+        require_stabilisable(scale(plant([-1, mode, -3], [[1], [1], [1]], [[1, 0, 1]])))
+
+
+def test_a_weak_reach_is_a_reach_and_rounding_is_none():
+    require_stabilisable(scale(plant([-1, 2.5, -3], [[1], [1e-4], [1]], SEEN)))
+    with pytest.raises(SynthesisError, match="not reached"):
+        require_stabilisable(scale(plant([-1, 2.5, -3], [[1], [1e-14], [1]], SEEN)))
+
+
+def test_a_structure_may_fix_a_mode_that_full_gains_move():
+    B2, C2 = [[1, 0], [0, 1], [0, 0]], [[0, 1, 0], [1, 0, 0]]
+    require_stabilisable(scale(plant([-1, 2.5, -3], B2, C2)))
+    require_stabilisable(scale(plant([-1, 2.5, -3], B2, C2, [[0, 1], [1, 1]])))
+    with pytest.raises(SynthesisError, match=r"mode 2\.5 1/s is moved by no gain of this structure"):
+        require_stabilisable(scale(plant([-1, 2.5, -3], B2, C2, [[0, 1], [0, 1]])))
+
+
+def test_the_mode_is_named_in_the_users_time():
+    # Rates of 1e3 scale time; the sentence speaks of 1/s all the same.
+    with pytest.raises(SynthesisError, match="mode 2500 1/s is not reached"):
+        require_stabilisable(scale(plant([-1000, 2500, -3000], [[1], [0], [1]], SEEN)))

@@ -1,0 +1,68 @@
+"""The H-infinity norm against closed forms, and bisection against the grid."""
+
+import numpy as np
+import pytest
+
+from controllers.synthesis.norm import grid_norm, hinf_norm, largest_singular_values
+from controllers.synthesis.plant import Loop
+
+METHODS = [hinf_norm, grid_norm]
+
+
+def loop(A, B, C, D):
+    return Loop(*(np.array(matrix, dtype=float, ndmin=2) for matrix in (A, B, C, D)))
+
+
+def random_loop(seed, n, nw, nz):
+    random = np.random.default_rng(seed)
+    A = random.standard_normal((n, n))
+    A -= (np.linalg.eigvals(A).real.max() + 10 ** random.uniform(-3, 0)) * np.eye(n)
+    D = random.standard_normal((nz, nw)) * random.integers(0, 2)
+    return Loop(A, random.standard_normal((n, nw)), random.standard_normal((nz, n)), D)
+
+
+@pytest.mark.parametrize("norm", METHODS)
+@pytest.mark.parametrize("damping", [1e-5, 1e-2, 0.3, 0.6])
+def test_resonance(norm, damping):
+    oscillator = loop([[0, 1], [-4, -4 * damping]], [[0], [4]], [[1, 0]], 0)
+    peak = norm(oscillator)
+    assert peak.value == pytest.approx(1 / (2 * damping * np.sqrt(1 - damping**2)), rel=1e-9)
+    assert peak.frequency == pytest.approx(2 * np.sqrt(1 - 2 * damping**2), rel=1e-4)
+
+
+@pytest.mark.parametrize("norm", METHODS)
+def test_peaks_at_the_ends(norm):
+    assert norm(loop(-2, 1, 3, 0)) == pytest.approx((1.5, 0.0), abs=1e-6)
+    assert norm(loop(-2, 1, -6, 3)) == pytest.approx((3.0, np.inf))
+
+
+@pytest.mark.parametrize("norm", METHODS)
+def test_all_pass_is_one_everywhere(norm):
+    assert norm(loop(-2, 1, -4, 1)).value == pytest.approx(1.0, rel=1e-12)
+
+
+def test_no_effect_and_no_stability():
+    assert hinf_norm(loop(-1, 0, 1, 0)).value == 0
+    assert hinf_norm(loop([[0, 1], [-4, 0]], [[0], [1]], [[1, 0]], 0)) == pytest.approx((np.inf, 2.0))
+
+
+def test_peak_hidden_behind_a_nearly_equal_end():
+    # D alone reaches 1; a resonance at 1 rad/s reaches a little more while the poles tell of frequencies elsewhere.
+    hidden = loop(np.diag([-300.0, -1e-3, -0.3]), [[300], [0], [0.3]], [[-1, 1, 0.05]], 1)
+    assert hinf_norm(hidden).value == pytest.approx(grid_norm(hidden).value, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_bisection_agrees_with_the_grid(seed):
+    some = random_loop(seed, n=2 + seed % 7, nw=1 + seed % 3, nz=1 + seed % 4)
+    peak = hinf_norm(some)
+    assert peak.value == pytest.approx(grid_norm(some).value, rel=1e-8)
+    assert largest_singular_values(some, peak.frequency)[0] == pytest.approx(peak.value, rel=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_does_not_depend_on_units(seed):
+    some = random_loop(seed, n=5, nw=2, nz=2)
+    units = 10.0 ** np.random.default_rng(seed).uniform(-4, 4, 5)
+    moved = Loop(some.A * units / units[:, None], some.B / units[:, None], some.C * units, some.D)
+    assert hinf_norm(moved).value == pytest.approx(hinf_norm(some).value, rel=1e-9)

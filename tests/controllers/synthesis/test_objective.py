@@ -1,0 +1,117 @@
+"""What the search minimises: gradients against central differences, limits, sizes, the worst of several plants."""
+
+import numpy as np
+import pytest
+
+from controllers.synthesis.norm import hinf_norm
+from controllers.synthesis.objective import NormObjective, differentiate_singular_values
+from controllers.synthesis.plant import GeneralisedPlant
+from controllers.synthesis.scaling import scale
+
+
+def objective_of(*plants, limit=50.0):
+    limits = np.full(plants[0].free.shape, limit)
+    return NormObjective(plants, -limits, limits, np.ones_like(limits))
+
+
+def slopes(function, theta, step=1e-6):
+    unit = np.eye(len(theta)) * step
+    return np.array([(function(theta + u)[0] - function(theta - u)[0]) / (2 * step) for u in unit])
+
+
+def stable(plant, margin=0.5):
+    A = plant.A - (plant.close(np.zeros(plant.free.shape)).abscissa + margin) * np.eye(plant.order)
+    return GeneralisedPlant(A, plant.B1, plant.B2, plant.C1, plant.C2, plant.D11, plant.D12, plant.D21, plant.structure)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_gradient_of_the_abscissa(random_plant, seed):
+    objective = objective_of(random_plant(seed, structure=[[1, 1], [0, 1]]), random_plant(seed + 50))
+    theta = np.random.default_rng(seed).standard_normal(objective.size)
+    np.testing.assert_allclose(objective.abscissa(theta)[1], slopes(objective.abscissa, theta), rtol=1e-4, atol=1e-6)
+    loops = [plant.close(objective.gain(objective.entries(theta))) for plant in objective.plants]
+    assert objective.abscissa(theta)[0] == pytest.approx(max(loop.abscissa for loop in loops), rel=1e-12)
+
+
+@pytest.mark.parametrize("e1", [10.0, 50.0])
+@pytest.mark.parametrize("gain", [[0.3, 0.5], [-0.2, 1.5]])
+def test_gradient_of_the_norm(seat, e1, gain):
+    objective = objective_of(scale(seat(e1)).plant, scale(seat(30.0)).plant)
+    theta = objective.angles(np.array(gain))
+    np.testing.assert_allclose(objective.log_norm(theta)[1], slopes(objective.log_norm, theta), rtol=1e-4, atol=1e-7)
+
+
+def test_gradient_near_a_limit_and_with_all_matrices(random_plant):
+    objective = objective_of(stable(random_plant(2)), limit=0.4)
+    theta = objective.angles(np.array([0.3, -0.2, 0.1, 0.05]))
+    np.testing.assert_allclose(objective.log_norm(theta)[1], slopes(objective.log_norm, theta), rtol=1e-4, atol=1e-6)
+
+
+def test_gradients_of_singular_values(random_plant):
+    plant, omega, step = random_plant(1), [0.3, 2.0], 1e-6
+    gain = 0.1 * np.random.default_rng(0).standard_normal((2, 2))
+    values, found = differentiate_singular_values(plant, plant.close(gain), omega, 2)
+    for i in range(2):
+        for j in range(2):
+            moved = np.zeros((2, 2))
+            moved[i, j] = step
+            up, down = (
+                differentiate_singular_values(plant, plant.close(gain + sign * moved), omega, 2)[0] for sign in (1, -1)
+            )
+            np.testing.assert_allclose(found[:, :, i, j], (up - down) / (2 * step), rtol=1e-4, atol=1e-6)
+    assert np.all(values[:, 0] > values[:, 1])
+
+
+def test_angles_undo_entries_and_stay_within_limits(seat):
+    plant = scale(seat(30.0)).plant
+    low, high = np.array([[-10.0, 0.0]]), np.array([[50.0, 30.0]])
+    objective = NormObjective([plant], low, high, np.ones((1, 2)))
+    for entries in ([3.0, 29.0], [-9.9, 0.1]):
+        np.testing.assert_allclose(objective.entries(objective.angles(np.array(entries))), entries)
+    wild = objective.entries(np.array([1e3, -77.0]))
+    assert -10.0 <= wild[0] <= 50.0 and 0.0 <= wild[1] <= 30.0
+    np.testing.assert_allclose(objective.entries(objective.angles(np.array([1e9, -5.0]))), [49.97, 0.015])
+    # For small gains about the centre an angle is the entry.
+    assert objective.entries(objective.angles(np.array([20.01, 15.0])))[0] == pytest.approx(20.01)
+
+
+def test_sizes_of_changes_are_the_entries_own(random_plant):
+    limits, unit = np.full((2, 2), 9.0), np.array([[1.0, 50.0], [1.0, 1.0]])
+    objective = NormObjective([random_plant(0, structure=[[1, 1], [0, 0]])], -limits, limits, unit)
+    np.testing.assert_allclose(objective.sizes(np.array([4.0, 0.0])), [4.0, 2.0])
+    np.testing.assert_allclose(objective.sizes(np.zeros(2)), [1.0, 50.0])
+    np.testing.assert_array_equal(objective.gain(np.array([4.0, 5.0])), [[4.0, 5.0], [0.0, 0.0]])
+
+
+def test_the_worst_plant_counts(random_plant):
+    plants = [stable(random_plant(seed)) for seed in (0, 1, 2)]
+    objective, entries = objective_of(*plants), 0.01 * np.ones(4)
+    norms = [hinf_norm(plant.close(0.01 * np.ones((2, 2)))).value for plant in plants]
+    assert objective.norm(entries) == pytest.approx(max(norms), rel=1e-9)
+    assert objective.log_norm(objective.angles(entries))[0] == pytest.approx(np.log(max(norms)), rel=1e-8)
+    one = objective.on(plants[:1])
+    assert one.norm(entries) == pytest.approx(norms[0], rel=1e-9)
+    np.testing.assert_array_equal(one.high, objective.high)
+
+
+def test_above_the_ceiling_there_is_no_gradient(random_plant):
+    objective = objective_of(stable(random_plant(0)))
+    theta = np.zeros(4)
+    value, slope = objective.log_norm(theta, np.inf)
+    above, none = objective.log_norm(theta, value - 1.0)
+    assert above > value - 1.0 and not none.any() and slope.any()
+    value, slope = objective.abscissa(theta)
+    above, none = objective.abscissa(theta, value - 0.1)
+    assert above == value and not none.any() and slope.any()
+
+
+def test_unstable_and_silent_loops(random_plant):
+    unstable = objective_of(stable(random_plant(0), margin=-0.5))
+    assert unstable.norm(np.zeros(4)) == np.inf
+    value, slope = unstable.log_norm(np.zeros(4))
+    assert value == np.inf and not slope.any()
+    barely = objective_of(stable(random_plant(0), margin=1e-8))
+    assert barely.norm(np.zeros(4)) == np.inf
+    p = stable(random_plant(0))
+    silent = GeneralisedPlant(p.A, 0 * p.B1, p.B2, p.C1, p.C2, 0 * p.D11, p.D12, 0 * p.D21)
+    assert objective_of(silent).log_norm(np.zeros(4))[0] == -np.inf

@@ -1,0 +1,82 @@
+"""Scaled coordinates: the same loop in other units, without rounding."""
+
+import numpy as np
+import pytest
+
+from controllers.synthesis.norm import frequency_response, hinf_norm
+from controllers.synthesis.scaling import scale
+
+GAIN = np.array([[967.0, 2339.0]])
+
+
+@pytest.fixture
+def scaled(seat):
+    return scale(seat(30.0))
+
+
+def test_the_norm_stays_and_the_gain_is_mapped(seat, scaled):
+    plant = seat(30.0)
+    small = scaled.scaled_gain(GAIN)
+    np.testing.assert_array_equal(scaled.physical_gain(small), GAIN)
+    raw, moved = hinf_norm(plant.close(GAIN)), hinf_norm(scaled.plant.close(small))
+    assert moved.value == pytest.approx(raw.value, rel=1e-12)
+    assert moved.frequency * scaled.rate == pytest.approx(raw.frequency, rel=1e-5)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_response_is_that_of_slower_or_faster_time(random_plant, seed):
+    plant = random_plant(seed)
+    units = 10.0 ** np.random.default_rng(seed).uniform(-3, 3, 4)
+    moved = type(plant)(
+        100 * plant.A * units / units[:, None], plant.B1 / units[:, None], plant.B2 / units[:, None] * 50,
+        plant.C1 * units, plant.C2 * units * 0.01, plant.D11, plant.D12, plant.D21,
+    )  # fmt: skip
+    made, omega, gain = scale(moved), np.array([0.3, 2.0, 30.0]), np.array([[0.1, 0.2], [-0.3, 0.4]])
+    close = moved.close(made.physical_gain(gain))
+    np.testing.assert_allclose(
+        frequency_response(made.plant.close(gain), omega), frequency_response(close, made.rate * omega), rtol=1e-8
+    )
+
+
+def test_factors_are_powers_of_two(scaled):
+    for factors in (scaled.controls, scaled.measured, [scaled.rate]):
+        np.testing.assert_array_equal(np.log2(factors) % 1, 0)
+
+
+def test_columns_rows_rates_and_both_ends_are_of_one_size(scaled):
+    plant = scaled.plant
+    for sizes in (np.linalg.norm(plant.B2, axis=0), np.linalg.norm(plant.C2, axis=1)):
+        assert np.all((sizes > 0.7) & (sizes < 1.5))
+    assert 0.5 <= np.linalg.norm(plant.B1) / np.linalg.norm(plant.C1) <= 2.0
+    rates = np.abs(np.linalg.eigvals(plant.A))
+    assert 0.7 < np.exp(np.log(rates).mean()) < 1.5
+    off = plant.A - np.diag(np.diag(plant.A))
+    assert np.abs(off).max() < 20
+
+
+def test_balancing_undoes_wild_states(random_plant):
+    plant = random_plant(5)
+    units = np.array([1e-6, 1.0, 1e5, 1e2])
+    wild = type(plant)(
+        plant.A * units / units[:, None], plant.B1 / units[:, None], plant.B2 / units[:, None], plant.C1 * units,
+        plant.C2 * units, plant.D11, plant.D12, plant.D21,
+    )  # fmt: skip
+    A = scale(wild).plant.A
+    assert np.abs(A).max() / np.abs(A).min() < 1e3
+    np.testing.assert_allclose(np.abs(A), np.abs(scale(plant).plant.A), rtol=16.0)
+
+
+def test_a_plant_may_be_scaled_like_another(seat, scaled):
+    light = scale(seat(30.0, m=40.0), like=scaled)
+    assert light.rate == scaled.rate
+    np.testing.assert_array_equal(light.controls, scaled.controls)
+    np.testing.assert_array_equal(light.measured, scaled.measured)
+    own = hinf_norm(seat(30.0, m=40.0).close(GAIN))
+    assert hinf_norm(light.plant.close(scaled.scaled_gain(GAIN))).value == pytest.approx(own.value, rel=1e-12)
+
+
+def test_an_input_without_effect_keeps_its_unit(random_plant):
+    plant = random_plant(0, nu=2)
+    B2 = plant.B2 * [1.0, 0.0]
+    idle = type(plant)(plant.A, plant.B1, B2, plant.C1, plant.C2, plant.D11, plant.D12, plant.D21)
+    assert scale(idle).controls[1] == 1.0

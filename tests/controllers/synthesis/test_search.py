@@ -1,0 +1,85 @@
+"""The search on one or several plants, its time, and what it says where it fails."""
+
+import time
+
+import numpy as np
+import pytest
+
+from controllers.synthesis.norm import hinf_norm
+from controllers.synthesis.plant import GeneralisedPlant
+from controllers.synthesis.search import TimeBudget, search
+from seatsim.schema.errors import SynthesisError
+
+ONE, COLUMN = np.eye(1), np.zeros((2, 1))
+
+
+def state_feedback(pole=-1.0, weight=1.0):
+    """x' = pole x + w + u, z = (weight x, u), y = x."""
+    return GeneralisedPlant(pole * ONE, ONE, ONE, [[weight], [0]], ONE, COLUMN, [[0], [1]], 0 * ONE)
+
+
+def ask(plants, limit=1e3, seconds=10.0, lines=None):
+    limits = np.full(plants[0].free.shape, limit)
+    lines = [] if lines is None else lines
+    return search(plants, (-limits, limits), 0, TimeBudget(time.monotonic(), seconds), lines.append)
+
+
+def test_a_budget_is_spent_by_shares():
+    begin = time.monotonic()
+    clock = TimeBudget(begin - 2.0, 10.0)
+    assert clock.after(0.5) == pytest.approx(begin + 3.0)
+    part = clock.part(0.25)
+    assert part.begin == pytest.approx(begin, abs=0.5)
+    assert part.budget == pytest.approx(2.0, abs=0.2)
+    assert TimeBudget(begin - 20.0, 10.0).part(0.5).budget == 0.0
+
+
+def test_the_optimum_of_state_feedback():
+    # gamma^2 = (q^2 + k^2) / (p + k)^2 is least at k = q^2 / p.
+    for pole, weight in ((-1.0, 1.0), (-2.0, 3.0)):
+        assert ask([state_feedback(pole, weight)]) == pytest.approx(weight**2 / pole, rel=1e-2)
+    # With an unstable pole the infimum lies at infinite gain.
+    assert ask([state_feedback(1.0, 2.0)]) == -1000.0
+
+
+def test_limits_and_structure_hold(seat):
+    gain = ask([seat(50.0)], 1500.0)
+    assert np.abs(gain).max() <= 1500.0 and gain[0, 1] == pytest.approx(1500.0, rel=1e-6)
+    gain = ask([seat(30.0, structure=[[0, 1]])])
+    assert gain[0, 0] == 0.0 and gain[0, 1] == 1000.0
+
+
+def test_the_plant_in_the_middle_joins_where_it_is_worst():
+    plants, lines = [state_feedback(-1.0), state_feedback(-1.0, 6.0), state_feedback(-1.2)], []
+    gain = ask(plants, lines=lines)
+    assert "plants 0, 2 of 3" in lines[0] and any("plants 0, 2, 1 of 3" in line for line in lines)
+    norms = [hinf_norm(plant.close(gain)).value for plant in plants]
+    scan = [max(hinf_norm(plant.close([[k]])).value for plant in plants) for k in -np.geomspace(1.0, 1000.0, 300)]
+    assert max(norms) <= min(scan) * (1 + 1e-9)
+
+
+def test_plants_that_never_decide_do_not_join():
+    lines = []
+    ask([state_feedback(-1.0), state_feedback(-1.1), state_feedback(-1.2)], lines=lines)
+    assert not any("of 3" in line and line.count(",") > 1 for line in lines)
+
+
+def test_failure_tells_of_starts_limit_time_and_abscissa():
+    # 1/s^3 needs phase lead: s^3 - k is never Hurwitz.
+    A, B, C = 10.0 * np.eye(3, k=1), np.eye(3)[:, 2:], np.eye(3)[:1]
+    plant = GeneralisedPlant(A, B, B, C, C, [[0]], [[0]], [[0]])
+    words = r"no stabilising gain with \|gain\| <= 100 was found from \d+ starts in at most 1 s; .* is (\d\S*) 1/s"
+    with pytest.raises(SynthesisError, match=words):
+        ask([plant], 100.0, 1.0)
+    with pytest.raises(SynthesisError, match="mode 2 1/s is not reached"):
+        ask([state_feedback(), GeneralisedPlant(2 * ONE, ONE, 0 * ONE, ONE, ONE, 0 * ONE, 0 * ONE, 0 * ONE)])
+
+
+def test_where_starts_disagree_the_best_is_looked_about(random_plant):
+    lines = []
+    plant = random_plant(7, n=3)
+    gain = ask([plant], 20.0, 4.0, lines)
+    few = hinf_norm(plant.close(gain)).value
+    assert lines[0] == "searching" and "starts" in lines[1] and "stabilised" in lines[1]
+    assert float(lines[-1].split()[1]) == pytest.approx(few, rel=1e-5)
+    assert np.isfinite(few)

@@ -1,0 +1,93 @@
+"""From plants to a design: limits, lower bound, time budget, and one gain for several plants."""
+
+import time
+
+import numpy as np
+import pytest
+
+from controllers.synthesis import solve
+from controllers.synthesis.bound import compute_pointwise_bound
+from controllers.synthesis.plant import GeneralisedPlant
+from controllers.synthesis.solve import _collect_plants, _limits, synthesise
+from seatsim.schema.errors import InputError
+
+ONE, COLUMN = np.eye(1), np.zeros((2, 1))
+
+
+def state_feedback(weight=1.0):
+    return GeneralisedPlant(-ONE, ONE, ONE, [[weight], [0]], ONE, COLUMN, [[0], [1]], 0 * ONE)
+
+
+def test_the_design_is_that_of_the_known_optimum():
+    lines = []
+    design = synthesise(state_feedback(), progress=lines.append, max_gain=7.0)
+    assert design.gamma == pytest.approx(np.sqrt(0.5), rel=1e-6)
+    assert design.lower_bound == pytest.approx(design.gamma, rel=1e-5) and design.lower_bound <= design.gamma
+    assert design.max_gain == 7.0
+    assert lines[0] == "searching" and lines[-1] == "the bound of any controller"
+
+
+def test_the_lower_bound_is_the_largest_of_all_plants(monkeypatch):
+    plants = [state_feedback(0.5), state_feedback(4.0), state_feedback(1.0)]
+    asked = []
+
+    def bound(plant, gain, certificate, deadline):
+        asked.append((plant, certificate, deadline - time.monotonic()))
+        return 0.25
+
+    monkeypatch.setattr(solve, "compute_lower_bound", bound)
+    design = synthesise(plants, time_budget=6.0)
+    pointwise = [compute_pointwise_bound(plant, design.gain) for plant in plants]
+    assert design.lower_bound == pytest.approx(min(max(*pointwise, 0.25), design.gamma), rel=1e-12)
+    ((plant, certificate, left),) = asked
+    assert plant is plants[1] and certificate is design.worst.certificate
+    assert 0.0 < left <= 6.0
+    monkeypatch.setattr(solve, "compute_lower_bound", lambda *_: 1e9)
+    assert synthesise(state_feedback(), time_budget=2.0).lower_bound == pytest.approx(np.sqrt(0.5), rel=1e-6)
+    monkeypatch.setattr(solve, "compute_pointwise_bound", lambda *_: 0.1)
+    monkeypatch.setattr(solve, "compute_lower_bound", lambda *_: 0.3)
+    assert synthesise(state_feedback(), time_budget=2.0).lower_bound == 0.3
+
+
+def test_limits_come_from_the_largest_gain_and_from_bounds(random_plant):
+    plant = random_plant(0)
+    low, high = _limits(plant, 5.0, None)
+    np.testing.assert_array_equal(low, np.full((2, 2), -5.0))
+    np.testing.assert_array_equal(high, np.full((2, 2), 5.0))
+    low, high = _limits(plant, 5.0, ([-9.0, 1.0], 3.0))
+    np.testing.assert_array_equal(low, [[-5.0, 1.0], [-5.0, 1.0]])
+    np.testing.assert_array_equal(high, np.full((2, 2), 3.0))
+    for bounds in ((6.0, 7.0), (1.0, 1.0), (2.0, 1.0)):
+        with pytest.raises(InputError, match="no room"):
+            _limits(plant, 5.0, bounds)
+    structured = random_plant(0, structure=[[1, 0], [0, 1]])
+    _limits(structured, 5.0, ([[0.0, 1.0], [1.0, 0.0]], [[1.0, 1.0], [1.0, 1.0]]))
+    for bounds in ((1.0, 2.0, 3.0), ("a", 1.0), (np.zeros(3), 1.0)):
+        with pytest.raises(InputError, match=r"bounds must be \(low, high\)"):
+            _limits(plant, 5.0, bounds)
+
+
+@pytest.mark.parametrize("option", [{"max_gain": 0.0}, {"max_gain": np.inf}, {"time_budget": -1.0}])
+def test_options_are_finite_and_positive(option):
+    with pytest.raises(InputError, match=f"{next(iter(option))} is .* a finite number above 0"):
+        synthesise(state_feedback(), **option)
+
+
+def test_plants_are_taken_as_they_come(random_plant):
+    plant, others = random_plant(0), (None,) * 7
+    assert _collect_plants(plant, others, None) == [plant]
+    both = [plant, random_plant(1)]
+    assert _collect_plants(both, others, None) == both
+    parts = [plant.B1, plant.B2, plant.C1, plant.C2, plant.D11, plant.D12, plant.D21]
+    (made,) = _collect_plants(plant.A, parts, None)
+    np.testing.assert_array_equal(made.D12, plant.D12)
+    with pytest.raises(InputError, match="the plant lacks B2, D21; give all of A, B1"):
+        _collect_plants(plant.A, [plant.B1, None, *parts[2:6], None], None)
+    with pytest.raises(InputError, match="plant 1 has 1 controls, 2 measurements"):
+        _collect_plants([plant, random_plant(0, nu=1)], others, None)
+
+
+def test_time_is_kept(random_plant):
+    begin = time.monotonic()
+    synthesise(random_plant(7, n=3), max_gain=20.0, time_budget=1.0)
+    assert time.monotonic() - begin < 8.0

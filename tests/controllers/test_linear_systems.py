@@ -1,0 +1,65 @@
+"""Linear systems: weightings with states, and an input that is held."""
+
+import numpy as np
+import pytest
+
+from controllers.linear_systems import (
+    LinearSystem,
+    connect_in_parallel,
+    connect_in_series,
+    frequency_weighting,
+    pass_through,
+    second_order_section,
+    zero_order_hold,
+)
+from controllers.synthesis.norm import frequency_response
+from controllers.synthesis.plant import Loop
+from seatsim.metrics import weighting
+from seatsim.schema.errors import InputError
+
+OMEGA = np.geomspace(0.5, 300.0, 40)
+
+
+def gains(system):
+    return frequency_response(Loop(*system), OMEGA)
+
+
+@pytest.mark.parametrize("name", ["Wk", "Wd"])
+def test_weighting_with_states_is_that_of_the_standard(name):
+    expected = weighting.frequency_response(OMEGA / (2 * np.pi), name)
+    np.testing.assert_allclose(gains(frequency_weighting(name))[:, 0, 0], expected, rtol=1e-9)
+
+
+def test_unknown_weighting():
+    with pytest.raises(InputError, match="Wk"):
+        frequency_weighting("Wm")
+
+
+def test_a_section_is_its_quotient_and_its_states_are_of_one_size():
+    system, s = second_order_section((3.0, 0.2, 0.05), (2.0, 0.1, 0.04)), 1j * OMEGA
+    exact = (3.0 + 0.2 * s + 0.05 * s**2) / (2.0 + 0.1 * s + 0.04 * s**2)
+    np.testing.assert_allclose(gains(system)[:, 0, 0], exact, rtol=1e-12)
+    assert system.A[0, 1] == -system.A[1, 0] == system.B[1, 0]
+
+
+def test_side_by_side_and_one_after_another():
+    first, second = (
+        second_order_section((1.0, 0.0, 0.0), (1.0, 0.1, 0.02)),
+        second_order_section((1.0, 0.3, 0.1), (4.0, 0.2, 0.01)),
+    )
+    both = gains(
+        connect_in_series(connect_in_parallel(first, pass_through(1)), connect_in_parallel(pass_through(1), second))
+    )
+    exact = np.zeros((len(OMEGA), 2, 2), complex)
+    exact[:, 0, 0], exact[:, 1, 1] = gains(first)[:, 0, 0], gains(second)[:, 0, 0]
+    np.testing.assert_allclose(both, exact, rtol=1e-12)
+    chain = gains(connect_in_series(first, second))
+    np.testing.assert_allclose(chain[:, 0, 0], exact[:, 0, 0] * exact[:, 1, 1], rtol=1e-12)
+
+
+def test_a_held_input_moves_a_free_mass_and_a_lag_exactly():
+    mass = LinearSystem(np.array([[0.0, 1.0], [0.0, 0.0]]), np.array([[0.0], [2.0]]), np.eye(2), np.zeros((2, 1)))
+    lag = LinearSystem(*(np.array([[value]]) for value in (-3.0, 3.0, 1.0, 0.0)))
+    flow, push = zero_order_hold(*connect_in_parallel(mass, lag)[:2], 0.5)
+    np.testing.assert_allclose(flow, [[1.0, 0.5, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, np.exp(-1.5)]], rtol=1e-12)
+    np.testing.assert_allclose(push, [[0.25, 0.0], [1.0, 0.0], [0.0, 1 - np.exp(-1.5)]], rtol=1e-12)
