@@ -73,7 +73,7 @@ def started(problem: Problem, start: Array, seed: int, evaluations: int, progres
     with ThreadPoolExecutor() as pool:
         while not strategy.stop():
             found = strategy.ask()
-            strategy.progress(found, list(pool.map(problem.cost, map(np.asarray, found))))
+            strategy.tell(found, list(pool.map(problem.cost, map(np.asarray, found))))
             progress(f"searching, error {100.0 * strategy.best.f**0.5:.1f} %")
     return np.asarray(strategy.best.x, dtype=float)
 
