@@ -11,8 +11,8 @@ from seatsim.cli.terminal import Out, complain, out, pairs, show_progress, warn,
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
-    from seatsim.identification.judging import Further
-    from seatsim.identification.split import Request
+    from seatsim.identification.assessment import PredictionData
+    from seatsim.identification.settings import IdentificationSettings
     from seatsim.recordings.bench_tables import BenchRecord
 
 
@@ -74,21 +74,23 @@ def identify(
     out_folder: Out = None,
 ) -> None:
     """Fit a damper model to bench records and judge it on records held out; or every model, as a league."""
-    from seatsim.identification.judging import further
-    from seatsim.identification.split import Request
+    from seatsim.identification.assessment import load_prediction_data
+    from seatsim.identification.settings import IdentificationSettings
     from seatsim.recordings.bench_tables import load_bench
 
     fixed = pairs(fix, "--fix", "v_ref=0.005")
-    request = Request(tuple(test or ()), test_fraction, fixed, ignore_temperature, seed)
+    request = IdentificationSettings(tuple(test or ()), test_fraction, fixed, ignore_temperature, seed)
     folder = out_folder or Path("out") / f"identify-{_title(data)}-{model.rpartition(':')[2]}"
-    records, beside = load_bench(data), further(more or [], moving_average, centred)
+    records, beside = load_bench(data), load_prediction_data(more or [], moving_average, centred)
     if model == "all":
         _league(records, request, beside, folder)
     else:
         _identify(records, model, request, beside, folder)
 
 
-def _identify(records: list[BenchRecord], model: str, request: Request, beside: Further, folder: Path) -> None:
+def _identify(
+    records: list[BenchRecord], model: str, request: IdentificationSettings, beside: PredictionData, folder: Path
+) -> None:
     from seatsim.cli.outputs.identification import tables, write_identification
     from seatsim.identification.identify import identify_records, predict_records
 
@@ -101,13 +103,13 @@ def _identify(records: list[BenchRecord], model: str, request: Request, beside: 
     wrote(folder, paths)
 
 
-def _league(records: list[BenchRecord], request: Request, beside: Further, folder: Path) -> None:
+def _league(records: list[BenchRecord], request: IdentificationSettings, beside: PredictionData, folder: Path) -> None:
     """Identify every model, print and write the table; exit 1 where one failed."""
     from seatsim.cli.outputs.identification import league_table, write_identification, write_league
-    from seatsim.identification.league import league
+    from seatsim.identification.model_benchmark import benchmark_models
 
     with show_progress() as progress:
-        places = league(
+        places = benchmark_models(
             records, request, beside, folder, progress, lambda found: write_identification(found, folder / found.model)
         )
     out.print(league_table(places))

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
-from seatsim.identification.judging import Judged
 from seatsim.plots import labels, style
 from seatsim.plots.style import Entry, Grid
 
@@ -22,29 +22,29 @@ MEASURED, PREDICTED = Entry("measured", "#000000", width=1.6), Entry("predicted"
 
 def loops(found: Identification) -> Figure:
     """Return force over velocity, over displacement and over time of some records, held-out ones before fitted ones."""
-    chosen = _chosen(found.judged)
+    chosen = _chosen(found.assessments)
     grid = Grid(heights=(2.2,) * len(chosen), columns=3, top=0.4, gap=(0.75, 0.95))
     drawn = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
     mean = found.mean("test") or found.mean("train")
-    note = f"{len(chosen)} of {len(found.judged)} records; mean fit {mean.fit_percent:.1f} %" if mean else ""
+    note = f"{len(chosen)} of {len(found.assessments)} records; mean fit {mean.fit_percent:.1f} %" if mean else ""
     note += " of held-out records" if found.mean("test") else ""
     page = style.page(f"{found.model}: measured and predicted force", note, grid, (MEASURED, PREDICTED))
-    for panels, judged in zip(page.rows, chosen, strict=True):
-        title = labels.clean(judged.record.name, labels.LONGEST_TITLE)
-        panels[0].set_title(f"{title} ({drawn[judged.part]}), fit {judged.figures.fit_percent:.1f} %", loc="left")
-        _draw(panels, judged)
+    for panels, assessed in zip(page.rows, chosen, strict=True):
+        title = labels.clean(assessed.record.name, labels.LONGEST_TITLE)
+        panels[0].set_title(f"{title} ({drawn[assessed.part]}), fit {assessed.agreement.fit_percent:.1f} %", loc="left")
+        _draw(panels, assessed)
     return page.figure
 
 
-def _chosen(judged: Sequence[Judged]) -> list[Judged]:
+def _chosen(assessed: Sequence[Assessment]) -> list[Assessment]:
     """Return records spread evenly over the held-out ones, or the fitted ones where none is held out."""
-    first = [each for each in judged if each.part != "train"] or list(judged)
+    first = [each for each in assessed if each.part != "train"] or list(assessed)
     places = np.unique(np.linspace(0, len(first) - 1, min(MOST, len(first))).round().astype(int))
     return [first[place] for place in places]
 
 
-def _draw(panels: Sequence[Axes], judged: Judged) -> None:
-    record = judged.record
+def _draw(panels: Sequence[Axes], assessed: Assessment) -> None:
+    record = assessed.record
     part = slice(*record.liveliest(SHOWN))
     for axes, across, name in (
         (panels[0], record.velocity, "velocity [m/s]"),
@@ -52,6 +52,6 @@ def _draw(panels: Sequence[Axes], judged: Judged) -> None:
         (panels[2], record.time, "time [s]"),
     ):
         style.line(axes, across[part], record.force[part], MEASURED)
-        style.line(axes, across[part], judged.predicted[part], PREDICTED)
+        style.line(axes, across[part], assessed.predicted[part], PREDICTED)
         axes.set_xlabel(name)
     panels[0].set_ylabel("force [N]")
