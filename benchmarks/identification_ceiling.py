@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
+from seatsim.identification.figures import Figures, averaged, figures
 from threadpoolctl import threadpool_limits
 
-from seatsim.characterisation.cycles import loops_of, steady_cycles, whole_cycles
-from seatsim.identification.figures import Figures, averaged, figures
+from seatsim.characterisation.cycles import find_cycles, resample_loops, select_steady_cycles
 from seatsim.identification.split import Request, split
 from seatsim.recordings.bench_tables import BenchRecord, load_bench
 
@@ -39,10 +39,10 @@ PENALTIES = 10.0 ** np.arange(-8.0, 1.0)
 
 def repeats(record: BenchRecord) -> Figures | None:
     """Return how well the mean of every second steady cycle predicts the others, None where there are too few."""
-    steady = steady_cycles(whole_cycles(record.displacement))
+    steady = select_steady_cycles(find_cycles(record.displacement))
     if len(steady) < 4:
         return None
-    cycles = np.array([loop.force for loop in loops_of(record, steady)])
+    cycles = np.array([loop.force for loop in resample_loops(record, steady)])
     others = cycles[1::2]
     return figures(others.ravel(), np.tile(np.mean(cycles[::2], axis=0), len(others)))
 

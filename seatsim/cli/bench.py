@@ -29,7 +29,9 @@ def characterise(
     frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ", help="Frequencies.")] = "",
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
-    from seatsim.characterisation.of_model import characterise_model, settings_of, specimen
+    from seatsim.characterisation.model_tests import characterise_model
+    from seatsim.characterisation.settings import choose_settings
+    from seatsim.characterisation.specimen import load_specimen
     from seatsim.characterisation.summary import characterise as of_records
     from seatsim.cli.outputs.characterisation import WIDEST_TABLE, remarks, tables, write_characterisation
     from seatsim.recordings.bench_tables import load_bench
@@ -41,8 +43,8 @@ def characterise(
         records = load_bench(data)
         found = of_records(records, _title(data), str(data))
     else:
-        tested = specimen(model, parameters)
-        found = characterise_model(tested, settings_of(tested, *grid))
+        tested = load_specimen(model, parameters)
+        found = characterise_model(tested, choose_settings(tested, *grid))
     for table in tables(found):
         wide(WIDEST_TABLE).print(table)
     warn(remarks(found))

@@ -12,7 +12,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import Row
-from seatsim.characterisation.summary import WARMER, Characterisation, grouped, settings
+from seatsim.characterisation.summary import WARMER, Characterisation, group_by_setting, group_rows
 from seatsim.plots import labels, style
 from seatsim.plots.style import LETTER, SAMPLE, Entry, Grid
 
@@ -64,7 +64,7 @@ def loops(found: Characterisation) -> Figure:
 
 def loop_families(rows: Sequence[Row]) -> tuple[list[Family], int]:
     """Return the families of loops by current, then by temperature, and the number of settings left out."""
-    groups = settings(rows)
+    groups = group_by_setting(rows)
     chosen = _spread(groups, MOST)
     families = [by_current(group) for group in chosen]
     warm = [group for group in chosen if _varied([row.temperature for row in strongest(group)], WARMER)]
@@ -152,7 +152,7 @@ def _label(panels: Sequence[Axes], title: str, displacement: str) -> None:
 
 def _clouds(rows: Sequence[Row]) -> list[list[Row]]:
     """Return the records without cycles in groups of the same motion."""
-    return grouped([row for row in rows if row.cloud is not None], _alike)[:MOST_CLOUDS]
+    return group_rows([row for row in rows if row.cloud is not None], _alike)[:MOST_CLOUDS]
 
 
 def _alike(a: Row, b: Row) -> bool:

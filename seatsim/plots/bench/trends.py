@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import Row
-from seatsim.characterisation.summary import WARMER, Characterisation, settings
+from seatsim.characterisation.summary import WARMER, Characterisation, group_by_setting
 from seatsim.plots import labels, style
 from seatsim.plots.bench.loops import coldest, setting, strongest
 from seatsim.plots.style import Entry, Grid
@@ -83,7 +83,7 @@ def blocks_of(rows: Sequence[Row]) -> list[tuple[Across, list[list[Row]]]]:
     Over the current at the lowest temperature of each setting; over the temperature at its largest current; over the
     frequency where neither varies.
     """
-    groups = settings(rows)
+    groups = group_by_setting(rows)
     currents = [coldest(group) for group in groups]
     blocks = []
     if any(len({row.current for row in group}) > 1 for group in currents):
