@@ -53,10 +53,12 @@ def is_positive_definite(M: Exact) -> bool:
     return True
 
 
-def proves(proof: Certificate, gain: Rows, plant: dict[str, Rows]) -> bool:
-    """Whether a certificate proves its gamma for the loop of a gain and a plant."""
-    K = to_fractions(gain)
-    A, B1, B2, C1, C2, D11, D12, D21 = (to_fractions(plant[name]) for name in NAMES)
+def is_proven(gain: Rows, loop: Loop) -> bool:
+    """Whether the certificate of a loop proves its gamma; no certificate proves nothing."""
+    proof, K = loop["certificate"], to_fractions(gain)
+    if proof is None:
+        return False
+    A, B1, B2, C1, C2, D11, D12, D21 = (to_fractions(loop["plant"][name]) for name in NAMES)
     A, B, C, D = A + B2 @ K @ C2, B1 + B2 @ K @ D21, C1 + D12 @ K @ C2, D11 + D12 @ K @ D21
     T, gamma = to_fractions(proof["factor"]), Fraction(proof["gamma"])
     P = T.T @ T
@@ -80,7 +82,7 @@ def check(gain: Rows, loop: Loop) -> str:
     proof = loop["certificate"]
     if proof is None:
         return "no certificate"
-    verdict = "proven" if proves(proof, gain, loop["plant"]) else "REFUTED"
+    verdict = "proven" if is_proven(gain, loop) else "REFUTED"
     return f"{verdict} at {proof['gamma']:.9g} = gamma (1 + {proof['delta']:.0e})"
 
 

@@ -81,7 +81,7 @@ def _diagnoses(old: Path, new: Path) -> Iterator[Difference]:
     """Yield the differences of `diagnosis.json`."""
     for difference in _documents(old / "diagnosis.json", new / "diagnosis.json", TOLERANCE):
         key = difference.path.replace("[", ".").split(".")[0]
-        yield difference._replace(required=key in REQUIRED or not difference.path)
+        yield difference._replace(required=key in REQUIRED or difference.path == "diagnosis.json")
 
 
 def _summaries(old: Path, new: Path) -> Iterator[Difference]:

@@ -61,9 +61,9 @@ def test_rational_arithmetic_confirms_and_refutes(designed, exact_certificates, 
     designed(e1).save(tmp_path / "design.yaml")
     plain = YAML(typ="safe").load(tmp_path / "design.yaml")
     loop = plain["loops"][0]
-    assert exact_certificates.proven(plain["gain"], loop)
+    assert exact_certificates.is_proven(plain["gain"], loop)
     loop["certificate"]["gamma"] = loop["gamma"] * (1 - 1e-6)
-    assert not exact_certificates.proven(plain["gain"], loop)
+    assert not exact_certificates.is_proven(plain["gain"], loop)
 
 
 def test_exact_matrices_do_not_round():
