@@ -34,6 +34,12 @@ def test_frequencies_hold_nine_tenths_of_the_power():
     assert found.frequency == pytest.approx([1.0, 6.0], abs=0.25)
 
 
+def test_the_lowest_and_the_highest_tone_of_a_record_are_covered():
+    slow, middle, fast = (made(frequency=f, amplitude=0.01 / f, seconds=5.0) for f in (1.0, 3.0, 6.0))
+    found = measure_coverage([slow._replace(velocity=slow.velocity + middle.velocity + fast.velocity)])
+    assert found.frequency == pytest.approx([1.0, 6.0], abs=0.25)
+
+
 def test_shares_of_time_follow_the_law_of_a_sine():
     shares = measure_coverage([made(frequency=1.0, seconds=10.0, rate=2000.0)]).speeds
     # |cos| lies below s for 2/pi asin(s) of the time

@@ -22,7 +22,7 @@ from .benches import BINGHAM, made
 
 @pytest.fixture(scope="module")
 def linear():
-    """The record, problem and true vector of a Bingham damper without current, F = c_a v + fc_a tanh(v / v_ref) + f0."""
+    """Record, problem and true vector of a Bingham damper without current, F = c_a v + fc_a tanh(v / v_ref) + f0."""
     record = made(noise=0.05, seconds=3.0, rate=300.0)
     problem, _ = state_problem([record], find_model("bingham"), 0.0, Settings(fix={"v_ref": BINGHAM.v_ref}))
     start = BINGHAM._replace(c_b=problem.coordinates.start.c_b, fc_b=problem.coordinates.start.fc_b)
