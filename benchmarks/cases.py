@@ -7,9 +7,10 @@ import dataclasses
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,9 +35,21 @@ from seatsim.simulation.augment import read_sensors, undo_reading
 from seatsim.simulation.inputs import Forces, SeatInputs
 
 Array = NDArray[np.float64]
-Labels = dict[str, dict[str, Any]]
-Method = Callable[[Path], dict[str, Any]]
-"""Returns the content of `diagnosis.json` for the folder of a case; it must be picklable."""
+Labels = dict[str, dict[str, object]]
+"""What was put into each case."""
+Content = Mapping[str, object]
+"""The content of `diagnosis.json`."""
+Method = Callable[[Path], Content]
+"""Diagnoses the folder of a case; it must be picklable."""
+Job = Callable[[], str]
+"""A call that returns what was done; it must be picklable."""
+
+
+class Label(TypedDict):
+    """What was put into a case, as far as it is asked for here."""
+
+    effects: list[str]
+
 
 PROCESSES = 2
 """Cases that are worked on at once."""
@@ -50,7 +63,7 @@ Ranked = list[tuple[str, float]]
 """Effects with a figure each, best first."""
 
 
-def by_figure(pairs: Sequence[tuple[str, float]]) -> Ranked:
+def rank_by_figure(pairs: Sequence[tuple[str, float]]) -> Ranked:
     """Return the effects by their largest figure."""
     best: dict[str, float] = {}
     for effect, figure in pairs:
@@ -58,7 +71,7 @@ def by_figure(pairs: Sequence[tuple[str, float]]) -> Ranked:
     return sorted(best.items(), key=lambda item: -item[1])
 
 
-def arguments(description: str) -> argparse.ArgumentParser:
+def make_parser(description: str) -> argparse.ArgumentParser:
     """Return a parser of what names a blind set."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of `seatsim blind make`")
@@ -68,23 +81,23 @@ def arguments(description: str) -> argparse.ArgumentParser:
     return parser
 
 
-def opened(options: argparse.Namespace) -> Labels:
+def open_labels(options: argparse.Namespace) -> Labels:
     """Return the labels of the cases asked for."""
     labels = unseal(options.sealed, options.key, options.folder).labels
     present = sorted(path.parent.name for path in options.folder.glob("case-*/recording.yaml"))
     return {name: labels[name] for name in present[: options.cases]}
 
 
-def work(base: Path, cases: Sequence[str], methods: Mapping[str, Method]) -> None:
+def diagnose_cases(base: Path, cases: Sequence[str], methods: Mapping[str, Method]) -> None:
     """Write `CASE/METHOD/diagnosis.json` of every case and method that has none yet."""
-    jobs = [(base / case / name, method) for case in cases for name, method in methods.items()]
-    run([(worked, out, method) for out, method in jobs if not (out / "diagnosis.json").exists()])
+    wanted = [(base / case / name, method) for case in cases for name, method in methods.items()]
+    run([partial(write_verdict, out, method) for out, method in wanted if not (out / "diagnosis.json").exists()])
 
 
-def run(jobs: Sequence[tuple[Any, ...]]) -> None:
-    """Call functions (first) with their arguments (rest) in two fresh processes."""
+def run(jobs: Sequence[Job]) -> None:
+    """Work through jobs in fresh processes, and tell what was done."""
     with ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
-        futures = [pool.submit(*job) for job in jobs]
+        futures = [pool.submit(job) for job in jobs]
         try:
             for done, future in enumerate(as_completed(futures), 1):
                 print(f"{done}/{len(jobs)} {future.result()}", file=sys.stderr, flush=True)
@@ -93,7 +106,7 @@ def run(jobs: Sequence[tuple[Any, ...]]) -> None:
             raise
 
 
-def worked(out: Path, method: Method) -> str:
+def write_verdict(out: Path, method: Method) -> str:
     """Write what a method says of the case that `out` lies in; one that it refuses stays without, and is wrong."""
     with threadpool_limits(1):
         try:
@@ -121,7 +134,7 @@ def show(title: str, base: Path, labels: Labels, methods: Sequence[str]) -> None
     Console(width=150).print(table)
 
 
-def white(
+def uniform_weights(
     problem: Problem, pushes: Mapping[str, Array] | None = None, errors: Mapping[str, Array] | None = None
 ) -> Whitening:
     """Return weights from stated noise and white errors of the channels, the same at every frequency up to HIGHEST."""
@@ -143,7 +156,7 @@ def can_be_fed(problem: Problem) -> bool:
     return {FRAME, TRAVEL} <= set(problem.channels)
 
 
-def fed(problem: Problem, run: str, u: Array, effects: Sequence[Any]) -> Array:
+def fed(problem: Problem, run: str, u: Array, effects: Sequence[object]) -> Array:
     """Return the compared channels, shape (channels, samples), of a rig whose blocks are all fed measured signals.
 
     A heavy frame is pushed to move with the measured acceleration a, on a floor that moves with a - x'', so that the
@@ -185,7 +198,8 @@ def fed(problem: Problem, run: str, u: Array, effects: Sequence[Any]) -> Array:
         forces = forces + found[FORCE] - true[FORCE]
     said = np.array(list(read_sensors(sensors, step, found | {FRAME: forces / plant.frame_mass}).values()))
     settled = np.clip(2.0 * np.arange(said.shape[1]) * step - 1.0, 0.0, 1.0)
-    return problem.measured[run] + settled * (said - problem.measured[run])
+    fed_back: Array = problem.measured[run] + settled * (said - problem.measured[run])
+    return fed_back
 
 
 def _led_in(problem: Problem, values: Array, floor: Floor) -> Array:
@@ -200,7 +214,7 @@ def _led_in(problem: Problem, values: Array, floor: Floor) -> Array:
     return np.interp(floor.time * rate, np.arange(rows), whole)
 
 
-def twin(problem: Problem) -> Problem:
+def replicate(problem: Problem) -> Problem:
     """Return the problem with what the nominal rig would have recorded, with the stated noise of all channels."""
     rng = np.random.default_rng(0)
     level = problem.recording.channels["floor_acceleration"].noise_rms

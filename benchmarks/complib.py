@@ -13,7 +13,7 @@ import csv
 import json
 import time
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 from rich.console import Console
@@ -26,10 +26,25 @@ from seatsim.schema.errors import SynthesisError
 
 NEGLIGIBLE = 1e-6
 """AC1, UWV and NN10 have an infimum of zero."""
-Found = dict[str, Any]
 
 
-def problem(path: Path) -> GeneralisedPlant:
+class Found(TypedDict, total=False):
+    """A line of the file: the problem, then either why there is no design or its figures, then the times in s."""
+
+    name: str
+    order: int
+    gains: int
+    error: str
+    gamma: float
+    grid: float
+    largest_gain: float
+    lower_bound: float
+    delta: float | None
+    wall: float
+    processor: float
+
+
+def load_problem(path: Path) -> GeneralisedPlant:
     """Return a problem of the collection."""
     p = json.loads(path.read_text())
     return GeneralisedPlant(*(p[key] for key in ("A", "B1", "B", "C1", "C", "D11", "D12", "D21")))
@@ -37,7 +52,7 @@ def problem(path: Path) -> GeneralisedPlant:
 
 def solve(path: Path, budget: float, max_gain: float, designs: Path) -> Found:
     """Return what a synthesis found, with its time on the wall and on the processor."""
-    plant = problem(path)
+    plant = load_problem(path)
     wall, processor = time.monotonic(), time.process_time()
     found: Found = {"name": path.stem, "order": plant.order, "gains": int(plant.free.sum())}
     try:
@@ -46,11 +61,11 @@ def solve(path: Path, budget: float, max_gain: float, designs: Path) -> Found:
         found["error"] = str(error)
     else:
         design.save(designs / f"{path.stem}.yaml")
-        found |= described(plant, design)
+        found |= describe(plant, design)
     return found | {"wall": time.monotonic() - wall, "processor": time.process_time() - processor}
 
 
-def described(plant: GeneralisedPlant, design: Design) -> Found:
+def describe(plant: GeneralisedPlant, design: Design) -> Found:
     """Return the figures of a design; `grid` is its norm from frequencies alone."""
     return {
         "gamma": design.gamma,
@@ -61,7 +76,7 @@ def described(plant: GeneralisedPlant, design: Design) -> Found:
     }
 
 
-def table(found: list[Found], best: dict[str, float]) -> Table:
+def tabulate(found: list[Found], best: dict[str, float]) -> Table:
     """Return one row a problem: gamma, best known, their ratio, certified delta, disagreement of the norms, times."""
     rows = Table(box=None)
     for name in ("problem", "n", "gains", "gamma", "best", "ratio", "delta", "norms", "bound", "s", "cpu s"):
@@ -92,7 +107,7 @@ def ratio(gamma: float, known: float) -> float:
     return 1.0 if max(gamma, known) < NEGLIGIBLE else gamma / max(known, NEGLIGIBLE)
 
 
-def summary(found: list[Found], best: dict[str, float]) -> str:
+def summarise(found: list[Found], best: dict[str, float]) -> str:
     """Return the counts: within 1 %, better by 0.5 %, certified."""
     ratios = [ratio(f["gamma"], best[f["name"]]) if "gamma" in f else np.inf for f in found if f["name"] in best]
     deltas = [f["delta"] for f in found if "gamma" in f]
@@ -106,7 +121,7 @@ def summary(found: list[Found], best: dict[str, float]) -> str:
 
 def main() -> None:
     """Run what is missing, then print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--only", nargs="*", default=[])
@@ -132,8 +147,8 @@ def main() -> None:
         known = {row["problem"]: row["best_measured_gamma"] for row in csv.DictReader(stream)}
     best = {name: float(value) for name, value in known.items() if value}
     console = Console(width=140)
-    console.print(table(sorted(found, key=lambda f: f["name"]), best))
-    console.print(summary(found, best))
+    console.print(tabulate(sorted(found, key=lambda f: f["name"]), best))
+    console.print(summarise(found, best))
 
 
 if __name__ == "__main__":

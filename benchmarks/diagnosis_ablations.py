@@ -18,15 +18,27 @@ whitening    Weights are the stated noise alone, the same at all frequencies.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
-from typing import Any
+from types import ModuleType
 from unittest.mock import patch
 
 import numpy as np
-from cases import Array, arguments, can_be_fed, fed, opened, show, twin, white, work
+from cases import (
+    Array,
+    Content,
+    can_be_fed,
+    diagnose_cases,
+    fed,
+    make_parser,
+    open_labels,
+    replicate,
+    show,
+    uniform_weights,
+)
+from seatsim.diagnosis.localise.localise import places
 
 from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.diagnosis import decide as judging
@@ -34,19 +46,18 @@ from seatsim.diagnosis import diagnose as diagnosing
 from seatsim.diagnosis import noise as weighing
 from seatsim.diagnosis import problem as posing
 from seatsim.diagnosis.candidates import Candidate
-from seatsim.diagnosis.decide import Judgement
+from seatsim.diagnosis.decide import Judgement, judged
 from seatsim.diagnosis.fit import Engine, State
 from seatsim.diagnosis.problem import POOL, Problem
 from seatsim.diagnosis.result import Share
-from seatsim.diagnosis.select import Search
+from seatsim.diagnosis.select import Search, search
 from seatsim.schema.errors import RunError
 
 ONE_PERCENT = 2.33
 """Standard deviations of chi^2 that noise alone exceeds in 1 % of cases."""
-places, search, judged = diagnosing.places, diagnosing.search, diagnosing.judged
 
 
-def places_of_effects(engine: Engine, chosen: State, rest: Any) -> list[Share]:
+def places_of_effects(engine: Engine, chosen: State, rest: object) -> list[Share]:
     """Return the blocks of the effects found, after the damper where something is unexplained."""
     found = places(engine, chosen, None)
     if rest is None:
@@ -61,7 +72,9 @@ def judged_by_chance(engine: Engine, found: Search, effects: list[str]) -> Judge
         return judged(engine, found, effects)
 
 
-def search_fed(engine: Engine, candidates: Sequence[Candidate], progress: Any, *largest: int) -> Search:
+def search_fed(
+    engine: Engine, candidates: Sequence[Candidate], progress: Callable[[str], None], *largest: int
+) -> Search:
     """Search with all blocks fed measured signals."""
     if not can_be_fed(engine.problem):
         return search(engine, candidates, progress, *largest)
@@ -80,7 +93,7 @@ def judged_fed(engine: Engine, found: Search, effects: list[str]) -> Judgement:
     return dataclasses.replace(judgement, chosen=chosen)
 
 
-def residuals_fed(problem: Problem, points: Sequence[tuple[Array, Sequence[Any]]]) -> list[dict[str, Array]]:
+def residuals_fed(problem: Problem, points: Sequence[tuple[Array, Sequence[object]]]) -> list[dict[str, Array]]:
     """Return `measured - said` of every run at each point (parameters, effects), as `Problem.residuals` does."""
 
     def residual(job: tuple[int, str]) -> Array:
@@ -98,7 +111,7 @@ def residuals_fed(problem: Problem, points: Sequence[tuple[Array, Sequence[Any]]
 
 def engine_fed(engine: Engine) -> Engine:
     """Return an engine whose weights hold, beside what they held, what noise leaves where measured signals are fed."""
-    problem, quiet, weights = engine.problem, twin(engine.problem), {}
+    problem, quiet, weights = engine.problem, replicate(engine.problem), {}
     for run, held in engine.white.weights.items():
         left = quiet.measured[run] - fed(quiet, run, problem.rest, ())
         power = weighing.smoothed(np.abs(np.fft.rfft(left, axis=1)) ** 2)[:, : held.shape[1]]
@@ -106,18 +119,18 @@ def engine_fed(engine: Engine) -> Engine:
     return Engine(problem, dataclasses.replace(engine.white, weights=weights))
 
 
-PARTS: Mapping[str, Sequence[tuple[Any, str, Any]]] = {
+PARTS: Mapping[str, Sequence[tuple[ModuleType, str, object]]] = {
     "blocks": [(diagnosing, "places", places_of_effects)],
     "nuisance": [(posing, "nuisances", lambda scenario, tolerance: [])],
     "instruments": [(diagnosing, "search", search_fed), (diagnosing, "judged", judged_fed)],
     "null": [(weighing, "TRUST", 0.0), (diagnosing, "judged", judged_by_chance)],
     "material": [(judging, "MATERIAL", 0.0)],
-    "whitening": [(diagnosing, "whitening", white)],
+    "whitening": [(diagnosing, "whitening", uniform_weights)],
 }
 """What is replaced by what: module, name, value; a name that is gone is an AttributeError."""
 
 
-def diagnosed(part: str, case: Path) -> dict[str, Any]:
+def diagnose_without(part: str, case: Path) -> Content:
     """Return the diagnosis of a case without a part."""
     with ExitStack() as stack:
         for module, name, value in PARTS[part]:
@@ -127,12 +140,12 @@ def diagnosed(part: str, case: Path) -> dict[str, Any]:
 
 def main() -> None:
     """Diagnose what is not diagnosed yet, and print the table."""
-    parser = arguments("what each part of the diagnosis is worth, on a blind set")
+    parser = make_parser("what each part of the diagnosis is worth, on a blind set")
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS), help="the parts to take away")
     options = parser.parse_args()
-    labels = opened(options)
-    methods = {f"without-{part}": partial(diagnosed, part) for part in options.parts}
-    work(options.folder, list(labels), methods)
+    labels = open_labels(options)
+    methods = {f"without-{part}": partial(diagnose_without, part) for part in options.parts}
+    diagnose_cases(options.folder, list(labels), methods)
     show("diagnosis without one part", options.folder, labels, ["diagnosis", *methods])
 
 

@@ -20,22 +20,23 @@ sindy  Sparse regression (STLSQ of pysindy) of what equations leave that are fed
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 from unittest.mock import patch
 
 import numpy as np
 from cases import (
     Array,
+    Content,
+    Method,
     Ranked,
-    arguments,
-    by_figure,
     can_be_fed,
-    opened,
+    diagnose_cases,
+    make_parser,
+    open_labels,
+    rank_by_figure,
     show,
-    white,
-    work,
+    uniform_weights,
 )
 from regressed import regressed
 
@@ -52,7 +53,7 @@ MISFIT = 8.0
 TERM, TERM_NEXT, LEFT = 0.4, 1.2, 2.0
 
 
-def verdict(posed: Problem, kind: str, effects: Sequence[str], blocks: Sequence[str] = ()) -> dict[str, Any]:
+def verdict(posed: Problem, kind: str, effects: Sequence[str], blocks: Sequence[str] = ()) -> Content:
     """Return the content of `diagnosis.json`; blocks are those of the effects unless stated."""
     ranked = list(dict.fromkeys([*blocks, *(effect.partition(".")[0] for effect in effects)]))
     return {
@@ -73,10 +74,10 @@ def calibrated(engine: Engine) -> State:
     return state
 
 
-def correlation(case: Path) -> dict[str, Any]:
+def correlation(case: Path) -> Content:
     """Return the verdict by correlation."""
     posed = problem(load_recording(case))
-    engine = Engine(posed, white(posed))
+    engine = Engine(posed, uniform_weights(posed))
     off, first, second = correlations(engine, calibrated(engine))
     if first[0][1] < NAMED:
         return verdict(posed, "unknown" if off > LARGE else "none", [], [first[0][0].partition(".")[0]])
@@ -99,7 +100,7 @@ def correlations(engine: Engine, state: State) -> tuple[float, Ranked, Ranked]:
     share = np.sum(residual * change, axis=1) / np.maximum(np.sum(change**2, axis=1), 1e-30)
     rest = residual - share[:, None] * change
     again = [(effect, _cosine(rest, other, posed)) for effect, other in changes if effect != first]
-    return off, by_figure(cosines), by_figure(again)
+    return off, rank_by_figure(cosines), rank_by_figure(again)
 
 
 def _pooled(state: State, posed: Problem) -> Array:
@@ -116,13 +117,13 @@ def _cosine(residual: Array, change: Array, posed: Problem) -> float:
     return float(np.max(product / (size[seen] * np.linalg.norm(residual[seen], axis=1))))
 
 
-def bic(case: Path) -> dict[str, Any]:
+def bic(case: Path) -> Content:
     """Return the verdict by BIC."""
     posed = problem(load_recording(case))
-    engine = Engine(posed, white(posed))
+    engine = Engine(posed, uniform_weights(posed))
     chosen, misfit = selected(engine)
     sizes = [float(np.mean(move**2)) for move in movements(engine, chosen)]
-    ranked = by_figure([(term.effect, size) for term, size in zip(chosen.point.terms, sizes, strict=True)])
+    ranked = rank_by_figure([(term.effect, size) for term, size in zip(chosen.point.terms, sizes, strict=True)])
     kind = "unknown" if misfit > MISFIT else "known" if ranked else "none"
     return verdict(posed, kind, [effect for effect, _ in ranked])
 
@@ -140,7 +141,7 @@ def selected(engine: Engine) -> tuple[State, float]:
     return best[size], best[size].cost / found.rows
 
 
-def sindy(case: Path) -> dict[str, Any]:
+def sindy(case: Path) -> Content:
     """Return the verdict by sparse regression."""
     posed = problem(load_recording(case))
     if not can_be_fed(posed):
@@ -154,14 +155,14 @@ def sindy(case: Path) -> dict[str, Any]:
     return verdict(posed, "known" if named else "none", named)
 
 
-BASELINES: dict[str, Callable[[Path], dict[str, Any]]] = {"correlation": correlation, "bic": bic, "sindy": sindy}
+BASELINES: dict[str, Method] = {"correlation": correlation, "bic": bic, "sindy": sindy}
 
 
 def main() -> None:
     """Diagnose what is not diagnosed yet, and print the table."""
-    options = arguments("baselines of the diagnosis on a blind set").parse_args()
-    labels = opened(options)
-    work(options.folder, list(labels), BASELINES)
+    options = make_parser("baselines of the diagnosis on a blind set").parse_args()
+    labels = open_labels(options)
+    diagnose_cases(options.folder, list(labels), BASELINES)
     show("baselines", options.folder, labels, [*BASELINES, "diagnosis"])
 
 

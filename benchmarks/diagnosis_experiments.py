@@ -16,20 +16,21 @@ import argparse
 import dataclasses
 import json
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import NotRequired, TypedDict, cast
 
 import numpy as np
-from cases import run
+from cases import Label, run
+from seatsim.blind.make.case import RunPlan, Setting, drive, read
+from seatsim.blind.make.draw import Case, Order, draw_case
+from seatsim.blind.truth.commands import SCHEDULE
+from seatsim.blind.truth.rig import FINE, RATE
+from seatsim.blind.truth.truth import Changes
 from threadpoolctl import threadpool_limits
 
 import seatsim
-from seatsim.blind.make.draw_case import Case, CaseSpecification, draw_case
-from seatsim.blind.make.folder import encode_recording, write_folder
-from seatsim.blind.truth.experiment import Experiment, RunPlan, read_channels, simulate_run
-from seatsim.blind.truth.faults.scenario import Changes
-from seatsim.blind.truth.physics.control_laws import SCHEDULE
-from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE
+from seatsim.blind.make.folder import recording_files, write_files
 from seatsim.diagnosis.design.experiment import Trial, menu
 from seatsim.diagnosis.problem import problem
 from seatsim.diagnosis.result import Diagnosis
@@ -47,51 +48,73 @@ WARM = 60.0
 """degC of a run for which the damper was warmed up."""
 
 
-def experimented(out: Path, k: int, effect: str, seed: int) -> str:
+class Said(TypedDict):
+    """What a verdict names."""
+
+    verdict: str
+    selected: list[str]
+    indistinguishable: list[list[str]]
+
+
+class Found(TypedDict):
+    """What came of a case; `second` where an experiment was proposed and carried out."""
+
+    effects: list[str]
+    first: Said
+    experiment: Mapping[str, str] | None
+    second: NotRequired[Said]
+
+
+def try_experiment(out: Path, k: int, effect: str, seed: int) -> str:
     """Write what came of one case."""
     folder, rng = out / f"case-{k + 1:04d}", np.random.default_rng([seed, k])
     with threadpool_limits(1):
-        case = draw_case(CaseSpecification("one", (effect,), WITHOUT[effect]), rng)
+        case = draw_case(Order("one", (effect,), WITHOUT[effect]), rng)
         record(case, folder, rng)
         first = seatsim.diagnose(folder)
-        found = {"effects": case.label()["effects"], "first": said(first), "experiment": first.experiment}
+        label = cast("Label", case.label())
+        found: Found = {"effects": label["effects"], "first": summarise(first), "experiment": first.experiment}
         if first.verdict == "ambiguous" and first.experiment and first.experiment["kind"] != "none":
             after = folder.with_name(f"{folder.name}-after")
-            without = carried_out(case, first, folder, after, rng)
-            found["second"] = said(seatsim.diagnose(after, without=without))
+            without = carry_out(case, first, folder, after, rng)
+            found["second"] = summarise(seatsim.diagnose(after, without=without))
     write_json(out / f"{folder.name}.json", found)
     return folder.name
 
 
-def said(diagnosis: Diagnosis) -> dict[str, Any]:
+def summarise(diagnosis: Diagnosis) -> Said:
     """Return what a verdict names."""
-    return {name: getattr(diagnosis, name) for name in ("verdict", "selected", "indistinguishable")}
+    return {
+        "verdict": diagnosis.verdict,
+        "selected": diagnosis.selected,
+        "indistinguishable": diagnosis.indistinguishable,
+    }
 
 
 def record(case: Case, folder: Path, rng: np.random.Generator) -> None:
     """Write the runs of a case but the last, which is the unseen one."""
-    write_folder(folder, encode_recording(case.experiment, case.readings, rng, range(len(case.experiment.runs) - 1)))
+    write_files(folder, recording_files(case.setting, case.shown, rng, list(range(len(case.setting.runs) - 1))))
 
 
-def carried_out(case: Case, first: Diagnosis, folder: Path, after: Path, rng: np.random.Generator) -> list[str]:
+def carry_out(case: Case, first: Diagnosis, folder: Path, after: Path, rng: np.random.Generator) -> list[str]:
     """Write the recording that holds the proposed experiment; return the effects that it rules out."""
     assert first.experiment
     changes = Changes()
-    for fault in case.faults:
-        changes += fault.changes
-    setting, ruled_out = case.experiment, []
+    for placed in case.placed:
+        changes += placed.changes
+    setting, ruled_out = case.setting, []
     if "calibrating" in first.experiment["reason"]:
-        changes = dataclasses.replace(changes, sensor_faults=())
+        changes = dataclasses.replace(changes, faults=())
         ruled_out = [name for group in first.indistinguishable for name in group if name.startswith("sensor.")]
     if first.experiment["name"] != "calibrate_sensor":
         trials = menu(problem(load_recording(folder)))
-        setting = changed(setting, next(trial for trial in trials if trial.name == first.experiment["name"]))
-    shown = [read_channels(setting, changes, k, simulate_run(setting, changes, k)) for k in range(len(setting.runs))]
-    record(dataclasses.replace(case, experiment=setting, readings=shown), after, rng)
+        setting = change_setting(setting, next(trial for trial in trials if trial.name == first.experiment["name"]))
+    shown = [read(setting, changes, k, drive(setting, changes, k)) for k in range(len(setting.runs))]
+    record(dataclasses.replace(case, setting=setting, shown=shown), after, rng)
     return ruled_out
 
 
-def changed(setting: Experiment, trial: Trial) -> Experiment:
+def change_setting(setting: Setting, trial: Trial) -> Setting:
     """Return the rig and the runs of an entry of the menu."""
     if trial.extra:
         return dataclasses.replace(setting, channels=(*setting.channels, *trial.extra))
@@ -101,22 +124,23 @@ def changed(setting: Experiment, trial: Trial) -> Experiment:
     floor, command = trial.floor, trial.floor.command
     assert command is not None
     time = np.arange(len(floor.acceleration)) * floor.step
-    ground = np.interp(np.arange(0.0, time[-1], 1.0 / EXCITATION_RATE), time, floor.acceleration)
-    schedule = np.interp(np.arange(0.0, time[-1], 1.0 / SAMPLE_RATE), time, command)
+    ground = np.interp(np.arange(0.0, time[-1], 1.0 / FINE), time, floor.acceleration)
+    schedule = np.interp(np.arange(0.0, time[-1], 1.0 / RATE), time, command)
     hot = WARM if trial.name == "warm_up" else setting.runs[0].temperature
     plan = RunPlan("run-x", ground, np.array([SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0]), schedule, hot)
     return dataclasses.replace(setting, runs=(*setting.runs[:-1], plan, setting.runs[-1]))
 
 
-def separated(found: Mapping[str, Any]) -> bool:
+def is_separated(found: Found) -> bool:
     """Tell whether the second verdict names the effect alone; a sensor that was calibrated leaves nothing to name."""
     second, sensor = found["second"], found["effects"][0].startswith("sensor.")
+    assert found["experiment"]
     if "calibrating" in found["experiment"]["reason"] and sensor:
         return bool(second["verdict"] == "none")
     return bool(second["verdict"] == "known" and second["selected"] == found["effects"])
 
 
-def table(results: Sequence[Mapping[str, Any]]) -> list[str]:
+def table(results: Sequence[Found]) -> list[str]:
     """Return the lines of a markdown table, an effect each, and all."""
     headings = "effect", "cases", "ambiguous", "the effect among the named", "experiment proposed", "separated", "by"
     lines = [f"| {' | '.join(headings)} |", "|---" * len(headings) + "|"]
@@ -125,9 +149,9 @@ def table(results: Sequence[Mapping[str, Any]]) -> list[str]:
         open_ = [found for found in own if found["first"]["verdict"] == "ambiguous"]
         held = [found for found in open_ if any(found["effects"][0] in g for g in found["first"]["indistinguishable"])]
         tried = [found for found in open_ if "second" in found]
-        names = ", ".join(sorted({found["experiment"]["name"] for found in tried}))
+        names = ", ".join(sorted({found["experiment"]["name"] for found in tried if found["experiment"]}))
         counts = len(own), len(open_), f"{len(held)}/{len(open_)}", f"{len(tried)}/{len(open_)}"
-        cells = (effect, *counts, f"{sum(map(separated, tried))}/{len(tried)}", names or "-")
+        cells = (effect, *counts, f"{sum(map(is_separated, tried))}/{len(tried)}", names or "-")
         lines.append(f"| {' | '.join(map(str, cells))} |")
     return lines
 
@@ -145,7 +169,7 @@ def main() -> None:
     jobs = [(k, effects[k % len(effects)]) for k in range(options.cases_per_effect * len(effects))]
     jobs = [(k, effect) for k, effect in jobs if effect in options.effects]
     files = {k: options.out / f"case-{k + 1:04d}.json" for k, _ in jobs}
-    run([(experimented, options.out, k, effect, options.seed) for k, effect in jobs if not files[k].exists()])
+    run([partial(try_experiment, options.out, k, effect, options.seed) for k, effect in jobs if not files[k].exists()])
     print("\n".join(table([json.loads(file.read_text(encoding="utf-8")) for file in files.values()])))
 
 

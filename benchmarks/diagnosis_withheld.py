@@ -19,9 +19,9 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from cases import run, worked
+from cases import Content, Job, Label, run, write_verdict
 from threadpoolctl import threadpool_limits
 
 from seatsim.blind.make.draw_case import CaseSpecification
@@ -44,7 +44,7 @@ IMITATED = 1.0 - EXPLAINED
 """Share of the whitened gap of a twin from which an effect explains another."""
 
 
-class Case(NamedTuple):
+class WithheldCase(NamedTuple):
     """An effect, what was said of it by the whole library and by one without it, the share that others explain."""
 
     effect: str
@@ -53,7 +53,7 @@ class Case(NamedTuple):
     right: bool
 
 
-def made(k: int, effect: str, seed: int, out: Path) -> str:
+def make(k: int, effect: str, seed: int, out: Path) -> str:
     """Make one case; where the effect cannot be made material the makers take another, and its label says so."""
     make_case(k, CaseSpecification("one", (effect,)), seed, out, out / "labels")
     return f"made {case_name(k)}"
@@ -64,12 +64,12 @@ def case_name(k: int) -> str:
     return f"case-{k + 1:04d}"
 
 
-def diagnosed(without: Sequence[str], case: Path) -> dict[str, Any]:
+def diagnose_without(without: Sequence[str], case: Path) -> Content:
     """Return the diagnosis of a case by a library without some effects."""
     return encode_diagnosis(diagnose(case, without=without))
 
 
-def imitated(case: Path, effect: str) -> str:
+def find_imitators(case: Path, effect: str) -> str:
     """Write what share of the true effect each other could explain; nothing where that has no trace to foretell."""
     shares: dict[str, float] = {}
     with threadpool_limits(1):
@@ -90,9 +90,9 @@ def imitated(case: Path, effect: str) -> str:
     return f"{case.name} imitated"
 
 
-def label_of(out: Path, case: str) -> dict[str, Any]:
+def load_label(out: Path, case: str) -> Label:
     """Return the label of a case."""
-    label: dict[str, Any] = json.loads((out / "labels" / f"{case}.json").read_text(encoding="utf-8"))
+    label: Label = json.loads((out / "labels" / f"{case}.json").read_text(encoding="utf-8"))
     return label
 
 
@@ -106,33 +106,34 @@ def work(out: Path, wanted: Sequence[str], count: int, seed: int) -> list[str]:
     effects = names("effect")
     orders = {k: effects[k % len(effects)] for k in range(count * len(effects)) if effects[k % len(effects)] in wanted}
     there = {path.stem for path in (out / "labels").glob("case-*.json")}
-    run([(made, k, effect, seed, out) for k, effect in orders.items() if case_name(k) not in there])
+    run([partial(make, k, effect, seed, out) for k, effect in orders.items() if case_name(k) not in there])
     cases = [case_name(k) for k in orders]
-    jobs: list[tuple[Any, ...]] = []
+    jobs: list[Job] = []
     for case in cases:
-        (effect,) = label_of(out, case)["effects"]
+        (effect,) = load_label(out, case)["effects"]
         folder = out / case
-        jobs += [(imitated, folder, effect)] if not (folder / "imitated.json").exists() else []
+        jobs += [partial(find_imitators, folder, effect)] if not (folder / "imitated.json").exists() else []
         for name, without in (("diagnosis", ()), ("withheld", (effect,))):
             if not (folder / name / "diagnosis.json").exists():
-                jobs.append((worked, folder / name, partial(diagnosed, without)))
+                jobs.append(partial(write_verdict, folder / name, partial(diagnose_without, without)))
     run(jobs)
     return cases
 
 
-def read(out: Path, case: str) -> Case:
+def load_case(out: Path, case: str) -> WithheldCase:
     """Return what came of a case."""
-    label = label_of(out, case)
+    label = load_label(out, case)
     alike = json.loads((out / case / "imitated.json").read_text(encoding="utf-8"))
     whole, without = (read_verdict(out / case / name / "diagnosis.json") for name in ("diagnosis", "withheld"))
-    return Case(label["effects"][0], without, alike, is_right(label, whole))
+    return WithheldCase(label["effects"][0], without, alike, is_right(label, whole))
 
 
-def table(cases: Sequence[Case]) -> list[str]:
+def table(cases: Sequence[WithheldCase]) -> list[str]:
     """Return the lines of a markdown table, an effect each, and totals over those that no other can imitate."""
     headings = "effect", "named", "refused as unknown", "taken for", "imitable by", "most like"
     lines = [f"| {' | '.join(headings)} |", "|---" * len(headings) + "|"]
-    alone, imitable = [], []
+    alone: list[WithheldCase] = []
+    imitable: list[WithheldCase] = []
     for effect in sorted({case.effect for case in cases}):
         own = [case for case in cases if case.effect == effect]
         taken = Counter(case.without.named for case in own if case.without.verdict != "unknown")
@@ -148,18 +149,18 @@ def table(cases: Sequence[Case]) -> list[str]:
     return lines
 
 
-def _nearest(cases: Sequence[Case]) -> str:
+def _nearest(cases: Sequence[WithheldCase]) -> str:
     """Return the effect with the largest alikeness on average, with that."""
     sums = {name: sum(case.alike.get(name, 0.0) for case in cases) for name in cases[0].alike}
     nearest = max(sums, key=lambda name: sums[name], default=None)
     return f"{nearest} {sums[nearest] / len(cases):.2f}" if nearest else "-"
 
 
-def _named(cases: Sequence[Case]) -> str:
+def _named(cases: Sequence[WithheldCase]) -> str:
     return f"{sum(case.right for case in cases)}/{len(cases)}"
 
 
-def _refused(cases: Sequence[Case]) -> str:
+def _refused(cases: Sequence[WithheldCase]) -> str:
     return f"{sum(case.without.verdict == 'unknown' for case in cases)}/{len(cases)}"
 
 
@@ -172,7 +173,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder of the cases; what is there is kept")
     options = parser.parse_args()
     cases = work(options.out, options.effects, options.cases_per_effect, options.seed)
-    print("\n".join(table([read(options.out, case) for case in cases])))
+    print("\n".join(table([load_case(options.out, case) for case in cases])))
 
 
 if __name__ == "__main__":

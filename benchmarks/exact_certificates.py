@@ -11,22 +11,39 @@ import sys
 import time
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
+from numpy.typing import NDArray
 from ruamel.yaml import YAML
 
 NAMES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
-Exact = Any
+Rows = list[list[float]]
+Exact = NDArray[np.object_]
 """Array of fractions."""
 
 
-def fractions(rows: Any) -> Exact:
+class Certificate(TypedDict):
+    """The factor T of P = T'T, the level of gamma that it proves, and how far that is above the design's gamma."""
+
+    factor: Rows
+    gamma: float
+    delta: float
+
+
+class Loop(TypedDict):
+    """The plant's matrices by name, and the certificate of the loop that the design's gain closes around it."""
+
+    plant: dict[str, Rows]
+    certificate: Certificate | None
+
+
+def to_fractions(rows: Rows) -> Exact:
     """Return doubles as the fractions that they are."""
     return np.array([[Fraction(value) for value in row] for row in rows], dtype=object)
 
 
-def positive_definite(M: Exact) -> bool:
+def is_positive_definite(M: Exact) -> bool:
     """Whether all pivots of the elimination of a symmetric matrix are positive."""
     M = M.copy()
     for k in range(len(M)):
@@ -36,18 +53,18 @@ def positive_definite(M: Exact) -> bool:
     return True
 
 
-def proven(gain: Any, loop: Any) -> bool:
-    """Whether the certificate of a loop proves its gamma."""
-    proof, K = loop["certificate"], fractions(gain)
-    A, B1, B2, C1, C2, D11, D12, D21 = (
-        fractions(loop["plant"][k]) for k in ["A", "B1", "B2", "C1", "C2", "D11", "D12", "D21"]
-    )
+def is_proven(gain: Rows, loop: Loop) -> bool:
+    """Whether the certificate of a loop proves its gamma; no certificate proves nothing."""
+    proof, K = loop["certificate"], to_fractions(gain)
+    if proof is None:
+        return False
+    A, B1, B2, C1, C2, D11, D12, D21 = (to_fractions(loop["plant"][name]) for name in NAMES)
     A, B, C, D = A + B2 @ K @ C2, B1 + B2 @ K @ D21, C1 + D12 @ K @ C2, D11 + D12 @ K @ D21
-    T, gamma = fractions(proof["factor"]), Fraction(proof["gamma"])
+    T, gamma = to_fractions(proof["factor"]), Fraction(proof["gamma"])
     P = T.T @ T
     w, z = gamma * np.eye(B.shape[1], dtype=int), gamma * np.eye(len(C), dtype=int)
     M = np.block([[-(A.T @ P + P @ A), -P @ B, -C.T], [-B.T @ P, w, -D.T], [-C, -D, z]])
-    return positive_definite(P) and positive_definite(M)
+    return is_positive_definite(P) and is_positive_definite(M)
 
 
 def main() -> None:
@@ -56,10 +73,17 @@ def main() -> None:
         design = YAML(typ="safe").load(Path(path))
         for i, loop in enumerate(design["loops"]):
             begin = time.process_time()
-            proof = loop["certificate"]
-            verdict = "no certificate" if proof is None else "proven" if proven(design["gain"], loop) else "REFUTED"
-            level = f" at {proof['gamma']:.9g} = gamma (1 + {proof['delta']:.0e})" if proof else ""
-            print(f"{path} loop {i}: {verdict}{level} in {time.process_time() - begin:.1f} s", flush=True)
+            verdict = check(design["gain"], loop)
+            print(f"{path} loop {i}: {verdict} in {time.process_time() - begin:.1f} s", flush=True)
+
+
+def check(gain: Rows, loop: Loop) -> str:
+    """Return what a loop's certificate is worth, in words."""
+    proof = loop["certificate"]
+    if proof is None:
+        return "no certificate"
+    verdict = "proven" if is_proven(gain, loop) else "REFUTED"
+    return f"{verdict} at {proof['gamma']:.9g} = gamma (1 + {proof['delta']:.0e})"
 
 
 if __name__ == "__main__":

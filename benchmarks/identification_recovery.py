@@ -14,8 +14,9 @@ from __future__ import annotations
 import argparse
 import json
 import zlib
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,16 +24,19 @@ from rich.console import Console
 from rich.table import Table
 from threadpoolctl import threadpool_limits
 
-from seatsim.identification.coordinates import Coordinates, Scales, scaled
-from seatsim.identification.identify import EVERYTHING, identify_records
-from seatsim.identification.information import Information, information
-from seatsim.identification.predict import Bench, drive
-from seatsim.identification.problem import Problem, weights
+from seatsim.identification.adjustment import rescale_damper
+from seatsim.identification.coordinates import Coordinates
+from seatsim.identification.damper_record import DamperRecord, find_model, find_specification, law_range
+from seatsim.identification.identify import identify_records
+from seatsim.identification.information import Information, compute_information
+from seatsim.identification.prediction import BenchModel, prepare_inputs
+from seatsim.identification.problem import IdentificationProblem, weight_records
+from seatsim.identification.scales import Scales
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import RunError
 from seatsim.schema.files import write_json
-from seatsim.schema.registry import find, names, specification_of
+from seatsim.schema.registry import names
 from seatsim.simulation.damper_bench import bench_force
 
 Array = NDArray[np.float64]
@@ -49,7 +53,26 @@ UNKNOWN, WITHIN = 0.025, 0.05
 DRAWS = 20
 
 
-def motions(slow: float) -> list[tuple[str, Array, Array]]:
+class Row(TypedDict):
+    """A parameter: its truth, what was found, its declared uncertainty and its error, both over its size."""
+
+    name: str
+    truth: float
+    found: float
+    uncertainty: float
+    error: float
+
+
+class Recovery(TypedDict):
+    """What came back of a damper; noise and what the fit leaves in percent, the duration in s."""
+
+    rows: list[Row]
+    noise: float
+    left: float | None
+    seconds: float
+
+
+def list_motions(slow: float) -> list[tuple[str, Array, Array]]:
     """Return name, displacement and velocity every half step of each motion, at speeds times `slow`."""
     found = []
     for amplitude, frequency, cycles in SINES:
@@ -60,24 +83,24 @@ def motions(slow: float) -> list[tuple[str, Array, Array]]:
         )
     rng = np.random.default_rng(7)
     time = np.arange(int(8.0 * RATE) + 1) / (2.0 * RATE)
-    frequency, phase = rng.uniform(0.3, 8.0, 30), rng.uniform(0.0, 2.0 * np.pi, 30)
-    angle = 2.0 * np.pi * np.outer(time, frequency) + phase
+    tones, phases = rng.uniform(0.3, 8.0, 30), rng.uniform(0.0, 2.0 * np.pi, 30)
+    angle = 2.0 * np.pi * np.outer(time, tones) + phases
     speed = np.sum(np.cos(angle), axis=1)
-    size = slow * FASTEST / np.max(np.abs(speed))
-    found.append(("random", size * np.sin(angle) @ (0.5 / np.pi / frequency), size * speed))
+    reach = slow * FASTEST / np.max(np.abs(speed))
+    found.append(("random", reach * np.sin(angle) @ (0.5 / np.pi / tones), reach * speed))
     return found
 
 
-def bench_records(record: Any, rng: np.random.Generator) -> list[BenchRecord]:
+def make_records(record: DamperRecord, rng: np.random.Generator) -> list[BenchRecord]:
     """Return noisy bench records of a damper.
 
     Raises:
         RunError: its state ran away.
     """
-    specification = specification_of(type(record))
-    top = largest(record)
+    specification = find_specification(type(record))
+    top = largest_current(record)
     records = []
-    for name, x, v in motions(min(1.0, specification.max_speed / FASTEST)):
+    for name, x, v in list_motions(min(1.0, specification.max_speed / FASTEST)):
         for share in SHARES[::2] if name == "random" else SHARES:
             force = bench_force(record, x, v, share * top, 20.0, 1.0 / RATE, TemperatureFactors())
             force += NOISE * np.std(force) * rng.standard_normal(len(force))
@@ -86,47 +109,50 @@ def bench_records(record: Any, rng: np.random.Generator) -> list[BenchRecord]:
     return records
 
 
-def largest(record: Any) -> float:
+def largest_current(record: DamperRecord) -> float:
     """Return the largest current in A of a damper's tests."""
-    specification = specification_of(type(record))
-    return float(min(specification.max_current, getattr(record, "law_end", specification.max_current)))
+    specification = find_specification(type(record))
+    return float(min(specification.max_current, law_range(record._asdict(), specification.max_current)))
 
 
-def problem_of(record: Any, records: list[BenchRecord]) -> Problem:
+def state_problem(record: DamperRecord, records: list[BenchRecord]) -> IdentificationProblem:
     """Return the problem of identifying a damper, its own parameters the start."""
-    sizes = (
-        np.std(np.concatenate([getattr(r, name) for r in records])) for name in ("force", "displacement", "velocity")
+    force, stroke, speed = (
+        float(np.std(np.concatenate(parts)))
+        for parts in zip(*((r.force, r.displacement, r.velocity) for r in records), strict=True)
     )
-    coordinates = Coordinates(
-        record, Scales(*map(float, sizes), largest(record)), specification_of(type(record)).fixed, len(SHARES)
-    )
-    drives = [drive(each, 0.0, False) for each in records]
-    return Problem(coordinates, drives, weights(records, drives), False, None)
+    scales = Scales(force, stroke, speed, largest_current(record))
+    coordinates = Coordinates(record, scales, find_specification(type(record)).fixed, len(SHARES))
+    inputs = [prepare_inputs(each, 0.0, False) for each in records]
+    return IdentificationProblem(coordinates, inputs, weight_records(records, inputs), False, None)
 
 
-def drawn(model: str, rng: np.random.Generator) -> tuple[Any, list[BenchRecord]]:
+def draw_damper(model: str, rng: np.random.Generator) -> tuple[DamperRecord, list[BenchRecord]]:
     """Return a damper near the default, and its bench records."""
-    start: Any = find("damper", model)()
-    start = scaled(start, 1.0, largest(start))
-    offset = {"f0": OFFSET} if "f0" in start._fields else {}
+    start = find_model(model)()
+    start = rescale_damper(start, 1.0, largest_current(start))
+    offset = {"f0": OFFSET} if "f0" in start._asdict() else {}
     for _ in range(DRAWS):
         plain = Coordinates(
-            start, Scales(1e3, 0.01, 0.1, largest(start)), (*specification_of(type(start)).fixed, "f0"), len(SHARES)
+            start,
+            Scales(1e3, 0.01, 0.1, largest_current(start)),
+            (*find_specification(type(start)).fixed, "f0"),
+            len(SHARES),
         )
-        vector = plain.vector(start)
+        vector = plain.to_vector(start)
         change = rng.uniform(-OFF, OFF, len(vector))
         logarithmic = np.array([c.logarithmic for c in plain.components])
         size = np.where(vector == 0.0, 1.0, np.abs(vector))
         moved = np.where(logarithmic, vector + np.log(1.0 + change), vector + change * size)
-        record = plain.record(np.clip(moved, plain.low, plain.high))._replace(**offset)
+        record = plain.to_record(np.clip(moved, plain.low, plain.high))._replace(**offset)
         try:
-            return record, bench_records(record, rng)
+            return record, make_records(record, rng)
         except RunError:
             continue
     raise RunError(f"{model}: no draw is stable")
 
 
-def sizes(problem: Problem, known: Information) -> list[float]:
+def reference_sizes(problem: IdentificationProblem, known: Information) -> list[float]:
     """Return the size that a parameter's error counts against: its own, or that of its law."""
     parts, end = problem.coordinates.components, problem.coordinates.end
     found = []
@@ -134,26 +160,27 @@ def sizes(problem: Problem, known: Information) -> list[float]:
         own = abs(estimate.value)
         if part.at is not None:
             law = [
-                (p.place or 0, e.value) for p, e in zip(parts, known.estimates, strict=True) if p.field == part.field
+                (p.position or 0, e.value) for p, e in zip(parts, known.estimates, strict=True) if p.field == part.field
             ]
-            own = max(abs(value) * end**power for power, value in law) / end ** (part.place or 0)
+            own = max(abs(value) * end**power for power, value in law) / end ** (part.position or 0)
         found.append(own or float("inf"))
     return found
 
 
-def recovered(model: str) -> dict[str, Any]:
+def recover(model: str) -> Recovery:
     """Return what came back of a damper: every parameter's truth, declared uncertainty and error over its size."""
     rng = np.random.default_rng(zlib.crc32(model.encode()))
-    truth, records = drawn(model, rng)
-    problem = problem_of(truth, records)
-    vector = problem.vector(Bench(truth, TemperatureFactors()))
-    known = information(problem, vector)
-    found = identify_records(records, model, EVERYTHING, lambda text: None)
+    truth, records = draw_damper(model, rng)
+    problem = state_problem(truth, records)
+    vector = problem.to_vector(BenchModel(truth, TemperatureFactors()))
+    with ThreadPoolExecutor() as executor:
+        known = compute_information(problem, vector, executor)
+    found = identify_records(records, model)
     values = {estimate.name: estimate.value for estimate in found.information.estimates}
-    rows = [
+    rows: list[Row] = [
         {"name": e.name, "truth": e.value, "found": values[e.name], "uncertainty": e.std / size,
          "error": abs(values[e.name] - e.value) / size}
-        for e, size in zip(known.estimates, sizes(problem, known), strict=True)
+        for e, size in zip(known.estimates, reference_sizes(problem, known), strict=True)
     ]  # fmt: skip
     floor = 100.0 * problem.cost(vector) ** 0.5
     mean = found.mean("train")
@@ -170,23 +197,23 @@ def report(out: Path, models: list[str]) -> None:
         path = out / f"{model}.json"
         if not path.exists():
             try:
-                write_json(path, recovered(model))
+                write_json(path, recover(model))
             except Exception as error:
                 console.print(f"{model}: {type(error).__name__}: {error}")
                 continue
-        kept = json.loads(path.read_text(encoding="utf-8"))
+        kept: Recovery = json.loads(path.read_text(encoding="utf-8"))
         rows = [row for row in kept["rows"] if row["uncertainty"] <= UNKNOWN]
-        worst = max(rows, key=lambda row: row["error"], default={"error": float("nan"), "name": "-"})
+        worst = max(rows, key=lambda row: row["error"], default=None)
         back = sum(row["error"] <= WITHIN for row in rows)
-        counts = str(len(kept["rows"])), str(len(rows)), str(back), f"{100.0 * worst['error']:.2f}"
+        counts = str(len(kept["rows"])), str(len(rows)), str(back), f"{100.0 * worst['error']:.2f}" if worst else "nan"
         figures = f"{kept['noise']:.2f}", f"{kept['left']:.2f}", f"{kept['seconds']:.0f}"
-        table.add_row(model, *counts, worst["name"], *figures)
+        table.add_row(model, *counts, worst["name"] if worst else "-", *figures)
     console.print(table)
 
 
 def main() -> None:
     """Read the arguments and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("out/identification-recovery"), help="folder of the results")
     parser.add_argument("--models", default="", help="models, joined by commas; all where absent")
     options = parser.parse_args()

@@ -6,13 +6,14 @@ Python: faster than numpy on seven states, and numba compiles them as they stand
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Literal, NamedTuple, TypeVar
 
 import numba
 import numpy as np
-from problem import DAMPER, GAIN, PLANT, STEP
+from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
+from seat_run import DAMPER, GAIN, PLANT, STEP
 
 from seatsim.rig.coil import Coil
 
@@ -21,13 +22,19 @@ C0, C1, ALPHA, K0, K1, X0, F0, A, BETA, GAMMA = DAMPER[:10]
 KX, KV = GAIN
 RATE, TOP = Coil().rate, Coil().max_current
 CELLS = 16
+"""Cells of the current within which the inverse looks for a change of sign, as seatsim does."""
 CHANNELS = (
     "frame_acceleration", "driver_acceleration", "suspension_displacement", "suspension_velocity", "damper_force",
     "coil_current",
 )  # fmt: skip
+Array = NDArray[np.float64]
+Floor = Sequence[float] | Array
+Number = TypeVar("Number", float, Array)
+Force = Callable[[float, float, float, float, float], tuple[float, float]]
+Root = Callable[[Force, float, float, float, float, float, float, float, float], float]
 
 
-def damper(x, v, i, y, z):
+def damper(x: Number, v: Number, i: Number, y: Number, z: Number) -> tuple[Number, Number]:
     """Return force in N and rate of the inner displacement of the modified Bouc-Wen damper (n = 2)."""
     c0 = C0[0] + i * (C0[1] + i * (C0[2] + i * C0[3]))
     c1 = C1[0] + i * (C1[1] + i * (C1[2] + i * C1[3]))
@@ -36,7 +43,19 @@ def damper(x, v, i, y, z):
     return c1 * flow + K1 * (x - X0) + F0, flow
 
 
-def rates(damper, t, x, v, xc, vc, y, z, i, command, floor):
+def rates(
+    damper: Force,
+    t: float,
+    x: float,
+    v: float,
+    xc: float,
+    vc: float,
+    y: float,
+    z: float,
+    i: float,
+    command: float,
+    floor: Floor,
+) -> tuple[float, ...]:
     """Return the time derivative of (x, v, xc, vc, y, z, i); `floor` holds z0'' every `STEP` seconds."""
     k = min(int(t / STEP), len(floor) - 2)
     excitation = floor[k] + (floor[k + 1] - floor[k]) * (t / STEP - k)
@@ -48,7 +67,9 @@ def rates(damper, t, x, v, xc, vc, y, z, i, command, floor):
     return v, frame - excitation, vc, -cushion / M - frame, flow, hysteresis, RATE * (command - i)
 
 
-def between(damper, wanted, x, v, y, z, left, f_left, right):
+def find_root(
+    damper: Force, wanted: float, x: float, v: float, y: float, z: float, left: float, f_left: float, right: float
+) -> float:
     """Return the current between `left` and `right` that gives the wanted force, to 1e-9 A."""
     while right - left > 1e-9:
         middle = 0.5 * (left + right)
@@ -59,7 +80,7 @@ def between(damper, wanted, x, v, y, z, left, f_left, right):
     return 0.5 * (left + right)
 
 
-def inverse(damper, between, x, v, y, z):
+def invert(damper: Force, find_root: Root, x: float, v: float, y: float, z: float) -> float:
     """Return the least current that gives the wanted force, or the one that comes closest."""
     wanted = KX * x + KV * v
     if wanted * v <= 0.0:
@@ -67,7 +88,7 @@ def inverse(damper, between, x, v, y, z):
     f = [damper(x, v, TOP * j / CELLS, y, z)[0] - wanted for j in range(CELLS + 1)]
     for j in range(CELLS):
         if f[j] * f[j + 1] <= 0.0:
-            return between(damper, wanted, x, v, y, z, TOP * j / CELLS, f[j], TOP * (j + 1) / CELLS)
+            return find_root(damper, wanted, x, v, y, z, TOP * j / CELLS, f[j], TOP * (j + 1) / CELLS)
     best = 0
     for j in range(1, CELLS + 1):
         if abs(f[j]) < abs(f[best]):
@@ -78,30 +99,31 @@ def inverse(damper, between, x, v, y, z):
     turn = TOP * (best + 0.5 * (a - b) / (a + b)) / CELLS
     f_turn = damper(x, v, turn, y, z)[0] - wanted
     if f[best] * f_turn <= 0.0:
-        return between(damper, wanted, x, v, y, z, TOP * (best - 1) / CELLS, f[best - 1], turn)
+        return find_root(damper, wanted, x, v, y, z, TOP * (best - 1) / CELLS, f[best - 1], turn)
     return turn if abs(f_turn) < abs(f[best]) else TOP * best / CELLS
 
 
 class Model(NamedTuple):
     """The seat as `solve_ivp` wants it, the inverse, and what turns the floor into the form that both take."""
 
-    rates: Callable[..., Any]
-    inverse: Callable[..., float]
-    floor: Callable[[np.ndarray], Any]
+    rates: Callable[[float, Array, float, Floor], Sequence[float]]
+    inverse: Callable[[float, float, float, float], float]
+    floor: Callable[[Array], Floor]
 
 
-def plain() -> Model:
+def plain_model() -> Model:
     """Return the model in plain Python."""
-    return Model(
-        lambda t, s, command, floor: rates(damper, t, *s.tolist(), command, floor),
-        lambda *motion: inverse(damper, between, *motion),
-        np.ndarray.tolist,
-    )
+
+    def slope(t: float, s: Array, command: float, floor: Floor) -> tuple[float, ...]:
+        x, v, xc, vc, y, z, i = s.tolist()
+        return rates(damper, t, x, v, xc, vc, y, z, i, command, floor)
+
+    return Model(slope, lambda x, v, y, z: invert(damper, find_root, x, v, y, z), np.ndarray.tolist)
 
 
-def jitted() -> Model:
+def compiled_model() -> Model:
     """Return the model compiled with numba."""
-    force, slope, root, solve = (numba.njit(part) for part in (damper, rates, between, inverse))
+    force, slope, root, solve = (numba.njit(part) for part in (damper, rates, find_root, invert))
     return Model(
         numba.njit(lambda t, s, u, floor: slope(force, t, s[0], s[1], s[2], s[3], s[4], s[5], s[6], u, floor)),
         numba.njit(lambda x, v, y, z: solve(force, root, x, v, y, z)),
@@ -109,14 +131,17 @@ def jitted() -> Model:
     )
 
 
+MethodName = Literal["RK23", "RK45", "DOP853", "Radau", "LSODA"]
+
+
 class Method(NamedTuple):
     """A method of `solve_ivp` and its relative tolerance; the absolute one is a thousandth of it."""
 
-    name: str
+    name: MethodName
     rtol: float
 
 
-def simulate(model: Model, method: Method, acceleration: np.ndarray, sample_every: int) -> dict[str, np.ndarray]:
+def simulate(model: Model, method: Method, acceleration: Array, sample_every: int) -> dict[str, Array]:
     """Simulate from rest; return the channels at the law's samples, shape (N - 1) // sample_every + 1."""
     floor, state = model.floor(acceleration), np.zeros(7)
     states = [state]
@@ -133,7 +158,7 @@ def simulate(model: Model, method: Method, acceleration: np.ndarray, sample_ever
     return _channels(np.array(states), acceleration[::sample_every])
 
 
-def _channels(states: np.ndarray, floor: np.ndarray) -> dict[str, np.ndarray]:
+def _channels(states: Array, floor: Array) -> dict[str, Array]:
     x, v, xc, vc, y, z, i = states.T
     force, _ = damper(x, v, i, y, z)
     cushion = KC * xc + CC * vc

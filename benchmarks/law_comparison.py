@@ -13,16 +13,16 @@ import argparse
 import hashlib
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 import seatsim
-from controllers.clairvoyant import ClairvoyantBounds, clairvoyant
+from controllers.clairvoyant import Bracket, clairvoyant
 from seatsim.rig.temperature import TemperatureFactors
+from seatsim.scenario.scenario import Scenario
 from seatsim.schema.files import write_json, write_text
-from seatsim.simulation.performance_bounds import measure_distance
+from seatsim.simulation.performance_bounds import distance
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import run_many
 
@@ -33,7 +33,7 @@ FADING = {"viscous": -0.0067, "stiffness": -0.0067, "yield_force": -0.0067}
 WEIGHTS = np.array([12.0, 25.0, 50.0, 90.0, 150.0]) ** 2
 
 
-def floors(duration: float) -> dict[str, dict[str, Any]]:
+def list_floors(duration: float) -> dict[str, dict[str, object]]:
     """Return the excitation of every floor by name."""
     roads = {
         f"road {name}": {"kind": "road", "road_class": name, "speed": speed, "duration": duration}
@@ -43,34 +43,34 @@ def floors(duration: float) -> dict[str, dict[str, Any]]:
     return roads | {name: {"kind": "iso7096", "spectral_class": name, "duration": duration} for name in classes}
 
 
-def scenarios(path: str, excitation: dict[str, Any], temperature: float) -> list[Any]:
+def load_variants(path: str, excitation: dict[str, object], temperature: float) -> list[Scenario]:
     """Return the variants of a scenario on a floor, without effects, with a damper that fades."""
-    settings = {"excitation": excitation, "temperature": temperature, "effects": []}
+    settings: dict[str, object] = {"excitation": excitation, "temperature": temperature, "effects": []}
     if seatsim.load(path, settings)[0].damper.factors == TemperatureFactors():
         settings["damper.temperature_factors"] = FADING
     return seatsim.load(path, settings)
 
 
-def bracket(scenario: Any, name: str, hold: float, folder: Path) -> ClairvoyantBounds:
+def load_bracket(scenario: Scenario, name: str, hold: float, folder: Path) -> Bracket:
     """Return the bracket of a scenario, from its file where that is there."""
     settings = hashlib.sha256(f"{scenario.rig} {hold} {WEIGHTS.tolist()}".encode()).hexdigest()[:12]
     path = folder / f"bracket-{name.replace(' ', '-')}-{settings}.json"
     if not path.exists():
         write_json(path, clairvoyant(scenario, WEIGHTS, hold).as_dict())
     kept = json.loads(path.read_text(encoding="utf-8"))
-    curves = (np.array(kept[key]) for key in ("weights", "lower", "acceleration", "travel"))
-    return ClairvoyantBounds(*curves, np.zeros((len(WEIGHTS), 0)), hold)
+    weights, lower, acceleration, travel = (
+        np.array(kept[key]) for key in ("weights", "lower", "acceleration", "travel")
+    )
+    return Bracket(weights, lower, acceleration, travel, np.zeros((len(WEIGHTS), 0)), hold)
 
 
-def rows(found: ClairvoyantBounds, runs: list[Run], floor: str, temperature: float) -> list[dict[str, Any]]:
+def compare_laws(found: Bracket, runs: list[Run], floor: str, temperature: float) -> list[dict[str, object]]:
     """Return a row for each law: where it stands, and how far from the bracket at its own travel."""
-    place = {"floor": floor, "temperature": temperature}
-    return [
-        place | {"law": run.scenario.label.get("variant", "")} | measure_distance(run, found)._asdict() for run in runs
-    ]
+    place: dict[str, object] = {"floor": floor, "temperature": temperature}
+    return [place | {"law": run.scenario.label.get("variant", "")} | distance(run, found)._asdict() for run in runs]
 
 
-def markdown(laws: pd.DataFrame, brackets: pd.DataFrame) -> str:
+def render_markdown(laws: pd.DataFrame, brackets: pd.DataFrame) -> str:
     """Return the tables: excess over the bound by law and floor, and the brackets."""
     parts = []
     for temperature, part in laws.groupby("temperature"):
@@ -99,17 +99,17 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", help="names of floors, such as 'road D' EM1")
     asked = parser.parse_args()
     laws, brackets = [], []
-    for floor, excitation in floors(asked.duration).items():
+    for floor, excitation in list_floors(asked.duration).items():
         for temperature in TEMPERATURES if not asked.only or floor in asked.only else ():
-            variants = scenarios(asked.scenario, excitation, temperature)
-            found = bracket(variants[0], f"{floor} {temperature:g}", asked.hold, asked.out)
+            variants = load_variants(asked.scenario, excitation, temperature)
+            found = load_bracket(variants[0], f"{floor} {temperature:g}", asked.hold, asked.out)
             runs = []
             for scenario, answer in run_many(variants, lambda _: None):
                 if isinstance(answer, Run):
                     runs.append(answer)
                 else:
                     print(f"{scenario.title}: {answer}")
-            laws += rows(found, runs, floor, temperature)
+            laws += compare_laws(found, runs, floor, temperature)
             ends = {"aw": found.acceleration, "travel_mm": 1e3 * found.travel, "width_percent": 100 * found.width}
             spans = {f"{end}_{kind}": float(pick(of)) for end, of in ends.items() for kind, pick in _SPAN.items()}
             brackets.append({"floor": floor, "temperature": temperature, **spans})
@@ -118,7 +118,7 @@ def main() -> None:
     tables = pd.DataFrame(laws), pd.DataFrame(brackets)
     for name, table in zip(("laws", "brackets"), tables, strict=True):
         table.to_csv(asked.out / f"{name}.csv", index=False)
-    print(write_text(asked.out / "laws.md", markdown(*tables)))
+    print(write_text(asked.out / "laws.md", render_markdown(*tables)))
 
 
 _SPAN = {"least": np.min, "most": np.max}

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from problem import DAMPER, GAIN, PLANT
+from seat_run import DAMPER, GAIN, PLANT
 
 from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.loop_inputs import LoopSetup

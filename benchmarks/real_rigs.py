@@ -12,19 +12,21 @@ and judged on the other half and on the unseen records. `calibrated` has the par
 from __future__ import annotations
 
 import argparse
+import copy
 import dataclasses
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
-from rig_records import Rig, Runs, Trial, dyke, quanser, utfsm
+from rig_records import Array, Nominal, RigRecords, Runs, Trial, dyke, quanser, utfsm
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
@@ -32,6 +34,7 @@ import seatsim
 from seatsim.recordings.compared import LEFT_OUT
 from seatsim.recordings.gap import pool_runs
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Recording, load_recording
+from seatsim.rig.plant import Plant
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import bounds
@@ -45,7 +48,7 @@ STEP = 1e-3
 """Relative step of the finite differences, above the error of the time integration."""
 
 
-class Found(NamedTuple):
+class Evidence(NamedTuple):
     """What an effect added by hand is worth: overall gaps on runs that it was not fitted to, and on unseen records."""
 
     rig: str
@@ -63,7 +66,7 @@ class Found(NamedTuple):
         return 1.0 - self.held_out / self.nominal
 
 
-def write(rig: Rig, folder: Path) -> Path:
+def write(rig: RigRecords, folder: Path) -> Path:
     """Write a rig's three folders with a nominal fitted to the first, and return that of the recording."""
     for part, runs in (("-fit", rig.fit), ("-unseen", rig.unseen), ("", rig.runs)):
         if runs:
@@ -75,7 +78,7 @@ def write(rig: Rig, folder: Path) -> Path:
     return folder / rig.name
 
 
-def write_part(rig: Rig, nominal: dict[str, Any], runs: Runs, folder: Path) -> None:
+def write_part(rig: RigRecords, nominal: Nominal, runs: Runs, folder: Path) -> None:
     """Write some of a rig's records and a nominal as one recording."""
     units = SEAT_CHANNELS if rig.kind == "seat" else BENCH_CHANNELS
     entries = [{"name": name, "file": f"{name}.csv.gz"} for name in runs]
@@ -104,44 +107,52 @@ def quick(recording: Recording) -> Recording:
     return dataclasses.replace(recording, channels=channels)
 
 
-def fitted(rig: Rig, recording: Recording) -> dict[str, Any]:
+def fitted(rig: RigRecords, recording: Recording) -> Nominal:
     """Return the nominal scenario, its free parameters fitted to a recording's counted rows."""
     scenario, skip = single(recording.nominal), round(LEFT_OUT * rig.sample_rate)
     kept = np.concatenate([rig.counted(recording.table(run))[skip:] for run in recording.runs])
 
-    def residual(factors: Any) -> Any:
+    def residual(factors: Array) -> Array:
         return misfit(varied(scenario, rig.free, factors), recording, list(recording.runs), kept)
 
     ones = np.ones(len(rig.free))
-    found = least_squares(residual, ones, bounds=(0.05 * ones, 20.0 * ones), diff_step=STEP).x
-    nominal = {key: dict(value) if isinstance(value, dict) else value for key, value in rig.nominal.items()}
-    nominal["damper"]["parameters"] = dict(nominal["damper"]["parameters"])
+    found = least_squares(residual, ones, bounds=(0.05 * ones, 20.0 * ones), diff_step=np.full(len(rig.free), STEP)).x
+    nominal = copy.deepcopy(rig.nominal)
     for name, factor in zip(rig.free, found, strict=True):
         section, _, key = name.partition(".")
         for k in ("A", "beta", "gamma") if key == "A" else (key,):
-            values = nominal["damper"]["parameters"] if section == "damper" else nominal[section]
+            values = nominal["damper"]["parameters"] if section == "damper" else nominal["plant"]
             values[k] = float(f"{values[k] * factor:.5g}")
     return nominal
 
 
-def misfit(scenario: Scenario, recording: Recording, runs: Sequence[str], kept: Any = slice(None)) -> Any:
+def misfit(
+    scenario: Scenario, recording: Recording, runs: Sequence[str], kept: NDArray[np.bool_] | slice = slice(None)
+) -> Array:
     """Return simulated minus measured at the rows kept, in standard deviations of each channel, end to end."""
     measured, simulated = pool_runs(scenario, recording, runs)
     return np.concatenate([(simulated[name] - measured[name])[kept] / np.std(measured[name]) for name in measured])
 
 
-def varied(scenario: Scenario, names: Sequence[str], factors: Sequence[float]) -> Scenario:
+def varied(scenario: Scenario, names: Sequence[str], factors: Array) -> Scenario:
     """Return the scenario with parameters `section.name` times factors; `damper.A` keeps the yield at |z| = 1."""
-    records: dict[str, Any] = {"damper": scenario.damper.record, "plant": scenario.plant}
+    damper, plant = scenario.damper.record, scenario.plant
     for name, factor in zip(names, factors, strict=True):
         section, _, key = name.partition(".")
-        for k in ("A", "beta", "gamma") if key == "A" else (key,):
-            records[section] = records[section]._replace(**{k: getattr(records[section], k) * float(factor)})
-    damper = dataclasses.replace(scenario.damper, record=records["damper"])
-    return dataclasses.replace(scenario, damper=damper, plant=records["plant"])
+        if section == "damper":
+            keys = ("A", "beta", "gamma") if key == "A" else (key,)
+            damper = damper._replace(**multiply(damper._asdict(), keys, float(factor)))
+        elif plant is not None:
+            plant = Plant(**(plant._asdict() | multiply(plant._asdict(), (key,), float(factor))))
+    return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=damper), plant=plant)
 
 
-def by_hand(rig: Rig, folder: Path) -> list[Found]:
+def multiply(values: Mapping[str, float], names: Sequence[str], factor: float) -> dict[str, float]:
+    """Return some of the numbers of a record times a factor."""
+    return {name: values[name] * factor for name in names}
+
+
+def by_hand(rig: RigRecords, folder: Path) -> list[Evidence]:
     """Fit each trial's effects to every second run, parameters inside their tolerance, and judge them on the others."""
     recording, nominal = load_recording(folder), single(folder / "nominal.yaml")
     other = folder.with_name(f"{rig.name}-unseen")
@@ -154,7 +165,9 @@ def by_hand(rig: Rig, folder: Path) -> list[Found]:
         after, last = seatsim.gap(augmented, recording, held).overall, _unseen(augmented, other)
         effects = " + ".join(effect for effect, _, _ in trial)
         gaps = before.floor["overall"], before.overall, refitted, after
-        found.append(Found(rig.name, effects, shown, *gaps, None if first is None or last is None else (first, last)))
+        found.append(
+            Evidence(rig.name, effects, shown, *gaps, None if first is None or last is None else (first, last))
+        )
     return found
 
 
@@ -163,12 +176,12 @@ def _unseen(scenario: Scenario, folder: Path) -> float | None:
 
 
 def _augmented(
-    rig: Rig, nominal: Scenario, recording: Recording, runs: Sequence[str], trial: Trial
+    rig: RigRecords, nominal: Scenario, recording: Recording, runs: Sequence[str], trial: Trial
 ) -> tuple[Scenario, str]:
     free = [(find("effect", effect), name, start) for effect, _, starts in trial for name, start in starts.items()]
     count = len(rig.free)
 
-    def scenario(x: Any) -> Scenario:
+    def scenario(x: Array) -> Scenario:
         values, effects = iter(x[count:]), []
         for effect, fixed, starts in trial:
             chosen = {name: float(start * next(values)) for name, start in starts.items()}
@@ -176,16 +189,21 @@ def _augmented(
         return dataclasses.replace(varied(nominal, rig.free, x[:count]), effects=tuple(effects))
 
     limits = [(1.0 - TOLERANCE, 1.0 + TOLERANCE)] * count
-    limits += [sorted(limit / start for limit in bounds(cls, name)) for cls, name, start in free]
+    for cls, name, start in free:
+        one, other = (limit / start for limit in bounds(cls, name))
+        limits.append((min(one, other), max(one, other)))
     low, high = zip(*limits, strict=True)
-    x = least_squares(
-        lambda x: misfit(scenario(x), recording, runs), np.ones(len(limits)), bounds=(low, high), diff_step=STEP
-    ).x
+
+    def residual(x: Array) -> Array:
+        return misfit(scenario(x), recording, runs)
+
+    steps = np.full(len(limits), STEP)
+    x = least_squares(residual, np.ones(len(limits)), bounds=(low, high), diff_step=steps).x
     shown = [f"{name} {start * factor:.3g}" for (_, name, start), factor in zip(free, x[count:], strict=True)]
     return scenario(x), ", ".join(shown)
 
 
-def rigs(data: Path) -> list[Rig]:
+def rigs(data: Path) -> list[RigRecords]:
     """Return all rigs."""
     return [
         utfsm(data, "utfsm", (0.0, 0.25)),
@@ -208,7 +226,7 @@ def nominal_table(folders: Mapping[str, Path], known: Mapping[str, str]) -> Tabl
     return table
 
 
-def evidence_table(found: Sequence[Found]) -> Table:
+def evidence_table(found: Sequence[Evidence]) -> Table:
     """Return what the effects added by hand are worth."""
     columns = ("rig", "effect by hand", "fitted", "floor", "nominal", "calibrated", "with effect", "shrink", "unseen")
     table = _table("effects added by hand, overall gap on held-out runs and unseen records", *columns)

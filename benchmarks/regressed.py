@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Mapping
 
 import numpy as np
-from cases import CORNER, CURRENT, FORCE, FRAME, TRAVEL, Array, Ranked, by_figure, fed, twin
+from cases import CORNER, CURRENT, FORCE, FRAME, TRAVEL, Array, Ranked, fed, rank_by_figure, replicate
 from scipy.optimize import lsq_linear
 from scipy.signal import bilinear, butter, lfilter, sosfiltfilt
 
@@ -64,7 +64,7 @@ def regressed(posed: Problem) -> tuple[Ranked, dict[str, float]]:
             others = columns[:, [k for k in found if effects[k][0] != effect]]
             gain = _left(others, target / noise[block]) ** 2 - kept[block] ** 2
             worth.append((effect, float(np.sqrt(max(gain, 0.0)))))
-    return by_figure(worth), kept
+    return rank_by_figure(worth), kept
 
 
 def _sparse(columns: Array, target: Array) -> list[int]:
@@ -87,7 +87,7 @@ def _left(columns: Array, target: Array) -> float:
 def refitted(posed: Problem) -> tuple[Array, dict[str, float]]:
     """Return the parameters inside their tolerance at which the equations leave least, and what noise alone leaves."""
     base = joined(posed, posed.rest)
-    noise = {block: float(np.sqrt(np.mean(v**2))) for block, v in joined(twin(posed), posed.rest).items()}
+    noise = {block: float(np.sqrt(np.mean(v**2))) for block, v in joined(replicate(posed), posed.rest).items()}
     moved = [joined(posed, one) for one in np.eye(len(posed.rest))]
     slopes = [np.concatenate([(m[block] - base[block]) / noise[block] for block in base]) for m in moved]
     target = np.concatenate([base[block] / noise[block] for block in base])
@@ -215,5 +215,8 @@ def _slope(values: Array, rate: float) -> Array:
 def _within(band: tuple[float, float], values: Array, rate: float) -> Array:
     """Return a course between two frequencies, without phase, and without its first and last second."""
     low, high = band[0], min(band[1], 0.45 * rate)
-    edges, kind = ((low, high), "bandpass") if low else (high, "lowpass")
-    return np.asarray(sosfiltfilt(butter(3, edges, kind, fs=rate, output="sos"), values))[round(rate) : -round(rate)]
+    if low:
+        sections = butter(3, (low, high), "bandpass", fs=rate, output="sos")
+    else:
+        sections = butter(3, high, "lowpass", fs=rate, output="sos")
+    return np.asarray(sosfiltfilt(sections, values))[round(rate) : -round(rate)]

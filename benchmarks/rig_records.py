@@ -23,13 +23,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt, welch
 
-Runs = dict[str, dict[str, Any]]
+Array = NDArray[np.float64]
+Table = Mapping[str, Array]
+"""Channels of a run, each of shape (N,)."""
+Runs = dict[str, Table]
 SETTLED = 0.025
 """s after which a switched voltage counts as steady."""
 SCALE = 30.0
@@ -38,16 +42,35 @@ CUTOFF = 12.0
 """Hz; the Quanser rig's chirp ends at 10 Hz."""
 BOUC_WEN = {"k0": 0.0, "x0": 0.0, "f0": 0.0, "n": 2.0}
 BENCH_FREE = ("damper.c_a", "damper.c_b", "damper.alpha_a", "damper.alpha_b", "damper.A")
-GAS = ("damper.gas_spring", {}, {"preload": 50.0})
-BIAS = ("sensor.bias", {"channel": "damper_force"}, {"share": 0.5})
-LAG = ("coil.lag", {}, {"time": 0.003})
-FRICTION = ("suspension.friction", {"presliding": 1e-4}, {"force": 20.0})
+Addition = tuple[str, Mapping[str, float | str], Mapping[str, float]]
+"""An effect to be added by hand: name, fixed parameters, free ones with their start."""
+Trial = tuple[Addition, ...]
+"""Effects that are added together."""
+GAS: Addition = ("damper.gas_spring", {}, {"preload": 50.0})
+BIAS: Addition = ("sensor.bias", {"channel": "damper_force"}, {"share": 0.5})
+LAG: Addition = ("coil.lag", {}, {"time": 0.003})
+FRICTION: Addition = ("suspension.friction", {"presliding": 1e-4}, {"force": 20.0})
 
-Trial = tuple[tuple[str, dict[str, Any], dict[str, float]], ...]
-"""Effects to be added by hand: name, fixed parameters, free ones with their start."""
+
+class DamperEntry(TypedDict):
+    """A damper as a scenario states it."""
+
+    model: str
+    parameters: dict[str, float]
 
 
-class Rig(NamedTuple):
+class Nominal(TypedDict, total=False):
+    """A nominal scenario as its file has it."""
+
+    damper: DamperEntry
+    actuator: dict[str, float]
+    temperature: float
+    plant: dict[str, float]
+    controller: dict[str, str | float]
+    excitation: dict[str, str]
+
+
+class RigRecords(NamedTuple):
     """A rig's records, split, with a nominal scenario whose parameters `free` are still a first guess.
 
     `counted` says of a run's table which rows the nominal is fitted to. `noise` holds the RMS by channel.
@@ -57,7 +80,7 @@ class Rig(NamedTuple):
     kind: str
     sample_rate: float
     known: str
-    nominal: dict[str, Any]
+    nominal: Nominal
     free: tuple[str, ...]
     noise: dict[str, float]
     fit: Runs
@@ -66,10 +89,10 @@ class Rig(NamedTuple):
     trials: tuple[Trial, ...]
     voltage_gain: float | None = None
     repeats: bool = False
-    counted: Callable[[Mapping[str, Any]], Any] = lambda table: np.full(len(next(iter(table.values()))), True)
+    counted: Callable[[Table], NDArray[np.bool_]] = lambda table: np.full(len(next(iter(table.values()))), True)
 
 
-def utfsm(data: Path, name: str, currents: Sequence[float]) -> Rig:
+def utfsm(data: Path, name: str, currents: Sequence[float]) -> RigRecords:
     """Return the sines of the damper of UTFSM at some of their currents."""
     records = {
         file: pd.read_csv(data / "utfsm_mr_sine_raw" / f"raw_{file}.csv.gz")
@@ -87,8 +110,8 @@ def utfsm(data: Path, name: str, currents: Sequence[float]) -> Rig:
                     continue
                 time = segment["time_s"].to_numpy()
                 rate = 1.0 / float(np.median(np.diff(time)))
-                levels["damper_force"].append(white(segment["force_N"], rate))
-                levels["displacement"].append(white(segment["displacement_m"], rate))
+                levels["damper_force"].append(white_noise(segment["force_N"], rate))
+                levels["displacement"].append(white_noise(segment["displacement_m"], rate))
                 rows = segment.iloc[:: round(rate / 200.0)]
                 start = int(np.flatnonzero(np.abs(rows["velocity_m_s"]) > 0.003)[0])
                 end = int(np.flatnonzero(np.abs(rows["velocity_m_s"]) > 0.003)[-1])
@@ -102,16 +125,19 @@ def utfsm(data: Path, name: str, currents: Sequence[float]) -> Rig:
 
     split = part("10mm_2Hz"), part("25mm_0p5Hz", "5mm_3Hz"), part("5mm_4Hz", "2mm_5Hz", "25mm_0p25Hz")
     guess = {"c_a": 1100.0, "c_b": 4500.0, "alpha_a": 100.0, "alpha_b": 850.0, "A": 3e4, "beta": 1.5e4, "gamma": 1.5e4}
-    return Rig(
+    return RigRecords(
         name, "damper_bench", 200.0, "static offset of 27-58 N", bench(guess, 130.0), BENCH_FREE,
         {channel: float(np.median(values)) for channel, values in levels.items()}, *split, ((GAS,), (BIAS,)),
     )  # fmt: skip
 
 
-def dyke(data: Path, name: str, rate: float) -> Rig:
+def dyke(data: Path, name: str, rate: float) -> RigRecords:
     """Return the random test of Dyke's prototype: 5 s to fit, three runs of 4 s, the last 30 % unseen."""
     whole = pd.read_csv(data / "dyke_nees_2012_1158" / "ranran_50.csv.gz")
-    noise = {"displacement": white(whole["displacement_m"], 3004.8), "damper_force": white(whole["force_N"], 3004.8)}
+    noise = {
+        "displacement": white_noise(whole["displacement_m"], 3004.8),
+        "damper_force": white_noise(whole["force_N"], 3004.8),
+    }
     table = {
         channel: whole[column].to_numpy()[::4]
         for channel, column in (
@@ -121,14 +147,14 @@ def dyke(data: Path, name: str, rate: float) -> Rig:
     ends = [round(t * 751.2) for t in (0.0, 5.25, 9.25, 13.25, 17.25, 24.65)]
     pieces = [{c: v[a:b] for c, v in table.items()} for a, b in pairwise(ends)]
     guess = {"c_a": 1500.0, "c_b": 1000.0, "alpha_a": 110.0, "alpha_b": 670.0, "A": 1.8e4, "beta": 9e3, "gamma": 9e3}
-    return Rig(
+    return RigRecords(
         name, "damper_bench", 751.2, "response lag near 8 ms, gas offset of -104 to -140 N", bench(guess, rate),
         BENCH_FREE, noise, {"first": pieces[0]}, {f"piece-{k}": pieces[k] for k in (1, 2, 3)}, {"last": pieces[4]},
         ((GAS,), (LAG,), (GAS, LAG)), voltage_gain=1.0 / 2.25, counted=_settled,
     )  # fmt: skip
 
 
-def quanser(data: Path, name: str, outputs: Sequence[str]) -> Rig:
+def quanser(data: Path, name: str, outputs: Sequence[str]) -> RigRecords:
     """Return the quarter car with these of its outputs: the nominal fitted to the first repeat, the others are runs."""
     plates = {"floor_acceleration": "road", "frame_acceleration": "unsprung", "driver_acceleration": "sprung"}
     band = butter(4, CUTOFF, fs=500.0, output="sos")
@@ -140,8 +166,8 @@ def quanser(data: Path, name: str, outputs: Sequence[str]) -> Rig:
         table = {channel: _slope(_slope(smooth[plate])) for channel, plate in plates.items()}
         table["suspension_displacement"] = smooth["unsprung"] - smooth["road"]
         tables.append({channel: table[channel] for channel in ("floor_acceleration", *outputs)})
-        noise = {channel: in_band(place[plate], 2) for channel, plate in plates.items()}
-        noise["suspension_displacement"] = in_band(place["unsprung"] - place["road"], 0)
+        noise = {channel: noise_in_band(place[plate], 2) for channel, plate in plates.items()}
+        noise["suspension_displacement"] = noise_in_band(place["unsprung"] - place["road"], 0)
     damper = {"c_a": 0.0, "c_b": 0.0, "alpha_a": 0.0, "alpha_b": 0.0, "A": 2e3, "beta": 1e3, "gamma": 1e3}
     nominal = bench(damper, 130.0) | {
         "plant": {
@@ -152,14 +178,14 @@ def quanser(data: Path, name: str, outputs: Sequence[str]) -> Rig:
         "excitation": {"kind": "recording"},
     }  # fmt: skip
     free = ("suspension_stiffness", "suspension_damping", "cushion_stiffness", "cushion_damping")
-    return Rig(
+    return RigRecords(
         name, "seat", 500.0, "guide friction (to the ground); actuator force that does not map", nominal,
         tuple(f"plant.{key}" for key in free), noise, {"repeat-1": tables[0]},
         {"repeat-2": tables[1], "repeat-3": tables[2]}, {}, ((FRICTION,),), repeats=True,
     )  # fmt: skip
 
 
-def bench(damper: Mapping[str, float], rate: float) -> dict[str, Any]:
+def bench(damper: Mapping[str, float], rate: float) -> Nominal:
     """Return a scenario with a simple Bouc-Wen damper."""
     parameters = {**damper, **BOUC_WEN}
     return {
@@ -169,13 +195,13 @@ def bench(damper: Mapping[str, float], rate: float) -> dict[str, Any]:
     }
 
 
-def white(values: Any, rate: float) -> float:
+def white_noise(values: Array | pd.Series[float], rate: float) -> float:
     """Return the RMS of white noise with the median density that is found above 0.7 of the Nyquist frequency."""
     frequency, density = welch(np.asarray(values), rate, nperseg=min(1024, len(values)))
     return float(np.sqrt(np.median(density[frequency > 0.35 * rate]) * rate / 2.0))
 
 
-def in_band(values: Any, derivative: int) -> float:
+def noise_in_band(values: Array, derivative: int) -> float:
     """Return the RMS, below CUTOFF, of a derivative of noise that is as dense as what is found at 100-200 Hz."""
     frequency, density = welch(values, 500.0, nperseg=1024)
     level = float(np.median(density[(frequency > 100.0) & (frequency < 200.0)]))
@@ -183,11 +209,11 @@ def in_band(values: Any, derivative: int) -> float:
     return float(np.sqrt(level * (2.0 * np.pi) ** (power - 1) * CUTOFF**power / power))
 
 
-def _slope(values: Any) -> Any:
+def _slope(values: Array) -> Array:
     return np.gradient(values, 1.0 / 500.0)
 
 
-def _settled(table: Mapping[str, Any]) -> Any:
+def _settled(table: Table) -> NDArray[np.bool_]:
     """Whether the voltage has stood for a while, shape (N,)."""
     rows = np.arange(len(table["command_voltage"]))
     switched = np.abs(np.diff(table["command_voltage"], prepend=table["command_voltage"][0])) > 0.5

@@ -1,6 +1,6 @@
 """Speed of a run beside hand-written C and `scipy.integrate.solve_ivp`: `python benchmarks/speed.py`.
 
-60 s at 1 kHz of the seat in `problem.py`, with the law sampled every 1 ms and every 5 ms. Repeats are
+60 s at 1 kHz of the seat in `seat_run.py`, with the law sampled every 1 ms and every 5 ms. Repeats are
 interleaved, so that a busy machine slows all alike; ratios are of medians, those in brackets of minima. Beside C
 a ratio above 1 means that seatsim is the slower one; beside `solve_ivp` it says how many times faster seatsim is.
 loop.c runs seatsim's algorithm and must agree with it before anything is timed; lean.c is a plain Runge-Kutta
@@ -13,26 +13,33 @@ import argparse
 import tempfile
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 
 import ivp
 import numpy as np
 from native import available, native_run
-from problem import STEP, floor, seatsim_run, setup
+from seat_run import STEP, floor, seatsim_run, setup
 
 from seatsim.kernel.channels import CHANNELS
 
 AGREEMENT = {"loop.c": 1e-9, "lean.c": 1e-2}
 """Largest difference of a channel from seatsim's, over its largest value; lean.c integrates the current numerically."""
 REFERENCE = ivp.Method("DOP853", 1e-11)
-METHODS = {"RK23": (1e-4, 1e-5, 1e-6), "RK45": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), "DOP853": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
-           "LSODA": (1e-5, 1e-6, 1e-7), "Radau": (1e-4, 1e-5, 1e-6)}  # fmt: skip
+METHODS: dict[ivp.MethodName, tuple[float, ...]] = {
+    "RK23": (1e-4, 1e-5, 1e-6),
+    "RK45": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
+    "DOP853": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
+    "LSODA": (1e-5, 1e-6, 1e-7),
+    "Radau": (1e-4, 1e-5, 1e-6),
+}
+"""Relative tolerances that are tried of each method, the loosest first."""
 Times = dict[str, list[float]]
 
 
 def main() -> None:
     """Measure and print both tables."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--repeats", type=int, default=31, help="interleaved repeats of seatsim and C")
     parser.add_argument("--duration", type=float, default=3.0, help="simulated seconds of a solve_ivp run")
     options = parser.parse_args()
@@ -101,7 +108,7 @@ def beside_scipy(sample_every: int, duration: float) -> None:
     seatsim is timed on 60 s, `solve_ivp` on the first `duration` seconds; both count per simulated second.
     """
     acceleration = floor(duration)
-    compiled, plain = ivp.jitted(), ivp.plain()
+    compiled, plain = ivp.compiled_model(), ivp.plain_model()
     ivp.simulate(compiled, REFERENCE, acceleration[:11], sample_every)
     exact = ivp.simulate(compiled, REFERENCE, acceleration, sample_every)
     run, history = seatsim_run(acceleration, setup(sample_every))
@@ -112,7 +119,7 @@ def beside_scipy(sample_every: int, duration: float) -> None:
     for method, reached in accurate(compiled, acceleration, sample_every, exact, ours):
         for kind, model in (("numba", compiled), ("Python", plain)):
             label = f"{method.name} rtol {method.rtol:.0e}, right-hand side in {kind}, error {reached:.1e}"
-            runs[label] = lambda model=model, method=method: ivp.simulate(model, method, acceleration, sample_every)
+            runs[label] = partial(ivp.simulate, model, method, acceleration, sample_every)
     times = interleaved(runs, 3)
     seatsim = np.median(times.pop("seatsim")) / (STEP * (len(full) - 1))
     print(f"law every {sample_every} ms: seatsim {seatsim:.6f} s a simulated second, error {ours:.1e}")

@@ -19,7 +19,7 @@ import time
 start = time.perf_counter()
 import numpy as np
 import seatsim.simulation.simulate
-from problem import floor, seatsim_run, setup
+from seat_run import floor, seatsim_run, setup
 acceleration, parts = np.zeros(2), setup(1)
 imported = time.perf_counter()
 seatsim_run(acceleration, parts)[0]()

@@ -10,16 +10,18 @@ from __future__ import annotations
 
 import itertools
 import sys
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
 
 import seatsim
 
-SEED, BUFFER = 2, 0.045
-STATED = seatsim.load("laws")[0].source.data["controller"]
+SEED = 2
+BUFFER = 0.045
+"""m of travel at which the buffers begin."""
+Keys = dict[str, object]
+"""Keys of a controller in a scenario."""
 CURRENTS = [0.2, 0.4, 0.7, 1.0]
 QUADRATIC = {"travel": [20.0, 40.0, 80.0, 160.0], "force": [0.007, 0.01, 0.015]}
-GRIDS: dict[str, dict[str, Any]] = {
+GRIDS: Mapping[str, Mapping[str, Sequence[object]]] = {
     "constant": {"current": [0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0]},
     "on_off_skyhook": {"on": CURRENTS},
     "skyhook": {"damping": [500.0, 1000.0, 2000.0, 3000.0, 5000.0, 8000.0]},
@@ -46,18 +48,18 @@ GRIDS: dict[str, dict[str, Any]] = {
 def main() -> None:
     """Tune the laws named on the command line, or all of them."""
     for law in sys.argv[1:] or GRIDS:
-        keys, (comfort, travel) = best(law)
+        keys, (comfort, travel) = tune(law)
         print(f"{law}: {keys}  # {comfort:.3f} m/s^2, {1e3 * travel:.1f} mm", flush=True)
 
 
-def best(law: str) -> tuple[dict[str, Any], tuple[float, float]]:
+def tune(law: str) -> tuple[Keys, tuple[float, float]]:
     """Return the keys of a law that the rule chooses, with weighted acceleration in m/s^2 and peak travel in m."""
-    found = [(keys, figures(law, keys)) for keys in settings(law)]
-    within = [(keys, score) for keys, score in found if score[1] <= BUFFER]
+    found = [(keys, score(law, keys)) for keys in grid_points(law)]
+    within = [(keys, figures) for keys, figures in found if figures[1] <= BUFFER]
     return min(within, key=lambda one: one[1][0]) if within else min(found, key=lambda one: one[1][1])
 
 
-def settings(law: str) -> Iterator[dict[str, Any]]:
+def grid_points(law: str) -> Iterator[Keys]:
     """Yield the points of a law's grid as keys of a controller."""
     grid = GRIDS[law]
     for values in itertools.product(*grid.values()):
@@ -66,9 +68,12 @@ def settings(law: str) -> Iterator[dict[str, Any]]:
         yield keys | ({"weights": weights} if weights else {})
 
 
-def figures(law: str, keys: dict[str, Any]) -> tuple[float, float]:
+def score(law: str, keys: Keys) -> tuple[float, float]:
     """Return weighted acceleration in m/s^2 and peak travel in m of one run."""
-    controller = {key: STATED[key] for key in ("sample_time", "sensors")} | {"law": law} | keys
+    source = seatsim.load("laws")[0].source
+    assert source is not None
+    stated = source.data["controller"]
+    controller = {key: stated[key] for key in ("sample_time", "sensors")} | {"law": law} | keys
     metrics = seatsim.run("laws", {"variants": {}, "seed": SEED, "controller": controller}).runs[0].metrics
     return metrics["driver_acceleration_weighted"].value, metrics["suspension_displacement_peak"].value
 

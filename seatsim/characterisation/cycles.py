@@ -45,7 +45,7 @@ class Cycle(NamedTuple):
         return self.last - self.first
 
 
-def whole_cycles(displacement: Array) -> list[Cycle]:
+def find_cycles(displacement: Array) -> list[Cycle]:
     """Return the cycles of a displacement, shape (N,), from one upward passage of mid-stroke to the next.
 
     Mid-stroke is halfway between the 1st and the 99th percentile. A passage leads from below a band about it to
@@ -74,7 +74,7 @@ def _cycle(x: Array, first: float, last: float) -> Cycle:
     return Cycle(first, last, 0.5 * (high - low), 0.5 * (high + low))
 
 
-def steady_cycles(cycles: Sequence[Cycle]) -> list[Cycle]:
+def select_steady_cycles(cycles: Sequence[Cycle]) -> list[Cycle]:
     """Return the cycles whose amplitude, period and mid-stroke agree with their medians: no ring-up, no ring-down.
 
     Empty where they are fewer than half of all, or fewer than three (two, where these are all): such a record is not
@@ -92,7 +92,7 @@ def steady_cycles(cycles: Sequence[Cycle]) -> list[Cycle]:
     return steady if enough and 2 * len(steady) >= len(cycles) else []
 
 
-def loops_of(record: BenchRecord, cycles: Sequence[Cycle]) -> list[SineTest]:
+def resample_loops(record: BenchRecord, cycles: Sequence[Cycle]) -> list[SineTest]:
     """Return cycles of a record as loops of equally many samples, both ends included, by linear interpolation."""
     least, most = SAMPLES
     length = float(np.median([cycle.length for cycle in cycles]))
@@ -106,7 +106,7 @@ def loops_of(record: BenchRecord, cycles: Sequence[Cycle]) -> list[SineTest]:
     return loops
 
 
-def mean_loop(loops: Sequence[SineTest]) -> SineTest:
+def average_loops(loops: Sequence[SineTest]) -> SineTest:
     """Return the mean of loops of equally many samples, phase by phase."""
     time, x, v, force = (np.mean([loop[part] for loop in loops], axis=0) for part in range(4))
     return SineTest(time, x, v, force)

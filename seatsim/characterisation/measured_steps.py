@@ -4,24 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.characterisation.response import Ensemble, Response, crossing, response
-from seatsim.characterisation.steps import Step, find_steps
+from seatsim.characterisation.response import Response, StepEnsemble, estimate_response, find_crossing
+from seatsim.characterisation.steps import CurrentStep, find_steps
 from seatsim.recordings.bench_tables import BenchRecord
 
-Array = NDArray[Any]
+Array = NDArray[np.float64]
 
 LONGEST = 0.5
 """Seconds after a step that are looked at."""
 LENGTHS = (LONGEST, 0.3, 0.2, 0.12, 0.08, 0.05, 0.04, 0.025)
+"""Seconds after a step that are tried, the longest with enough steps first."""
 ENOUGH = 12
 """Steps that are wanted for the longest of the lengths."""
 LEAD = 0.015
 """Seconds before a step in which the current has to rest."""
+SAME_LEVEL = 0.05
+"""Difference of two levels of a current, over its range, up to which they are the same."""
+LEVEL_GRID = 0.1
+"""Grid of levels, over the range of the current, by which steps are put into pairs."""
 SPEED_HELD = 0.1
 """Largest change of a speed that counts as constant, relative."""
 SLOWEST = 0.1
@@ -38,7 +42,7 @@ UNSURE = 0.1
 """Largest error of the steady forces, over their difference and over the root of the number of steps."""
 
 
-def responses(record: BenchRecord) -> list[Response]:
+def measure_responses(record: BenchRecord) -> list[Response]:
     """Return the response of a record's force to the steps of its current, one for each pair of levels.
 
     At constant speed the force before and after the step is what stands there. Where the speed varies, the steady
@@ -46,22 +50,24 @@ def responses(record: BenchRecord) -> list[Response]:
 
         F_level = sum c_k f_k,  f = 1, x, v, dv/dt, tanh(v(t - lag) / (q v_rms)),
 
-    and the response is demodulated by it (`response`). A pair of levels that allows neither has a note that says why.
+    and the response is demodulated by it (`estimate_response`). A pair of levels that allows neither has a note that
+    says why.
     """
     steps = find_steps(record.current, record.rate, record.commanded)
     if not steps:
         return []
-    unit = 0.1 * float(np.ptp(record.current))
-    pairs: dict[tuple[int, int], list[Step]] = {}
+    unit = LEVEL_GRID * float(np.ptp(record.current))
+    pairs: dict[tuple[int, int], list[CurrentStep]] = {}
     for step in steps:
         pairs.setdefault((round(step.before.level / unit), round(step.after.level / unit)), []).append(step)
     return [_of_pair(record, chosen, steps) for chosen in pairs.values()]
 
 
-def _of_pair(record: BenchRecord, steps: Sequence[Step], every: Sequence[Step]) -> Response:
+def _of_pair(record: BenchRecord, steps: Sequence[CurrentStep], every: Sequence[CurrentStep]) -> Response:
     before, after = (float(np.median([p.level for p in ps])) for ps in zip(*(s[1:] for s in steps), strict=True))
     blank = Response(record.name, before, after, len(steps), "")
-    even = [found for step in steps if (found := _even(record, step)) is not None]
+    # A constant speed needs no model of the steady force, so it counts first where half of the steps have one.
+    even = [found for step in steps if (found := _constant_speed_rows(record, step)) is not None]
     answer = _at_constant_speed(record, even, blank) if 2 * len(even) >= len(steps) else blank
     if not answer.method:
         answer = _demodulated(record, steps, every, answer)
@@ -70,7 +76,7 @@ def _of_pair(record: BenchRecord, steps: Sequence[Step], every: Sequence[Step]) 
     return answer if record.commanded else answer._replace(current_t95=_of_current(record, steps))
 
 
-def _even(record: BenchRecord, step: Step) -> tuple[Step, int, int] | None:
+def _constant_speed_rows(record: BenchRecord, step: CurrentStep) -> tuple[CurrentStep, int, int] | None:
     """Return the rows before and after a step over which the speed is constant, None where these are too few."""
     k, v = round(step.row), record.velocity
     here = float(np.median(v[max(0, k - 3) : k + 4]))
@@ -85,7 +91,7 @@ def _even(record: BenchRecord, step: Step) -> tuple[Step, int, int] | None:
     return step, k - first, last - k
 
 
-def _at_constant_speed(record: BenchRecord, found: Sequence[tuple[Step, int, int]], blank: Response) -> Response:
+def _at_constant_speed(record: BenchRecord, found: Sequence[tuple[CurrentStep, int, int]], blank: Response) -> Response:
     after = int(np.median([length for *_, length in found]))
     chosen = [one for one in found if one[2] >= after]
     before = min(*(one[1] for one in chosen), round(0.05 * record.rate))
@@ -99,10 +105,12 @@ def _at_constant_speed(record: BenchRecord, found: Sequence[tuple[Step, int, int
         return blank._replace(method="", note="the force changes by less than five times its noise")
     levels = np.broadcast_to(off, force.shape), np.broadcast_to(on, force.shape)
     instants = np.array([round(step.row) - step.row for step, *_ in chosen]) / record.rate
-    return response(Ensemble(force, *levels, instants, before, record.rate), blank)
+    return estimate_response(StepEnsemble(force, *levels, instants, before, record.rate), blank)
 
 
-def _demodulated(record: BenchRecord, steps: Sequence[Step], every: Sequence[Step], blank: Response) -> Response:
+def _demodulated(
+    record: BenchRecord, steps: Sequence[CurrentStep], every: Sequence[CurrentStep], blank: Response
+) -> Response:
     rate = record.rate
     led = [s for s in steps if s.row - s.before.first >= LEAD * rate]
     lengths = [s.after.last - s.row for s in led]
@@ -123,7 +131,7 @@ def _demodulated(record: BenchRecord, steps: Sequence[Step], every: Sequence[Ste
         return blank._replace(method="", note="the speed varies, and the steady forces are not known well enough")
     window = max(3, 2 * round(0.5 * SMOOTHING * rate) + 1)
     instants = np.array([round(step.row) - step.row for step in chosen]) / rate
-    return response(Ensemble(force, off, on, instants, before, rate), blank, window)
+    return estimate_response(StepEnsemble(force, off, on, instants, before, rate), blank, window)
 
 
 def _basis(record: BenchRecord) -> Array:
@@ -136,9 +144,11 @@ def _basis(record: BenchRecord) -> Array:
     return basis / np.maximum(size, 1e-12)
 
 
-def _steady(record: BenchRecord, basis: Array, every: Sequence[Step], level: float) -> tuple[Array, float] | None:
+def _steady(
+    record: BenchRecord, basis: Array, every: Sequence[CurrentStep], level: float
+) -> tuple[Array, float] | None:
     """Return the steady force at a level, shape (N,), and its RMS error over the settled rows."""
-    near = 0.05 * float(np.ptp(record.current))
+    near = SAME_LEVEL * float(np.ptp(record.current))
     settled = np.zeros(len(basis), dtype=bool)
     for step in every:
         rest = step.after
@@ -148,21 +158,22 @@ def _steady(record: BenchRecord, basis: Array, every: Sequence[Step], level: flo
             settled[step.before.last // 2 : step.before.last] = True
     if np.count_nonzero(settled) < 10 * basis.shape[1]:
         return None
+    # Terms that this motion does not tell apart are dropped, not given huge weights of opposite signs.
     weights, *_ = np.linalg.lstsq(basis[settled], record.force[settled], rcond=1e-8)
     force = basis @ weights
     return force, math.sqrt(float(np.mean((record.force - force)[settled] ** 2)))
 
 
-def _of_current(record: BenchRecord, steps: Sequence[Step]) -> float:
+def _of_current(record: BenchRecord, steps: Sequence[CurrentStep]) -> float:
     """Return the median time to 95 % of the steps of a measured current."""
     times = []
     for step in steps:
         rows = np.arange(int(step.row), step.after.last)
         share = (record.current[rows] - step.before.level) / (step.after.level - step.before.level)
-        times.append(crossing((rows - step.row) / record.rate, share, 0.95))
+        times.append(find_crossing(np.asarray((rows - step.row) / record.rate, dtype=float), share, 0.95))
     reached = [time for time in times if math.isfinite(time)]
     return float(np.median(reached)) if reached else math.nan
 
 
-def _about(values: Array, steps: Sequence[Step], before: int, after: int) -> Array:
+def _about(values: Array, steps: Sequence[CurrentStep], before: int, after: int) -> Array:
     return np.array([values[round(s.row) - before : round(s.row) + after] for s in steps])

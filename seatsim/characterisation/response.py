@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[Any]
+Array = NDArray[np.float64]
 
 SHARES = (0.05, 0.90, 0.95)
 """Shares of the change whose instants are told."""
 RESAMPLES = 200
+"""Draws of the steps from which the deviation of t95 is taken: it is then known to some 5 %."""
 SETTLED_BY = 0.1
 """Largest difference of the curve's last but one fifth from 1, for a response that has settled."""
 
@@ -62,13 +63,13 @@ UNITS = {
 """Units that the names of a response's figures end in where it is written."""
 
 
-def columns_of_step(answer: Response) -> dict[str, Any]:
+def response_columns(answer: Response) -> dict[str, object]:
     """Return a response as it is written: names with their units, without the curve."""
     kept = {name: value for name, value in answer._asdict().items() if name not in ("time", "share")}
     return {f"{name}_{UNITS[name]}" if name in UNITS else name: value for name, value in kept.items()}
 
 
-class Ensemble(NamedTuple):
+class StepEnsemble(NamedTuple):
     """Forces about some steps, shape (steps, N), row by row from `before_rows` rows before each step.
 
     off, on: the force that the same motion has at the current before, and at the current after the step. instants:
@@ -83,7 +84,7 @@ class Ensemble(NamedTuple):
     rate: float
 
 
-def response(ensemble: Ensemble, blank: Response, window: int = 1) -> Response:
+def estimate_response(ensemble: StepEnsemble, blank: Response, window: int = 1) -> Response:
     """Return the response of an ensemble: the share of the new level that fits all steps best, at each instant.
 
         s(t) = sum (F - F_off) (F_on - F_off) / sum (F_on - F_off)^2
@@ -97,7 +98,7 @@ def response(ensemble: Ensemble, blank: Response, window: int = 1) -> Response:
     share, end = _curve(top.sum(axis=0), bottom.sum(axis=0), time, window)
     if not abs(end - 1.0) <= SETTLED_BY:
         return blank._replace(method="", note=f"the force has not settled within {1e3 * time[-1]:.0f} ms of a step")
-    t5, t90, t95 = (crossing(time, share, level) for level in SHARES)
+    t5, t90, t95 = (find_crossing(time, share, level) for level in SHARES)
     rate = math.log(19.0) / (t95 - t5) if t95 > t5 else math.nan
     return blank._replace(
         t5=t5, t90=t90, t95=t95, t95_sd=_deviation(top, bottom, time, window),
@@ -106,7 +107,7 @@ def response(ensemble: Ensemble, blank: Response, window: int = 1) -> Response:
     )  # fmt: skip
 
 
-def crossing(time: Array, share: Array, level: float) -> float:
+def find_crossing(time: Array, share: Array, level: float) -> float:
     """Return the first instant from 0 on at which a curve reaches a level, interpolated; NaN where it never does."""
     after = np.flatnonzero((time >= 0.0) & (share >= level))
     if not after.size:
@@ -138,7 +139,7 @@ def _deviation(top: Array, bottom: Array, time: Array, window: int) -> float:
     draws = np.random.default_rng(0).integers(0, steps, (RESAMPLES, steps))
     counts = np.stack([np.bincount(draw, minlength=steps) for draw in draws]).astype(float)
     curves = (_curve(a, b, time, window)[0] for a, b in zip(counts @ top, counts @ bottom, strict=True))
-    times = [crossing(time, curve, SHARES[-1]) for curve in curves]
+    times = [find_crossing(time, curve, SHARES[-1]) for curve in curves]
     return float(np.std([t for t in times if math.isfinite(t)])) if any(map(math.isfinite, times)) else math.nan
 
 

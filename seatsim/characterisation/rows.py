@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from seatsim.characterisation.cycles import Cycle, loops_of, mean_loop, steady_cycles, whole_cycles
+from seatsim.characterisation.cycles import Cycle, average_loops, find_cycles, resample_loops, select_steady_cycles
 from seatsim.metrics.motion import rms
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.simulation.damper_bench import SineTest
@@ -98,7 +98,7 @@ FIGURES: dict[str, Callable[[SineTest], float]] = {
 """Figures that every cycle has."""
 
 
-def columns(row: Row) -> dict[str, Any]:
+def row_columns(row: Row) -> dict[str, object]:
     """Return a row as it stands in a table: names with their units, notes as one text."""
     kept = row._asdict()
     for name in ("loop", "cloud", "cycle_values"):
@@ -107,7 +107,7 @@ def columns(row: Row) -> dict[str, Any]:
     return named | {"notes": "; ".join(row.notes)}
 
 
-def row_of_loops(
+def summarise_loops(
     loops: Sequence[SineTest],
     record: str,
     file: str,
@@ -117,11 +117,11 @@ def row_of_loops(
     notes: Sequence[str] = (),
 ) -> Row:
     """Return the row of a test: loops of equally many samples, and the temperature in degC of each (or one, or NaN)."""
-    loop = mean_loop(loops)
+    loop = average_loops(loops)
     warmth = np.broadcast_to(np.asarray(temperature, dtype=float), len(loops))
     each = {name: np.array([figure(one) for one in loops]) for name, figure in FIGURES.items()}
-    mean: dict[str, Any] = {name: float(np.mean(values)) for name, values in each.items()}
-    sd: dict[str, Any] = {f"{name}_sd": float(np.std(v, ddof=1)) for name, v in each.items() if len(v) > 1}
+    mean = {name: float(np.mean(values)) for name, values in each.items()}
+    sd = {name: float(np.std(v, ddof=1)) if len(v) > 1 else math.nan for name, v in each.items()}
     force, part = loop.force[:-1], loop.asymmetric_part[:-1]
     offset = float(np.mean(force))
     values = {"temperature": warmth, **each}
@@ -132,27 +132,31 @@ def row_of_loops(
         peak_speed=float(np.max(np.abs(loop.velocity))), centre=0.5 * (mean["peak_rebound"] + mean["peak_compression"]),
         force_rms=rms(force), asymmetry=_ratio(rms(part), rms(force)), asymmetry_peak=float(np.max(np.abs(part))),
         asymmetry_of_shape=_ratio(rms(part - offset), rms(force - offset)), notes=tuple(notes), loop=loop,
-        cycle_values={name: list(map(float, v)) for name, v in values.items()}, **mean, **sd,
+        cycle_values={name: list(map(float, v)) for name, v in values.items()},
+        peak_rebound=mean["peak_rebound"], peak_rebound_sd=sd["peak_rebound"],
+        peak_compression=mean["peak_compression"], peak_compression_sd=sd["peak_compression"],
+        energy=mean["energy"], energy_sd=sd["energy"], damping=mean["damping"], damping_sd=sd["damping"],
+        offset=mean["offset"], offset_sd=sd["offset"],
     )  # fmt: skip
 
 
-def row_of_record(record: BenchRecord) -> Row:
+def summarise_record(record: BenchRecord) -> Row:
     """Return the row of a measured record at one current: of its steady cycles, or as a record without cycles."""
-    found = whole_cycles(record.displacement)
-    steady = steady_cycles(found)
+    found = find_cycles(record.displacement)
+    steady = select_steady_cycles(found)
     if not steady:
-        return row_without_cycles(record, found)
-    loops = loops_of(record, steady)
+        return summarise_aperiodic_record(record, found)
+    loops = resample_loops(record, steady)
     notes = [*_of_current(record), *_of_loops(loops), *_of_sign(record)]
     if min(cycle.length for cycle in steady) < COARSE:
         notes.append(f"fewer than {COARSE} rows a cycle: peaks and areas are coarse")
-    return row_of_loops(
+    return summarise_loops(
         loops, record.name, record.file, round(record.mean_current, 6), _temperatures(record, steady),
         len(found) - len(steady), notes,
     )  # fmt: skip
 
 
-def row_without_cycles(record: BenchRecord, found: Sequence[Cycle]) -> Row:
+def summarise_aperiodic_record(record: BenchRecord, found: Sequence[Cycle]) -> Row:
     """Return the row of a record that is no steady cycle: peaks, RMS and mean of the force, and what the motion is."""
     warmth = record.temperature if record.temperature is not None else np.array([math.nan])
     every = slice(None, None, max(1, len(record.force) // MOST_POINTS))
@@ -187,7 +191,7 @@ def _of_sign(record: BenchRecord) -> list[str]:
 
 def _of_loops(loops: Sequence[SineTest]) -> list[str]:
     notes = []
-    loop = mean_loop(loops)
+    loop = average_loops(loops)
     energy = loop.dissipated_energy
     over_stroke = float(np.trapezoid(loop.force, loop.displacement))
     if abs(over_stroke - energy) > DISAGREE * abs(energy):

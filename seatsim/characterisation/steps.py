@@ -32,7 +32,7 @@ class Plateau(NamedTuple):
     level: float
 
 
-class Step(NamedTuple):
+class CurrentStep(NamedTuple):
     """A step of current: the row (with fraction) at which it begins, and the levels before and after it."""
 
     row: float
@@ -45,17 +45,17 @@ class Step(NamedTuple):
         return self.after.level > self.before.level
 
 
-def find_steps(current: Array, rate: float, commanded: bool) -> list[Step]:
+def find_steps(current: Array, rate: float, commanded: bool) -> list[CurrentStep]:
     """Return the steps of a current in A, shape (N,), at `rate` Hz, in their order.
 
     A step leads from one level at which the current rests to another. It begins at the row at which 5 % of it is
     covered: a command holds from its row on; between the rows of a measured current it is interpolated.
     """
-    rests = plateaus(current, rate)
-    return [Step(_onset(current, a, b, commanded), a, b) for a, b in pairwise(rests)]
+    rests = find_plateaus(current, rate)
+    return [CurrentStep(_onset(current, a, b, commanded), a, b) for a, b in pairwise(rests)]
 
 
-def plateaus(current: Array, rate: float) -> list[Plateau]:
+def find_plateaus(current: Array, rate: float) -> list[Plateau]:
     """Return the stretches over which a current in A, shape (N,), at `rate` Hz rests, in their order.
 
     None where it varies by less than `LEAST_RANGE` in all. A current rests where its standard deviation within

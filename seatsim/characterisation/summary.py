@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from seatsim.characterisation.cycles import whole_cycles
-from seatsim.characterisation.measured_steps import responses
-from seatsim.characterisation.response import Response, columns_of_step
-from seatsim.characterisation.rows import Row, columns, row_of_record, row_without_cycles
-from seatsim.characterisation.steps import plateaus
+from seatsim.characterisation.cycles import find_cycles
+from seatsim.characterisation.measured_steps import measure_responses
+from seatsim.characterisation.response import Response, response_columns
+from seatsim.characterisation.rows import Row, row_columns, summarise_aperiodic_record, summarise_record
+from seatsim.characterisation.steps import find_plateaus
 from seatsim.recordings.bench_tables import BenchRecord, unused_columns
 
 SETTLED = 0.2
@@ -41,43 +41,44 @@ def characterise(records: Sequence[BenchRecord], name: str, source: str = "") ->
     any other record has one row.
     """
     rows = [row for record in records for row in _rows(record)]
-    answers = [answer for record in records for answer in responses(record)]
+    answers = [answer for record in records for answer in measure_responses(record)]
     return Characterisation(name, source or name, True, rows, answers, unused_columns(records))
 
 
 def _rows(record: BenchRecord) -> list[Row]:
-    rests = plateaus(record.current, record.rate)
+    rests = find_plateaus(record.current, record.rate)
     if len(rests) < 2:
-        return [row_of_record(record)]
+        return [summarise_record(record)]
     skipped = round(SETTLED * record.rate)
     parts = [(rest, record.part(rest.first + skipped, rest.last)) for rest in rests if rest.last > rest.first + skipped]
     rows = [
-        row_of_record(part)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s") for rest, part in parts
+        summarise_record(part)._replace(record=f"{record.name}, {rest.first / record.rate:.1f} s")
+        for rest, part in parts
     ]
     cyclic = [row for row in rows if row.loop is not None]
-    return cyclic or [row_without_cycles(record, whole_cycles(record.displacement))]
+    return cyclic or [summarise_aperiodic_record(record, find_cycles(record.displacement))]
 
 
-def contents(found: Characterisation) -> dict[str, Any]:
+def contents(found: Characterisation) -> dict[str, object]:
     """Return a characterisation as it stands in `characterisation.json`."""
     records = []
     for row in found.rows:
-        values = columns(row) | {"notes": list(row.notes)}
+        values = row_columns(row) | {"notes": list(row.notes)}
         records.append(values | ({"cycle_values": row.cycle_values} if row.cycle_values and found.measured else {}))
-    steps = [columns_of_step(answer) for answer in found.responses]
+    steps = [response_columns(answer) for answer in found.responses]
     return {
         "name": found.name, "source": found.source, "measured": found.measured, "records": records, "steps": steps,
         "notes": found.notes,
     }  # fmt: skip
 
 
-def settings(rows: Sequence[Row]) -> list[list[Row]]:
+def group_by_setting(rows: Sequence[Row]) -> list[list[Row]]:
     """Return rows with cycles in groups of the same amplitude and frequency, in the order of these."""
-    groups = grouped([row for row in rows if row.loop is not None], _same)
+    groups = group_rows([row for row in rows if row.loop is not None], _same)
     return sorted(groups, key=lambda group: (round(1e3 * group[0].amplitude), group[0].frequency))
 
 
-def grouped(rows: Sequence[Row], alike: Callable[[Row, Row], bool]) -> list[list[Row]]:
+def group_rows(rows: Sequence[Row], alike: Callable[[Row, Row], bool]) -> list[list[Row]]:
     """Return rows in groups, each row with the first group whose first row is like it, in the order they come."""
     groups: list[list[Row]] = []
     for row in rows:

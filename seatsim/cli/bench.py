@@ -11,8 +11,8 @@ from seatsim.cli.terminal import Out, complain, out, pairs, show_progress, warn,
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
-    from seatsim.identification.judging import Further
-    from seatsim.identification.split import Request
+    from seatsim.identification.assessment import PredictionData
+    from seatsim.identification.settings import IdentificationSettings
     from seatsim.recordings.bench_tables import BenchRecord
 
 
@@ -29,7 +29,9 @@ def characterise(
     frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ", help="Frequencies.")] = "",
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
-    from seatsim.characterisation.of_model import characterise_model, settings_of, specimen
+    from seatsim.characterisation.model_tests import characterise_model
+    from seatsim.characterisation.settings import choose_settings
+    from seatsim.characterisation.specimen import load_specimen
     from seatsim.characterisation.summary import characterise as of_records
     from seatsim.cli.outputs.characterisation import WIDEST_TABLE, collect_remarks, make_tables, write_characterisation
     from seatsim.recordings.bench_tables import load_bench
@@ -41,8 +43,8 @@ def characterise(
         records = load_bench(data)
         found = of_records(records, _title(data), str(data))
     else:
-        tested = specimen(model, parameters)
-        found = characterise_model(tested, settings_of(tested, *grid))
+        tested = load_specimen(model, parameters)
+        found = characterise_model(tested, choose_settings(tested, *grid))
     for table in make_tables(found):
         wide(WIDEST_TABLE).print(table)
     warn(collect_remarks(found))
@@ -74,21 +76,23 @@ def identify(
     out_folder: Out = None,
 ) -> None:
     """Fit a damper model to bench records and judge it on records held out; or every model, as a league."""
-    from seatsim.identification.judging import further
-    from seatsim.identification.split import Request
+    from seatsim.identification.assessment import load_prediction_data
+    from seatsim.identification.settings import IdentificationSettings
     from seatsim.recordings.bench_tables import load_bench
 
     fixed = pairs(fix, "--fix", "v_ref=0.005")
-    request = Request(tuple(test or ()), test_fraction, fixed, ignore_temperature, seed)
+    request = IdentificationSettings(tuple(test or ()), test_fraction, fixed, ignore_temperature, seed)
     folder = out_folder or Path("out") / f"identify-{_title(data)}-{model.rpartition(':')[2]}"
-    records, beside = load_bench(data), further(more or [], moving_average, centred)
+    records, beside = load_bench(data), load_prediction_data(more or [], moving_average, centred)
     if model == "all":
         _league(records, request, beside, folder)
     else:
         _identify(records, model, request, beside, folder)
 
 
-def _identify(records: list[BenchRecord], model: str, request: Request, beside: Further, folder: Path) -> None:
+def _identify(
+    records: list[BenchRecord], model: str, request: IdentificationSettings, beside: PredictionData, folder: Path
+) -> None:
     from seatsim.cli.outputs.identification import make_tables, write_identification
     from seatsim.identification.identify import identify_records, predict_records
 
@@ -101,13 +105,13 @@ def _identify(records: list[BenchRecord], model: str, request: Request, beside: 
     wrote(folder, paths)
 
 
-def _league(records: list[BenchRecord], request: Request, beside: Further, folder: Path) -> None:
+def _league(records: list[BenchRecord], request: IdentificationSettings, beside: PredictionData, folder: Path) -> None:
     """Identify every model, print and write the table; exit 1 where one failed."""
     from seatsim.cli.outputs.identification import make_league_table, write_identification, write_league
-    from seatsim.identification.league import league
+    from seatsim.identification.model_benchmark import benchmark_models
 
     with show_progress() as progress:
-        places = league(
+        places = benchmark_models(
             records, request, beside, folder, progress, lambda found: write_identification(found, folder / found.model)
         )
     out.print(make_league_table(places))

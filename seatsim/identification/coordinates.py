@@ -9,61 +9,38 @@ a state run away at currents that the data hardly hold.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
-from functools import cache
-from typing import Any, NamedTuple, get_args, get_type_hints
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.schema.errors import InputError, nearest
+from seatsim.identification.adjustment import RANGE_FIELDS
+from seatsim.identification.current_laws import evaluate_law, interpolate_law, is_current_law
+from seatsim.identification.damper_record import DamperRecord, FieldValue, law_range
+from seatsim.identification.scales import Scales, parse_unit
 from seatsim.schema.fields import bounds, describe
 
 Array = NDArray[np.float64]
 
-SETTINGS = ("law_end",)
-"""Fields that state where a model holds; they are set from the data, not fitted."""
 SPAN = 1e3
 """Factor by which a positive parameter may differ from its start where its bounds do not say."""
-UNIT = re.compile(r"(?<![A-Za-z\[])(N|m|s|A)(?![A-Za-z\]])(?:\^(-?\d+(?:\.\d+)?))?")
-
-
-class Scales(NamedTuple):
-    """Sizes of the data: force [N], stroke [m], speed [m/s], current [A]."""
-
-    force: float
-    stroke: float
-    speed: float
-    current: float
-
-    def size(self, unit: str) -> float:
-        """Return the size that a quantity of this unit has in these data."""
-        powers = dimension(unit)
-        time = self.stroke / self.speed
-        sizes = {"N": self.force, "m": self.stroke, "s": time, "A": self.current}
-        return float(math.prod(sizes[name] ** power for name, power in powers.items()))
-
-
-def dimension(unit: str) -> dict[str, float]:
-    """Return the powers of N, m, s and A in a unit such as `N s/(m A)`."""
-    top, _, bottom = unit.partition("/")
-    powers: dict[str, float] = {}
-    for text, sign in ((top, 1.0), (bottom, -1.0)):
-        for name, power in UNIT.findall(text):
-            powers[name] = powers.get(name, 0.0) + sign * float(power or 1.0)
-    return powers
+DATA_SHARE = 0.1
+"""Share of what its unit is worth in the data that a parameter counts in where it is zero at the start."""
+LEAST_RATIO = 1e-12
+"""Least ratio of a positive parameter to its size, so that its logarithm exists."""
 
 
 class Component(NamedTuple):
     """One component of the vector: where it belongs, and how it is scaled.
 
-    `place` is the index in a tuple field, None for a number. A law's component is its value at the current `at`.
+    `position` is that in a tuple field, None for a number. A law's component is its value at the current `at` in A.
     `size` is what the component counts in, `natural` a tenth of the size that a quantity of its unit has in the data.
+    `low` and `high` bound the component itself, a pure number.
     """
 
     field: str
-    place: int | None
+    position: int | None
     unit: str
     size: float
     natural: float
@@ -75,37 +52,61 @@ class Component(NamedTuple):
     @property
     def name(self) -> str:
         """Name as the parameter files have it."""
-        return self.field if self.place is None else f"{self.field}[{self.place}]"
+        return self.field if self.position is None else f"{self.field}[{self.position}]"
 
     @property
     def label(self) -> str:
         """Name of what the component is: the same, or the value of a law at a current."""
         return self.name if self.at is None else f"{self.field}({self.at:.3g} A)"
 
+    def read(self, value: FieldValue) -> float:
+        """Return the number of a field's value, or the coefficient of a law, that the component belongs to."""
+        number = value[self.position] if isinstance(value, tuple) and self.position is not None else value
+        assert isinstance(number, int | float)
+        return number
+
+    def to_number(self, value: FieldValue) -> float:
+        """Return the component of a field's value."""
+        if self.at is not None:
+            assert isinstance(value, tuple)
+            return float(evaluate_law(value, np.array([self.at]))[0]) / self.size
+        number = self.read(value)
+        return math.log(max(number, LEAST_RATIO * self.size) / self.size) if self.logarithmic else number / self.size
+
+    def to_value(self, number: float) -> float:
+        """Return the parameter in its unit, or the value of the law, that a component stands for."""
+        return self.size * (math.exp(number) if self.logarithmic else float(number))
+
 
 class Coordinates:
     """The free parameters of a record class, between the record and a vector of shape (P,).
 
-    start: a record of the class, from which sizes are taken; fixed: fields that stay as they are in it; levels: how
-    many currents the data hold, which a law's degree stays below, None for any number.
+    start: a record of the class, from which sizes are taken. fixed: fields that stay as they are in it. levels: how
+    many currents the data hold, which a law's degree stays below, None for any number. `end` is the current in A up to
+    which laws are counted; `low` and `high` bound the vector.
     """
 
-    def __init__(self, start: Any, scales: Scales, fixed: Sequence[str] = (), levels: int | None = None) -> None:
+    def __init__(
+        self, start: DamperRecord, scales: Scales, fixed: Sequence[str] = (), levels: int | None = None
+    ) -> None:
         self.start, self.levels = start, levels
-        self.cls: Any = type(start)
-        self.end = float(getattr(start, "law_end", scales.current) or 1.0)
+        self.cls = type(start)
+        self.fields: Mapping[str, FieldValue] = start._asdict()
+        self.end = law_range(self.fields, scales.current) or 1.0
+        self.bounds = {name: bounds(self.cls, name) for name in self.fields}
         self.components: list[Component] = []
-        self.bounds = {specification.name: bounds(self.cls, specification.name) for specification in describe(self.cls)}
         for specification in describe(self.cls):
-            value = getattr(start, specification.name)
-            moot = scales.current == 0.0 and dimension(specification.unit).get("A", 0.0) != 0.0
-            if specification.name not in (*SETTINGS, *fixed) and not moot and not isinstance(value, int | str):
-                self.components += self._of_field(specification.name, specification.unit, value, scales)
+            value = self.fields[specification.name]
+            # Without any current in the data, what multiplies it has no influence at all.
+            moot = scales.current == 0.0 and parse_unit(specification.unit).get("A", 0.0) != 0.0
+            kept = specification.name in (*RANGE_FIELDS, *fixed) or moot
+            if not kept and not isinstance(value, int | str):
+                natural = DATA_SHARE * scales.size(specification.unit)
+                self.components += self._of_field(specification.name, specification.unit, value, natural)
         self.low = np.array([c.low for c in self.components])
         self.high = np.array([c.high for c in self.components])
 
-    def _of_field(self, name: str, unit: str, value: Any, scales: Scales) -> list[Component]:
-        natural = 0.1 * scales.size(unit)
+    def _of_field(self, name: str, unit: str, value: float | tuple[float, ...], natural: float) -> list[Component]:
         if isinstance(value, tuple):
             return self._of_tuple(name, unit, value, natural)
         low, high = self.bounds[name]
@@ -115,108 +116,42 @@ class Coordinates:
             return [Component(name, None, unit, size, natural, True, *ends, None)]
         return [Component(name, None, unit, size, natural, False, low / size, high / size, None)]
 
-    def _of_tuple(self, name: str, unit: str, value: Any, natural: float) -> list[Component]:
-        if not is_law(self.cls, name):
+    def _of_tuple(self, name: str, unit: str, value: tuple[float, ...], natural: float) -> list[Component]:
+        if not is_current_law(self.cls, name):
             size = float(np.max(np.abs(value))) or natural
             return [
                 Component(name, k, unit, size, natural, False, -math.inf, math.inf, None) for k in range(len(value))
             ]
         at = np.linspace(0.0, self.end, min(len(value), self.levels or len(value)))
-        values = law_values(value, at)
+        values = evaluate_law(value, at)
         size = float(np.max(np.abs(values))) or natural
         low = 0.0 if np.min(values) >= 0.0 < np.max(values) else -math.inf
         return [Component(name, k, unit, size, natural, False, low, math.inf, float(a)) for k, a in enumerate(at)]
 
-    def vector(self, record: Any) -> Array:
-        """Return the vector of a record."""
-        values = []
-        for c in self.components:
-            value = getattr(record, c.field)
-            if c.at is not None:
-                value = float(law_values(value, np.array([c.at]))[0])
-            elif c.place is not None:
-                value = value[c.place]
-            values.append(math.log(max(value, 1e-12 * c.size) / c.size) if c.logarithmic else value / c.size)
+    def to_vector(self, record: DamperRecord) -> Array:
+        """Return the vector of a record, shape (P,), moved into its bounds."""
+        fields = record._asdict()
+        values = [c.to_number(fields[c.field]) for c in self.components]
         return np.asarray(np.clip(values, self.low, self.high), dtype=float)
 
-    def record(self, vector: Array) -> Any:
-        """Return the record of a vector."""
-        changed: dict[str, Any] = {}
+    def to_record(self, vector: Array) -> DamperRecord:
+        """Return the record of a vector of shape (P,); numbers are moved into the bounds of their fields."""
+        changed: dict[str, FieldValue] = {}
+        tuples: dict[str, list[float]] = {}
         for c, number in zip(self.components, vector, strict=True):
-            value = c.size * (math.exp(number) if c.logarithmic else float(number))
-            if c.place is None:
+            value = c.to_value(number)
+            if c.position is None:
                 low, high = self.bounds[c.field]
                 changed[c.field] = min(max(value, low), high)
             else:
-                changed.setdefault(c.field, []).append(value)
-        for name, values in changed.items():
-            if isinstance(values, list):
-                law = is_law(self.cls, name)
-                rest = [0.0] * (len(getattr(self.start, name)) - len(values))
-                changed[name] = (*law_coefficients(np.array(values), self.end), *rest) if law else tuple(values)
+                tuples.setdefault(c.field, []).append(value)
+        changed |= {name: self._to_tuple(name, values) for name, values in tuples.items()}
         return self.start._replace(**changed)
 
-
-@cache
-def is_law(cls: Any, name: str) -> bool:
-    """Whether a tuple field holds the coefficients of a polynomial in the current."""
-    hint = get_type_hints(cls, include_extras=True)[name]
-    parts = get_args(get_args(hint)[0])
-    inner = [str(getattr(get_args(part)[1], "json_schema_extra", {}).get("unit", "")) for part in parts]
-    return len(inner) > 1 and inner[:2] == ["", "1/A"]
-
-
-def law_values(coefficients: Any, currents: Array) -> Array:
-    """Return a law's values at some currents."""
-    return np.asarray(np.polynomial.polynomial.polyval(currents, np.array(coefficients)), dtype=float)
-
-
-def law_coefficients(values: Array, end: float) -> list[float]:
-    """Return the coefficients of the law that has these values at its nodes."""
-    count = len(values)
-    powers = np.vander(np.linspace(0.0, 1.0, count), increasing=True)
-    return [float(c / end**k) for k, c in enumerate(np.linalg.solve(powers, values))]
-
-
-def scaled(record: Any, force: float, end: float) -> Any:
-    """Return a record for another damper: its forces times `force`, its laws stretched to the current `end`."""
-    cls: Any = type(record)
-    stretch = end / float(getattr(record, "law_end", end) or end)
-    changed: dict[str, Any] = {"law_end": end} if hasattr(record, "law_end") else {}
-    for specification in describe(cls):
-        value = getattr(record, specification.name)
-        powers = dimension(specification.unit)
-        factor = force ** powers.get("N", 0.0)
-        if specification.name in SETTINGS or isinstance(value, int | str):
-            continue
-        if isinstance(value, tuple):
-            law = is_law(cls, specification.name)
-            changed[specification.name] = tuple(factor * c / (stretch**k if law else 1.0) for k, c in enumerate(value))
-        else:
-            changed[specification.name] = value * factor * stretch ** powers.get("A", 0.0)
-    return record._replace(**changed)
-
-
-def fixed(record: Any, values: Mapping[str, float]) -> Any:
-    """Return a record with some numbers as the user fixes them.
-
-    Raises:
-        InputError: a name is no number of the model, or its value is none or out of bounds.
-    """
-    known = numbers_of(type(record))
-    for name, value in values.items():
-        if name not in known:
-            raise InputError(f"--fix {name}: no such number{nearest(name, known)}; permitted: {', '.join(known)}")
-        low, high = bounds(type(record), name)
-        whole = isinstance(getattr(record, name), int)
-        number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-        if not number or not low <= value <= high or (whole and value != int(value)):
-            kind = "a whole number" if whole else "a number"
-            raise InputError(f"--fix {name}={value} is not permitted; it must be {kind} from {low:g} to {high:g}")
-        record = record._replace(**{name: int(value) if whole else float(value)})
-    return record
-
-
-def numbers_of(cls: type) -> list[str]:
-    """Return the names of the numbers of a record class, those that can be fixed."""
-    return [specification.name for specification in describe(cls) if isinstance(specification.default, int | float)]
+    def _to_tuple(self, name: str, values: list[float]) -> tuple[float, ...]:
+        """Return a tuple field from its components; coefficients that a law of few values lacks are zero."""
+        if not is_current_law(self.cls, name):
+            return tuple(values)
+        before = self.fields[name]
+        assert isinstance(before, tuple)
+        return (*interpolate_law(np.array(values), self.end), *[0.0] * (len(before) - len(values)))

@@ -3,37 +3,61 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatsim.dampers.base import DamperSpecification
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.simulation.damper_bench import centring
 
+Array = NDArray[np.float64]
+
 BEYOND = 1.05
 """Factor from which a held-out record counts as beyond what was fitted."""
 POWER = (0.05, 0.95)
 """Shares of the power of the velocity below the lowest and the highest frequency that count as covered."""
+SPEED_CLASSES = 10
+"""Classes of speed whose shares of time are counted."""
+SAME_CURRENT = 4
+"""Decimals of a current in A that tell two steady currents apart."""
 
 
-def coverage(records: Sequence[BenchRecord]) -> dict[str, Any]:
-    """Return the ranges that the records visit, in SI units, degC and Hz, and the currents that were held."""
-    steady = sorted({round(record.mean_current, 4) for record in records if np.ptp(record.current) == 0.0})
-    warmth = [record.temperature for record in records if record.temperature is not None]
+class Coverage(NamedTuple):
+    """The ranges that records visit, each with its least and greatest value, in SI units, degC and Hz.
+
+    steady_currents: currents that were held over a record. temperature: None where it was not recorded. frequency:
+    where nine tenths of the power of the velocity lie. speeds: share of time by the upper end of each tenth of the
+    largest speed.
+    """
+
+    displacement: list[float]
+    velocity: list[float]
+    current: list[float]
+    steady_currents: list[float]
+    temperature: list[float] | None
+    frequency: list[float]
+    speeds: dict[str, float]
+
+
+def measure_coverage(records: Sequence[BenchRecord]) -> Coverage:
+    """Return the ranges that the records visit."""
+    steady = {round(record.mean_current, SAME_CURRENT) for record in records if np.ptp(record.current) == 0.0}
+    temperatures = [record.temperature for record in records if record.temperature is not None]
     bands = [_band(record) for record in records]
-    return {
-        "displacement": _range([record.displacement for record in records]),
-        "velocity": _range([record.velocity for record in records]),
-        "current": _range([record.current for record in records]),
-        "steady_currents": steady,
-        "temperature": _range(warmth) if warmth else None,
-        "frequency": [min(low for low, _ in bands), max(high for _, high in bands)],
-        "speeds": _shares(records),
-    }
+    return Coverage(
+        displacement=_range([record.displacement for record in records]),
+        velocity=_range([record.velocity for record in records]),
+        current=_range([record.current for record in records]),
+        steady_currents=sorted(steady),
+        temperature=_range(temperatures) if temperatures else None,
+        frequency=[min(low for low, _ in bands), max(high for _, high in bands)],
+        speeds=_shares_of_time(records),
+    )
 
 
-def remarks(
+def note_limits(
     specification: DamperSpecification, train: Sequence[BenchRecord], test: Sequence[BenchRecord], origin: float
 ) -> list[str]:
     """Return what the user should know of the data: motion off centre, tests outside what was fitted."""
@@ -42,14 +66,21 @@ def remarks(
         off = next((text for r in train if (text := centring(r.displacement - origin, r.velocity))), "")
         notes += [off] if off else []
     for name, unit in (("velocity", "m/s"), ("current", "A"), ("displacement", "m")):
-        seen = max(float(np.max(np.abs(getattr(record, name)))) for record in train)
-        asked = max((float(np.max(np.abs(getattr(record, name)))) for record in test), default=0.0)
-        if asked > BEYOND * seen:
-            notes.append(f"held-out records reach {asked:.3g} {unit} of {name}, the fitted ones {seen:.3g} {unit} only")
+        fitted = max(_largest(record, name) for record in train)
+        tested = max((_largest(record, name) for record in test), default=0.0)
+        if tested > BEYOND * fitted:
+            notes.append(
+                f"held-out records reach {tested:.3g} {unit} of {name}, the fitted ones {fitted:.3g} {unit} only"
+            )
     return notes
 
 
-def _range(arrays: Sequence[Any]) -> list[float]:
+def _largest(record: BenchRecord, name: str) -> float:
+    """Return the largest magnitude of one of a record's quantities."""
+    return float(np.max(np.abs(record._asdict()[name])))
+
+
+def _range(arrays: Sequence[Array]) -> list[float]:
     return [min(float(np.min(a)) for a in arrays), max(float(np.max(a)) for a in arrays)]
 
 
@@ -61,9 +92,8 @@ def _band(record: BenchRecord) -> tuple[float, float]:
     return low, high
 
 
-def _shares(records: Sequence[BenchRecord]) -> dict[str, float]:
+def _shares_of_time(records: Sequence[BenchRecord]) -> dict[str, float]:
     """Return the share of time at each tenth of the largest speed."""
     speed = np.concatenate([np.abs(record.velocity) for record in records])
-    top = float(np.max(speed))
-    counts, edges = np.histogram(speed, 10, (0.0, top))
+    counts, edges = np.histogram(speed, SPEED_CLASSES, (0.0, float(np.max(speed))))
     return {f"{edge:.3g}": float(count / len(speed)) for edge, count in zip(edges[1:], counts, strict=True)}

@@ -1,28 +1,41 @@
-"""Identification of a damper model: split, search, refine, judge on what took no part in the fit."""
+"""Identification of a damper model: split, search, refine, assess on what took no part in the fit."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from seatsim.identification.coverage import coverage, remarks
-from seatsim.identification.figures import Figures, averaged
-from seatsim.identification.information import Information, information
-from seatsim.identification.judging import Further, Judged, foretold, further, judge
-from seatsim.identification.posing import origin_of, posed
-from seatsim.identification.predict import Bench, Drive, predicted
-from seatsim.identification.problem import Problem
-from seatsim.identification.search import Tell, best, silent
-from seatsim.identification.split import Request, split
+from seatsim.identification.agreement import Agreement, mean_agreement
+from seatsim.identification.assessment import (
+    Assessment,
+    PredictionData,
+    assess_fit,
+    assess_predictions,
+    load_prediction_data,
+)
+from seatsim.identification.coverage import Coverage, measure_coverage, note_limits
+from seatsim.identification.damper_record import find_model, find_specification
+from seatsim.identification.information import Information, compute_information
+from seatsim.identification.prediction import BenchInputs, BenchModel, predict_force
+from seatsim.identification.problem import IdentificationProblem
+from seatsim.identification.problem_statement import find_origin, state_problem
+from seatsim.identification.search import Progress, ignore_progress, search_parameters
+from seatsim.identification.settings import IdentificationSettings
+from seatsim.identification.split import split_records
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 from seatsim.schema.errors import RunError
-from seatsim.schema.registry import find, specification_of
 
-EVERYTHING = Request()
+Array = NDArray[np.float64]
+
+DEFAULTS = IdentificationSettings()
+TIMED_RUNS = 3
+"""Runs of which the fastest counts: others only add what else the processor did."""
 
 
 class Identification(NamedTuple):
@@ -34,74 +47,97 @@ class Identification(NamedTuple):
     """
 
     model: str
-    bench: Bench
+    bench: BenchModel
     origin: float
-    judged: list[Judged]
+    assessments: list[Assessment]
     information: Information
     bic: float
     seconds: float
     ns_per_step: float
     warm: bool
     commanded: bool
-    coverage: dict[str, Any]
+    coverage: Coverage
     notes: list[str]
 
-    def mean(self, part: str) -> Figures | None:
-        """Return the mean figures over the records of a part (train, test, predicted), None where it has none."""
-        each = [judged.figures for judged in self.judged if judged.part == part]
-        return averaged(each) if each else None
+    def mean(self, part: str) -> Agreement | None:
+        """Return the mean agreement over the records of a part (train, test, predicted), None where it has none."""
+        each = [assessment.agreement for assessment in self.assessments if assessment.part == part]
+        return mean_agreement(each) if each else None
 
 
-def identify(data: str | Path, model: str, request: Request = EVERYTHING, progress: Tell = silent) -> Identification:
+def identify(
+    data: str | Path,
+    model: str,
+    settings: IdentificationSettings = DEFAULTS,
+    progress: Progress = ignore_progress,
+) -> Identification:
     """Fit a damper model to the bench records of a file or folder.
 
     Minimised is the mean over records of mean (y - s)^2 / std(y)^2, with the measured force y and the simulated one s:
-    a global search on short stretches, then least squares on all training records. tell: called with what is being
+    a global search on short stretches, then least squares on all training records. progress: called with what is being
     done.
 
     Raises:
-        InputError: the data, the model or the request is not as it must be.
+        InputError: the data, the model or the settings are not as they must be.
         RunError: no parameters were found with which the model's state stays finite.
     """
-    return identify_records(load_bench(data), model, request, progress)
+    return identify_records(load_bench(data), model, settings, progress)
 
 
 def identify_records(
-    records: Sequence[BenchRecord], model: str, request: Request = EVERYTHING, progress: Tell = silent
+    records: Sequence[BenchRecord],
+    model: str,
+    settings: IdentificationSettings = DEFAULTS,
+    progress: Progress = ignore_progress,
 ) -> Identification:
     """Fit a damper model to bench records; see `identify`."""
     began = time.perf_counter()
-    parts, cls = split(records, request), find("damper", model)
-    origin = origin_of(parts.fitted)
-    problem, short = posed(parts.fitted, cls, origin, request)
-    try:
-        vector = best(problem, short, request.seed, progress)
-        progress("judging the parameters")
-        known = information(problem, vector)
-    except (ArithmeticError, np.linalg.LinAlgError) as error:
-        raise RunError(f"{model}: the fit failed: {error}; hold a parameter by --fix") from error
-    bench = problem.bench(vector)
-    judged = judge(bench, parts, origin)
-    away = [each.record.name for each in judged if each.part == "train" and not each.complete]
-    if away:
-        raise RunError(f"{model}: no parameters were found with which its state stays finite on {', '.join(away)}")
-    tests = [each.record for each in judged if each.part == "test"]
-    notes = [*_notes(problem, vector, known), *remarks(specification_of(cls), parts.fitted, tests, origin)]
-    notes += [*_of_predictions(judged), *unused_columns(records)]
+    parts, cls = split_records(records, settings), find_model(model)
+    origin = find_origin(parts.fitted)
+    problem, short = state_problem(parts.fitted, cls, origin, settings)
+    vector, known = _solve(model, problem, short, settings.seed, progress)
+    bench = problem.to_bench(vector)
+    assessments = assess_fit(bench, parts, origin)
+    diverged = [each.record.name for each in assessments if each.part == "train" and not each.complete]
+    if diverged:
+        raise RunError(f"{model}: no parameters were found with which its state stays finite on {', '.join(diverged)}")
+    tests = [each.record for each in assessments if each.part == "test"]
+    notes = [
+        *_note_parameters(problem, vector, known),
+        *note_limits(find_specification(cls), parts.fitted, tests, origin),
+    ]
     return Identification(
         model=model,
         bench=bench,
         origin=origin,
-        judged=judged,
+        assessments=assessments,
         information=known,
         bic=known.bic(problem.cost(vector)),
         seconds=time.perf_counter() - began,
-        ns_per_step=_speed(bench, problem.drives),
+        ns_per_step=_time_step(bench, problem.inputs),
         warm=problem.reference is not None,
-        commanded=problem.coil,
-        coverage=coverage(parts.fitted),
-        notes=notes,
+        commanded=problem.fits_coil,
+        coverage=measure_coverage(parts.fitted),
+        notes=[*notes, *_note_divergence(assessments), *unused_columns(records)],
     )
+
+
+def _solve(
+    model: str, problem: IdentificationProblem, short: IdentificationProblem, seed: int, progress: Progress
+) -> tuple[Array, Information]:
+    """Return the best vector, shape (P,), and what the data say of it.
+
+    Raises:
+        RunError: the numbers left all bounds, or no step exists.
+    """
+    try:
+        # Threads suffice: the compiled simulation does not hold Python's lock.
+        with ThreadPoolExecutor() as executor:
+            vector = search_parameters(problem, short, seed, executor, progress)
+            progress("assessing the parameters")
+            return vector, compute_information(problem, vector, executor)
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        raise RunError(f"{model}: the fit failed: {error}; hold a parameter by --fix") from error
 
 
 def predict(
@@ -115,38 +151,38 @@ def predict(
     Raises:
         InputError: the data or the moving average are not as they must be.
     """
-    return predict_records(found, further([data], moving_average, centred))
+    return predict_records(found, load_prediction_data([data], moving_average, centred))
 
 
-def predict_records(found: Identification, more: Further) -> Identification:
-    """Return an identification with its predictions of further records; see `predict`."""
-    judged = foretold(found.bench, found.origin, more)
-    return found._replace(judged=[*found.judged, *judged], notes=[*found.notes, *_of_predictions(judged)])
+def predict_records(found: Identification, data: PredictionData) -> Identification:
+    """Return an identification with its predictions of more records; see `predict`."""
+    more = assess_predictions(found.bench, found.origin, data)
+    return found._replace(assessments=[*found.assessments, *more], notes=[*found.notes, *_note_divergence(more)])
 
 
-def _notes(problem: Problem, vector: Any, known: Information) -> Iterator[str]:
+def _note_parameters(problem: IdentificationProblem, vector: Array, known: Information) -> Iterator[str]:
     """Yield what is to be known of the parameters."""
     unknown = [estimate.name for estimate in known.estimates if not estimate.identified]
     if unknown:
         yield f"the data do not identify {', '.join(unknown)}"
-    ends = problem.at_ends(vector)
+    ends = problem.labels_at_bounds(vector)
     if ends:
         yield f"at the end of its range: {', '.join(ends)}"
 
 
-def _of_predictions(judged: Sequence[Judged]) -> Iterator[str]:
-    """Yield what is to be known of predictions."""
-    away = [f"{each.record.name} ({each.part})" for each in judged if not each.complete]
-    if away:
-        yield f"the state runs away on {', '.join(away)}: the force counts as 0 N from there"
+def _note_divergence(assessments: Sequence[Assessment]) -> Iterator[str]:
+    """Yield on which records the state ran away."""
+    diverged = [f"{each.record.name} ({each.part})" for each in assessments if not each.complete]
+    if diverged:
+        yield f"the state runs away on {', '.join(diverged)}: the force counts as 0 N from there"
 
 
-def _speed(bench: Bench, drives: Sequence[Drive]) -> float:
-    """Return the nanoseconds of a step, the least of three runs."""
+def _time_step(bench: BenchModel, inputs: Sequence[BenchInputs]) -> float:
+    """Return the nanoseconds of a step of the simulation."""
     times = []
-    for _ in range(3):
+    for _ in range(TIMED_RUNS):
         began = time.perf_counter()
-        for each in drives:
-            predicted(bench, each)
+        for each in inputs:
+            predict_force(bench, each)
         times.append(time.perf_counter() - began)
-    return 1e9 * min(times) / sum(len(each.force) for each in drives)
+    return 1e9 * min(times) / sum(len(each.force) for each in inputs)

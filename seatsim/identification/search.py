@@ -3,98 +3,143 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.identification.coordinates import scaled
-from seatsim.identification.predict import Bench, predicted
-from seatsim.identification.problem import PARTS, RATE, Problem, jacobian
+from seatsim.identification.adjustment import rescale_damper
+from seatsim.identification.prediction import BenchModel, predict_force
+from seatsim.identification.problem import (
+    COIL_RATE,
+    MOST_PARTS_IN_SEARCH,
+    IdentificationProblem,
+    compute_jacobian,
+)
 from seatsim.rig.temperature import TemperatureFactors
 
 Array = NDArray[np.float64]
-Tell = Callable[[str], None]
+Progress = Callable[[str], None]
+"""Called with what is being done."""
 
-SPREAD = 0.3
+INITIAL_DEVIATION = 0.3
 """Standard deviation of the first generation, in components of order one."""
 PER_PARAMETER = 60
 """Simulations of the global search for every parameter."""
-SHORTLY, FULLY = 15, 60
-"""Most evaluations of least squares on short stretches and on whole records."""
+EVALUATIONS_ON_STRETCHES, EVALUATIONS_ON_RECORDS = 15, 60
+"""Most evaluations of least squares on short stretches, which only choose a start, and on whole records."""
+INSIDE = 1e-9
+"""Distance from the bounds, in components of order one, at which a descent starts: on them it could not leave."""
 
 
-def silent(text: str) -> None:
-    """Tell nothing."""
+class Minimum(NamedTuple):
+    """Where least squares ended: the vector, shape (P,), and its cost."""
+
+    vector: Array
+    cost: float
 
 
-def best(problem: Problem, short: Problem, seed: int, progress: Tell = silent) -> Array:
+def ignore_progress(text: str) -> None:
+    """Tell nobody what is being done."""
+
+
+def search_parameters(
+    problem: IdentificationProblem,
+    short: IdentificationProblem,
+    seed: int,
+    executor: Executor,
+    progress: Progress = ignore_progress,
+) -> Array:
     """Return the best vector of a problem, shape (P,), found from `short` stretches of its records.
 
     Least squares from the defaults, from the defaults with their forces scaled to the measured ones, and from the end
     of a global search; what comes out best on the stretches is refined on the records. A parameter without any
     influence keeps its default.
     """
-    plain = problem.vector(Bench(problem.coordinates.start, TemperatureFactors(), RATE, RATE))
-    first = min((refined(short, start, progress, SHORTLY) for start in (plain, _forced(short, plain))), key=_cost)
-    near = refined(short, started(short, first[0], seed, PER_PARAMETER * len(plain), progress), progress, SHORTLY)
-    found = refined(problem, min((first, near), key=_cost)[0], progress, FULLY)[0]
-    slopes = jacobian(short, found, short.residuals(found))
-    return np.where(np.any(slopes != 0.0, axis=0), found, plain)
+
+    def descend(start: Array) -> Minimum:
+        return refine(short, start, executor, progress, EVALUATIONS_ON_STRETCHES)
+
+    default = problem.to_vector(BenchModel(problem.coordinates.start, TemperatureFactors(), COIL_RATE, COIL_RATE))
+    first = min((descend(start) for start in (default, _match_force(short, default))), key=_cost)
+    evaluations = PER_PARAMETER * len(default)
+    near = descend(search_globally(short, first.vector, seed, evaluations, executor, progress))
+    start = min((first, near), key=_cost).vector
+    found = refine(problem, start, executor, progress, EVALUATIONS_ON_RECORDS).vector
+    jacobian = compute_jacobian(short, found, short.residuals(found), executor)
+    return np.where(np.any(jacobian != 0.0, axis=0), found, default)
 
 
-def _cost(end: tuple[Array, float]) -> float:
-    return end[1]
+def _cost(end: Minimum) -> float:
+    return end.cost
 
 
-def _forced(problem: Problem, vector: Array) -> Array:
+def _match_force(problem: IdentificationProblem, vector: Array) -> Array:
     """Return the vector with the forces of its damper scaled to the measured ones."""
-    bench = problem.bench(vector)
-    ours = np.concatenate([predicted(bench, drive, PARTS) for drive in problem.drives])
-    theirs = np.concatenate([drive.force for drive in problem.drives])
+    bench = problem.to_bench(vector)
+    ours = np.concatenate([predict_force(bench, inputs, MOST_PARTS_IN_SEARCH) for inputs in problem.inputs])
+    theirs = np.concatenate([inputs.force for inputs in problem.inputs])
     ratio = float(np.std(theirs) / np.std(ours)) if np.all(np.isfinite(ours)) and np.std(ours) > 0.0 else 1.0
-    return problem.vector(bench._replace(damper=scaled(bench.damper, ratio, problem.coordinates.end)))
+    return problem.to_vector(bench._replace(damper=rescale_damper(bench.damper, ratio, problem.coordinates.end)))
 
 
-def started(problem: Problem, start: Array, seed: int, evaluations: int, progress: Tell = silent) -> Array:
-    """Return the best vector of a CMA-ES from `start` (Hansen 2016, arXiv:1604.00772)."""
+def search_globally(
+    problem: IdentificationProblem,
+    start: Array,
+    seed: int,
+    evaluations: int,
+    executor: Executor,
+    progress: Progress = ignore_progress,
+) -> Array:
+    """Return the best vector, shape (P,), of a CMA-ES from `start` (Hansen 2016, arXiv:1604.00772)."""
     import cma
 
     problem.cost(start)  # compiles, which threads must not do at once
     low, high = problem.bounds
     options = {
-        "seed": seed + 1,
+        "seed": seed + 1,  # 0 would draw from the clock
         "verbose": -9,
         "bounds": [list(low), list(high)],
         "maxfevals": evaluations,
         "tolfun": 1e-7,
     }
-    strategy = cma.CMAEvolutionStrategy(list(start), SPREAD, options)
-    with ThreadPoolExecutor() as pool:
-        while not strategy.stop():
-            found = strategy.ask()
-            strategy.progress(found, list(pool.map(problem.cost, map(np.asarray, found))))
-            progress(f"searching, error {100.0 * strategy.best.f**0.5:.1f} %")
+    strategy = cma.CMAEvolutionStrategy(list(start), INITIAL_DEVIATION, options)
+    while not strategy.stop():
+        candidates = strategy.ask()
+        strategy.tell(candidates, list(executor.map(problem.cost, map(np.asarray, candidates))))
+        progress(f"searching, error {100.0 * strategy.best.f**0.5:.1f} %")
     return np.asarray(strategy.best.x, dtype=float)
 
 
-def refined(problem: Problem, start: Array, progress: Tell = silent, most: int = FULLY) -> tuple[Array, float]:
-    """Return the vector of least squares near `start` and its cost (trust region, Branch et al. 1999)."""
+def refine(
+    problem: IdentificationProblem,
+    start: Array,
+    executor: Executor,
+    progress: Progress = ignore_progress,
+    most: int = EVALUATIONS_ON_RECORDS,
+) -> Minimum:
+    """Return where least squares from `start` end after at most so many evaluations (Branch et al. 1999)."""
     from scipy.optimize import least_squares
 
+    # The solver asks for the Jacobian where it has just evaluated: the residuals there are kept.
     last: dict[bytes, Array] = {}
 
-    def value(vector: Array) -> Array:
+    def evaluate(vector: Array) -> Array:
         last.clear()
         residuals = last[vector.tobytes()] = problem.residuals(vector)
-        progress(f"fitting, error {100.0 * (np.sum(residuals**2) / len(problem.drives)) ** 0.5:.2f} %")
+        progress(f"fitting, error {100.0 * (np.sum(residuals**2) / len(problem.inputs)) ** 0.5:.2f} %")
         return residuals
 
-    def slopes(vector: Array) -> Array:
+    def differentiate(vector: Array) -> Array:
         key = vector.tobytes()
-        return jacobian(problem, vector, last[key] if key in last else problem.residuals(vector))
+        residuals = last[key] if key in last else problem.residuals(vector)
+        return compute_jacobian(problem, vector, residuals, executor)
 
     low, high = problem.bounds
-    inside = np.clip(start, low + 1e-9, high - 1e-9)
-    found = least_squares(value, inside, slopes, bounds=(low, high), x_scale="jac", ftol=1e-6, xtol=1e-6, max_nfev=most)
-    return np.asarray(found.x), 2.0 * float(found.cost) / len(problem.drives)
+    found = least_squares(
+        evaluate, np.clip(start, low + INSIDE, high - INSIDE), differentiate, bounds=(low, high), x_scale="jac",
+        ftol=1e-6, xtol=1e-6, max_nfev=most,
+    )  # fmt: skip
+    # The solver's cost is half the sum of squares.
+    return Minimum(np.asarray(found.x), 2.0 * float(found.cost) / len(problem.inputs))

@@ -1,28 +1,14 @@
-"""What a fit may see: records, and parts of records, that are held out to judge it."""
+"""What a fit may see: records, and parts of records, that are held out to assess it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from fnmatch import fnmatch
 from typing import NamedTuple
 
+from seatsim.identification.settings import IdentificationSettings
 from seatsim.recordings.bench_tables import LEAST_ROWS, BenchRecord, stem
 from seatsim.schema.errors import InputError, nearest
-
-
-class Request(NamedTuple):
-    """What is asked of a fit.
-
-    test: globs of the files to hold out; test_fraction: share of every other record, its last part, to hold out; fix:
-    numbers of the model that keep a value, by name; ignore_temperature: whether the recorded temperature is no input;
-    seed: of the global search.
-    """
-
-    test: Sequence[str] = ()
-    test_fraction: float = 0.0
-    fix: Mapping[str, float] = {}
-    ignore_temperature: bool = False
-    seed: int = 0
 
 
 class Split(NamedTuple):
@@ -33,30 +19,35 @@ class Split(NamedTuple):
     held_out: list[BenchRecord]
 
 
-def split(records: Sequence[BenchRecord], request: Request) -> Split:
+def split_records(records: Sequence[BenchRecord], settings: IdentificationSettings) -> Split:
     """Return which records, and which rows of them, are fitted to.
 
     Raises:
         InputError: a pattern matches nothing, nothing is left, or the fraction is out of bounds.
     """
-    share = request.test_fraction
+    share = settings.test_fraction
     if not 0.0 <= share < 1.0:
         raise InputError(f"--test-fraction {share:g} is not permitted; it must be at least 0 and below 1, such as 0.3")
-    held_out = matching(records, request.test)
-    train = [record for record in records if not _among(record, held_out)]
+    held_out = match_records(records, settings.test)
+    train = [record for record in records if not _is_among(record, held_out)]
     if not train:
-        raise InputError(f"--test {' '.join(request.test)} holds out every record; leave some to fit to")
+        raise InputError(f"--test {' '.join(settings.test)} holds out every record; leave some to fit to")
     fitted = [record.part(0, round((1.0 - share) * len(record.force))) for record in train]
     for record, part in zip(train, fitted, strict=True):
-        least = min(len(part.force), len(record.force) - len(part.force) if share else len(part.force))
-        if least < LEAST_ROWS:
-            raise InputError(
-                f"--test-fraction {share:g} cuts off {least} rows of '{record.name}'; a part has at least {LEAST_ROWS}"
-            )
+        _check_length(record, part, share)
     return Split(train, fitted, held_out)
 
 
-def matching(records: Sequence[BenchRecord], patterns: Sequence[str]) -> list[BenchRecord]:
+def _check_length(record: BenchRecord, fitted: BenchRecord, share: float) -> None:
+    """Refuse a fraction that leaves too few rows on either side of the cut."""
+    least = min(len(fitted.force), len(record.force) - len(fitted.force) if share else len(fitted.force))
+    if least < LEAST_ROWS:
+        raise InputError(
+            f"--test-fraction {share:g} cuts off {least} rows of '{record.name}'; a part has at least {LEAST_ROWS}"
+        )
+
+
+def match_records(records: Sequence[BenchRecord], patterns: Sequence[str]) -> list[BenchRecord]:
     """Return the records whose file, or whose own name, matches one of the globs.
 
     Raises:
@@ -69,9 +60,10 @@ def matching(records: Sequence[BenchRecord], patterns: Sequence[str]) -> list[Be
             known = list(dict.fromkeys(stem(record.file) for record in records))
             hint = nearest(pattern, known)
             raise InputError(f"--test {pattern} matches no record{hint}; there are {', '.join(known)}")
-        chosen += [record for record in found if not _among(record, chosen)]
+        chosen += [record for record in found if not _is_among(record, chosen)]
     return chosen
 
 
-def _among(record: BenchRecord, records: Iterable[BenchRecord]) -> bool:
+def _is_among(record: BenchRecord, records: Iterable[BenchRecord]) -> bool:
+    # By identity: records hold arrays, which have no single truth value when they are compared.
     return any(record is other for other in records)

@@ -9,7 +9,9 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from typer.testing import CliRunner
 
-from seatsim.characterisation.of_model import characterise_model, settings_of, specimen
+from seatsim.characterisation.model_tests import characterise_model
+from seatsim.characterisation.settings import choose_settings
+from seatsim.characterisation.specimen import load_specimen
 from seatsim.characterisation.summary import characterise
 from seatsim.cli.app import app
 from seatsim.cli.outputs.characterisation import make_tables
@@ -64,13 +66,13 @@ def test_parameters_of_a_file_and_its_coil(tmp_path):
 damper: {model: original_bingham, parameters: {f0: 25.0}}
 actuator: {rate: 50, max_current: 0.8}
 """)
-    tested = specimen(None, path)
+    tested = load_specimen(None, path)
     assert tested.damper.f0 == 25.0 and tested.coil.rate == 50
-    found = characterise_model(tested, settings_of(tested, "0,0.8", "", "0.005", "1"))
+    found = characterise_model(tested, choose_settings(tested, "0,0.8", "", "0.005", "1"))
     assert [round(row.offset) for row in found.rows] == [25, 25]
     assert found.responses[0].current_t95 == pytest.approx(math.log(20.0) / 50.0, rel=0.01)
     path.write_text("model: original_bingham\nparameters: {f0: 25.0}\n")
-    assert specimen("original_bingham", path).damper.f0 == 25.0
+    assert load_specimen("original_bingham", path).damper.f0 == 25.0
 
 
 @pytest.mark.parametrize(
@@ -88,7 +90,7 @@ def test_bad_parameters_are_refused_at_their_place(text, problem, tmp_path):
     path = tmp_path / "damper.yaml"
     path.write_text(text + "\n")
     with pytest.raises(InputError, match=r"damper\.yaml, line \d") as error:
-        specimen("original_bingham" if problem.startswith("not") else None, path)
+        load_specimen("original_bingham" if problem.startswith("not") else None, path)
     assert problem in str(error.value)
 
 
@@ -113,12 +115,12 @@ def test_bad_input_is_refused(arguments, problem, tmp_path, monkeypatch):
 
 def test_default_settings_keep_to_the_ranges_of_the_model():
     for name in ("yu2019", "modified_bouc_wen", "kwok_tanh"):
-        tested = specimen(name, None)
-        chosen = settings_of(tested)
+        tested = load_specimen(name, None)
+        chosen = choose_settings(tested)
         speed = 2.0 * math.pi * max(chosen.amplitudes) * max(chosen.frequencies)
         assert speed <= tested.specification.max_speed and max(chosen.currents) == tested.specification.max_current
-    assert settings_of(specimen("yu2019", None)).temperatures == [20.0, 50.0, 80.0]
-    assert settings_of(specimen("yu2019", None), frequencies="0.7").amplitudes == [0.0035, 0.007]
+    assert choose_settings(load_specimen("yu2019", None)).temperatures == [20.0, 50.0, 80.0]
+    assert choose_settings(load_specimen("yu2019", None), frequencies="0.7").amplitudes == [0.0035, 0.007]
 
 
 def cases(record, sine):
@@ -131,8 +133,8 @@ def cases(record, sine):
     yield characterise([switched], "_switched $a$ b$")
     yield characterise(warm, "warm")
     yield characterise([record(lambda t: 0.0 * t, 2.0)], "still")
-    tested = specimen("yu2019", None)
-    yield characterise_model(tested, settings_of(tested, "0,0.6,1.2", "20,80", "0.008", "0.5,0.7"))
+    tested = load_specimen("yu2019", None)
+    yield characterise_model(tested, choose_settings(tested, "0,0.6,1.2", "20,80", "0.008", "0.5,0.7"))
 
 
 def test_pictures_are_labelled_and_inside_their_page(record, sine):

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.characterisation.cycles import steady_cycles, whole_cycles
-from seatsim.characterisation.rows import row_of_record
+from seatsim.characterisation.cycles import find_cycles, select_steady_cycles
+from seatsim.characterisation.rows import summarise_record
 from seatsim.characterisation.summary import characterise
 from seatsim.dampers.bingham import Bingham
 from seatsim.simulation.damper_bench import sine_test
@@ -17,7 +17,7 @@ FRICTION = Bingham(c_a=300.0, c_b=200.0, fc_a=50.0, fc_b=400.0, f0=30.0, v_ref=0
 def test_energy_damping_and_offset_of_a_bingham_damper(record, sine):
     # 4 fc X from friction, pi c w X^2 from the dashpot; at 0.5 A fc = 250 N, c = 400 N s/m
     motion, seconds = sine(0.01, 2.0)
-    row = row_of_record(record(motion, seconds, lambda t: 0.5 + 0.0 * t, FRICTION, noise=2.0))
+    row = summarise_record(record(motion, seconds, lambda t: 0.5 + 0.0 * t, FRICTION, noise=2.0))
     w = 4.0 * math.pi
     energy = 4.0 * 250.0 * 0.01 + math.pi * 400.0 * w * 0.01**2
     assert row.cycles == 8 and row.left_out == 2
@@ -34,7 +34,7 @@ def test_energy_damping_and_offset_of_a_bingham_damper(record, sine):
 
 def test_the_figures_of_a_record_are_those_of_a_sine_test(record, sine, damper):
     motion, seconds = sine(0.008, 1.5)
-    row = row_of_record(record(motion, seconds, lambda t: 1.0 + 0.0 * t))
+    row = summarise_record(record(motion, seconds, lambda t: 1.0 + 0.0 * t))
     test = sine_test(damper, 0.008, 1.5, 1.0, 20.0)
     assert row.energy == pytest.approx(test.dissipated_energy, rel=2e-3)
     assert row.damping == pytest.approx(test.equivalent_damping, rel=2e-3)
@@ -45,10 +45,10 @@ def test_the_figures_of_a_record_are_those_of_a_sine_test(record, sine, damper):
 def test_an_offset_stroke_noise_and_rests_are_no_matter(record, sine):
     centred, seconds = sine(0.005, 2.0)
     offset, _ = sine(0.005, 2.0, offset=0.031)
-    a = row_of_record(record(centred, seconds))
+    a = summarise_record(record(centred, seconds))
     moved = record(offset, seconds)
     noise = 2e-5 * np.random.default_rng(0).standard_normal(len(moved.force))
-    b = row_of_record(moved._replace(displacement=moved.displacement + noise))
+    b = summarise_record(moved._replace(displacement=moved.displacement + noise))
     assert a.cycles == b.cycles
     assert b.energy == pytest.approx(a.energy, rel=5e-3) and b.amplitude == pytest.approx(a.amplitude, rel=2e-2)
 
@@ -63,8 +63,8 @@ def test_what_is_not_cyclic_is_told(record, kind):
         "still": lambda t: 0.0 * t,
         "one cycle": lambda t: 0.004 * np.sin(2.0 * math.pi * t / 7.0),
     }[kind]
-    assert steady_cycles(whole_cycles(motion(t))) == []
-    row = row_of_record(record(motion, 8.0))
+    assert select_steady_cycles(find_cycles(motion(t))) == []
+    row = summarise_record(record(motion, 8.0))
     assert row.cycles == 0 and math.isnan(row.energy) and row.cloud is not None
     assert row.notes[0].startswith("not cyclic") and math.isfinite(row.force_rms)
 
@@ -78,7 +78,7 @@ def test_each_rest_of_the_current_is_a_row(record, sine):
 
 def test_temperature_is_kept_cycle_by_cycle(record, sine):
     motion, seconds = sine(0.01, 2.0)
-    row = row_of_record(record(motion, seconds, temperature=lambda t: 20.0 + 5.0 * t))
+    row = summarise_record(record(motion, seconds, temperature=lambda t: 20.0 + 5.0 * t))
     warmth = row.cycle_values["temperature"]
     assert np.diff(warmth) == pytest.approx(np.full(7, 2.5), rel=0.02)
     assert row.temperature_range == pytest.approx(17.5, rel=0.02)
@@ -87,8 +87,8 @@ def test_temperature_is_kept_cycle_by_cycle(record, sine):
 def test_a_force_of_the_wrong_sign_and_a_velocity_of_the_wrong_unit_are_told(record, sine):
     motion, seconds = sine(0.01, 2.0)
     made = record(motion, seconds)
-    assert "other way round" in row_of_record(made._replace(force=-made.force)).notes[-1]
-    assert "disagree" in row_of_record(made._replace(velocity=1.2 * made.velocity)).notes[0]
+    assert "other way round" in summarise_record(made._replace(force=-made.force)).notes[-1]
+    assert "disagree" in summarise_record(made._replace(velocity=1.2 * made.velocity)).notes[0]
 
 
 def test_measured_sines(shared):

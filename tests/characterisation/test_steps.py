@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.characterisation.measured_steps import responses
-from seatsim.characterisation.of_model import Specimen, step_response
-from seatsim.characterisation.response import crossing
+from seatsim.characterisation.measured_steps import measure_responses
+from seatsim.characterisation.model_tests import step_response
+from seatsim.characterisation.response import find_crossing
+from seatsim.characterisation.specimen import DamperSpecimen
 from seatsim.characterisation.steps import find_steps
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.rig.coil import Coil
@@ -48,7 +49,7 @@ def test_a_measured_current_begins_between_its_rows():
 @pytest.mark.parametrize("noise", [0.0, 3.0])
 def test_rise_and_fall_of_a_known_coil_at_constant_speed(record, noise):
     made = record(triangle(0.08, 4.0), 12.0, square(0.9, 0.1, 2.0), lag=(150.0, 70.0), noise=noise)
-    rise, fall = sorted(responses(made), key=lambda answer: not answer.rises)
+    rise, fall = sorted(measure_responses(made), key=lambda answer: not answer.rises)
     assert rise.method == fall.method == "constant speed" and rise.steps >= 4
     for answer, rate in ((rise, 150.0), (fall, 70.0)):
         assert answer.t95 == pytest.approx(math.log(20.0) / rate, rel=0.03 + 0.05 * (noise > 0), abs=5e-4)
@@ -62,7 +63,8 @@ def test_a_varying_speed_is_demodulated(record):
         return 0.004 * np.sin(2 * math.pi * 3.1 * t) + 0.002 * np.sin(2 * math.pi * 7.3 * t + 1.0)
 
     rises, falls = sorted(
-        responses(record(motion, 30.0, square(1.0, 0.0, 0.4), lag=(130.0, 60.0), noise=2.0)), key=lambda a: not a.rises
+        measure_responses(record(motion, 30.0, square(1.0, 0.0, 0.4), lag=(130.0, 60.0), noise=2.0)),
+        key=lambda a: not a.rises,
     )
     assert rises.method == falls.method == "demodulated" and rises.steps > 50
     assert rises.rate_95 == pytest.approx(130.0, rel=0.15) and falls.rate_95 == pytest.approx(60.0, rel=0.1)
@@ -73,12 +75,12 @@ def test_what_cannot_be_determined_says_why(record):
     still = record(lambda t: 0.0 * t, 4.0, square(1.0, 0.0, 1.0), lag=(130.0,), noise=1.0)
     fast = record(lambda t: 0.005 * np.sin(20.0 * t), 4.0, square(1.0, 0.0, 0.04), lag=(130.0,))
     for made in (still, fast):
-        assert all(not answer.method and answer.note and math.isnan(answer.t95) for answer in responses(made))
+        assert all(not answer.method and answer.note and math.isnan(answer.t95) for answer in measure_responses(made))
 
 
 def test_a_model_answers_with_the_rates_of_its_coil():
     # force linear in the current: it follows the coil exactly, behind the coil's delay
-    tested = Specimen(BoucWen(k0=500.0), TemperatureFactors(), Coil(rate=176.0, rate_fall=70.0, delay=0.004))
+    tested = DamperSpecimen(BoucWen(k0=500.0), TemperatureFactors(), Coil(rate=176.0, rate_fall=70.0, delay=0.004))
     rise, fall = step_response(tested, 0.0, 1.0, 0.05, 20.0), step_response(tested, 1.0, 0.0, 0.05, 20.0)
     for answer, rate in ((rise, 176.0), (fall, 70.0)):
         assert answer.rate == pytest.approx(rate, rel=0.01) and answer.delay == pytest.approx(0.004, abs=2e-4)
@@ -87,10 +89,10 @@ def test_a_model_answers_with_the_rates_of_its_coil():
 
 
 def test_a_damper_without_current_has_no_response():
-    plain = Specimen(BoucWen(c_b=0.0, alpha_b=0.0), TemperatureFactors(), Coil())
+    plain = DamperSpecimen(BoucWen(c_b=0.0, alpha_b=0.0), TemperatureFactors(), Coil())
     assert "does not depend" in step_response(plain, 0.0, 1.0, 0.05, 20.0).note
 
 
 def test_crossing_is_interpolated():
-    assert crossing(np.array([-1.0, 0.0, 1.0, 2.0]), np.array([0.0, 0.0, 0.5, 1.0]), 0.75) == pytest.approx(1.5)
-    assert math.isnan(crossing(np.array([0.0, 1.0]), np.array([0.0, 0.5]), 0.9))
+    assert find_crossing(np.array([-1.0, 0.0, 1.0, 2.0]), np.array([0.0, 0.0, 0.5, 1.0]), 0.75) == pytest.approx(1.5)
+    assert math.isnan(find_crossing(np.array([0.0, 1.0]), np.array([0.0, 0.5]), 0.9))

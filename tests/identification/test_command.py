@@ -11,12 +11,12 @@ from typer.testing import CliRunner
 
 from seatsim.cli.app import app, main
 from seatsim.cli.outputs.identification import encode_identification, write_identification
-from seatsim.identification import league as league_module
+from seatsim.identification import model_benchmark as module
+from seatsim.identification.assessment import PredictionData
 from seatsim.identification.identify import identify
-from seatsim.identification.judging import Further
-from seatsim.identification.league import Place, league, ranked
-from seatsim.identification.search import silent
-from seatsim.identification.split import Request
+from seatsim.identification.model_benchmark import BenchmarkEntry, benchmark_models, rank_entries
+from seatsim.identification.search import ignore_progress
+from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.plots.bench.identification import plot_predictions
 from seatsim.schema.errors import InputError, RunError
 
@@ -120,16 +120,16 @@ def test_without_held_out_records_there_is_no_test(bench):
 
 
 def test_a_fraction_is_held_out_of_every_record(bench):
-    fit = encode_identification(identify(bench, "bingham", Request(test_fraction=0.3)))
+    fit = encode_identification(identify(bench, "bingham", Settings(test_fraction=0.3)))
     parts = [record["part"] for record in fit["records"].values()]
     assert parts == ["train"] * 3 + ["test"] * 3 and "sine_4Hz, 0.5 A (test)" in fit["records"]
     assert fit["test"].fit_percent > 97.0
 
 
 def test_the_picture_is_labelled_and_inside_its_page(bench):
-    found = identify(bench, "bingham", Request(("*2.5Hz",)))
-    for judged in (found.judged, found.judged[:1], found.judged * 4):
-        figure = plot_predictions(found._replace(judged=list(judged)))
+    found = identify(bench, "bingham", Settings(("*2.5Hz",)))
+    for chosen in (found.assessments, found.assessments[:1], found.assessments * 4):
+        figure = plot_predictions(found._replace(assessments=list(chosen)))
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
         width, height = canvas.get_width_height()
@@ -146,7 +146,7 @@ def test_the_picture_is_labelled_and_inside_its_page(bench):
 @pytest.fixture
 def two(monkeypatch):
     """Two small models in place of all."""
-    monkeypatch.setattr(league_module, "names", lambda kind: ["original_bingham", "bingham"])
+    monkeypatch.setattr(module, "names", lambda kind: ["original_bingham", "bingham"])
 
 
 def test_the_league_ranks_models_by_what_was_held_out(two, bench, tmp_path):
@@ -167,7 +167,7 @@ def test_the_league_ranks_models_by_what_was_held_out(two, bench, tmp_path):
 
 
 def test_an_interrupted_league_goes_on_where_it_was(two, tmp_path, monkeypatch):
-    records, done, fit = sines(BINGHAM), [], league_module.identify_records
+    records, done, fit = sines(BINGHAM), [], module.identify_records
 
     def interrupted(records, model, *rest):
         if model == "bingham" and len(done) == 1:
@@ -177,9 +177,16 @@ def test_an_interrupted_league_goes_on_where_it_was(two, tmp_path, monkeypatch):
         return fit(records, model, *rest)
 
     def run(seed=0, more=()):
-        return league(records, Request(seed=seed), Further(list(more)), tmp_path, silent, lambda found: None)
+        return benchmark_models(
+            records,
+            Settings(seed=seed),
+            PredictionData(list(more)),
+            tmp_path,
+            ignore_progress,
+            lambda found: None,
+        )
 
-    monkeypatch.setattr(league_module, "identify_records", interrupted)
+    monkeypatch.setattr(module, "identify_records", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run()
     assert [place.model for place in run()] == ["bingham", "original_bingham"]
@@ -192,14 +199,14 @@ def test_an_interrupted_league_goes_on_where_it_was(two, tmp_path, monkeypatch):
 
 
 def test_a_league_goes_on_past_a_model_that_fails(two, bench, tmp_path, monkeypatch):
-    fit = league_module.identify_records
+    fit = module.identify_records
 
     def failing(records, model, *rest):
         if model == "bingham":
             raise RunError("bingham: no parameters were found")
         return fit(records, model, *rest)
 
-    monkeypatch.setattr(league_module, "identify_records", failing)
+    monkeypatch.setattr(module, "identify_records", failing)
     assert status(monkeypatch, "identify", bench, "--model", "all", "--out", tmp_path / "out") == 1
     table = pd.read_csv(tmp_path / "out" / "league.csv")
     assert list(table.model) == ["original_bingham", "bingham"]
@@ -208,12 +215,12 @@ def test_a_league_goes_on_past_a_model_that_fails(two, bench, tmp_path, monkeypa
 
 def test_places_are_ranked_by_what_was_held_out_where_anything_was():
     def place(model, train, test):
-        return Place(model, train, test, 5, 100.0, 0.0, 1.0)
+        return BenchmarkEntry(model, train, test, 5, 100.0, 0.0, 1.0)
 
     nan, bad = float("nan"), float("-inf")
     held_out = [place("wild", 99.0, bad), place("good", 80.0, 90.0), place("fair", 95.0, 85.0), place("none", nan, nan)]
-    assert [p.model for p in ranked(held_out)] == ["good", "fair", "wild", "none"]
-    assert [p.model for p in ranked([place("a", 80.0, nan), place("b", 90.0, nan)])] == ["b", "a"]
+    assert [p.model for p in rank_entries(held_out)] == ["good", "fair", "wild", "none"]
+    assert [p.model for p in rank_entries([place("a", 80.0, nan), place("b", 90.0, nan)])] == ["b", "a"]
 
 
 # ------------------------------------------------------------------------------------------------- what is refused

@@ -6,16 +6,10 @@ import numpy as np
 import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen, ModifiedBoucWen
-from seatsim.identification.coordinates import (
-    Coordinates,
-    Scales,
-    dimension,
-    fixed,
-    law_coefficients,
-    law_values,
-    numbers_of,
-    scaled,
-)
+from seatsim.identification.adjustment import fix_parameters, numeric_fields, rescale_damper
+from seatsim.identification.coordinates import Coordinates
+from seatsim.identification.current_laws import evaluate_law, interpolate_law
+from seatsim.identification.scales import Scales, parse_unit
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import bounds
 from seatsim.schema.registry import find, names, specification_of
@@ -37,9 +31,9 @@ def same(a, b):
 def test_a_record_comes_back_from_its_vector(model):
     record = find("damper", model)()
     between = coordinates(record)
-    vector = between.vector(record)
+    vector = between.to_vector(record)
     assert len(vector) == len(between.components) > 0 and np.all(np.isfinite(vector))
-    same(between.record(vector), record)
+    same(between.to_record(vector), record)
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -47,12 +41,12 @@ def test_a_vector_comes_back_from_its_record_and_stays_in_bounds(model):
     between = coordinates(find("damper", model)())
     rng = np.random.default_rng(0)
     for _ in range(5):
-        draw = between.vector(between.start) + 0.5 * rng.standard_normal(len(between.components))
+        draw = between.to_vector(between.start) + 0.5 * rng.standard_normal(len(between.components))
         vector = np.clip(draw, between.low, between.high)
-        assert between.vector(between.record(vector)) == pytest.approx(vector, rel=1e-6, abs=1e-6)
+        assert between.to_vector(between.to_record(vector)) == pytest.approx(vector, rel=1e-6, abs=1e-6)
     ends = [np.where(np.isfinite(end), end, 0.0) for end in (between.low, between.high)]
-    for record in map(between.record, ends):
-        for name in numbers_of(type(record)):
+    for record in map(between.to_record, ends):
+        for name in numeric_fields(type(record)):
             low, high = bounds(type(record), name)
             assert low <= getattr(record, name) <= high, "a file with it could not be read again"
 
@@ -75,7 +69,7 @@ def test_a_law_has_one_value_for_each_of_few_currents():
     between = coordinates(ModifiedBoucWen(), levels=2)
     ours = [c for c in between.components if c.field == "alpha"]
     assert [(c.at, c.label) for c in ours] == [(0.0, "alpha(0 A)"), (1.0, "alpha(1 A)")]
-    assert between.record(between.vector(between.start)).alpha[2:] == (0.0, 0.0)
+    assert between.to_record(between.to_vector(between.start)).alpha[2:] == (0.0, 0.0)
 
 
 def test_a_law_that_is_nowhere_negative_stays_so():
@@ -88,24 +82,24 @@ def test_a_law_that_is_nowhere_negative_stays_so():
 
 def test_laws_are_polynomials_through_their_values():
     values = np.array([3.0, 5.0, 4.0])
-    coefficients = law_coefficients(values, 1.6)
-    assert law_values(coefficients, np.array([0.0, 0.8, 1.6])) == pytest.approx(values)
+    coefficients = interpolate_law(values, 1.6)
+    assert evaluate_law(coefficients, np.array([0.0, 0.8, 1.6])) == pytest.approx(values)
 
 
 def test_units_give_dimensions_and_sizes():
-    assert dimension("N s/(m A)") == {"N": 1.0, "s": 1.0, "m": -1.0, "A": -1.0}
-    assert dimension("1/m^2") == {"m": -2.0} and dimension("-") == {} and dimension("[z]/m") == {"m": -1.0}
+    assert parse_unit("N s/(m A)") == {"N": 1.0, "s": 1.0, "m": -1.0, "A": -1.0}
+    assert parse_unit("1/m^2") == {"m": -2.0} and parse_unit("-") == {} and parse_unit("[z]/m") == {"m": -1.0}
     assert SCALES.size("N s/m") == pytest.approx(400.0 / 0.06)
     assert SCALES.size("N s^2/m^2") == pytest.approx(400.0 / 0.06**2)
 
 
 def test_a_damper_is_scaled_in_force_and_current():
     record = ModifiedBoucWen()
-    other = scaled(record, 3.0, 2.0)
+    other = rescale_damper(record, 3.0, 2.0)
     assert other.law_end == 2.0 and (other.A, other.n, other.beta) == (record.A, record.n, record.beta)
-    assert law_values(other.c0, np.array([2.0])) == pytest.approx(3.0 * law_values(record.c0, np.array([1.0])))
+    assert evaluate_law(other.c0, np.array([2.0])) == pytest.approx(3.0 * evaluate_law(record.c0, np.array([1.0])))
     assert other.k0 == pytest.approx(3.0 * record.k0)
-    linear = scaled(BoucWen(), 2.0, 5.0)
+    linear = rescale_damper(BoucWen(), 2.0, 5.0)
     assert (linear.c_a, linear.c_b, linear.beta) == (500.0, 700.0, BoucWen().beta)
 
 
@@ -113,11 +107,11 @@ def test_a_damper_is_scaled_in_force_and_current():
 def test_scaling_back_gives_the_record(model):
     record = find("damper", model)()
     end = float(getattr(record, "law_end", 1.0))
-    same(scaled(scaled(record, 2.5, end), 0.4, end), record)
+    same(rescale_damper(rescale_damper(record, 2.5, end), 0.4, end), record)
 
 
 def test_numbers_are_fixed():
-    record = fixed(BoucWen(), {"n": 3, "k0": -5.0})
+    record = fix_parameters(BoucWen(), {"n": 3, "k0": -5.0})
     assert (record.n, record.k0) == (3.0, -5.0) and isinstance(record.n, float)
 
 
@@ -136,5 +130,5 @@ def test_numbers_are_fixed():
 )
 def test_what_cannot_be_fixed_is_refused(model, values, problem):
     with pytest.raises(InputError) as error:
-        fixed(find("damper", model)(), values)
+        fix_parameters(find("damper", model)(), values)
     assert problem in str(error.value)

@@ -11,7 +11,7 @@ import seatsim
 from seatsim.identification import identify as module
 from seatsim.identification.identify import identify_records
 from seatsim.identification.information import correlation_length
-from seatsim.identification.split import Request
+from seatsim.identification.settings import IdentificationSettings as Settings
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError, RunError
 
@@ -36,7 +36,7 @@ def test_a_damper_comes_back_within_5_percent(model, truth):
 
 def test_the_rates_of_a_coil_come_back_from_a_square_wave():
     record = made(current=lambda t: np.where(t % 0.5 < 0.25, 0.0, 1.0), coil=(200.0, 60.0), noise=0.02, seconds=4.0)
-    found = identify_records([record], "bingham", Request(test_fraction=0.25))
+    found = identify_records([record], "bingham", Settings(test_fraction=0.25))
     known = estimates(found)
     assert found.commanded
     assert known["actuator.rate"].value == pytest.approx(200.0, rel=0.05)
@@ -54,10 +54,10 @@ def test_temperature_factors_come_back_and_may_be_ignored():
     assert found.warm and found.bench.factors.reference == pytest.approx(50.0)
     assert found.bench.factors.viscous == pytest.approx(-0.004, rel=0.1)
     assert found.bench.factors.yield_force == pytest.approx(-0.008, rel=0.05)
-    assert found.bench.warming == pytest.approx(0.5, rel=0.05)
+    assert found.bench.offset_per_kelvin == pytest.approx(0.5, rel=0.05)
     assert found.bench.factors.stiffness == 0.0, "this damper has none: what has no influence keeps its default"
     assert found.notes == ["the data do not identify temperature_factors.stiffness"]
-    cold = identify_records(records, "bingham", Request(ignore_temperature=True))
+    cold = identify_records(records, "bingham", Settings(ignore_temperature=True))
     assert not cold.warm and cold.mean("train").fit_percent < 90.0
 
 
@@ -75,7 +75,7 @@ def test_a_stroke_far_from_zero_has_an_origin_of_its_own():
 
 
 def test_what_is_fixed_stays():
-    found = identify_records(sines(BOUC_WEN), "bouc_wen", Request(fix={"n": 3, "A": 1500.0}))
+    found = identify_records(sines(BOUC_WEN), "bouc_wen", Settings(fix={"n": 3, "A": 1500.0}))
     assert (found.bench.damper.n, found.bench.damper.A) == (3.0, 1500.0)
     assert {"n", "A"}.isdisjoint(estimates(found)) and found.mean("train").fit_percent > 90.0
 
@@ -106,7 +106,7 @@ def test_the_same_seed_gives_the_same_parameters():
 
 
 def test_motion_beyond_what_was_fitted_is_told():
-    found = identify_records([made(), made(amplitude=0.03, current=1.5, name="far")], "bingham", Request(("far",)))
+    found = identify_records([made(), made(amplitude=0.03, current=1.5, name="far")], "bingham", Settings(("far",)))
     assert any("0.377 m/s of velocity, the fitted ones 0.126 m/s only" in note for note in found.notes)
     assert any("1.5 A of current, the fitted ones 0 A only" in note for note in found.notes)
 
@@ -123,13 +123,13 @@ def test_the_effective_number_of_samples_respects_memory():
 @pytest.mark.parametrize("offset", [0.0, 30.0])
 def test_the_criterion_of_bayes_prefers_the_model_that_made_the_data(offset):
     records = sines(BINGHAM._replace(f0=offset))
-    free, fixed = (identify_records(records, "bingham", Request(fix=fix)).bic for fix in ({}, {"f0": 0.0}))
+    free, fixed = (identify_records(records, "bingham", Settings(fix=fix)).bic for fix in ({}, {"f0": 0.0}))
     assert (fixed < free) == (offset == 0.0)
 
 
 def test_the_function_of_the_package_reads_a_folder(bench):
-    found = seatsim.identify(bench, "bingham", Request(("*2.5Hz",)))
-    assert [judged.record.name for judged in found.judged if judged.part == "test"] == ["sine_2.5Hz, 1 A"]
+    found = seatsim.identify(bench, "bingham", Settings(("*2.5Hz",)))
+    assert [judged.record.name for judged in found.assessments if judged.part == "test"] == ["sine_2.5Hz, 1 A"]
     assert isinstance(found, seatsim.Identification)
 
 
@@ -137,7 +137,7 @@ def test_the_example_gives_the_damper_it_was_made_with():
     folder = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "bench"
     truth = YAML(typ="safe").load((folder / "sine_10mm_2Hz.yaml").read_text())["made_with"]
     found = seatsim.identify(folder, truth["model"])
-    assert len(found.judged) == 9 and found.mean("train").fit_percent == pytest.approx(99.0, abs=0.1)
+    assert len(found.assessments) == 9 and found.mean("train").fit_percent == pytest.approx(99.0, abs=0.1)
     for name, estimate in estimates(found).items():
         assert estimate.value == pytest.approx(truth["parameters"][name], rel=0.05), name
 
@@ -147,7 +147,7 @@ def test_bad_requests_are_refused(bench):
         seatsim.identify(bench, "bignham")
     everything = {name: getattr(BINGHAM, name) for name in BINGHAM._fields}
     with pytest.raises(InputError, match="leaves no parameter of Bingham to fit"):
-        seatsim.identify(bench, "bingham", Request(fix=everything))
+        seatsim.identify(bench, "bingham", Settings(fix=everything))
     still = [record._replace(velocity=0.0 * record.velocity) for record in sines(BINGHAM)]
     with pytest.raises(InputError, match="no motion or no force"):
         identify_records(still, "bingham")
@@ -157,16 +157,16 @@ def test_a_model_that_fails_says_so(monkeypatch):
     def singular(*_):
         raise np.linalg.LinAlgError("singular")
 
-    monkeypatch.setattr(module, "best", singular)
+    monkeypatch.setattr(module, "search_parameters", singular)
     with pytest.raises(RunError, match="bingham: the fit failed: singular; hold a parameter by --fix"):
         identify_records(sines(BINGHAM), "bingham")
     monkeypatch.undo()
-    monkeypatch.setattr(module, "judge", lambda *_: [judged(part) for part in ("train", "test")])
+    monkeypatch.setattr(module, "assess_fit", lambda *_: [judged(part) for part in ("train", "test")])
     with pytest.raises(RunError, match="bingham: no parameters were found with which its state stays finite on made"):
         identify_records(sines(BINGHAM), "bingham")
 
 
 def judged(part):
-    from seatsim.identification.judging import Judged
+    from seatsim.identification.assessment import Assessment
 
-    return Judged(made(), part, np.full(3, math.nan), None)
+    return Assessment(made(), part, np.full(3, math.nan), None)

@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from seatsim.characterisation.response import Response
-from seatsim.characterisation.rows import Row, columns
+from seatsim.characterisation.rows import Row, row_columns
 from seatsim.characterisation.summary import Characterisation, contents
 from seatsim.cli.outputs.runs import write_pictures
 from seatsim.schema.files import write_json, write_whole
@@ -61,7 +61,7 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
 
     from seatsim.plots.bench.characterisation import plot_characterisation
 
-    table = pd.DataFrame([columns(row) for row in found.rows])
+    table = pd.DataFrame([row_columns(row) for row in found.rows])
     paths = [
         write_whole(folder / "cycles.csv", partial(table.to_csv, index=False)),
         write_json(folder / "characterisation.json", contents(found)),

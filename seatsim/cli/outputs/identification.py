@@ -15,9 +15,9 @@ from rich.table import Table
 from ruamel.yaml import YAML
 
 from seatsim.cli.outputs.runs import write_pictures
-from seatsim.identification.figures import Figures
+from seatsim.identification.agreement import Agreement
 from seatsim.identification.identify import Identification
-from seatsim.identification.league import Place
+from seatsim.identification.model_benchmark import BenchmarkEntry
 from seatsim.schema.files import write_json, write_text, write_whole
 
 LISTED = 40
@@ -56,19 +56,19 @@ def encode_parameters(found: Identification) -> dict[str, object]:
     damper: dict[str, object] = {"model": found.model, "parameters": values}
     if found.warm:
         damper["temperature_factors"] = {name: float(value) for name, value in bench.factors._asdict().items()}
-    end = max(float(each.record.current.max()) for each in found.judged if each.part != "predicted")
+    end = max(float(each.record.current.max()) for each in found.assessments if each.part != "predicted")
     return {
         "damper": damper,
         "actuator": {"rate": float(bench.rise), "rate_fall": float(bench.fall), "max_current": end or 1.0},
-        "bench": {"displacement_origin": found.origin, "offset_per_kelvin": float(bench.warming)},
+        "bench": {"displacement_origin": found.origin, "offset_per_kelvin": float(bench.offset_per_kelvin)},
     }
 
 
 def encode_identification(found: Identification) -> dict[str, object]:
     """Return what `fit.json` holds; `test` is null where nothing was held out."""
     records = {
-        name: {"part": each.part, "current": each.record.mean_current, **each.figures._asdict()}
-        for name, each in zip(_name_records(found), found.judged, strict=True)
+        name: {"part": each.part, "current": each.record.mean_current, **each.agreement._asdict()}
+        for name, each in zip(_name_records(found), found.assessments, strict=True)
     }
     known = found.information
     further = {"predicted": found.mean("predicted")} if found.mean("predicted") else {}
@@ -92,10 +92,10 @@ def encode_identification(found: Identification) -> dict[str, object]:
 
 def _name_records(found: Identification) -> list[str]:
     """Return the names of the judged records, with the part they had where the name alone does not tell them apart."""
-    names = [each.record.name for each in found.judged]
+    names = [each.record.name for each in found.assessments]
     full = [
         f"{name} ({each.part})" if names.count(name) > 1 else name
-        for name, each in zip(names, found.judged, strict=True)
+        for name, each in zip(names, found.assessments, strict=True)
     ]
     seen: Counter[str] = Counter()
     for k, name in enumerate(full):
@@ -107,8 +107,8 @@ def _name_records(found: Identification) -> list[str]:
 def make_tables(found: Identification) -> list[Table]:
     """Return the tables of figures and of parameters."""
     figures = _make_table(f"{found.model}: agreement with the measured force", ("", "R²", "MD", "RMSE [N]", "fit [%]"))
-    for judged in found.judged if len(found.judged) <= LISTED else ():
-        figures.add_row(f"{escape(judged.record.name)} ({judged.part})", *_format_figures(judged.figures))
+    for judged in found.assessments if len(found.assessments) <= LISTED else ():
+        figures.add_row(f"{escape(judged.record.name)} ({judged.part})", *_format_figures(judged.agreement))
     figures.add_section()
     for part in ("train", "test", "predicted"):
         mean = found.mean(part)
@@ -122,7 +122,7 @@ def make_tables(found: Identification) -> list[Table]:
     return [figures, values]
 
 
-def write_league(places: Sequence[Place], folder: Path) -> Path:
+def write_league(places: Sequence[BenchmarkEntry], folder: Path) -> Path:
     """Write `league.csv`, the best model first."""
     import pandas as pd
 
@@ -130,7 +130,7 @@ def write_league(places: Sequence[Place], folder: Path) -> Path:
     return write_whole(folder / "league.csv", partial(frame.to_csv, index=False))
 
 
-def make_league_table(places: Sequence[Place]) -> Table:
+def make_league_table(places: Sequence[BenchmarkEntry]) -> Table:
     """Return the league as a table."""
     table = _make_table("league", ("model", "train [%]", "test [%]", "parameters", "ns a step", "BIC", "s"))
     for place in places:
@@ -152,5 +152,5 @@ def _make_table(title: str, headings: Sequence[str]) -> Table:
     return table
 
 
-def _format_figures(figures: Figures) -> tuple[str, ...]:
+def _format_figures(figures: Agreement) -> tuple[str, ...]:
     return f"{figures.r2:.4f}", f"{figures.md:.3f}", f"{figures.rmse:.1f}", f"{figures.fit_percent:.1f}"

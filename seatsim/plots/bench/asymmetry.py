@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from seatsim.characterisation.summary import Characterisation, settings
+from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.plots import labels, style
 from seatsim.plots.bench.families import Family, order_by_current, order_by_temperature
 from seatsim.plots.bench.trends import BY_TEMPERATURE, RowFigure, choose_abscissas, choose_looks, draw_trend
@@ -23,7 +23,7 @@ def plot_asymmetry(found: Characterisation) -> Figure:
     rows = [row for row in found.rows if row.loop is not None]
     blocks = choose_abscissas(rows)
     looks, _ = choose_looks(blocks)
-    group = max(reversed(settings(rows)), key=len)
+    group = max(reversed(group_by_setting(rows)), key=len)
     families = [order_by_current(group)]
     if any(across is BY_TEMPERATURE for across, _ in blocks) and len({row.current for row in group}) > 1:
         families.append(order_by_temperature(group))

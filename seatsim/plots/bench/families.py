@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.characterisation.rows import Row
-from seatsim.characterisation.summary import WARMER, grouped, settings
+from seatsim.characterisation.summary import WARMER, group_by_setting, group_rows
 from seatsim.plots import labels, style
 from seatsim.plots.thinning import spread_evenly
 
@@ -40,7 +40,7 @@ class Family(NamedTuple):
 
 def find_families(rows: Sequence[Row]) -> tuple[list[Family], int]:
     """Return the families of loops by current, then by temperature, and the number of settings left out."""
-    groups = settings(rows)
+    groups = group_by_setting(rows)
     chosen = spread_evenly(groups, MOST)
     families = [order_by_current(group) for group in chosen]
     warm = [group for group in chosen if _varies([row.temperature for row in select_largest_current(group)], WARMER)]
@@ -99,7 +99,7 @@ def _varies(values: Sequence[float], by: float) -> bool:
 
 def group_clouds(rows: Sequence[Row]) -> list[list[Row]]:
     """Return the records without cycles in groups of the same motion."""
-    return grouped([row for row in rows if row.cloud is not None], _moves_alike)[:MOST_CLOUDS]
+    return group_rows([row for row in rows if row.cloud is not None], _moves_alike)[:MOST_CLOUDS]
 
 
 def _moves_alike(a: Row, b: Row) -> bool:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from seatsim.characterisation.rows import Row
-from seatsim.characterisation.summary import WARMER, Characterisation, settings
+from seatsim.characterisation.summary import WARMER, Characterisation, group_by_setting
 from seatsim.plots import labels, style
 from seatsim.plots.bench.families import describe_setting, select_largest_current, select_lowest_temperature
 from seatsim.plots.style import Entry, Grid
@@ -83,7 +83,7 @@ def choose_abscissas(rows: Sequence[Row]) -> list[tuple[Abscissa, list[list[Row]
     Over the current at the lowest temperature of each setting; over the temperature at its largest current; over the
     frequency where neither varies.
     """
-    groups = settings(rows)
+    groups = group_by_setting(rows)
     currents = [select_lowest_temperature(group) for group in groups]
     blocks = []
     if any(len({row.current for row in group}) > 1 for group in currents):

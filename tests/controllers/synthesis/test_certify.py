@@ -59,9 +59,9 @@ def test_rational_arithmetic_confirms_and_refutes(designed, exact_certificates, 
     designed(e1).save(tmp_path / "design.yaml")
     plain = YAML(typ="safe").load(tmp_path / "design.yaml")
     loop = plain["loops"][0]
-    assert exact_certificates.proven(plain["gain"], loop)
+    assert exact_certificates.is_proven(plain["gain"], loop)
     loop["certificate"]["gamma"] = loop["gamma"] * (1 - 1e-6)
-    assert not exact_certificates.proven(plain["gain"], loop)
+    assert not exact_certificates.is_proven(plain["gain"], loop)
 
 
 def test_recentred_states_have_the_same_response_and_the_identity_as_proof(random_plant):

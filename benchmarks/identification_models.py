@@ -1,4 +1,4 @@
-"""Damper models identified from measured records: `python benchmarks/identification_league.py DIR`.
+"""Damper models identified from measured records: `python benchmarks/identification_models.py DIR`.
 
 DIR holds the measured data. Every result stands in `--out` as JSON and is not made again, so that a run may be stopped
 and resumed; `--only` takes some groups, `--models` some models.
@@ -16,9 +16,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Literal, NamedTuple, TypedDict
 
 import numpy as np
 from rich.console import Console
@@ -27,7 +28,8 @@ from rich.table import Table
 from threadpoolctl import threadpool_limits
 
 from seatsim.cli.outputs.identification import encode_identification, encode_parameters
-from seatsim.identification.identify import Request, identify, predict
+from seatsim.identification.identify import identify, predict
+from seatsim.identification.settings import IdentificationSettings
 from seatsim.schema.files import write_json
 from seatsim.schema.registry import names
 
@@ -40,69 +42,99 @@ BEST, MOST = 6, 20
 WARMED = ("ellis", "nonsymmetrical_bouc_wen", "modified_bouc_wen", "kwok_tanh", "shear_bouc_wen")
 COMPARED = ("original_bingham", "simple_bouc_wen", "modified_bouc_wen")
 """Models that Braz-Cesar and Barros 2012 compare, in the order of rising merit that they found."""
+Part = Literal["train", "test", "predicted"]
+PARTS: tuple[Part, ...] = ("train", "test", "predicted")
 GROUPS = ("sines", "random", "heat", "joint")
-Found = dict[str, Any]
 
 
-class Task(NamedTuple):
-    """A fit: its group, the data's folder or file, the model, what is asked for, and what is predicted beside."""
+class Mean(TypedDict):
+    """Mean agreement over records; None where it is not finite."""
+
+    fit_percent: float | None
+    rmse: float
+
+
+class Ranges(TypedDict):
+    """The range of temperature in degC that the fitted records hold."""
+
+    temperature: list[float]
+
+
+class Found(TypedDict):
+    """What is read again of a result: `fit.json` of `seatsim identify`."""
+
+    train: Mean | None
+    test: Mean | None
+    predicted: Mean
+    parameters: list[object]
+    not_identified: list[str]
+    coverage: Ranges
+    ns_per_step: float
+    seconds: float
+
+
+class FitTask(NamedTuple):
+    """A fit: its group, the data's folder or file, the model, what is asked for, and what is predicted besides."""
 
     group: str
     data: Path
     model: str
-    request: Request
-    further: Path | None = None
+    settings: IdentificationSettings
+    predicted: Path | None = None
 
     @property
     def name(self) -> str:
         """Name of the file that keeps the result."""
-        cold = "-ignored" if self.request.ignore_temperature else ""
+        cold = "-ignored" if self.settings.ignore_temperature else ""
         return f"{self.group}-{self.data.name.partition('.')[0]}-{self.model}{cold}.json"
 
 
-def sines(data: Path, models: list[str]) -> list[Task]:
-    """Return the league on sines."""
-    return [Task("sines", data / SINES, model, Request(HELD_OUT), data / EARTHQUAKE) for model in models]
+def list_sines(data: Path, models: list[str]) -> list[FitTask]:
+    """Return the fits of all models to sines."""
+    return [
+        FitTask("sines", data / SINES, model, IdentificationSettings(HELD_OUT), data / EARTHQUAKE) for model in models
+    ]
 
 
-def random(data: Path, models: list[str]) -> list[Task]:
+def list_random(data: Path, models: list[str]) -> list[FitTask]:
     """Return the fits to random motion."""
-    return [Task("random", data / RANDOM, model, Request(test_fraction=0.3)) for model in models]
+    return [FitTask("random", data / RANDOM, model, IdentificationSettings(test_fraction=0.3)) for model in models]
 
 
-def scaling(data: Path, models: list[str]) -> list[Task]:
+def list_temperatures(data: Path, models: list[str]) -> list[FitTask]:
     """Return the fits with and without temperature, of every file apart."""
     files = sorted((data / HEAT).glob("*.csv*"))
-    requests = [Request(test_fraction=0.5, ignore_temperature=cold) for cold in (False, True)]
-    return [Task("heat", file, model, request) for file in files for model in models for request in requests]
+    every = [IdentificationSettings(test_fraction=0.5, ignore_temperature=cold) for cold in (False, True)]
+    return [FitTask("heat", file, model, settings) for file in files for model in models for settings in every]
 
 
-def done(task: Task, out: Path) -> Found:
+def load_or_fit(task: FitTask, out: Path) -> Found:
     """Return the result of a task, from its file where that is there."""
     path = out / task.name
     if not path.exists():
-        found = identify(task.data, task.model, task.request)
-        found = predict(found, task.further, AVERAGE, centred=True) if task.further else found
+        found = identify(task.data, task.model, task.settings)
+        found = predict(found, task.predicted, AVERAGE, centred=True) if task.predicted else found
         write_json(path, {**encode_identification(found), "warm": found.warm, "file": encode_parameters(found)})
-    return dict(json.loads(path.read_text(encoding="utf-8")))
+    result: Found = json.loads(path.read_text(encoding="utf-8"))
+    return result
 
 
-def all_done(tasks: list[Task], out: Path) -> Iterator[tuple[Task, Found]]:
+def fit_all(tasks: list[FitTask], out: Path) -> Iterator[tuple[FitTask, Found]]:
     """Yield every task with its result; one that failed is told and left out."""
     for task in track(tasks, tasks[0].group, disable=not Console().is_terminal):
         try:
-            yield task, done(task, out)
+            yield task, load_or_fit(task, out)
         except Exception as error:
             print(f"{task.name}: {type(error).__name__}: {error}")
 
 
-def fit(found: Found, part: str) -> float:
+def fit(found: Found, part: Part) -> float:
     """Return the mean fit in percent of a part, NaN where there is none."""
-    value = (found.get(part) or {}).get("fit_percent")
-    return float("nan") if value is None else float(value)
+    mean = found.get(part)
+    return math.nan if mean is None or mean["fit_percent"] is None else mean["fit_percent"]
 
 
-def league(title: str, results: list[tuple[Task, Found]], parts: tuple[str, ...]) -> Table:
+def tabulate_fits(title: str, results: list[tuple[FitTask, Found]], parts: tuple[Part, ...]) -> Table:
     """Return a table of fits, the best prediction of held-out records first."""
     table = Table(title=title, title_justify="left")
     for column in ("model", *(f"{part} fit %" for part in parts), "parameters", "unknown", "ns/step", "s"):
@@ -114,7 +146,7 @@ def league(title: str, results: list[tuple[Task, Found]], parts: tuple[str, ...]
     return table
 
 
-def order(results: list[tuple[Task, Found]]) -> Table:
+def tabulate_order(results: list[tuple[FitTask, Found]]) -> Table:
     """Return the errors of the models that a paper ordered."""
     table = Table(title="root mean square error in N; the paper finds the first worst, the last best")
     for column in ("model", "train", "test", "predicted"):
@@ -122,22 +154,23 @@ def order(results: list[tuple[Task, Found]]) -> Table:
     known = {task.model: found for task, found in results}
     for model in COMPARED:
         if model in known:
-            table.add_row(model, *(f"{known[model][part]['rmse']:.1f}" for part in ("train", "test", "predicted")))
+            means = (known[model][part] for part in PARTS)
+            table.add_row(model, *(f"{mean['rmse']:.1f}" if mean else "-" for mean in means))
     return table
 
 
-def warmth(results: list[tuple[Task, Found]]) -> Table:
+def tabulate_temperatures(results: list[tuple[FitTask, Found]]) -> Table:
     """Return the fits of the second halves with and without temperature."""
     table = Table(title="second half of each file, fit %", title_justify="left")
     for column in ("file", "degC", "model", "train with", "without", "test with", "without", "unknown with"):
         table.add_column(column, justify="left" if column in ("file", "model") else "right")
     pairs: dict[tuple[str, str], dict[bool, Found]] = {}
     for task, found in results:
-        pairs.setdefault((task.data.name.partition(".")[0], task.model), {})[task.request.ignore_temperature] = found
+        pairs.setdefault((task.data.name.partition(".")[0], task.model), {})[task.settings.ignore_temperature] = found
     for (file, model), pair in pairs.items():
         if len(pair) == 2:
             low, high = pair[False]["coverage"]["temperature"]
-            fits = [f"{fit(pair[cold], part):.2f}" for part in ("train", "test") for cold in (False, True)]
+            fits = [f"{fit(pair[cold], part):.2f}" for part in PARTS[:2] for cold in (False, True)]
             table.add_row(file, f"{high - low:.0f}", model, *fits, ", ".join(pair[False]["not_identified"]))
     return table
 
@@ -147,25 +180,25 @@ def report(data: Path, out: Path, groups: list[str], models: list[str]) -> None:
     console = Console(width=170)
     ranked = models
     if "sines" in groups:
-        results = list(all_done(sines(data, models), out))
-        console.print(league("sines, and an earthquake predicted from them", results, ("train", "test", "predicted")))
-        console.print(order(results))
+        results = list(fit_all(list_sines(data, models), out))
+        console.print(tabulate_fits("sines, and an earthquake predicted from them", results, PARTS))
+        console.print(tabulate_order(results))
         few = [(task.model, found) for task, found in results if len(found["parameters"]) <= MOST]
         ranked = [model for model, _ in sorted(few, key=lambda pair: -fit(pair[1], "test"))][:BEST]
     if "random" in groups:
-        results = list(all_done(random(data, ranked), out))
-        console.print(league("random motion, switched command: the last 30 %", results, ("train", "test")))
+        results = list(fit_all(list_random(data, ranked), out))
+        console.print(tabulate_fits("random motion, switched command: the last 30 %", results, ("train", "test")))
     if "heat" in groups:
         chosen = [model for model in WARMED if model in models]
-        console.print(warmth(list(all_done(scaling(data, chosen), out))))
+        console.print(tabulate_temperatures(list(fit_all(list_temperatures(data, chosen), out))))
     if "joint" in groups:
-        results = list(all_done([Task("joint", data / SINES, "modified_bouc_wen", Request())], out))
-        console.print(league("one fit to all sines", results, ("train",)))
+        results = list(fit_all([FitTask("joint", data / SINES, "modified_bouc_wen", IdentificationSettings())], out))
+        console.print(tabulate_fits("one fit to all sines", results, ("train",)))
 
 
 def main() -> None:
     """Read the arguments and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("data", type=Path, metavar="DIR", help="folder of the measured data")
     parser.add_argument("--out", type=Path, default=Path("out/identification-league"), help="folder of the results")
     parser.add_argument("--only", default=",".join(GROUPS), help="groups, joined by commas")

@@ -1,4 +1,4 @@
-"""How well a model predicts measured force: the figures of the literature."""
+"""How well a predicted force agrees with a measured one: the figures of the literature."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ GUARD = 0.05
 """Share of a record's peak force below which a measured force does not count in the mean deviation."""
 
 
-class Figures(NamedTuple):
+class Agreement(NamedTuple):
     """Agreement of a predicted force s with a measured one y.
 
     r2            1 - sum (y - s)^2 / sum (y - mean y)^2
@@ -32,17 +32,17 @@ class Figures(NamedTuple):
     fit_percent: float
 
 
-def figures(measured: Array, predicted: Array) -> Figures:
-    """Return the figures of one record, arrays of shape (N,) in N."""
+def assess_agreement(measured: Array, predicted: Array) -> Agreement:
+    """Return the agreement on one record, arrays of shape (N,) in N; minus infinity for a force that never varies."""
     error = measured - predicted
     spread = float(np.sum((measured - np.mean(measured)) ** 2))
     share = float(np.sum(error**2)) / spread if spread > 0.0 else np.inf
     counted = np.abs(measured) > GUARD * np.max(np.abs(measured))
     deviation = float(np.mean(np.abs(error[counted] / measured[counted]))) if counted.any() else np.inf
     rmse = float(np.sqrt(np.mean(error**2)))
-    return Figures(1.0 - share, deviation, rmse, 100.0 * (1.0 - share**0.5))
+    return Agreement(1.0 - share, deviation, rmse, 100.0 * (1.0 - share**0.5))
 
 
-def averaged(each: Sequence[Figures]) -> Figures:
+def mean_agreement(each: Sequence[Agreement]) -> Agreement:
     """Return the mean of every figure over records, each of which counts alike."""
-    return Figures(*(float(np.mean(values)) for values in zip(*each, strict=True)))
+    return Agreement(*(float(np.mean(values)) for values in zip(*each, strict=True)))

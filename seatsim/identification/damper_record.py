@@ -1,0 +1,42 @@
+"""A damper model as a fit sees it: a record whose fields are read and replaced by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol, Self, TypeAlias, cast
+
+from seatsim.dampers.base import DamperModel, DamperSpecification
+from seatsim.schema.registry import find, specification_of
+
+FieldValue: TypeAlias = float | str | tuple[float, ...]
+"""A number (an `int` too), one of several words, or the coefficients of a law in the current."""
+
+
+class DamperRecord(DamperModel, Protocol):
+    """A damper model's parameters: the `NamedTuple` that the model's class is."""
+
+    def _asdict(self) -> dict[str, FieldValue]: ...
+
+    def _replace(self, **changes: FieldValue) -> Self: ...
+
+
+def find_model(name: str) -> type[DamperRecord]:
+    """Return the class of a damper model.
+
+    Raises:
+        InputError: no damper has this name.
+    """
+    # The registry holds classes of every kind; what is registered as a damper is a record.
+    return cast("type[DamperRecord]", find("damper", name))
+
+
+def find_specification(cls: type) -> DamperSpecification:
+    """Return what is stated of a damper model's class."""
+    return cast("DamperSpecification", specification_of(cls))
+
+
+def law_range(fields: Mapping[str, FieldValue], default: float) -> float:
+    """Return the current in A up to which a model's laws hold: its field `law_end`, or the default without one."""
+    end = fields.get("law_end", default)
+    assert isinstance(end, int | float)
+    return float(end)

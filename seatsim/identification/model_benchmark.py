@@ -1,0 +1,158 @@
+"""A benchmark of models: each identified on the same records, the best prediction of held-out ones first."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import NamedTuple
+
+from seatsim.compilation.cached import digest
+from seatsim.identification.adjustment import numeric_fields
+from seatsim.identification.assessment import PredictionData
+from seatsim.identification.damper_record import find_model
+from seatsim.identification.identify import Identification, identify_records, predict_records
+from seatsim.identification.search import Progress
+from seatsim.identification.settings import IdentificationSettings
+from seatsim.identification.split import split_records
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.schema.errors import InputError, SeatsimError, nearest
+from seatsim.schema.files import write_json
+from seatsim.schema.registry import names
+
+
+class BenchmarkEntry(NamedTuple):
+    """A line of the benchmark: model, mean fit on training and held-out records, free parameters, cost of a step.
+
+    bic: Bayesian information criterion; seconds: of the fit; failed: why there are no figures. Without held-out records
+    `test_fit_percent` is NaN.
+    """
+
+    model: str
+    train_fit_percent: float
+    test_fit_percent: float
+    parameters: int
+    ns_per_step: float
+    bic: float
+    seconds: float
+    failed: str = ""
+
+
+def benchmark_models(
+    records: Sequence[BenchRecord],
+    settings: IdentificationSettings,
+    data: PredictionData,
+    folder: Path,
+    progress: Progress,
+    keep: Callable[[Identification], object],
+) -> list[BenchmarkEntry]:
+    """Identify every registered model and return their entries, the best first.
+
+    data: records that every model predicts besides. folder: what stands in it of the same data, settings and models is
+    not done again. keep: called with every new identification, before its entry is written. A model that fails has an
+    entry that says why.
+
+    Raises:
+        InputError: the settings do not fit the records, or name a parameter that no model has.
+    """
+    split_records(records, settings)  # what cannot be held out is refused before the first fit
+    models = names("damper")
+    _check_fixed(settings.fix, models)
+    entries = []
+    for model, key in zip(models, _keys(models, records, settings, data), strict=True):
+        path = folder / "league" / f"{model}-{key}.json"
+        if path.exists():
+            entries.append(_read_entry(path))
+            continue
+        entry = _benchmark_model(records, model, settings, data, progress, keep)
+        write_json(path, entry)
+        entries.append(entry)
+    return rank_entries(entries)
+
+
+def _benchmark_model(
+    records: Sequence[BenchRecord],
+    model: str,
+    settings: IdentificationSettings,
+    data: PredictionData,
+    progress: Progress,
+    keep: Callable[[Identification], object],
+) -> BenchmarkEntry:
+    """Identify one model, hand the result on and return its entry."""
+    known = numeric_fields(find_model(model))
+    own = settings._replace(fix={name: value for name, value in settings.fix.items() if name in known})
+    try:
+        found = identify_records(records, model, own, lambda text: progress(f"{model}: {text}"))
+    except SeatsimError as error:
+        return BenchmarkEntry(model, math.nan, math.nan, 0, math.nan, math.nan, math.nan, str(error))
+    keep(predict_records(found, data))
+    return summarise(found)
+
+
+def summarise(found: Identification) -> BenchmarkEntry:
+    """Return the entry of an identification."""
+    train, test = found.mean("train"), found.mean("test")
+    return BenchmarkEntry(
+        found.model,
+        train.fit_percent if train else math.nan,
+        test.fit_percent if test else math.nan,
+        len(found.information.estimates),
+        found.ns_per_step,
+        found.bic,
+        found.seconds,
+    )
+
+
+def rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:
+    """Return entries, the best fit on held-out records first (on training ones where none is held out)."""
+    held_out = any(math.isfinite(entry.test_fit_percent) for entry in entries)
+
+    def merit(entry: BenchmarkEntry) -> float:
+        fit = entry.test_fit_percent if held_out else entry.train_fit_percent
+        return fit if math.isfinite(fit) else -math.inf
+
+    return sorted(entries, key=merit, reverse=True)
+
+
+def _read_entry(path: Path) -> BenchmarkEntry:
+    """Return an entry from its file, where a figure that does not exist is null."""
+    kept = json.loads(path.read_text(encoding="utf-8"))
+    values = (kept[name] for name in BenchmarkEntry._fields)
+    return BenchmarkEntry._make(math.nan if value is None else value for value in values)
+
+
+def _check_fixed(fix: Mapping[str, float], models: Sequence[str]) -> None:
+    """Refuse a fixed parameter that no model has; those that have it not leave it out."""
+    known = sorted({name for model in models for name in numeric_fields(find_model(model))})
+    for name in fix:
+        if name not in known:
+            raise InputError(
+                f"--fix {name}: no model has this number{nearest(name, known)}; see seatsim describe MODEL"
+            )
+
+
+def _keys(
+    models: Sequence[str], records: Sequence[BenchRecord], settings: IdentificationSettings, data: PredictionData
+) -> list[str]:
+    """Return what tells the entries of these data, settings and models, as they are now, from others."""
+    state = sha256(repr((settings, data.moving_average, data.centred, _hash_code(__name__))).encode())
+    for record in (*records, *data.records):
+        state.update(record.name.encode())
+        for part in (record.force, record.displacement, record.velocity, record.current, record.temperature):
+            state.update(b"" if part is None else part.tobytes())
+    keys = []
+    for model in models:
+        own = state.copy()
+        own.update(_hash_code(find_model(model).__module__).encode())
+        keys.append(own.hexdigest()[:12])
+    return keys
+
+
+@cache
+def _hash_code(module: str) -> str:
+    """Return a hash of a module and of all that it reaches."""
+    return digest([sys.modules[module]])

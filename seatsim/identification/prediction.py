@@ -1,0 +1,111 @@
+"""The force that a model predicts on a bench record."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.compilation.cached import compiled
+from seatsim.identification.damper_record import DamperRecord, find_specification
+from seatsim.kernel.augmented import classes_of
+from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
+from seatsim.kernel.coil_current import simulate_current
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.rig.coil import Coil
+from seatsim.rig.temperature import TemperatureFactors
+
+Array = NDArray[np.float64]
+
+FAST_ENOUGH = 400.0
+"""Hz; at this rate and above every second row is the middle of a step."""
+ROOM_TEMPERATURE = 20.0
+"""degC, where no temperature was recorded."""
+
+
+class BenchModel(NamedTuple):
+    """What the force on a bench depends on: the damper, its temperature factors, the coil's rates in 1/s.
+
+        F = F_damper(x, v, i, T) + g (T - T0),   di/dt = r (u - i),  r = rise where u > i, else fall
+
+    offset_per_kelvin: g in N/K, by which the offset grows as the gas warms up from the factors' reference temperature
+    T0.
+    """
+
+    damper: DamperRecord
+    factors: TemperatureFactors
+    rise: float = 130.0
+    fall: float = 130.0
+    offset_per_kelvin: float = 0.0
+
+
+class BenchInputs(NamedTuple):
+    """A record as it drives the bench: samples every half step, shape (2 n + 1,), and the measured force at steps.
+
+    x [m] from the origin, v [m/s], current [A] (a command for the coil where `commanded`), temperature [degC], step
+    [s]; force [N] has shape (n + 1,). Steps before the one `counted` only bring the damper into its state.
+    """
+
+    x: Array
+    v: Array
+    current: Array
+    commanded: bool
+    temperature: Array
+    step: float
+    force: Array
+    counted: int = 0
+
+
+def prepare_inputs(record: BenchRecord, origin: float, every: bool) -> BenchInputs:
+    """Return a record as inputs: every row a step, or, unless `every`, each second one where the rows are close.
+
+    origin: displacement in m that counts as x = 0.
+    """
+    x, v = record.displacement - origin, record.velocity
+    warm = np.full(len(x), ROOM_TEMPERATURE) if record.temperature is None else record.temperature
+    rate = record.rate
+    if not every and rate >= FAST_ENOUGH:
+        odd = slice(0, len(x) - 1 + len(x) % 2)
+        x, v, current, warm = (np.ascontiguousarray(y[odd]) for y in (x, v, record.current, warm))
+        return BenchInputs(x, v, current, record.commanded, warm, 2.0 / rate, record.force[odd][::2].copy())
+    # A command holds until its next row; a current that was measured goes straight on to it.
+    current = np.repeat(record.current, 2)[:-1] if record.commanded else _halve_linearly(record.current)
+    return BenchInputs(
+        _halve_cubically(x), _halve_cubically(v), current, record.commanded, _halve_linearly(warm), 1.0 / rate,
+        record.force.copy(),
+    )  # fmt: skip
+
+
+def _halve_cubically(y: Array) -> Array:
+    """Return samples and the values between them, of the cubic through the four nearest."""
+    out = _halve_linearly(y)
+    out[3:-3:2] = (9.0 * (y[1:-2] + y[2:-1]) - y[:-3] - y[3:]) / 16.0
+    return out
+
+
+def _halve_linearly(y: Array) -> Array:
+    """Return samples and the means between them."""
+    out = np.empty(2 * len(y) - 1)
+    out[::2] = y
+    out[1::2] = 0.5 * (y[1:] + y[:-1])
+    return out
+
+
+def predict_force(
+    bench: BenchModel, inputs: BenchInputs, most: int = MOST_PARTS, tolerance: float = TOLERANCE
+) -> Array:
+    """Return the force in N at the inputs' steps, shape (n + 1,); NaN from where the state ran away.
+
+    A step is divided into at most `most` parts until its error, over the force, is below `tolerance`.
+    """
+    current = inputs.current
+    if inputs.commanded:
+        current = simulate_current(Coil(bench.rise, rate_fall=bench.fall), current, 0.5 * inputs.step, current[0])
+    out = np.full(len(inputs.force), math.nan)
+    run = compiled(run_bench, classes_of(bench.damper))
+    state = find_specification(type(bench.damper)).initial
+    given = (inputs.x, inputs.v, current, inputs.temperature, state, inputs.step, most, tolerance, out)
+    run(bench.damper, bench.factors, *given)
+    return out + bench.offset_per_kelvin * (inputs.temperature[::2] - bench.factors.reference)

@@ -1,0 +1,65 @@
+"""Which ranges records hold, and what is told of tests beyond them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatsim.identification.coverage import measure_coverage, note_limits
+from seatsim.identification.damper_record import find_model, find_specification
+
+from .benches import made
+
+PLAIN = find_specification(find_model("bingham"))
+SPEED = 2.0 * math.pi * 2.0 * 0.01
+
+
+def test_ranges_of_a_sine():
+    found = measure_coverage([made(seconds=4.0), made(current=0.5, seconds=4.0)])
+    assert found.displacement == pytest.approx([-0.01, 0.01], rel=1e-3)
+    assert found.velocity == pytest.approx([-SPEED, SPEED], rel=1e-3)
+    assert found.current == [0.0, 0.5] and found.steady_currents == [0.0, 0.5] and found.temperature is None
+    assert found.frequency == pytest.approx([2.0, 2.0], abs=0.26)
+
+
+def test_a_current_that_varies_is_not_steady_and_temperatures_are_ranged():
+    varying = made(current=lambda t: 0.2 + 0.1 * np.sin(t), temperature=30.0)
+    found = measure_coverage([varying, made(temperature=41.0)])
+    assert found.steady_currents == [0.0] and found.temperature == [30.0, 41.0]
+
+
+def test_frequencies_hold_nine_tenths_of_the_power():
+    slow, fast = made(frequency=1.0, seconds=5.0), made(frequency=6.0, amplitude=0.002, seconds=5.0)
+    found = measure_coverage([slow, fast])
+    assert found.frequency == pytest.approx([1.0, 6.0], abs=0.25)
+
+
+def test_the_lowest_and_the_highest_tone_of_a_record_are_covered():
+    slow, middle, fast = (made(frequency=f, amplitude=0.01 / f, seconds=5.0) for f in (1.0, 3.0, 6.0))
+    found = measure_coverage([slow._replace(velocity=slow.velocity + middle.velocity + fast.velocity)])
+    assert found.frequency == pytest.approx([1.0, 6.0], abs=0.25)
+
+
+def test_shares_of_time_follow_the_law_of_a_sine():
+    shares = measure_coverage([made(frequency=1.0, seconds=10.0, rate=2000.0)]).speeds
+    # |cos| lies below s for 2/pi asin(s) of the time
+    edges = np.linspace(0.0, 1.0, 11)
+    expected = np.diff(2.0 / math.pi * np.arcsin(edges))
+    assert list(shares.values()) == pytest.approx(list(expected), abs=2e-3)
+    assert list(shares)[-1] == f"{2.0 * math.pi * 0.01:.3g}"
+
+
+@pytest.mark.parametrize("factor, told", [(1.04, False), (1.06, True)])
+def test_tests_beyond_what_was_fitted_are_told_from_five_percent_on(factor, told):
+    record = made()
+    notes = note_limits(PLAIN, [record], [record._replace(velocity=factor * record.velocity)], 0.0)
+    assert bool(notes) == told and all("of velocity" in note for note in notes)
+    assert note_limits(PLAIN, [record], [], 0.0) == []
+
+
+def test_a_model_that_wants_centred_strokes_is_told_of_others():
+    wants = PLAIN._replace(centred=True)
+    record = made()
+    moved = record._replace(displacement=record.displacement + 0.02)
+    assert note_limits(wants, [record], [], 0.0) == [] and note_limits(wants, [moved], [], 0.02) == []
+    assert "middles of the strokes" in note_limits(wants, [moved], [], 0.0)[0]

@@ -1,0 +1,160 @@
+"""The problem that a fit solves: its statement from records, its residuals, its Jacobian, and how it is searched."""
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from seatsim.dampers.bingham import Bingham
+from seatsim.identification.damper_record import find_model
+from seatsim.identification.prediction import BenchModel, predict_force
+from seatsim.identification.problem import compute_jacobian, weight_records
+from seatsim.identification.problem_statement import find_origin, state_problem
+from seatsim.identification.search import refine, search_globally
+from seatsim.identification.settings import IdentificationSettings as Settings
+from seatsim.rig.temperature import TemperatureFactors
+
+from .benches import BINGHAM, made, sines
+
+
+@pytest.fixture(scope="module")
+def executor():
+    with ThreadPoolExecutor(2) as executor:
+        yield executor
+
+
+def stated(records, settings=None, origin=0.0):
+    return state_problem(records, find_model("bingham"), origin, settings or Settings(fix={"v_ref": BINGHAM.v_ref}))
+
+
+def test_records_count_alike_whatever_their_force_and_length():
+    records = [made(seconds=1.0), made(current=1.0, seconds=4.0)]
+    problem, _ = stated(records)
+    off = BenchModel(BINGHAM._replace(f0=BINGHAM.f0 + 7.0), TemperatureFactors())
+    residuals = np.split(problem.residuals(problem.to_vector(off)), [len(problem.inputs[0].force)])
+    for part, record in zip(residuals, records, strict=True):
+        assert np.sum(part**2) == pytest.approx((7.0 / np.std(record.force)) ** 2, rel=1e-6)
+    assert problem.cost(problem.to_vector(off)) == pytest.approx(np.mean([np.sum(part**2) for part in residuals]))
+
+
+def test_a_force_that_hardly_varies_counts_by_a_twentieth_of_the_largest_deviation():
+    loud, quiet = made(), made()._replace(force=np.zeros(1001))
+    problem, _ = stated([loud])
+    weights = weight_records([loud, quiet], [problem.inputs[0]] * 2)
+    assert weights[1] / weights[0] == pytest.approx(20.0)
+
+
+def test_a_force_that_runs_away_has_the_largest_residual():
+    problem, _ = stated([made()])
+    wild = problem._replace(inputs=[problem.inputs[0]._replace(v=np.full_like(problem.inputs[0].v, np.inf))])
+    start = problem.coordinates.to_vector(problem.coordinates.start)
+    assert np.sum(wild.residuals(start) ** 2) == pytest.approx(100.0)
+
+
+def test_a_bench_comes_back_from_its_vector_with_coil_and_temperature():
+    coil = made(current=lambda t: np.where(t % 1.0 < 0.5, 0.0, 1.0), coil=(200.0, 50.0), temperature=20.0)
+    problem, _ = stated([coil, made(current=1.0, temperature=80.0)])
+    bench = BenchModel(BINGHAM, TemperatureFactors(-0.004, 0.001, -0.007, problem.reference), 200.0, 60.0, 0.5)
+    found = problem.to_bench(problem.to_vector(bench))
+    assert found.rise == pytest.approx(200.0) and found.fall == pytest.approx(60.0)
+    assert found.factors == pytest.approx(bench.factors) and found.offset_per_kelvin == pytest.approx(0.5)
+    assert found.damper == pytest.approx(BINGHAM)
+    assert problem.labels[-6:] == [
+        "actuator.rate", "actuator.rate_fall", "temperature_factors.viscous", "temperature_factors.stiffness",
+        "temperature_factors.yield_force", "bench.offset_per_kelvin",
+    ]  # fmt: skip
+    low, high = problem.bounds
+    assert high[-6] == pytest.approx(math.log(30.0)) and low[-4] == pytest.approx(-3.0) and high[-1] == math.inf
+
+
+def test_what_stands_at_a_bound_is_named():
+    problem, _ = stated([made(current=1.0)])
+    vector = problem.coordinates.to_vector(BINGHAM)
+    low, high = problem.bounds
+    at = problem.labels.index("fc_b")
+    assert problem.labels_at_bounds(vector) == []
+    for end in (low[at] + 5e-4, high[at] - 5e-4):
+        vector[at] = end
+        assert problem.labels_at_bounds(vector) == ["fc_b"]
+
+
+def test_the_jacobian_is_that_of_central_differences(executor):
+    problem, _ = stated(sines(BINGHAM))
+    fine = problem._replace(tolerance=1e-9)
+    vector = problem.coordinates.to_vector(BINGHAM)
+    found = compute_jacobian(fine, vector, fine.residuals(vector), executor, 1e-5)
+    for k, unit in enumerate(np.eye(len(vector))):
+        central = (fine.residuals(vector + 1e-4 * unit) - fine.residuals(vector - 1e-4 * unit)) / 2e-4
+        np.testing.assert_allclose(found[:, k], central, atol=1e-4 * np.max(np.abs(central)))
+
+
+def test_at_the_greatest_value_the_difference_goes_backwards(executor):
+    problem, _ = stated([made(current=1.0)])
+    vector, seen = problem.bounds[1].copy(), []
+    vector[~np.isfinite(vector)] = 1.0
+
+    class Watched(type(problem)):
+        def residuals(self, point):
+            seen.append(point)
+            return super().residuals(point)
+
+    compute_jacobian(Watched(*problem), vector, problem.residuals(vector), executor)
+    assert len(seen) == len(vector) and all(np.all(point <= problem.bounds[1]) for point in seen)
+
+
+def test_least_squares_find_what_ordinary_least_squares_do(executor):
+    record = made(noise=0.05, seconds=3.0, rate=300.0)
+    problem, _ = stated([record])
+    start = problem.coordinates.to_vector(problem.coordinates.start)
+    found = refine(problem, start, executor)
+    columns = np.column_stack([record.velocity, np.tanh(record.velocity / BINGHAM.v_ref), np.ones(len(record.force))])
+    expected, squares, *_ = np.linalg.lstsq(columns, record.force, rcond=None)
+    damper = problem.to_bench(found.vector).damper
+    assert (damper.c_a, damper.fc_a, damper.f0) == pytest.approx(tuple(expected), rel=1e-3)
+    assert found.cost == pytest.approx(squares[0] / len(record.force) / np.var(record.force), rel=1e-6)
+
+
+def test_the_global_search_comes_closer_and_repeats_itself(executor):
+    _, short = stated(sines(BINGHAM, noise=0.0))
+    start = short.coordinates.to_vector(short.coordinates.start)
+    first, again = (search_globally(short, start, 3, 150, executor) for _ in range(2))
+    assert np.array_equal(first, again) and short.cost(first) < 0.2 * short.cost(start)
+    assert not np.array_equal(first, search_globally(short, start, 4, 150, executor))
+
+
+# --------------------------------------------------------------------------------------------- the statement
+
+
+@pytest.mark.parametrize("middle, origin", [(0.0, 0.0), (0.002, 0.0), (0.0031, 0.0031), (-0.04, -0.04)])
+def test_an_origin_is_the_middle_of_motion_that_is_far_from_zero(middle, origin):
+    record = made()
+    assert find_origin([record._replace(displacement=record.displacement + middle)]) == pytest.approx(origin, abs=1e-4)
+
+
+def test_the_short_problem_holds_the_liveliest_rows_behind_a_run_up():
+    # slow, then four times as fast: the lively stretch lies in the second half
+    slow, fast = made(frequency=1.0, seconds=30.0), made(frequency=4.0, seconds=30.0)
+    names = ("displacement", "velocity", "force", "current")
+    long = slow._replace(**{name: np.append(getattr(slow, name), getattr(fast, name)) for name in names})
+    whole, short = stated([long])
+    (inputs,) = short.inputs
+    assert len(whole.inputs[0].force) == 15001 and whole.inputs[0].counted == 0
+    assert len(inputs.force) - inputs.counted == pytest.approx(5000, abs=1) and inputs.counted >= 4900
+    assert np.max(np.abs(inputs.v)) == pytest.approx(2.0 * math.pi * 4.0 * 0.01, rel=1e-3)
+    force = predict_force(BenchModel(BINGHAM, TemperatureFactors()), inputs)
+    np.testing.assert_allclose(force[inputs.counted :], inputs.force[inputs.counted :], atol=1e-6)
+
+
+@pytest.mark.parametrize("warmer, reference", [(4.0, None), (6.0, 23.0)])
+def test_temperature_is_an_input_where_it_varies_enough(warmer, reference):
+    records = [made(temperature=20.0), made(temperature=20.0 + warmer)]
+    assert stated(records)[0].reference == reference
+    assert stated(records, Settings(ignore_temperature=True))[0].reference is None
+    assert stated([records[0], made()])[0].reference is None, "not recorded everywhere"
+
+
+def test_laws_are_counted_up_to_the_largest_current_of_the_data():
+    problem, _ = stated([made(current=2.0)])
+    assert problem.coordinates.end == 2.0 and not problem.fits_coil
+    assert problem.coordinates.start == Bingham()._replace(v_ref=BINGHAM.v_ref), "numbers start from their defaults"
