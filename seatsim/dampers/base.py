@@ -12,10 +12,10 @@ arithmetic and `math` only; what they call from their module is decorated with `
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal, NamedTuple, Protocol, TypeVar
+from typing import Literal, NamedTuple, Protocol, TypeVar
 
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
-from seatsim.schema.registry import register
+from seatsim.schema.registry import Record, Registry
 
 T = TypeVar("T", bound=type)
 State = tuple[float, ...]
@@ -30,10 +30,10 @@ CONFIDENCE: dict[Confidence, str] = {
 """How far a model's equation is that of its source; a docstring tells what else is of whom, parameters above all."""
 
 
-class Damper(Protocol):
+class Damper(Record, Protocol):
     """The part of a damper that every model has; see the module for the optional methods."""
 
-    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: Any) -> float:
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return the damper force in N."""
 
 
@@ -63,6 +63,10 @@ class DamperSpecification(NamedTuple):
     confidence: Confidence
     fixed: tuple[str, ...]
     smooth: bool
+
+
+DAMPERS: Registry[Damper, DamperSpecification] = Registry("damper")
+"""All damper models by name."""
 
 
 def damper(
@@ -97,4 +101,4 @@ def damper(
         fixed,
         smooth,
     )
-    return register("damper", name, specification)
+    return DAMPERS.register(name, specification)

@@ -30,9 +30,11 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
-from seatsim.schema.registry import register, specification_of
+from seatsim.schema.fields import field_names
+from seatsim.schema.registry import Record, Registry
 
 T = TypeVar("T", bound=type)
+R = TypeVar("R", bound=Record)
 Values = Mapping[str, float]
 
 ON_DAMPER = (
@@ -70,6 +72,10 @@ class EffectSpecification(NamedTuple):
     by_channel: bool
 
 
+EFFECTS: Registry[Record, EffectSpecification] = Registry("effect")
+"""All effects by name."""
+
+
 def effect(
     name: str,
     source: str = "",
@@ -81,12 +87,12 @@ def effect(
 ) -> Callable[[T], T]:
     """Register a record class as `effect: name`, where the part before the dot is the block it lives in."""
     stated = tuple(form if isinstance(form, Form) else Form(form) for form in forms)
-    return register("effect", name, EffectSpecification(source, initial, off or {}, stated, suits, by_channel))
+    return EFFECTS.register(name, EffectSpecification(source, initial, off or {}, stated, suits, by_channel))
 
 
-def off(cls: Any) -> Any:
+def off(cls: type[R]) -> R:
     """Return the record of an effect at the parameters that leave the rig unchanged."""
-    values = dict.fromkeys(cls._fields, 0.0) | dict(specification_of(cls).off)
+    values = dict.fromkeys(field_names(cls), 0.0) | dict(EFFECTS.specification_of(cls).off)
     return cls(**values)
 
 

@@ -24,7 +24,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 
-from seatsim.schema.registry import register
+from seatsim.schema.registry import Record, Registry
 
 T = TypeVar("T", bound=type)
 
@@ -54,6 +54,10 @@ class LawSpecification(NamedTuple):
     source: str
 
 
+LAWS: Registry[Record, LawSpecification] = Registry("law")
+"""All control laws by name."""
+
+
 def law(name: str, initial: tuple[float, ...] = (), replays: bool = False, source: str = "") -> Callable[[T], T]:
     """Register a record class as the control law `law: name` with the `initial` value of its state."""
-    return register("law", name, LawSpecification(initial, replays, source))
+    return LAWS.register(name, LawSpecification(initial, replays, source))

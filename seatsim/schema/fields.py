@@ -11,6 +11,7 @@ Pydantic validates it from a mapping, numba compiles it as a typed record.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import cache
 from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
 
@@ -43,6 +44,18 @@ class FieldSpecification(NamedTuple):
     required: bool
 
 
+def field_names(record: type) -> tuple[str, ...]:
+    """Return the names of the fields of a record class, in order; none for a class that is no record."""
+    names: tuple[str, ...] = getattr(record, "_fields", ())
+    return names
+
+
+def default_values(record: type) -> Mapping[str, object]:
+    """Return the defaults of a record class by field, without the fields that have none."""
+    defaults: Mapping[str, object] = getattr(record, "_field_defaults", {})
+    return defaults
+
+
 @cache
 def adapter(record: type) -> TypeAdapter[Any]:
     """Return the pydantic validator of a record class."""
@@ -51,7 +64,7 @@ def adapter(record: type) -> TypeAdapter[Any]:
 
 def describe(record: type) -> list[FieldSpecification]:
     """List name, unit, meaning and default of every field of a record class, in order."""
-    defaults: dict[str, Any] = getattr(record, "_field_defaults", {})
+    defaults = default_values(record)
     specifications = []
     for name, hint in _hints(record).items():
         info = _field_info(hint)

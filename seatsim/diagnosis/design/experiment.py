@@ -29,10 +29,10 @@ from seatsim.diagnosis.noise import TRUST
 from seatsim.diagnosis.nuisance import varied
 from seatsim.diagnosis.problem import CARRIER, POOL, Problem
 from seatsim.effects.base import off
+from seatsim.excitations.base import EXCITATIONS as REGISTERED_EXCITATIONS
 from seatsim.excitations.base import Floor
 from seatsim.recordings.compared import COMPARED
 from seatsim.recordings.recording import Recording
-from seatsim.schema.registry import find
 from seatsim.simulation.augment import readings
 from seatsim.simulation.bench_replay import replay_bench
 from seatsim.simulation.simulate import simulate
@@ -164,7 +164,7 @@ def menu(problem: Problem) -> Iterator[Trial]:
             continue
         text = words.replace("the floor", "the damper") if problem.bench else words
         own = {key: value for key, value in keys.items() if key != "kind"}
-        floor = find("excitation", keys["kind"])(**own).floor(step, 0)
+        floor = REGISTERED_EXCITATIONS.find(keys["kind"])(**own).floor(step, 0)
         current = {key: top * value for key, value in law.items() if key != "law"}
         command = np.full(len(floor.time), current.get("current", 0.0))
         if "on" in current:
