@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -71,7 +70,6 @@ def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
         if key not in data:
             raise source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator, temperature,"
                                    " controller and excitation")  # fmt: skip
-    sys.path.extend(folder for folder in (str(source.path.parent), "") if folder not in sys.path)
     return Scenario(
         name=str(data.get("name", source.path.stem)),
         damper=_damper(data["damper"], source, ("damper",)),

@@ -2,7 +2,8 @@
 
 A plug-in is a module or package that an entry point of the group ``seatsim.plugins`` names; importing it (and its
 submodules) runs the decorators that register its classes. A class that is in no plug-in is named directly, as
-``"package.module:Class"``; it is registered by the same decorator when its module is imported.
+``"package.module:Class"``; it is registered by the same decorator when its module is imported, which is installed or
+one of the files in use (`seatsim.schema.own_code`).
 
 Each kind of part has a `Registry` beside the definition of what such a part is: `DAMPERS` in `seatsim.dampers.base`,
 `EFFECTS` in `seatsim.effects.base`, `EXCITATIONS` in `seatsim.excitations.base`, `LAWS` in `seatsim.rig.control`.
@@ -15,9 +16,11 @@ import pkgutil
 from collections.abc import Callable, Mapping
 from functools import cache
 from importlib.metadata import entry_points
+from pathlib import Path
 from typing import Any, Generic, Protocol, Self, TypeVar, cast
 
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.own_code import import_named
 
 T = TypeVar("T", bound=type)
 P = TypeVar("P")
@@ -59,13 +62,13 @@ class Registry(Generic[P, S]):
         """List the registered names, sorted."""
         return names(self.kind)
 
-    def find(self, name: str) -> type[P]:
-        """Return the class called `name`, or the one that `"package.module:Class"` points to.
+    def find(self, name: str, beside: Path | None = None) -> type[P]:
+        """Return the class called `name`, or the one that `"package.module:Class"` points to; see `find`.
 
         Raises:
             InputError: no such name or class, or the class is not registered as this kind.
         """
-        return cast("type[P]", find(self.kind, name))
+        return cast("type[P]", find(self.kind, name, beside))
 
     def name_of(self, cls: type) -> str:
         """Return the name under which a class is registered."""
@@ -77,9 +80,19 @@ class Registry(Generic[P, S]):
 
 
 def register(kind: str, name: str, specification: object) -> Callable[[T], T]:
-    """Return a class decorator that enters a class of this `kind` under `name`, with its `specification` of facts."""
+    """Return a class decorator that enters a class of this `kind` under `name`, with its `specification` of facts.
+
+    Raises:
+        InputError: another class has the name; which of the two a scenario means would hang on what was imported last.
+    """
 
     def enter(cls: T) -> T:
+        known = _classes.get(kind, {}).get(name)
+        # A module that is loaded again, as in a notebook, replaces its own classes.
+        if known is not None and (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
+            raise InputError(
+                f"{kind} '{name}' is there already, in {known.__module__}; give {cls.__name__} another name"
+            )
         _classes.setdefault(kind, {})[name] = cls
         _specifications[cls] = specification
         return cls
@@ -108,14 +121,16 @@ def names(kind: str) -> list[str]:
     return sorted(_classes.get(kind, {}))
 
 
-def find(kind: str, name: str) -> type[Record]:
+def find(kind: str, name: str, beside: Path | None = None) -> type[Record]:
     """Return the class of this `kind` called `name`, or the class that `"package.module:Class"` points to.
+
+    `beside` is the folder of the file that has the name; an error shows how a module that lies there would be named.
 
     Raises:
         InputError: no such name or class, or the class is not registered as this kind.
     """
     if ":" in name:
-        return _import_class(kind, name)
+        return _import_class(kind, name, beside)
     _load_plugins()
     known = _classes.get(kind, {})
     if name not in known:
@@ -126,12 +141,9 @@ def find(kind: str, name: str) -> type[Record]:
     return known[name]
 
 
-def _import_class(kind: str, target: str) -> type[Record]:
+def _import_class(kind: str, target: str, beside: Path | None) -> type[Record]:
     module_name, _, class_name = target.partition(":")
-    try:
-        module = importlib.import_module(module_name)
-    except ImportError as error:
-        raise InputError(f"cannot import '{module_name}' for {kind} '{target}': {error}") from error
+    module = import_named(module_name, beside)
     cls: type[Record] | None = getattr(module, class_name, None)
     if cls is None:
         raise InputError(f"module '{module_name}' has no class '{class_name}'{nearest(class_name, vars(module))}")

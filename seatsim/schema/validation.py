@@ -66,7 +66,7 @@ def chosen_class(kind: str, values: Mapping[str, Any], key: str, source: Source,
     """Return the registered class of a kind that is named under a key, or raise InputError at that place."""
     name = choose(values, key, source, keys)
     try:
-        return find(kind, name)
+        return find(kind, name, source.path.parent)
     except InputError as error:
         raise source.error((*keys, key), str(error)) from error
 

@@ -20,6 +20,7 @@ from seatsim.blind.score.verdicts import NAMING, Verdict, block_first, block_fir
 from seatsim.blind.sealed import Sealed, unseal
 from seatsim.blind.truth.truth import EFFECTS
 from seatsim.schema.errors import InputError, SeatsimError
+from seatsim.schema.own_code import use_all, used_files
 
 Progress = Callable[[int, int], None]
 KINDS = ("none", "one", "two", "outside")
@@ -218,7 +219,7 @@ def _map(jobs: list[tuple[Path, Path | None, Path]], progress: Progress | None, 
             if progress:
                 progress(len(out), len(jobs))
         return out
-    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(processes, get_context("spawn"), initializer=use_all, initargs=(used_files(),)) as pool:
         for value in pool.map(true_shrink, *zip(*jobs, strict=True)):
             out.append(value)
             if progress:
