@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from seatsim.scenario.loading import load
     from seatsim.scenario.scenario import Scenario
     from seatsim.schema.errors import InputError, RunError, SeatsimError, SynthesisError
-    from seatsim.schema.own_code import use
+    from seatsim.schema.modules import use
     from seatsim.simulation.result import Channel, Result, Run
     from seatsim.simulation.runs import compare, run
 
@@ -38,7 +38,7 @@ _HOME = {
     "load": "scenario.loading",
     "load_recording": "recordings.recording",
     "run": "simulation.runs",
-    "use": "schema.own_code",
+    "use": "schema.modules",
 }
 __all__ = [
     "Channel",

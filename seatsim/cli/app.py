@@ -15,7 +15,7 @@ from seatsim.cli.commands.runs import compare, run
 from seatsim.cli.commands.synthesis import synthesise
 from seatsim.cli.terminal import complain, err
 from seatsim.schema.errors import SeatsimError
-from seatsim.schema.own_code import MissingModuleError
+from seatsim.schema.modules import MissingModuleError
 
 app = typer.Typer(
     help="Simulate semi-active MR-damper seats and compare what is done to them.",

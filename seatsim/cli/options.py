@@ -11,7 +11,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from seatsim.schema.errors import InputError
-from seatsim.schema.own_code import use_all
+from seatsim.schema.modules import use_all
 
 
 def _use_files(files: list[Path] | None) -> list[Path]:

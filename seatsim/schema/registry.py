@@ -3,7 +3,7 @@
 A plug-in is a module or package that an entry point of the group ``seatsim.plugins`` names; importing it (and its
 submodules) runs the decorators that register its classes. A class that is in no plug-in is named directly, as
 ``"package.module:Class"``; it is registered by the same decorator when its module is imported, which is installed or
-one of the files in use (`seatsim.schema.own_code`).
+one of the files in use (`seatsim.schema.modules`).
 
 Each kind of part has a `Registry` beside the definition of what such a part is: `DAMPERS` in `seatsim.dampers.base`,
 `EFFECTS` in `seatsim.effects.base`, `EXCITATIONS` in `seatsim.excitations.base`, `LAWS` in `seatsim.rig.control`.
@@ -11,16 +11,12 @@ Each kind of part has a `Registry` beside the definition of what such a part is:
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 from collections.abc import Callable, Mapping
-from functools import cache
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any, Generic, Protocol, Self, TypeVar, cast
 
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.own_code import import_named
+from seatsim.schema.modules import import_named, load_plugins
 
 T = TypeVar("T", bound=type)
 P = TypeVar("P")
@@ -90,9 +86,7 @@ def register(kind: str, name: str, specification: object) -> Callable[[T], T]:
         known = _classes.get(kind, {}).get(name)
         # A module that is loaded again, as in a notebook, replaces its own classes.
         if known is not None and (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
-            raise InputError(
-                f"{kind} '{name}' is there already, in {known.__module__}; give {cls.__name__} another name"
-            )
+            raise InputError(f"{kind} '{name}' is there already, in {known.__module__}; choose another name")
         _classes.setdefault(kind, {})[name] = cls
         _specifications[cls] = specification
         return cls
@@ -117,7 +111,7 @@ def name_of(kind: str, cls: type) -> str:
 
 def names(kind: str) -> list[str]:
     """List the registered names of one kind, sorted."""
-    _load_plugins()
+    load_plugins()
     return sorted(_classes.get(kind, {}))
 
 
@@ -131,7 +125,7 @@ def find(kind: str, name: str, beside: Path | None = None) -> type[Record]:
     """
     if ":" in name:
         return _import_class(kind, name, beside)
-    _load_plugins()
+    load_plugins()
     known = _classes.get(kind, {})
     if name not in known:
         permitted = ", ".join(sorted(known))
@@ -150,11 +144,3 @@ def _import_class(kind: str, target: str, beside: Path | None) -> type[Record]:
     if cls not in _classes.get(kind, {}).values():
         raise InputError(f"'{target}' is not a {kind}: decorate the class with the {kind} decorator")
     return cls
-
-
-@cache
-def _load_plugins() -> None:
-    for point in entry_points(group="seatsim.plugins"):
-        package = importlib.import_module(point.value)
-        for module in pkgutil.iter_modules(getattr(package, "__path__", ())):
-            importlib.import_module(f"{point.value}.{module.name}")

@@ -48,6 +48,7 @@ def test_every_command_and_option_has_an_example():
         "--kinds",
         "--key",
         "--bracket",
+        "--with",
         *BENCH,
     ):
         assert option in examples
@@ -55,15 +56,17 @@ def test_every_command_and_option_has_an_example():
 
 # In a process of its own, where what the examples register stays.
 CODE = """
-import example_0, example_1
 import numpy as np
-from example_2 import AirDrag
-from seatsim import load, load_recording
+from seatsim import load, load_recording, use
 from seatsim.diagnosis.candidates import candidates
 from seatsim.diagnosis.problem import problem
 from seatsim.effects.base import off
 from seatsim.kernel.rig import MECHANICAL, Rig, Shake, derivative
-from seatsim.rig.temperature import Heat
+from seatsim.rig.temperature import TemperatureScaling
+
+use("example_0.py")
+use("example_1.py")
+AirDrag = use("example_2.py").AirDrag
 
 effects = [{"effect": "example_2:AirDrag", "parameters": {"drag": 350.0}}]
 scenario, = load("quickstart", {"effects": effects, "variants": {}})
@@ -73,7 +76,7 @@ assert scenario.effects == (AirDrag(350.0),)
 def rates(*effects):
     rig = Rig(scenario.plant, scenario.damper.record, effects)
     state = (0.0, 0.3) + (0.0,) * (MECHANICAL - 2) + (0.0,)
-    return derivative(rig, state, Shake(0.0, 0.0, 0.0), 0.5, Heat(), 0.0)[0]
+    return derivative(rig, state, Shake(0.0, 0.0, 0.0), 0.5, TemperatureScaling(), 0.0)[0]
 
 
 change = rates(*scenario.effects)[1] - rates()[1]

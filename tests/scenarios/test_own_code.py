@@ -9,13 +9,12 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import seatsim
 from seatsim.cli.app import main
 from seatsim.cli.outputs import diagnosis
-from seatsim.schema.own_code import MissingModuleError, import_named, use, use_all, used_files
+from seatsim.schema.modules import MissingModuleError, import_named, use, use_all, used_files
 from seatsim.schema.registry import find, names
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,7 +30,6 @@ class PowerLaw(NamedTuple):
         return self.a * scaling.viscous * v
 """
 MALICIOUS = "from pathlib import Path\nPath(__file__).with_name('stolen').touch()\n" + POWER_LAW
-SETTINGS = ("--set", "damper={model: powerlaw:PowerLaw}", "--set", "excitation.duration=1.0")
 
 
 def seatsim_command(monkeypatch, *arguments):
@@ -112,6 +110,16 @@ def test_files_that_are_called_like_libraries_do_not_stand_before_them_under_pyt
     assert done.stdout.startswith("road (excitation)")
 
 
+def test_a_folder_that_is_called_like_a_plug_in_does_not_stand_before_it(strange):
+    (strange / "controllers").mkdir()
+    (strange / "controllers" / "__init__.py").write_text("raise SystemExit('a file of the recording was run')\n")
+    command = [sys.executable, "-c", "from seatsim.rig.control import LAWS; print(*LAWS.names())"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=strange, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "on_off_skyhook" in done.stdout
+
+
 def test_the_python_functions_do_not_run_it_either(strange):
     for call in (
         lambda: seatsim.gap(strange / "nominal.yaml", strange),
@@ -123,23 +131,19 @@ def test_the_python_functions_do_not_run_it_either(strange):
     assert not (strange / "stolen").exists()
 
 
-def test_a_file_that_is_named_is_run(power_law, seat_file, monkeypatch, capsys):
-    monkeypatch.setattr("seatsim.plots.runs.draw.draw", lambda result: {})
-    options = ("--with", power_law, *SETTINGS, "--out", seat_file.parent / "out")
-    assert seatsim_command(monkeypatch, "run", seat_file, *options) == 0
-    assert (seat_file.parent / "out" / "summary.csv").exists()
-    result = seatsim.run(seat_file, {"damper": {"model": "power_law"}, "excitation.duration": 1.0})
-    np.testing.assert_allclose(result["damper_force"], 300.0 * result["suspension_velocity"], atol=1e-9)
-    capsys.readouterr()
+def test_a_name_that_a_named_file_registers_is_known(power_law, seat_file, monkeypatch, capsys):
     assert seatsim_command(monkeypatch, "describe", "power_law", "--with", power_law) == 0
     assert "damping at zero current" in capsys.readouterr().out
+    (scenario,) = seatsim.load(seat_file, {"damper": {"model": "power_law"}})
+    assert type(scenario.damper.record) is sys.modules["powerlaw"].PowerLaw
 
 
-def test_a_named_file_replays_a_recording(strange, monkeypatch, capsys):
+def test_a_named_file_replays_a_recording(strange, monkeypatch):
     file = strange / "powerlaw.py"
     arguments = ("gap", strange / "nominal.yaml", strange, "--with", file, "--out", strange / "out")
     assert seatsim_command(monkeypatch, *arguments) == 0
     assert (strange / "out" / "gap.json").exists()
+    assert (strange / "stolen").exists(), "the file that was named is the one that was run"
 
 
 def test_use_returns_the_module_and_registers_its_classes(power_law):

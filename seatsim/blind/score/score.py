@@ -20,7 +20,7 @@ from seatsim.blind.score.verdicts import NAMING, Verdict, block_first, block_fir
 from seatsim.blind.sealed import Sealed, unseal
 from seatsim.blind.truth.truth import EFFECTS
 from seatsim.schema.errors import InputError, SeatsimError
-from seatsim.schema.own_code import use_all, used_files
+from seatsim.schema.modules import use_all, used_files
 
 Progress = Callable[[int, int], None]
 KINDS = ("none", "one", "two", "outside")

@@ -17,7 +17,7 @@ from seatsim.diagnosis.result import Diagnosis
 from seatsim.report import write_report
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import plain, write_json, write_whole
-from seatsim.schema.own_code import use_all, used_files
+from seatsim.schema.modules import use_all, used_files
 
 PROCESSES = 2
 """Recordings of a set that are diagnosed at once."""

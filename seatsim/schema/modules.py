@@ -1,19 +1,24 @@
-"""A user's own code: Python files that were named, on the command line or in Python, and installed packages.
+"""Where the code of models comes from: plug-ins, installed packages, and files of the user's own that were named.
 
-A file that nobody named is never run, wherever it lies. A scenario or a recording from a stranger may say
-``model: powerlaw:PowerLaw``; whether the ``powerlaw.py`` beside it can be trusted is for the user to say, with
-``--with powerlaw.py`` or ``seatsim.use("powerlaw.py")``. No folder is put on the import path for it.
+A plug-in is a module or package that an entry point of the group ``seatsim.plugins`` names; importing it and its
+submodules registers its classes. Files are named on the command line or in Python, and one that nobody named is never
+run, wherever it lies. A scenario or a recording from a stranger may say ``model: powerlaw:PowerLaw``; whether the
+``powerlaw.py`` beside it can be trusted is for the user to say, with ``--with powerlaw.py`` or
+``seatsim.use("powerlaw.py")``. No folder is put on the import path for it.
 """
 
 from __future__ import annotations
 
 import importlib
 import importlib.util
+import pkgutil
 import shlex
 import sys
 import traceback
 from collections.abc import Iterable
+from functools import cache
 from importlib.machinery import ModuleSpec
+from importlib.metadata import entry_points
 from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
@@ -38,6 +43,15 @@ _used: dict[str, _UsedFile] = {}
 """What `use` has loaded, by module name, in the order in which it was named."""
 
 
+@cache
+def load_plugins() -> None:
+    """Import every plug-in, once."""
+    for point in entry_points(group="seatsim.plugins"):
+        package = import_named(point.value)
+        for module in pkgutil.iter_modules(getattr(package, "__path__", ())):
+            importlib.import_module(f"{point.value}.{module.name}")
+
+
 def use(path: str | Path) -> ModuleType:
     """Load a Python file as the module of its name, so that a scenario may say `powerlaw:PowerLaw` of `powerlaw.py`.
 
@@ -55,6 +69,8 @@ def use(path: str | Path) -> ModuleType:
     if _used.get(name) == file:
         return sys.modules[name]
     _check_name_is_free(name, file.path)
+    # First, so that a name which a plug-in has is an error of the file that takes it, and not of the plug-in.
+    load_plugins()
     module = sys.modules.get(name) if name not in _used else None
     if module is None:
         module = _load(name, Path(path), file.path)
