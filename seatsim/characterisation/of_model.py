@@ -20,7 +20,7 @@ from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.damper import stated_damper
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import find, name_of, specification_of
-from seatsim.schema.validation import build
+from seatsim.schema.validation import build, mapping
 from seatsim.schema.yaml_source import KeyPath, Source
 from seatsim.simulation.damper_bench import bench_force, sine_test
 
@@ -90,8 +90,9 @@ def specimen(model: str | None, parameters: Path | None) -> Specimen:
     keys: KeyPath = ("damper",) if whole else ()
     values = source.data["damper"] if whole else source.data
     damper, factors = stated_damper(values, source, keys)
-    if model not in (None, values["model"]):
-        problem = f"is '{values['model']}', not the '{model}' of --model; leave --model out"
+    named = mapping(values, source, keys)["model"]
+    if model not in (None, named):
+        problem = f"is '{named}', not the '{model}' of --model; leave --model out"
         raise source.error((*keys, "model"), problem)
     coil = Coil(max_current=specification_of(type(damper)).max_current)
     if whole and "actuator" in source.data:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +54,7 @@ def nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
 
 def varied(scenario: Scenario, parameters: Sequence[Nuisance], u: Array) -> Scenario:
     """Return the scenario with every parameter off by its span times u, shape (len(parameters),), -1 to 1."""
-    records = {"plant": scenario.plant, "damper": scenario.damper.record, "coil": scenario.coil}
+    records: dict[str, Any] = {"plant": scenario.plant, "damper": scenario.damper.record, "coil": scenario.coil}
     for parameter, share in zip(parameters, u, strict=True):
         value = {parameter.name: parameter.value + parameter.span * float(share)}
         records[parameter.section] = records[parameter.section]._replace(**value)

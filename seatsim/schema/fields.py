@@ -13,12 +13,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cache
-from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le
 from pydantic import Field, TypeAdapter
 from pydantic.fields import FieldInfo
 
+R = TypeVar("R")
 SLIGHTLY = 1e-9
 """How far above an open bound a value may come."""
 
@@ -29,7 +30,7 @@ def param(
     low: float | None = None,
     high: float | None = None,
     above: float | None = None,
-) -> Any:
+) -> Any:  # what stands in `Annotated` is no type to a checker
     """Describe one field: SI `unit`, `meaning`, and bounds (`low <= value <= high`, `value > above`)."""
     return Field(description=meaning, json_schema_extra={"unit": unit}, ge=low, le=high, gt=above, strict=True)
 
@@ -40,7 +41,7 @@ class FieldSpecification(NamedTuple):
     name: str
     unit: str
     meaning: str
-    default: Any
+    default: object
     required: bool
 
 
@@ -56,9 +57,15 @@ def default_values(record: type) -> Mapping[str, object]:
     return defaults
 
 
+def validated(record: type[R], values: object) -> R:
+    """Return the record of a class with the given values; raises `pydantic.ValidationError` where they do not fit."""
+    known: type = record
+    return cast("R", adapter(known).validate_python(values))
+
+
 @cache
-def adapter(record: type) -> TypeAdapter[Any]:
-    """Return the pydantic validator of a record class."""
+def adapter(record: type) -> TypeAdapter[object]:
+    """Return the pydantic validator of a record class, which takes some milliseconds to make."""
     return TypeAdapter(record)
 
 
@@ -95,11 +102,11 @@ def choices(record: type, name: str) -> tuple[str, ...]:
 
 
 @cache
-def _hints(record: Any) -> dict[str, Any]:
+def _hints(record: type) -> Mapping[str, object]:
     return get_type_hints(record, include_extras=True)
 
 
-def _field_info(hint: Any) -> FieldInfo | None:
+def _field_info(hint: object) -> FieldInfo | None:
     if get_origin(hint) is not Annotated:
         return None
     return next((part for part in get_args(hint) if isinstance(part, FieldInfo)), None)

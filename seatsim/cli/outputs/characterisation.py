@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rich import box
 from rich.markup import escape
@@ -146,8 +146,10 @@ def _of_steps(answers: Sequence[Response]) -> Table:
 
 
 def _table(title: str, caption: str | None = None) -> Table:
-    look: dict[str, Any] = {"title_justify": "left", "caption_justify": "left", "box": box.SIMPLE_HEAD}
-    return Table(title=escape(title), caption=caption, padding=(0, 1, 0, 0), **look)
+    return Table(
+        title=escape(title), caption=caption, padding=(0, 1, 0, 0),
+        title_justify="left", caption_justify="left", box=box.SIMPLE_HEAD,
+    )  # fmt: skip
 
 
 def _number(value: float, form: str) -> str:

@@ -7,7 +7,6 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
 from rich.table import Table
 from ruamel.yaml import YAML
@@ -36,7 +35,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     return paths
 
 
-def contents(diagnosis: Diagnosis) -> dict[str, Any]:
+def contents(diagnosis: Diagnosis) -> dict[str, object]:
     """Return a diagnosis as it stands in `diagnosis.json`."""
     gap = diagnosis.gap
     experiment = diagnosis.experiment
@@ -54,8 +53,7 @@ def contents(diagnosis: Diagnosis) -> dict[str, Any]:
         },
         "notes": diagnosis.notes, "augmented": "augmented.yaml",
     }  # fmt: skip
-    found: dict[str, Any] = plain(fields)
-    return found
+    return {name: plain(value) for name, value in fields.items()}
 
 
 def tables(diagnosis: Diagnosis) -> list[Table]:

@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from rich import box
 from rich.markup import escape
@@ -47,14 +46,14 @@ def write_identification(found: Identification, folder: str | Path) -> list[Path
     return [*paths, *write_pictures({"loops": loops(found)}, folder)]
 
 
-def parameters(found: Identification) -> dict[str, Any]:
+def parameters(found: Identification) -> dict[str, dict[str, object]]:
     """Return the damper and its coil as a scenario has them, with what else the bench needs under `bench`."""
     bench = found.bench
     values = {
         name: list(map(float, value)) if isinstance(value, tuple) else value if isinstance(value, int) else float(value)
         for name, value in bench.damper._asdict().items()
     }
-    damper: dict[str, Any] = {"model": found.model, "parameters": values}
+    damper: dict[str, object] = {"model": found.model, "parameters": values}
     if found.warm:
         damper["temperature_factors"] = {name: float(value) for name, value in bench.factors._asdict().items()}
     end = max(float(each.record.current.max()) for each in found.judged if each.part != "predicted")
@@ -65,7 +64,7 @@ def parameters(found: Identification) -> dict[str, Any]:
     }
 
 
-def contents(found: Identification) -> dict[str, Any]:
+def contents(found: Identification) -> dict[str, object]:
     """Return what `fit.json` holds; `test` is null where nothing was held out."""
     records = {
         name: {"part": each.part, "current": each.record.mean_current, **each.figures._asdict()}

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,8 +17,8 @@ from seatsim.simulation.result import UNITS, Result, Run
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PICTURE: dict[str, Any] = {"dpi": 110, "metadata": {"Software": "seatsim"}, "pil_kwargs": {"compress_level": 3}}
-"""How pictures are saved: the same bytes for the same result."""
+RESOLUTION = 110
+"""Points per inch of a picture."""
 
 
 def write_result(result: Result, folder: Path) -> list[Path]:
@@ -34,16 +34,21 @@ def write_result(result: Result, folder: Path) -> list[Path]:
         ]
         pictures = write_pictures(draw(result), folder)
         if result.brackets:
-            paths.append(write_json(folder / "brackets.json", {"rigs": _brackets(result)}))
+            paths.append(write_json(folder / "brackets.json", {"rigs": _bounds(result)}))
         return [*paths, history.result(), *pictures]
 
 
 def write_pictures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     """Write figures as `NAME.png` and return their paths."""
-    return [write_whole(folder / f"{name}.png", partial(figure.savefig, **PICTURE)) for name, figure in figures.items()]
+    return [write_whole(folder / f"{name}.png", partial(_save, figure)) for name, figure in figures.items()]
 
 
-def _brackets(result: Result) -> list[dict[str, Any]]:
+def _save(figure: Figure, path: Path) -> None:
+    """Save a picture with neither date nor version, so that the same result gives the same bytes."""
+    figure.savefig(path, dpi=RESOLUTION, metadata={"Software": "seatsim"}, pil_kwargs={"compress_level": 3})
+
+
+def _bounds(result: Result) -> list[dict[str, object]]:
     """Return for each rig its bracket, and for each of its runs where that stands."""
     found = []
     for rig, bracket in result.brackets.items():
@@ -64,7 +69,7 @@ def _brackets(result: Result) -> list[dict[str, Any]]:
     return found
 
 
-def _summary(run: Run) -> dict[str, Any]:
+def _summary(run: Run) -> dict[str, object]:
     metrics = {name: {"value": m.value, "unit": m.unit, "meaning": m.meaning} for name, m in run.metrics.items()}
     return {
         "scenario": run.scenario.name,
