@@ -45,7 +45,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
 
 def test_a_folder_that_cannot_be_made_is_bad_input(tmp_path):
     (tmp_path / "file").touch()
-    with pytest.raises(InputError, match="cannot be written: .*; give another --out"):
+    with pytest.raises(InputError, match=r"cannot be written: .*; give another --out"):
         write_text(tmp_path / "file" / "result.txt", "")
 
 

