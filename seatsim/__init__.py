@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from seatsim.scenario.loading import load
     from seatsim.scenario.scenario import Scenario
     from seatsim.schema.errors import InputError, RunError, SeatsimError, SynthesisError
+    from seatsim.schema.modules import use
     from seatsim.simulation.result import Channel, Result, Run
     from seatsim.simulation.runs import compare, run
 
@@ -37,6 +38,7 @@ _HOME = {
     "load": "scenario.loading",
     "load_recording": "recordings.recording",
     "run": "simulation.runs",
+    "use": "schema.modules",
 }
 __all__ = [
     "Channel",
@@ -58,6 +60,7 @@ __all__ = [
     "load",
     "load_recording",
     "run",
+    "use",
 ]
 
 

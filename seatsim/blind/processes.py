@@ -6,7 +6,10 @@ import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from multiprocessing import get_context
+from pathlib import Path
 from typing import TypeVar, TypeVarTuple
+
+from seatsim.schema.modules import use_all, used_files
 
 Result = TypeVar("Result")
 Arguments = TypeVarTuple("Arguments")
@@ -25,7 +28,8 @@ def run_jobs(
     """
     if processes <= 1 or len(jobs) <= 1:
         return _run_here(function, jobs, progress)
-    pool = ProcessPoolExecutor(min(processes, len(jobs)), mp_context=get_context("spawn"), initializer=_ignore_ctrl_c)
+    workers, files = min(processes, len(jobs)), (used_files(),)
+    pool = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_start_worker, initargs=files)
     futures = [pool.submit(function, *job) for job in jobs]
     waiting = set(futures)
     try:
@@ -51,6 +55,7 @@ def _run_here(
     return results
 
 
-def _ignore_ctrl_c() -> None:
-    """Leave Ctrl-C to the parent, which ends its children in order."""
+def _start_worker(files: tuple[Path, ...]) -> None:
+    """Load the user's own files, and leave Ctrl-C to the parent, which ends its children in order."""
+    use_all(files)
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -5,19 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple, cast
 
-from seatsim.dampers.base import DamperModel, DamperSpecification
+from seatsim.dampers.base import DAMPERS, Damper, DamperSpecification
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.damper import stated_damper
-from seatsim.schema.registry import find, name_of, specification_of
-from seatsim.schema.validation import build
+from seatsim.schema.registry import name_of, specification_of
+from seatsim.schema.validation import build, mapping
 from seatsim.schema.yaml_source import KeyPath, Source
 
 
 class DamperSpecimen(NamedTuple):
     """A damper model with its parameters, temperature factors and coil; `stated` where a file states them."""
 
-    damper: DamperModel
+    damper: Damper
     factors: TemperatureFactors
     coil: Coil
     stated: bool = True
@@ -43,8 +43,7 @@ def load_specimen(model: str | None, parameters: Path | None) -> DamperSpecimen:
         InputError: there is no such model, the file is not as described, or it is of another model.
     """
     if parameters is None:
-        # The registry holds classes of every kind; what is registered as a damper has a force.
-        cls = cast("type[DamperModel]", find("damper", model or ""))
+        cls = DAMPERS.find(model or "")
         specification = _find_specification(cls)
         return DamperSpecimen(cls(), specification.factors, Coil(max_current=specification.max_current), False)
     source = Source(Path(parameters))
@@ -52,8 +51,9 @@ def load_specimen(model: str | None, parameters: Path | None) -> DamperSpecimen:
     keys: KeyPath = ("damper",) if whole else ()
     values = source.data["damper"] if whole else source.data
     damper, factors = stated_damper(values, source, keys)
-    if model not in (None, values["model"]):
-        problem = f"is '{values['model']}', not the '{model}' of --model; leave --model out"
+    named = mapping(values, source, keys)["model"]
+    if model not in (None, named):
+        problem = f"is '{named}', not the '{model}' of --model; leave --model out"
         raise source.error((*keys, "model"), problem)
     coil = Coil(max_current=_find_specification(type(damper)).max_current)
     if whole and "actuator" in source.data:

@@ -91,7 +91,7 @@ def _label_keys(runs: Sequence[Run]) -> list[str]:
 
 
 def _label(run: Run, key: str) -> str:
-    value: Any = run.scenario.name if key == "scenario" else run.scenario.label.get(key, "")
+    value: object = run.scenario.name if key == "scenario" else run.scenario.label.get(key, "")
     return f"{value:g}" if isinstance(value, int | float) else str(value)
 
 

@@ -1,24 +1,21 @@
-"""What every command says on the terminal, and how it reads options."""
+"""What every command says on the terminal: sentences, the files written, notes, failures, progress."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
 
-import typer
 from rich.console import Console
 from rich.progress import Progress
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
-
-from seatsim.schema.errors import InputError
 
 out = Console()
 err = Console(stderr=True)
 
-Out = Annotated[Path | None, typer.Option("--out", help="Folder for the files.", show_default="out/NAME")]
+Report = Callable[[str], None]
+"""Is called with what is being done."""
+Count = Callable[[int, int], None]
+"""Is called with how many are done, and of how many."""
 
 
 def wide(letters: int) -> Console:
@@ -36,6 +33,11 @@ def wrote(folder: Path, paths: Sequence[Path]) -> None:
     out.print(f"written to {folder}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
 
 
+def wrote_one(path: Path) -> None:
+    """Print which file was written."""
+    out.print(f"written: {path}", markup=False, highlight=False)
+
+
 def warn(texts: Iterable[str], kind: str = "note") -> None:
     """Print what the user has to know beside the result."""
     for text in texts:
@@ -48,33 +50,15 @@ def complain(text: str) -> None:
 
 
 @contextmanager
-def count_progress(title: str, total: int | None = None) -> Iterator[Any]:
-    """Show a bar on the terminal that is told `(done, total)`."""
+def count_progress(title: str, total: int | None = None) -> Iterator[Count]:
+    """Show a bar on the terminal."""
     with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
         task = progress.add_task(title, total=total)
         yield lambda done, total: progress.update(task, completed=done, total=total)
 
 
 @contextmanager
-def show_progress() -> Iterator[Any]:
+def show_progress() -> Iterator[Report]:
     """Show on the terminal what is being done."""
     with err.status("reading") as status:
         yield status.update
-
-
-def pairs(texts: list[str] | None, option: str, example: str) -> dict[str, Any]:
-    """Read `KEY=VALUE` texts, the value as YAML.
-
-    Raises:
-        InputError: a text is no such pair.
-    """
-    values = {}
-    for text in texts or []:
-        key, sign, value = text.partition("=")
-        if not sign or not key:
-            raise InputError(f"{option} {text}: write KEY=VALUE, such as {option} {example}")
-        try:
-            values[key] = YAML(typ="safe").load(value)
-        except YAMLError as error:
-            raise InputError(f"{option} {text}: '{value}' is not a YAML value") from error
-    return values

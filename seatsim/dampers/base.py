@@ -12,11 +12,12 @@ arithmetic and `math` only; what they call from their module is decorated with `
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal, NamedTuple, TypeVar
+from typing import Literal, NamedTuple, Protocol, TypeVar
 
+from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
-from seatsim.schema.registry import register
+from seatsim.schema.registry import Record, Registry
 
 T = TypeVar("T", bound=type)
 
@@ -28,6 +29,10 @@ CONFIDENCE: dict[Confidence, str] = {
     "derived": "composed here",
 }
 """How far a model's equation is that of its source; a docstring tells what else is of whom, parameters above all."""
+
+
+class Damper(DamperModel, Record, Protocol):
+    """A damper model as a record of parameters; see the module for the optional methods."""
 
 
 class DamperSpecification(NamedTuple):
@@ -56,6 +61,10 @@ class DamperSpecification(NamedTuple):
     confidence: Confidence
     fixed: tuple[str, ...]
     smooth: bool
+
+
+DAMPERS: Registry[Damper, DamperSpecification] = Registry("damper")
+"""All damper models by name."""
 
 
 def damper(
@@ -93,4 +102,4 @@ def damper(
         fixed,
         smooth,
     )
-    return register("damper", name, specification)
+    return DAMPERS.register(name, specification)

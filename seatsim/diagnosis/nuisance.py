@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.scenario.scenario import Scenario
-from seatsim.schema.fields import describe
+from seatsim.schema.fields import describe, replace_fields
 
 Array = NDArray[np.float64]
 
@@ -52,9 +52,11 @@ def list_nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
 
 def vary(scenario: Scenario, parameters: Sequence[Nuisance], deviations: Array) -> Scenario:
     """Return the scenario with every parameter off by tolerance times deviation, shape (parameters,), -1 to 1."""
-    records = {"plant": scenario.plant, "damper": scenario.damper.record, "coil": scenario.coil}
+    changes: dict[str, dict[str, float]] = {"plant": {}, "damper": {}, "coil": {}}
     for parameter, deviation in zip(parameters, deviations, strict=True):
-        value = {parameter.name: parameter.nominal + parameter.tolerance * float(deviation)}
-        records[parameter.section] = records[parameter.section]._replace(**value)
-    damper = dataclasses.replace(scenario.damper, record=records["damper"])
-    return dataclasses.replace(scenario, plant=records["plant"], damper=damper, coil=records["coil"])
+        changes[parameter.section][parameter.name] = parameter.nominal + parameter.tolerance * float(deviation)
+    plant = None if scenario.plant is None else replace_fields(scenario.plant, changes["plant"])
+    damper = dataclasses.replace(scenario.damper, record=replace_fields(scenario.damper.record, changes["damper"]))
+    return dataclasses.replace(
+        scenario, plant=plant, damper=damper, coil=replace_fields(scenario.coil, changes["coil"])
+    )

@@ -44,13 +44,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 from seatsim.kernel.hooks import method_of
 from seatsim.rig.state import State
-from seatsim.schema.registry import register, specification_of
+from seatsim.schema.fields import field_names
+from seatsim.schema.registry import Record, Registry
 
 T = TypeVar("T", bound=type)
+R = TypeVar("R", bound=Record)
 Values = Mapping[str, float]
 
 ON_DAMPER = (
@@ -90,6 +92,10 @@ class EffectSpecification(NamedTuple):
     by_channel: bool
 
 
+EFFECTS: Registry[Record, EffectSpecification] = Registry("effect")
+"""All effects by name."""
+
+
 def effect(
     name: str,
     source: str = "",
@@ -104,12 +110,12 @@ def effect(
     The rest is that of `EffectSpecification`; a form without fixed parameters may be given by its free ones alone.
     """
     stated = tuple(form if isinstance(form, Form) else Form(form) for form in forms)
-    return register("effect", name, EffectSpecification(source, initial, off or {}, stated, suits, by_channel))
+    return EFFECTS.register(name, EffectSpecification(source, initial, off or {}, stated, suits, by_channel))
 
 
-def off(cls: Any) -> Any:
+def off(cls: type[R]) -> R:
     """Return the record of an effect at the parameters that leave the rig unchanged."""
-    values = dict.fromkeys(cls._fields, 0.0) | dict(specification_of(cls).off)
+    values = dict.fromkeys(field_names(cls), 0.0) | dict(EFFECTS.specification_of(cls).off)
     return cls(**values)
 
 

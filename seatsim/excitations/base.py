@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.schema.registry import register
+from seatsim.schema.registry import Record, Registry
 
 Array = NDArray[np.float64]
 T = TypeVar("T", bound=type)
@@ -35,7 +35,7 @@ class Floor(NamedTuple):
         return self.step * np.arange(len(self.acceleration), dtype=np.float64)
 
 
-class Excitation(Protocol):
+class Excitation(Record, Protocol):
     """A record (NamedTuple) of keys; `floor` turns them into motion."""
 
     def floor(self, step: float, seed: int) -> Floor:
@@ -48,6 +48,10 @@ class ExcitationSpecification(NamedTuple):
     source: str
 
 
+EXCITATIONS: Registry[Excitation, ExcitationSpecification] = Registry("excitation")
+"""All excitations by name."""
+
+
 def excitation(name: str, source: str = "") -> Callable[[T], T]:
     """Register a record class as the excitation `kind: name`."""
-    return register("excitation", name, ExcitationSpecification(source))
+    return EXCITATIONS.register(name, ExcitationSpecification(source))

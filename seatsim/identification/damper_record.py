@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol, Self, TypeAlias, cast
 
-from seatsim.dampers.base import DamperModel, DamperSpecification
-from seatsim.schema.registry import find, specification_of
+from seatsim.dampers.base import DAMPERS, DamperSpecification
+from seatsim.kernel.protocols import DamperModel
 
 FieldValue: TypeAlias = float | str | tuple[float, ...]
 """A number (an `int` too), one of several words, or the coefficients of a law in the current."""
@@ -26,13 +26,13 @@ def find_model(name: str) -> type[DamperRecord]:
     Raises:
         InputError: no damper has this name.
     """
-    # The registry holds classes of every kind; what is registered as a damper is a record.
-    return cast("type[DamperRecord]", find("damper", name))
+    # A damper's record has fields of any type; those that a fit reads and replaces are numbers, words and laws.
+    return cast("type[DamperRecord]", DAMPERS.find(name))
 
 
 def find_specification(cls: type) -> DamperSpecification:
     """Return what is stated of a damper model's class."""
-    return cast("DamperSpecification", specification_of(cls))
+    return DAMPERS.specification_of(cls)
 
 
 def law_range(fields: Mapping[str, FieldValue], default: float) -> float:

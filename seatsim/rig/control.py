@@ -28,7 +28,7 @@ from typing import NamedTuple, Protocol, TypeVar, runtime_checkable
 
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
-from seatsim.schema.registry import register
+from seatsim.schema.registry import Record, Registry
 
 T = TypeVar("T", bound=type)
 State = tuple[float, ...]
@@ -135,6 +135,10 @@ class LawSpecification(NamedTuple):
     source: str
 
 
+LAWS: Registry[Record, LawSpecification] = Registry("law")
+"""All control laws by name."""
+
+
 def law(name: str, initial: State = (), replays: bool = False, source: str = "") -> Callable[[T], T]:
     """Register a record class as the control law `law: name` with the `initial` value of its state."""
-    return register("law", name, LawSpecification(initial, replays, source))
+    return LAWS.register(name, LawSpecification(initial, replays, source))

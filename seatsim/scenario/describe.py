@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-from typing import Any
 
 from seatsim.dampers.base import CONFIDENCE
 from seatsim.rig.coil import Coil
@@ -70,7 +69,7 @@ def _line(field: FieldSpecification) -> str:
     return f"  {field.name}{unit}: {field.meaning} ({default})"
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     if isinstance(value, float):
         return f"{value:g}"
     if isinstance(value, tuple) and all(isinstance(item, float) for item in value):

@@ -12,14 +12,13 @@ from __future__ import annotations
 import copy
 import itertools
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 from seatsim.schema.errors import nearest
 from seatsim.schema.validation import mapping
 from seatsim.schema.yaml_source import KeyPath, Source
 
 
-def expand(source: Source, settings: Mapping[str, Any]) -> Iterator[tuple[Source, dict[str, Any]]]:
+def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Source, dict[str, object]]]:
     """Yield the content of every run with the label that sets it apart."""
     base = copy.deepcopy(source)
     for key, value in settings.items():
@@ -28,28 +27,33 @@ def expand(source: Source, settings: Mapping[str, Any]) -> Iterator[tuple[Source
     sweep = dict(mapping(base.data.pop("sweep", {}), base, ("sweep",)))
     if isinstance(base.data.get("temperature"), list):
         sweep["temperature"] = base.data["temperature"]
-    for key, values in sweep.items():
-        if not isinstance(values, list) or not values:
-            raise base.error(("sweep", key), "a sweep is a list of at least one value, such as [20, 50, 80]")
+    lists = {key: _swept_values(values, base, key) for key, values in sweep.items()}
     for name, changes in variants.items() or [(None, {})]:
-        for chosen in itertools.product(*sweep.values()):
+        for chosen in itertools.product(*lists.values()):
             run = copy.deepcopy(base)
             for key, value in mapping(changes, base, ("variants", str(name))).items():
                 _replace(run, key, value, ("variants", str(name)))
-            swept = dict(zip(sweep, chosen, strict=True))
+            swept = dict(zip(lists, chosen, strict=True))
             for key, value in swept.items():
                 _replace(run, key, value, ("sweep",))
             yield run, ({} if name is None else {"variant": name}) | swept
 
 
-def _replace(source: Source, dotted: str, value: Any, origin: KeyPath) -> None:
+def _swept_values(values: object, source: Source, key: str) -> list[object]:
+    if not isinstance(values, list) or not values:
+        raise source.error(("sweep", key), "a sweep is a list of at least one value, such as [20, 50, 80]")
+    return values
+
+
+def _replace(source: Source, dotted: str, value: object, origin: KeyPath) -> None:
     """Put a value under a dotted key; its place in the file is then that of the variant or sweep it comes from."""
     keys = tuple(str(dotted).split("."))
     node = source.data
     for depth, key in enumerate(keys[:-1]):
-        if not isinstance(node.get(key, {}), dict):
+        below = node.setdefault(key, {})
+        if not isinstance(below, dict):
             raise source.error(keys[: depth + 1], f"'{dotted}' leads into a value that has no keys{nearest(key, node)}")
-        node = node.setdefault(key, {})
+        node = below
     node[keys[-1]] = value
     line = source.lines.get((*origin, dotted), source.lines.get(origin, 1))
     for known in [known for known in source.lines if known[: len(keys)] == keys]:

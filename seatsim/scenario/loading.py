@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, TypeGuard, cast
 
+from seatsim.effects.base import EFFECTS
 from seatsim.rig.coil import Coil
+from seatsim.rig.control import LAWS, Law
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import Thermal
@@ -17,16 +18,22 @@ from seatsim.scenario.expansion import expand
 from seatsim.scenario.published import check_published
 from seatsim.scenario.scenario import Control, DamperChoice, Inverse, Scenario, Solver, Start
 from seatsim.schema.errors import InputError
+from seatsim.schema.registry import Record, Registry
 from seatsim.schema.validation import build, check_keys, chosen_class, mapping
 from seatsim.schema.yaml_source import KeyPath, Source
+
+if TYPE_CHECKING:
+    from seatsim.excitations.base import Excitation
 
 BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
 SEAT_KEYS = (*BENCH_KEYS, "plant", "controller", "excitation", "start", "sweep", "variants", "published")
 CONTROL_KEYS = ("law", "sample_time", "inverse", "sensors")
+# An excitation may read a recording, whose nominal is a scenario: their package builds on this one.
+EXCITATIONS: Registry[Excitation, object] = Registry("excitation")
 EXAMPLES = (Path(__file__).parents[1] / "examples", Path(__file__).parents[2] / "scenarios")
 
 
-def load(path: str | Path, settings: Mapping[str, Any] | None = None) -> list[Scenario]:
+def load(path: str | Path, settings: Mapping[str, object] | None = None) -> list[Scenario]:
     """Return the scenarios of a file, at least one.
 
     `settings` replaces values by dotted key, such as `{"plant.driver_mass": 55.0}`. A path that does not exist is
@@ -39,7 +46,7 @@ def load(path: str | Path, settings: Mapping[str, Any] | None = None) -> list[Sc
     return [_scenario(variant, label) for variant, label in expand(source, settings or {})]
 
 
-def single(path: str | Path, settings: Mapping[str, Any] | None = None) -> Scenario:
+def single(path: str | Path, settings: Mapping[str, object] | None = None) -> Scenario:
     """Load a file that holds one run."""
     scenarios = load(path, settings)
     if len(scenarios) != 1:
@@ -61,7 +68,7 @@ def _located(path: Path) -> Path:
     raise InputError(f"{path}: no such file; give the path of a scenario, or an example: {', '.join(known)}")
 
 
-def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
+def _scenario(source: Source, label: Mapping[str, object]) -> Scenario:
     data = source.data
     check_keys(data, SEAT_KEYS, source, ())
     bench = not {"plant", "controller", "excitation"} & set(data)
@@ -71,7 +78,6 @@ def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
         if key not in data:
             raise source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator, temperature,"
                                    " controller and excitation")  # fmt: skip
-    sys.path.extend(folder for folder in (str(source.path.parent), "") if folder not in sys.path)
     return Scenario(
         name=str(data.get("name", source.path.stem)),
         damper=_damper(data["damper"], source, ("damper",)),
@@ -89,36 +95,38 @@ def _scenario(source: Source, label: Mapping[str, Any]) -> Scenario:
     )
 
 
-def _damper(values: Any, source: Source, keys: KeyPath, extra: tuple[str, ...] = ()) -> DamperChoice:
+def _damper(values: object, source: Source, keys: KeyPath, extra: tuple[str, ...] = ()) -> DamperChoice:
     return DamperChoice(*stated_damper(values, source, keys, extra))
 
 
-def _temperature(value: Any, source: Source) -> float | Thermal:
+def _temperature(value: object, source: Source) -> float | Thermal:
     if isinstance(value, Mapping):
-        thermal: Thermal = build(Thermal, value, source, ("temperature",))
-        return thermal
+        return build(Thermal, value, source, ("temperature",))
     return float(build(Thermal, {"start": value}, source, ("temperature",)).start)
 
 
-def _control(values: Any, source: Source) -> Control:
+def _control(values: object, source: Source) -> Control:
     keys: KeyPath = ("controller",)
-    mapping(values, source, keys)
-    cls = chosen_class("law", values, "law", source, keys)
-    own = {key: value for key, value in values.items() if key not in CONTROL_KEYS}
-    if isinstance(own.get("design"), str):
-        own["design"] = str(source.path.parent / own["design"])
-    inverse = _inverse(values["inverse"], source) if "inverse" in values else None
-    sensors = build(Sensors, values["sensors"], source, (*keys, "sensors")) if "sensors" in values else None
-    sample_time = values.get("sample_time")
-    if sample_time is not None and not (_is_number(sample_time) and 0 < sample_time <= 1):
+    stated = mapping(values, source, keys)
+    cls = chosen_class(LAWS, stated, "law", source, keys)
+    own = {key: value for key, value in stated.items() if key not in CONTROL_KEYS}
+    _resolve_path(own, "design", source)
+    inverse = _inverse(stated["inverse"], source) if "inverse" in stated else None
+    sensors = build(Sensors, stated["sensors"], source, (*keys, "sensors")) if "sensors" in stated else None
+    sample_time = stated.get("sample_time")
+    # What is registered as a law has one of the methods of `Law`: its decorator is applied to nothing else.
+    law = cast("Law", build(cls, own, source, keys))
+    if sample_time is None:
+        return Control(law, None, inverse, sensors)
+    if not (_is_number(sample_time) and 0 < sample_time <= 1):
         raise source.error((*keys, "sample_time"), f"{sample_time!r} is not permitted; it must be 0 to 1 s")
-    return Control(build(cls, own, source, keys), sample_time, inverse, sensors)
+    return Control(law, sample_time, inverse, sensors)
 
 
-def _inverse(values: Any, source: Source) -> Inverse:
+def _inverse(values: object, source: Source) -> Inverse:
     keys: KeyPath = ("controller", "inverse")
     damper = _damper(values, source, keys, extra=("temperature",))
-    temperature = values.get("temperature", "measured")
+    temperature = mapping(values, source, keys).get("temperature", "measured")
     if temperature == "measured":
         return Inverse(damper, None)
     if not _is_number(temperature):
@@ -126,34 +134,40 @@ def _inverse(values: Any, source: Source) -> Inverse:
     return Inverse(damper, float(temperature))
 
 
-def _is_number(value: Any) -> bool:
+def _resolve_path(own: dict[str, object], key: str, source: Source) -> None:
+    """Let a file that is named under a key be beside the scenario."""
+    name = own.get(key)
+    if isinstance(name, str):
+        own[key] = str(source.path.parent / name)
+
+
+def _is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _excitation(values: Any, source: Source) -> Any:
+def _excitation(values: object, source: Source) -> Excitation:
     keys: KeyPath = ("excitation",)
-    mapping(values, source, keys)
-    cls = chosen_class("excitation", values, "kind", source, keys)
-    own = {key: value for key, value in values.items() if key != "kind"}
-    if isinstance(own.get("path"), str):
-        own["path"] = str(source.path.parent / own["path"])
+    stated = mapping(values, source, keys)
+    cls = chosen_class(EXCITATIONS, stated, "kind", source, keys)
+    own = {key: value for key, value in stated.items() if key != "kind"}
+    _resolve_path(own, "path", source)
     return build(cls, own, source, keys)
 
 
-def _effects(values: Any, source: Source) -> tuple[Any, ...]:
+def _effects(values: object, source: Source) -> tuple[Record, ...]:
     if not isinstance(values, list):
         raise source.error(("effects",), f"{values!r} is not a list; write '- effect: NAME' below it")
-    effects: list[Any] = []
+    effects: list[Record] = []
     for index, value in enumerate(values):
         keys: KeyPath = ("effects", index)
-        mapping(value, source, keys)
-        check_keys(value, ("effect", "parameters"), source, keys)
-        cls = chosen_class("effect", value, "effect", source, keys)
-        effects.append(build(cls, value.get("parameters", {}), source, (*keys, "parameters")))
+        stated = mapping(value, source, keys)
+        check_keys(stated, ("effect", "parameters"), source, keys)
+        cls = chosen_class(EFFECTS, stated, "effect", source, keys)
+        effects.append(build(cls, stated.get("parameters", {}), source, (*keys, "parameters")))
     return tuple(effects)
 
 
-def _seed(value: Any, source: Source) -> int:
+def _seed(value: object, source: Source) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value < 0:
         raise source.error(("seed",), f"{value!r} is not permitted; it must be a whole number of at least 0")
     return value

@@ -11,11 +11,32 @@ A row names a run by what sets it apart, and gives metrics of it in SI units.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple, cast
 
 from seatsim.metrics import METRICS
 from seatsim.schema.validation import check_keys, mapping
 from seatsim.schema.yaml_source import Source
+
+
+class Published(NamedTuple):
+    """The published figures of a file: where they stand, and a row for each run, of labels and metrics in SI units."""
+
+    source: str
+    rows: list[Mapping[str, object]]
+
+    def figure(self, row: int, metric: str) -> float:
+        """Return a metric that a row states."""
+        return float(cast("float", self.rows[row][metric]))
+
+
+def published_figures(source: Source) -> Published | None:
+    """Return the published figures of a file that `check_published` has passed, or None where it has none."""
+    if "published" not in source.data:
+        return None
+    stated = mapping(source.data["published"], source, ("published",))
+    rows = cast("list[Mapping[str, object]]", stated["rows"])
+    return Published(str(stated.get("source", "published figures")), rows)
 
 
 def check_published(source: Source, labels: Sequence[str]) -> None:

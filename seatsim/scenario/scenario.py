@@ -7,12 +7,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Annotated, Any, NamedTuple
 
+from seatsim.dampers.base import Damper
 from seatsim.rig.coil import Coil
+from seatsim.rig.control import Law
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
+from seatsim.schema.registry import Record
 from seatsim.schema.yaml_source import Source
 
 
@@ -34,7 +37,7 @@ class Start(NamedTuple):
 class DamperChoice:
     """A damper with its parameters and its temperature factors."""
 
-    record: Any
+    record: Damper
     factors: TemperatureFactors
 
 
@@ -53,7 +56,7 @@ class Control:
     Without sensors the law sees the true states.
     """
 
-    law: Any
+    law: Law
     sample_time: float | None
     inverse: Inverse | None
     sensors: Sensors | None = None
@@ -72,8 +75,8 @@ class Scenario:
     temperature: float | Thermal
     plant: Plant | None = None
     control: Control | None = None
-    excitation: Any = None
-    effects: tuple[Any, ...] = ()
+    excitation: Any = None  # an `Excitation` of the package above, or None on a bench
+    effects: tuple[Record, ...] = ()
     solver: Solver = field(default_factory=Solver)
     start: Start = field(default_factory=Start)
     seed: int = 0

@@ -11,13 +11,18 @@ Pydantic validates it from a mapping, numba compiles it as a typed record.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import cache
-from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le
 from pydantic import Field, TypeAdapter
 from pydantic.fields import FieldInfo
 
+from seatsim.schema.registry import Record
+
+R = TypeVar("R")
+N = TypeVar("N", bound=Record)
 SLIGHTLY = 1e-9
 """How far above an open bound a value may come."""
 
@@ -28,7 +33,7 @@ def param(
     low: float | None = None,
     high: float | None = None,
     above: float | None = None,
-) -> Any:
+) -> Any:  # what stands in `Annotated` is no type to a checker
     """Describe one field: SI `unit`, `meaning`, and bounds (`low <= value <= high`, `value > above`)."""
     return Field(description=meaning, json_schema_extra={"unit": unit}, ge=low, le=high, gt=above, strict=True)
 
@@ -39,19 +44,37 @@ class FieldSpecification(NamedTuple):
     name: str
     unit: str
     meaning: str
-    default: Any
+    default: object
     required: bool
 
 
+def field_names(record: type) -> tuple[str, ...]:
+    """Return the names of the fields of a record class, in order; none for a class that is no record."""
+    names: tuple[str, ...] = getattr(record, "_fields", ())
+    return names
+
+
+def default_values(record: type) -> Mapping[str, object]:
+    """Return the defaults of a record class by field, without the fields that have none."""
+    defaults: Mapping[str, object] = getattr(record, "_field_defaults", {})
+    return defaults
+
+
+def validated(record: type[R], values: object) -> R:
+    """Return the record of a class with the given values; raises `pydantic.ValidationError` where they do not fit."""
+    known: type = record
+    return cast("R", adapter(known).validate_python(values))
+
+
 @cache
-def adapter(record: type) -> TypeAdapter[Any]:
-    """Return the pydantic validator of a record class."""
+def adapter(record: type) -> TypeAdapter[object]:
+    """Return the pydantic validator of a record class, which takes some milliseconds to make."""
     return TypeAdapter(record)
 
 
 def describe(record: type) -> list[FieldSpecification]:
     """List name, unit, meaning and default of every field of a record class, in order."""
-    defaults: dict[str, Any] = getattr(record, "_field_defaults", {})
+    defaults = default_values(record)
     specifications = []
     for name, hint in _hints(record).items():
         info = _field_info(hint)
@@ -60,6 +83,11 @@ def describe(record: type) -> list[FieldSpecification]:
         meaning = (info.description or "") if info else ""
         specifications.append(FieldSpecification(name, unit, meaning, defaults.get(name), name not in defaults))
     return specifications
+
+
+def replace_fields(record: N, changes: Mapping[str, float]) -> N:
+    """Return a record with other values of some of its fields."""
+    return record._replace(**changes)
 
 
 def bounds(record: type, name: str) -> tuple[float, float]:
@@ -82,11 +110,11 @@ def choices(record: type, name: str) -> tuple[str, ...]:
 
 
 @cache
-def _hints(record: Any) -> dict[str, Any]:
+def _hints(record: type) -> Mapping[str, object]:
     return get_type_hints(record, include_extras=True)
 
 
-def _field_info(hint: Any) -> FieldInfo | None:
+def _field_info(hint: object) -> FieldInfo | None:
     if get_origin(hint) is not Annotated:
         return None
     return next((part for part in get_args(hint) if isinstance(part, FieldInfo)), None)

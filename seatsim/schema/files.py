@@ -6,13 +6,20 @@ import json
 import math
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from seatsim.schema.errors import InputError
+
+
+@runtime_checkable
+class _Named(Protocol):
+    """A record, as `typing.NamedTuple` makes them."""
+
+    def _asdict(self) -> Mapping[str, object]: ...
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
@@ -42,14 +49,14 @@ def write_text(path: Path, text: str) -> Path:
     return write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 
-def write_json(path: Path, value: Any) -> Path:
+def write_json(path: Path, value: object) -> Path:
     """Write JSON whole; numbers that JSON has no word for become null."""
     return write_text(path, json.dumps(plain(value), indent=2, allow_nan=False) + "\n")
 
 
-def plain(value: Any) -> Any:
+def plain(value: object) -> object:
     """Return nested values as JSON has them; a record becomes an object."""
-    if hasattr(value, "_asdict"):
+    if isinstance(value, _Named):
         return plain(value._asdict())
     if isinstance(value, dict):
         return {str(key): plain(item) for key, item in value.items()}

@@ -4,48 +4,52 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TypeVar, cast
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.fields import adapter, describe
-from seatsim.schema.registry import find
+from seatsim.schema.fields import describe, validated
+from seatsim.schema.registry import Registry
 from seatsim.schema.yaml_source import KeyPath, Source
+
+R = TypeVar("R")
+P = TypeVar("P")
+S = TypeVar("S")
 
 
 def build(
-    record: type, values: Any, source: Source, keys: KeyPath, required: Iterable[str] = (), hint: str = ""
-) -> Any:
+    record: type[R], values: object, source: Source, keys: KeyPath, required: Iterable[str] = (), hint: str = ""
+) -> R:
     """Return the `record` with the given values, which stand under `keys` in the source.
 
     `required` names fields that must be given although the record has defaults; `hint` is added to errors of a
     missing key. Raises InputError with place, value, what is permitted and the nearest valid name.
     """
-    mapping(values, source, keys)
+    stated = mapping(values, source, keys)
     known = [specification.name for specification in describe(record)]
-    check_keys(values, known, source, keys)
-    _check_finite(values, source, keys)
+    check_keys(stated, known, source, keys)
+    _check_finite(stated, source, keys)
     for name in required:
-        if name not in values:
+        if name not in stated:
             raise source.error(keys, f"key '{name}' is missing{hint}")
     try:
-        return adapter(record).validate_python(_tuples(values))
+        return validated(record, _tuples(stated))
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = (*keys, *(part for part in first["loc"] if not str(part).startswith("function-")))
         raise source.error(where, _problem(record, first) + (hint if first["type"] == "missing" else "")) from None
 
 
-def mapping(values: Any, source: Source, keys: KeyPath) -> Mapping[str, Any]:
+def mapping(values: object, source: Source, keys: KeyPath) -> Mapping[str, object]:
     """Return the values if they are a mapping, else raise InputError."""
     if not isinstance(values, Mapping):
         raise source.error(keys, f"{_shown(values)} is not a mapping; write its keys indented below it")
-    return values
+    return cast("Mapping[str, object]", values)
 
 
-def check_keys(values: Mapping[str, Any], known: Iterable[str], source: Source, keys: KeyPath) -> None:
+def check_keys(values: Mapping[str, object], known: Iterable[str], source: Source, keys: KeyPath) -> None:
     """Raise InputError at the first key that is not known."""
     permitted = list(known)
     for key in values:
@@ -53,7 +57,7 @@ def check_keys(values: Mapping[str, Any], known: Iterable[str], source: Source, 
             raise source.error((*keys, key), f"unknown key{nearest(key, permitted)}; permitted: {', '.join(permitted)}")
 
 
-def choose(values: Mapping[str, Any], key: str, source: Source, keys: KeyPath) -> str:
+def choose(values: Mapping[str, object], key: str, source: Source, keys: KeyPath) -> str:
     """Return the text under a key that must be there, such as a model's name."""
     if key not in values:
         raise source.error(keys, f"key '{key}' is missing{nearest(key, values)}")
@@ -62,16 +66,18 @@ def choose(values: Mapping[str, Any], key: str, source: Source, keys: KeyPath) -
     return str(values[key])
 
 
-def chosen_class(kind: str, values: Mapping[str, Any], key: str, source: Source, keys: KeyPath) -> type:
-    """Return the registered class of a kind that is named under a key, or raise InputError at that place."""
+def chosen_class(
+    registry: Registry[P, S], values: Mapping[str, object], key: str, source: Source, keys: KeyPath
+) -> type[P]:
+    """Return the registered class that is named under a key, or raise InputError at that place."""
     name = choose(values, key, source, keys)
     try:
-        return find(kind, name)
+        return registry.find(name, source.path.parent)
     except InputError as error:
         raise source.error((*keys, key), str(error)) from error
 
 
-def _check_finite(value: Any, source: Source, keys: KeyPath) -> None:
+def _check_finite(value: object, source: Source, keys: KeyPath) -> None:
     """Raise InputError at the first number that is infinite or not a number."""
     if isinstance(value, Mapping | list):
         items = value.items() if isinstance(value, Mapping) else enumerate(value)
@@ -102,12 +108,12 @@ def _problem(record: type, error: ErrorDetails) -> str:
     return f"{value} is not permitted: {error['msg'][0].lower()}{error['msg'][1:]}"
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     text = f"'{value}'" if isinstance(value, str) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _tuples(value: Any) -> Any:
+def _tuples(value: object) -> object:
     """Return the value with lists as tuples, which strict validation of records asks for."""
     if isinstance(value, Mapping):
         return {key: _tuples(item) for key, item in value.items()}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
@@ -40,7 +39,7 @@ class Source:
         if not isinstance(tree, CommentedMap):
             raise InputError(f"{path}: holds no mapping; a file has keys such as 'plant:' and 'damper:' at its top")
         self.lines: dict[KeyPath, int] = {(): 1}
-        self.data: dict[str, Any] = self._plain(tree, ())
+        self.data = self._plain_mapping(tree, ())
 
     def place(self, keys: KeyPath) -> str:
         """Return `file, line N, key.path` of a key, or of the nearest one above it that stands in the file."""
@@ -54,13 +53,16 @@ class Source:
         """Return the error for a key."""
         return InputError(f"{self.place(keys)}: {problem}")
 
-    def _plain(self, node: Any, keys: KeyPath) -> Any:
+    def _plain_mapping(self, node: CommentedMap, keys: KeyPath) -> dict[str, object]:
+        for key in node:
+            # A key that came with a merge (`<<`) has no place of its own: it stands where its mapping does.
+            line = node.lc.key(key)[0] if key in (node.lc.data or ()) else node.lc.line
+            self.lines[(*keys, key)] = line + 1
+        return {key: self._plain(value, (*keys, key)) for key, value in node.items()}
+
+    def _plain(self, node: object, keys: KeyPath) -> object:
         if isinstance(node, CommentedMap):
-            for key in node:
-                # A key that came with a merge (`<<`) has no place of its own: it stands where its mapping does.
-                line = node.lc.key(key)[0] if key in (node.lc.data or ()) else node.lc.line
-                self.lines[(*keys, key)] = line + 1
-            return {key: self._plain(value, (*keys, key)) for key, value in node.items()}
+            return self._plain_mapping(node, keys)
         if isinstance(node, CommentedSeq):
             for index in range(len(node)):
                 self.lines[(*keys, index)] = node.lc.item(index)[0] + 1

@@ -48,6 +48,7 @@ def test_every_command_and_option_has_an_example():
         "--kinds",
         "--key",
         "--bracket",
+        "--with",
         *BENCH,
     ):
         assert option in examples
@@ -55,16 +56,18 @@ def test_every_command_and_option_has_an_example():
 
 # In a process of its own, where what the examples register stays.
 CODE = """
-import example_0, example_1
 import numpy as np
-from example_2 import AirDrag
-from seatsim import load, load_recording
+from seatsim import load, load_recording, use
 from seatsim.diagnosis.candidates import candidates
 from seatsim.diagnosis.problem import problem
 from seatsim.effects.base import off
 from seatsim.kernel.rig import Disturbance, Rig, derivative
 from seatsim.rig.state import MECHANICAL
 from seatsim.rig.temperature import TemperatureScaling
+
+use("example_0.py")
+use("example_1.py")
+AirDrag = use("example_2.py").AirDrag
 
 effects = [{"effect": "example_2:AirDrag", "parameters": {"drag": 350.0}}]
 scenario, = load("quickstart", {"effects": effects, "variants": {}})

@@ -51,7 +51,7 @@ CASES = [
     ("model: bouc_wen", "model: bouc_wenn", ["line 11", "damper.model", "did you mean 'bouc_wen'", "bingham"]),
     ("model: bouc_wen", "modell: bouc_wen", ["line 11", "did you mean 'model'"]),
     ("model: bouc_wen", "model: 3", ["line 11", "not a name"]),
-    ("model: bouc_wen", "model: nowhere.module:Class", ["line 11", "cannot import 'nowhere.module'"]),
+    ("model: bouc_wen", "model: nowhere.module:Class", ["line 11", "no module 'nowhere.module' is installed"]),
     ("model: bouc_wen", "model: 'math:Class'", ["line 11", "no class 'Class'"]),
     ("model: bouc_wen", "model: 'collections:OrderedDict'", ["line 11", "not a damper"]),
     ("c_a: 250.0, ", "", ["line 12", "c_a", "missing", "state every parameter"]),

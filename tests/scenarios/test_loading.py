@@ -1,7 +1,5 @@
 """Scenario files: variants, sweeps, settings, examples, a user's own classes."""
 
-import sys
-
 import numpy as np
 import pytest
 
@@ -42,8 +40,9 @@ def test_whole_numbers_and_exponents_are_numbers(seat_file):
     assert load(seat_file)[0].solver.step == 1e-3
 
 
-def test_a_users_own_damper_and_law_run_like_built_in_ones(seat_file, monkeypatch):
-    (seat_file.parent / "own_parts.py").write_text(
+def test_a_users_own_damper_and_law_run_like_built_in_ones(seat_file, forget_own_code):
+    file = seat_file.parent / "own_parts.py"
+    file.write_text(
         "from typing import Annotated, NamedTuple\n"
         "from seatsim.rig.control import law\n"
         "from seatsim.dampers.base import damper\n"
@@ -59,7 +58,7 @@ def test_a_users_own_damper_and_law_run_like_built_in_ones(seat_file, monkeypatc
         "    def wanted_current(self, y, state):\n"
         "        return self.share\n"
     )
-    monkeypatch.setattr(sys, "path", list(sys.path))
+    seatsim.use(file)
     own = seatsim.run(seat_file, {"damper": {"model": "own_parts:Own"}, "controller": {"law": "own_parts:Half"}})
     assert own["current_command"] == pytest.approx(np.full(6001, 0.5), abs=0)
     expected = 1000.0 * own["coil_current"] * own["suspension_velocity"]

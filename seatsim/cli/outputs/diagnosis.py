@@ -16,6 +16,7 @@ from seatsim.diagnosis.result import Diagnosis
 from seatsim.report import write_report
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import plain, write_json, write_whole
+from seatsim.schema.modules import use_all, used_files
 
 PROCESSES = 2
 """Recordings of a set that are diagnosed at once."""
@@ -51,8 +52,7 @@ def encode_diagnosis(diagnosis: Diagnosis) -> dict[str, object]:
         },
         "notes": diagnosis.notes, "augmented": "augmented.yaml",
     }  # fmt: skip
-    found: dict[str, object] = plain(fields)
-    return found
+    return {name: plain(value) for name, value in fields.items()}
 
 
 def make_tables(diagnosis: Diagnosis) -> list[Table]:
@@ -81,7 +81,7 @@ def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
     cases = sorted(path.parent for path in folder.glob("case-*/recording.yaml"))
     open_cases = [case for case in cases if not (case / "diagnosis" / "diagnosis.json").exists()]
     count(len(cases) - len(open_cases), len(cases))
-    with ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(PROCESSES, get_context("spawn"), initializer=use_all, initargs=(used_files(),)) as pool:
         futures = [pool.submit(_diagnose_one, case) for case in open_cases]
         try:
             for done, future in enumerate(as_completed(futures), len(cases) - len(open_cases) + 1):

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple, Protocol, cast
+from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.excitations.base import EXCITATIONS as REGISTERED
 from seatsim.excitations.base import Floor
-from seatsim.schema.registry import find
 from seatsim.simulation.inputs import SeatInputs
 
 Keys = Mapping[str, str | float]
@@ -33,10 +33,6 @@ class CandidateExperiment(NamedTuple):
     added_sensors: tuple[str, ...] = ()
     added_mass: float = 0.0
     scenario: Mapping[str, Keys] | None = None
-
-
-class _Excitation(Protocol):
-    def floor(self, step: float, seed: int) -> Floor: ...
 
 
 def _tone(frequency: float, amplitude: float, duration: float) -> Keys:
@@ -70,7 +66,7 @@ def _excite(problem: DiagnosisProblem, name: str) -> CandidateExperiment:
     words, law, keys = EXCITATIONS[name]
     text = words.replace("the floor", "the damper") if problem.bench else words
     own = {key: value for key, value in keys.items() if key != "kind"}
-    excitation = cast(_Excitation, find("excitation", str(keys["kind"]))(**own))
+    excitation = REGISTERED.find(str(keys["kind"]))(**own)
     floor = excitation.floor(problem.scenario.solver.step, 0)
     top = problem.scenario.coil.max_current
     current = {key: top * float(value) for key, value in law.items() if key != "law"}

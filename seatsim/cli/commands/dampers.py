@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from seatsim.cli.terminal import Out, complain, out, pairs, show_progress, warn, wide, wrote
+from seatsim.cli.options import Out, OwnCode, pairs
+from seatsim.cli.terminal import complain, out, show_progress, warn, wide, wrote
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
@@ -27,6 +29,7 @@ def characterise(
     temperatures: Annotated[str, typer.Option("--temperatures", metavar="C,C", help="Temperatures in degC.")] = "",
     amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M", help="Amplitudes in m.")] = "",
     frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ", help="Frequencies.")] = "",
+    own_code: OwnCode = None,
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
     from seatsim.characterisation.model_tests import characterise_model
@@ -74,18 +77,20 @@ def identify(
     centred: Annotated[bool, typer.Option("--centred", help="The predicted records' mean force was removed.")] = False,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the global search.")] = 0,
     out_folder: Out = None,
+    own_code: OwnCode = None,
 ) -> None:
     """Fit a damper model to bench records and judge it on records held out; or every model, as a league."""
     from seatsim.identification.assessment import load_prediction_data
     from seatsim.identification.settings import IdentificationSettings
     from seatsim.recordings.bench_tables import load_bench
 
-    fixed = pairs(fix, "--fix", "v_ref=0.005")
+    # That each value is a number is checked beside the bounds of its field, once the model is known.
+    fixed = cast("Mapping[str, float]", pairs(fix, "--fix", "v_ref=0.005"))
     request = IdentificationSettings(tuple(test or ()), test_fraction, fixed, ignore_temperature, seed)
     folder = out_folder or Path("out") / f"identify-{_title(data)}-{model.rpartition(':')[2]}"
     records, beside = load_bench(data), load_prediction_data(more or [], moving_average, centred)
     if model == "all":
-        _league(records, request, beside, folder)
+        _benchmark_models(records, request, beside, folder)
     else:
         _identify(records, model, request, beside, folder)
 
@@ -105,7 +110,9 @@ def _identify(
     wrote(folder, paths)
 
 
-def _league(records: list[BenchRecord], request: IdentificationSettings, beside: PredictionData, folder: Path) -> None:
+def _benchmark_models(
+    records: list[BenchRecord], request: IdentificationSettings, beside: PredictionData, folder: Path
+) -> None:
     """Identify every model, print and write the table; exit 1 where one failed."""
     from seatsim.cli.outputs.identification import make_league_table, write_identification, write_league
     from seatsim.identification.model_benchmark import benchmark_models

@@ -1,0 +1,50 @@
+"""The commands that compare a simulation with a recording: gap, diagnose."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from seatsim.cli.options import OneScenario, Out, OwnCode
+from seatsim.cli.terminal import out, say, show_progress, warn, wrote, wrote_one
+
+
+def gap(scenario: OneScenario, recording: Path, out_folder: Out = None, own_code: OwnCode = None) -> None:
+    """Replay a scenario against a recording and print the gap beside the noise floor."""
+    from seatsim.cli.gap_table import gap_table
+    from seatsim.recordings.gap import gap as find_gap
+    from seatsim.schema.files import write_json
+
+    found = find_gap(scenario, recording)
+    out.print(gap_table(found))
+    warn(found.notes)
+    wrote_one(write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", found.as_dict()))
+
+
+def diagnose(
+    recording: Path,
+    out_folder: Out = None,
+    without: Annotated[
+        list[str] | None, typer.Option("--without", metavar="EFFECT", help="Withhold an effect from the library.")
+    ] = None,
+    own_code: OwnCode = None,
+) -> None:
+    """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
+    from seatsim.cli.outputs.diagnosis import make_tables, write_diagnosis
+    from seatsim.diagnosis.diagnose import diagnose as find_cause
+    from seatsim.effects.base import EFFECTS
+
+    withheld = without or []
+    for name in withheld:
+        # A misspelt name is an error at once, not after minutes of a diagnosis that withheld nothing.
+        EFFECTS.find(name)
+    with show_progress() as progress:
+        diagnosis = find_cause(recording, withheld, progress)
+    for table in make_tables(diagnosis):
+        out.print(table)
+    warn(diagnosis.notes)
+    say(diagnosis.sentence)
+    folder = out_folder or Path("out") / f"diagnosis-{Path(recording).resolve().name}"
+    wrote(folder, write_diagnosis(diagnosis, folder))

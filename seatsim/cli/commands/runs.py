@@ -1,0 +1,141 @@
+"""The commands that simulate scenarios: run, compare."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NamedTuple
+
+import typer
+
+from seatsim.cli.options import Out, OwnCode, Scenarios, Settings, scenario_settings
+from seatsim.cli.terminal import complain, count_progress, out, show_progress, warn, wrote
+from seatsim.schema.errors import InputError, SeatsimError
+
+if TYPE_CHECKING:
+    from seatsim.scenario.scenario import Scenario
+    from seatsim.simulation.performance_bounds import PerformanceBounds
+    from seatsim.simulation.result import Run
+
+
+class _Group(NamedTuple):
+    """Scenarios that share a table and a folder."""
+
+    scenarios: list[Scenario]
+    folder: Path
+
+
+def run(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None, own_code: OwnCode = None) -> None:
+    """Simulate scenarios and print a table for each."""
+    several = out_folder is not None and len(scenarios) > 1
+    folders = [out_folder / Path(path).stem if several and out_folder else out_folder for path in scenarios]
+    _execute([[path] for path in scenarios], folders, scenario_settings(settings))
+
+
+def compare(
+    scenarios: Scenarios,
+    out_folder: Out = None,
+    settings: Settings = None,
+    own_code: OwnCode = None,
+    bracket: Annotated[
+        bool, typer.Option("--bracket", help="Add what the best damper could have done; takes minutes for each floor.")
+    ] = False,
+) -> None:
+    """Simulate scenarios and print one table over all of them."""
+    _execute([scenarios], [out_folder], scenario_settings(settings), bracket)
+
+
+def _execute(
+    files: Sequence[Sequence[str]],
+    folders: Sequence[Path | None],
+    settings: dict[str, object],
+    bracket: bool = False,
+) -> None:
+    """Run every group of files as one result, then print its table and write its files; exit 1 where a run failed."""
+    groups = _load_groups(files, folders, settings)
+    scenarios = [scenario for group in groups for scenario in group.scenarios]
+    done, interrupted = _simulate(scenarios)
+    for group in groups:
+        runs = [done[id(scenario)] for scenario in group.scenarios if id(scenario) in done]
+        if runs:
+            _present(runs, group.folder, bracket and not interrupted)
+    if interrupted:
+        raise KeyboardInterrupt
+    if len(done) < len(scenarios):
+        raise typer.Exit(1)
+
+
+def _load_groups(
+    files: Sequence[Sequence[str]], folders: Sequence[Path | None], settings: dict[str, object]
+) -> list[_Group]:
+    """Load the scenarios of every group; where no folder was chosen it bears the group's title."""
+    from seatsim.scenario.loading import load
+
+    groups = []
+    for paths, chosen in zip(files, folders, strict=True):
+        scenarios = [scenario for path in paths for scenario in load(path, settings)]
+        groups.append(_Group(scenarios, chosen or Path("out") / _title(scenarios)))
+    for folder in [group.folder for group in groups]:
+        if sum(group.folder == folder for group in groups) > 1:
+            raise InputError(f"two of the files would write to {folder}; give them other names, or run them one by one")
+    return groups
+
+
+def _simulate(scenarios: list[Scenario]) -> tuple[dict[int, Run], bool]:
+    """Return the runs that were carried to their end by the id of their scenario, and whether they were interrupted."""
+    from seatsim.simulation.runs import run_many
+
+    done: dict[int, Run] = {}
+    finished = itertools.count(1)
+    with count_progress("simulating", len(scenarios)) as count:
+        try:
+            for scenario, answer in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
+                if isinstance(answer, SeatsimError):
+                    complain(f"failed: {answer}")
+                else:
+                    done[id(scenario)] = answer
+        except KeyboardInterrupt:
+            return done, True
+    return done, False
+
+
+def _title(scenarios: Sequence[Scenario]) -> str:
+    names = list(dict.fromkeys(scenario.name for scenario in scenarios))
+    return names[0] if len(names) == 1 else "comparison"
+
+
+def _present(runs: list[Run], folder: Path, bracket: bool) -> None:
+    """Print the table of some runs, their bounds where wanted, the warnings, and the paths of the files written."""
+    from seatsim.cli.outputs.runs import write_result
+    from seatsim.cli.published_tables import published_tables
+    from seatsim.cli.tables import comparison
+    from seatsim.simulation.result import Result
+
+    for table in [comparison(runs, _title([run.scenario for run in runs])), *published_tables(runs)]:
+        out.print(table)
+    warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
+    warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
+    result = Result(runs, _performance_bounds(runs) if bracket else {})
+    wrote(folder, write_result(result, folder))
+
+
+def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:
+    """Work out the bounds and print how far from them each run is; an interrupt keeps what there is."""
+    from seatsim.cli.tables import distances
+    from seatsim.simulation.performance_bounds import compute_performance_bounds, explain_runs_below_bound
+
+    found: dict[str, PerformanceBounds] = {}
+    with show_progress() as progress:
+        try:
+            for rig, answer in compute_performance_bounds(runs, progress):
+                if isinstance(answer, InputError):
+                    complain(f"no bracket: {answer}")
+                else:
+                    found[rig] = answer
+        except KeyboardInterrupt:
+            warn(["interrupted: the brackets that were not finished are left out"])
+    if found:
+        out.print(distances(runs, found))
+    warn(explain_runs_below_bound(runs, found))
+    return found

@@ -1,0 +1,59 @@
+"""Arguments and options that several commands share, and how `KEY=VALUE` is read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from seatsim.schema.errors import InputError
+from seatsim.schema.modules import use_all
+
+
+def _use_files(files: list[Path] | None) -> list[Path]:
+    """Load the files while options are read, so that no command can forget them."""
+    use_all(files or [])
+    return files or []
+
+
+Out = Annotated[Path | None, typer.Option("--out", help="Folder for the files.", show_default="out/NAME")]
+Scenarios = Annotated[list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)]
+OneScenario = Annotated[str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Replace a value by dotted key, such as plant.driver_mass=55."),
+]
+OwnCode = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--with", metavar="FILE.py", callback=_use_files,
+        help="Run a file of your own, whose classes are then named as FILE:Class; may be given several times.",
+    ),
+]  # fmt: skip
+
+
+def scenario_settings(texts: Sequence[str] | None) -> dict[str, object]:
+    """Read the values of `--set`."""
+    return pairs(texts, "--set", "plant.driver_mass=55")
+
+
+def pairs(texts: Sequence[str] | None, option: str, example: str) -> dict[str, object]:
+    """Read `KEY=VALUE` texts, the value as YAML.
+
+    Raises:
+        InputError: a text is no such pair.
+    """
+    values: dict[str, object] = {}
+    for text in texts or []:
+        key, sign, value = text.partition("=")
+        if not sign or not key:
+            raise InputError(f"{option} {text}: write KEY=VALUE, such as {option} {example}")
+        try:
+            values[key] = YAML(typ="safe").load(value)
+        except YAMLError as error:
+            raise InputError(f"{option} {text}: '{value}' is not a YAML value") from error
+    return values

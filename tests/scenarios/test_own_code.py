@@ -1,0 +1,254 @@
+"""Own code: run where its file is named, never because it lies beside a scenario or a recording."""
+
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import pytest
+
+import seatsim
+from seatsim.cli.app import main
+from seatsim.cli.outputs import diagnosis
+from seatsim.schema.modules import MissingModuleError, import_named, use, use_all, used_files
+from seatsim.schema.registry import find, names
+
+ROOT = Path(__file__).resolve().parents[2]
+POWER_LAW = """\
+from typing import Annotated, NamedTuple
+from seatsim.dampers.base import damper
+from seatsim.schema.fields import param
+
+@damper("power_law", source="a test", current_order=1)
+class PowerLaw(NamedTuple):
+    a: Annotated[float, param("N s/m", "damping at zero current", low=0)] = 300.0
+    def force(self, x, v, i, scaling, z):
+        return self.a * scaling.viscous * v
+"""
+MALICIOUS = "from pathlib import Path\nPath(__file__).with_name('stolen').touch()\n" + POWER_LAW
+
+
+def seatsim_command(monkeypatch, *arguments):
+    monkeypatch.setattr("sys.argv", ["seatsim", *map(str, arguments)])
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    return stopped.value.code
+
+
+@pytest.fixture
+def power_law(tmp_path, forget_own_code):
+    """A file of the user's own."""
+    file = tmp_path / "mine" / "powerlaw.py"
+    file.parent.mkdir()
+    file.write_text(POWER_LAW)
+    return file
+
+
+@pytest.fixture
+def strange(tmp_path, forget_own_code):
+    """A recording from a stranger whose nominal scenario names the module that lies beside it."""
+    folder = shutil.copytree(ROOT / "scenarios" / "data" / "recording", tmp_path / "strange")
+    nominal = (folder / "nominal.yaml").read_text()
+    start, end = nominal.index("damper:"), nominal.index("excitation:")
+    (folder / "nominal.yaml").write_text(f"{nominal[:start]}damper: {{model: powerlaw:PowerLaw}}\n{nominal[end:]}")
+    (folder / "powerlaw.py").write_text(MALICIOUS)
+    return folder
+
+
+def commands(folder, out):
+    """Every command that a scenario or a recording of the folder could make run its code."""
+    nominal = folder / "nominal.yaml"
+    return {
+        "gap": ("gap", nominal, folder, "--out", out),
+        "diagnose": ("diagnose", folder, "--out", out),
+        "run": ("run", nominal, "--out", out),
+        "compare": ("compare", nominal, nominal, "--out", out),
+        "synthesise": ("synthesise", nominal, "--out", out),
+        "characterise": ("characterise", "--parameters", nominal, "--out", out),
+    }
+
+
+@pytest.mark.parametrize("name", ["gap", "diagnose", "run", "compare", "synthesise", "characterise"])
+@pytest.mark.parametrize("inside", [False, True], ids=["from elsewhere", "in the folder"])
+def test_a_module_beside_a_recording_is_not_run(name, inside, strange, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(strange if inside else tmp_path)
+    # As in a notebook or with `python -c`, where Python itself searches the current folder.
+    monkeypatch.setattr(sys, "path", ["", *sys.path])
+    folder, out = (Path("."), tmp_path / "out") if inside else (Path("strange"), tmp_path / "out")
+    arguments = commands(folder, out)[name]
+    assert seatsim_command(monkeypatch, *arguments) == 2
+    error = capsys.readouterr().err
+    assert "line" in error and "damper.model" in error and "no module 'powerlaw' is installed" in error
+    words = " ".join(map(str, arguments))
+    assert f"seatsim {words} --with {folder / 'powerlaw.py'}" in " ".join(error.split())
+    assert not (strange / "stolen").exists() and not out.exists()
+    assert "powerlaw" not in sys.modules
+    assert all(Path(entry or ".").resolve() != strange for entry in sys.path[1:])
+
+
+def test_python_started_in_the_folder_of_a_recording_does_not_run_its_module(strange):
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    for start in (["-m", "seatsim", "run", "nominal.yaml"], ["-c", "import seatsim; seatsim.load('nominal.yaml')"]):
+        command = [sys.executable, *start]
+        done = subprocess.run(command, cwd=strange, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode != 0
+        assert "seatsim.use('powerlaw.py')" in done.stderr
+        assert not (strange / "stolen").exists()
+
+
+def test_files_that_are_called_like_libraries_do_not_stand_before_them_under_python_m(strange):
+    for library in ("rich", "typer", "shlex"):
+        (strange / f"{library}.py").write_text("raise SystemExit('a file of the recording was run')\n")
+    command = [sys.executable, "-m", "seatsim", "describe", "road"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=strange, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("road (excitation)")
+
+
+def test_a_folder_that_is_called_like_a_plug_in_does_not_stand_before_it(strange):
+    (strange / "controllers").mkdir()
+    (strange / "controllers" / "__init__.py").write_text("raise SystemExit('a file of the recording was run')\n")
+    command = [sys.executable, "-c", "from seatsim.rig.control import LAWS; print(*LAWS.names())"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=strange, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "on_off_skyhook" in done.stdout
+
+
+def test_the_python_functions_do_not_run_it_either(strange):
+    for call in (
+        lambda: seatsim.gap(strange / "nominal.yaml", strange),
+        lambda: seatsim.diagnose(strange),
+        lambda: seatsim.run(strange / "nominal.yaml"),
+    ):
+        with pytest.raises(seatsim.InputError, match=r"seatsim\.use"):
+            call()
+    assert not (strange / "stolen").exists()
+
+
+def test_a_name_that_a_named_file_registers_is_known(power_law, seat_file, monkeypatch, capsys):
+    assert seatsim_command(monkeypatch, "describe", "power_law", "--with", power_law) == 0
+    assert "damping at zero current" in capsys.readouterr().out
+    (scenario,) = seatsim.load(seat_file, {"damper": {"model": "power_law"}})
+    assert type(scenario.damper.record) is sys.modules["powerlaw"].PowerLaw
+
+
+def test_a_named_file_replays_a_recording(strange, monkeypatch):
+    file = strange / "powerlaw.py"
+    arguments = ("gap", strange / "nominal.yaml", strange, "--with", file, "--out", strange / "out")
+    assert seatsim_command(monkeypatch, *arguments) == 0
+    assert (strange / "out" / "gap.json").exists()
+    assert (strange / "stolen").exists(), "the file that was named is the one that was run"
+
+
+def test_use_returns_the_module_and_registers_its_classes(power_law):
+    module = use(power_law)
+    assert find("damper", "power_law") is module.PowerLaw is find("damper", "powerlaw:PowerLaw")
+    assert "power_law" in names("damper")
+    assert used_files() == (power_law,)
+    assert use(str(power_law)) is module
+
+
+def test_a_file_that_was_edited_is_loaded_again(power_law):
+    first = use(power_law)
+    power_law.write_text(POWER_LAW.replace("= 300.0", "= 400.0"))
+    second = use(power_law)
+    assert (first.PowerLaw().a, second.PowerLaw().a) == (300.0, 400.0)
+    assert find("damper", "powerlaw:PowerLaw") is second.PowerLaw
+    assert used_files() == (power_law,)
+
+
+def test_an_edit_that_fails_leaves_what_was_there(power_law):
+    module = use(power_law)
+    power_law.write_text("1 / 0\n")
+    with pytest.raises(seatsim.InputError, match="division by zero"):
+        use(power_law)
+    assert sys.modules["powerlaw"] is module
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "problem"),
+    [
+        ("absent.py", None, "cannot be read: No such file"),
+        ("law.txt", "", "not a Python file"),
+        ("my-law.py", "", "its name has letters, digits and _"),
+        ("numpy.py", "", "'numpy' is the name of another module"),
+        ("antigravity.py", "", "'antigravity' is the name of another module"),
+        ("sys.py", "", "'sys' is the name of another module, built in"),
+        ("broken.py", "a = 1\n1 / 0\n", r"broken.py, line 2 \(1 / 0\): cannot be imported: ZeroDivisionError"),
+        ("unclosed.py", "a = 1\nb = (\n", r"unclosed.py, line 2 \(b = \(\): cannot be imported: SyntaxError"),
+        ("asking.py", "import nowhere_at_all\n", "line 1 .*No module named 'nowhere_at_all'$"),
+        ("asking.py", "import other\n", "name other.py before it: --with .*other.py"),
+        ("taking.py", POWER_LAW.replace("power_law", "bouc_wen"), "damper 'bouc_wen' is there already"),
+    ],
+)  # fmt: skip
+def test_a_file_that_cannot_be_used_is_a_clear_error(tmp_path, forget_own_code, name, text, problem):
+    (tmp_path / "other.py").write_text("")
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    with pytest.raises(seatsim.InputError, match=problem):
+        use(tmp_path / name)
+    assert used_files() == ()
+
+
+def test_two_files_of_one_name_are_not_taken_for_each_other(power_law, tmp_path):
+    use(power_law)
+    other = tmp_path / "powerlaw.py"
+    other.write_text(POWER_LAW)
+    with pytest.raises(seatsim.InputError, match=r"'powerlaw' is the name of another module, .*mine"):
+        use(other)
+
+
+def test_a_file_may_import_one_that_was_named_before_it(tmp_path, forget_own_code):
+    (tmp_path / "shared_constant.py").write_text("VALUE = 3.0\n")
+    (tmp_path / "dependent.py").write_text("from shared_constant import VALUE\n")
+    use_all([tmp_path / "shared_constant.py", tmp_path / "dependent.py"])
+    assert sys.modules["dependent"].VALUE == 3.0
+
+
+def test_a_module_that_was_imported_from_the_same_file_is_kept(power_law, monkeypatch):
+    monkeypatch.syspath_prepend(power_law.parent)
+    import powerlaw
+
+    assert use(power_law) is powerlaw
+
+
+def test_installed_modules_are_found(monkeypatch, tmp_path):
+    monkeypatch.delitem(sys.modules, "colorsys", raising=False)
+    (tmp_path / "colorsys.py").write_text("raise AssertionError\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", ["", *sys.path])
+    assert import_named("colorsys").rgb_to_hsv(0.0, 0.0, 0.0) == (0.0, 0.0, 0.0)
+    assert import_named("importlib.metadata").entry_points is not None
+
+
+@pytest.mark.parametrize("name", ["nowhere", "", ".relative", "a b", "math.nothing", "seatsim.nothing", "../powerlaw"])
+def test_a_module_that_is_not_there(name):
+    with pytest.raises(MissingModuleError, match="no module"):
+        import_named(name)
+
+
+def test_worker_processes_know_the_same_files(power_law):
+    record = use(power_law).PowerLaw(7.0)
+    with ProcessPoolExecutor(1, get_context("spawn"), initializer=use_all, initargs=(used_files(),)) as pool:
+        back = pool.submit(pickle.loads, pickle.dumps(record)).result()
+    assert back == record and type(back) is type(record)
+
+
+def test_a_blind_set_is_diagnosed_with_the_files_in_use(power_law, tmp_path, monkeypatch):
+    use(power_law)
+    given = {}
+
+    class Pool(ProcessPoolExecutor):
+        def __init__(self, *args, **options):
+            given.update(options)
+            super().__init__(*args, **options)
+
+    monkeypatch.setattr(diagnosis, "ProcessPoolExecutor", Pool)
+    diagnosis.diagnose_all(tmp_path, lambda done, total: None)
+    assert (given["initializer"], given["initargs"]) == (use_all, ((power_law,),))
