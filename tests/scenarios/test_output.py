@@ -19,7 +19,7 @@ def seatsim_command(monkeypatch, *arguments):
 @pytest.fixture
 def undrawn(monkeypatch):
     """Leave out the pictures, which take most of the time."""
-    monkeypatch.setattr("seatsim.plots.draw", lambda result: {})
+    monkeypatch.setattr("seatsim.plots.runs.draw.draw", lambda result: {})
 
 
 def test_run_writes_table_histories_and_pictures(seat_file, monkeypatch, capsys):
