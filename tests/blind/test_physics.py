@@ -61,6 +61,8 @@ def test_nominal_damper_forces() -> None:
     rate = rates_of(damper.write_yield_rates, y, None, 0.1, bouc_wen)[state.Z]
     assert rate == pytest.approx(2000.0 * 0.1 - 1000.0 * 0.1 * 0.09 + 1000.0 * 0.1 * 0.3 * 0.3, rel=1e-12)
     assert rates_of(damper.write_yield_rates, at(Z=1.0), None, 0.1, bouc_wen)[state.Z] == pytest.approx(0.0)
+    back = rates_of(damper.write_yield_rates, y, None, -0.1, bouc_wen)[state.Z]
+    assert back == pytest.approx(-2000.0 * 0.1 + 1000.0 * 0.1 * 0.09 + 1000.0 * 0.1 * 0.3 * 0.3, rel=1e-12)
 
 
 def test_damper_departures() -> None:
