@@ -48,6 +48,14 @@ def test_a_start_is_used_and_never_made_worse(problem, band):
         assert find_best_run(problem, band, gain).cost <= problem.simulate(band, gain).cost
 
 
+def test_without_a_pass_the_start_itself_is_run(problem, band, monkeypatch):
+    monkeypatch.setattr(feasible, "PASSES", 0)
+    for gain in constant_laws(problem):
+        assert find_best_run(problem, band, gain).cost == problem.simulate(band, gain).cost
+    nothing = np.zeros((problem.intervals, len(problem.transcription.velocity)))
+    assert find_best_run(problem, band).cost == problem.simulate(band, nothing).cost
+
+
 class Scripted:
     """A problem of one interval whose runs cost what a list says; proximities that are asked for are kept."""
 

@@ -81,6 +81,8 @@ def test_refining_is_not_content_with_the_first_of_two_valleys(random_plant):
     random = np.random.default_rng(0)
     gains = [StartingGain(random.standard_normal((2, 2)), np.ones((2, 2))) for _ in range(4)]
     found = explore(problem, gains, later())
+    gammas = [candidate.gamma for candidate in found.candidates]
+    assert gammas == sorted(gammas) and gammas[0] < gammas[-1]
     best = refine(problem, found.candidates, later())
     assert best.gamma <= found.candidates[0].gamma
     assert best.gamma == problem.norm(best.entries)

@@ -44,6 +44,16 @@ def test_round_trip_without_certificate_and_with_peak_at_infinity(design, tmp_pa
     assert again.certificate is None and again.peak_frequency == np.inf
 
 
+def test_the_worst_of_several_loops_speaks_for_the_design(design, tmp_path):
+    low, high = (replace(design.worst, gamma=gamma, peak_frequency=gamma) for gamma in (1.0, 3.0))
+    for loops in ((low, high), (high, low)):
+        both = Design(design.gain, 1e6, 0.5, loops)
+        assert both.worst is high
+        assert (both.gamma, both.peak_frequency) == (3.0, 3.0)
+        both.save(tmp_path / "both.yaml")
+        assert [loop.gamma for loop in Design.load(tmp_path / "both.yaml").loops] == [loop.gamma for loop in loops]
+
+
 def test_nothing_is_left_where_writing_fails(design, tmp_path):
     (tmp_path / "design.yaml").mkdir()
     with pytest.raises(OSError):
