@@ -1,6 +1,7 @@
 """The time loop as plain Python: the order in which law, coil, rig and temperature act, and what it records."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -156,6 +157,41 @@ def test_an_assumed_damper_is_followed_beside_the_true_one():
     assert np.mean((knows["current_command"] > 0.02) & (knows["current_command"] < 0.98)) > 0.05
     hot, _ = run(Feedback(500.0), model=AssumedModel(true, 1, FACTORS, 80.0), **law)
     assert np.max(np.abs(hot["current_command"] - knows["current_command"])) > 0.05
+
+
+class Counting(NamedTuple):
+    """A law that asks for 10 mA more at every sample."""
+
+    def wanted_current(self, y, state):
+        return 0.01 * state[0]
+
+    def update(self, y, state):
+        return (state[0] + 1.0,)
+
+
+def test_a_law_remembers_its_samples():
+    h, _ = run(Counting(), every=5, law_state=(2.0,))
+    assert h["current_command"] == pytest.approx(0.01 * (2.0 + np.arange(40) // 5), rel=1e-12)
+
+
+class Charged(NamedTuple):
+    """A damper whose state is the integral of its current: `F = (c + 500 i + 2000 z) v`."""
+
+    c: float = 300.0
+
+    def force(self, x, v, i, scaling, z):
+        return (self.c + 500.0 * i + 2000.0 * z[0]) * v
+
+    def rates(self, x, v, i, scaling, z):
+        return (i,)
+
+
+def test_an_assumed_state_follows_the_current_that_flows():
+    law = {"law_state": (0.0,), "damper": Charged(), "rest": (0.0,), "followed": (0.0,), "start_velocity": 0.1}
+    knows, _ = run(Feedback(450.0), model=TrueModel(Charged(), 1), **law)
+    assumes, _ = run(Feedback(450.0), model=AssumedModel(Charged(), 1, FACTORS, math.nan), **law)
+    assert np.ptp(knows["current_command"][2:]) > 0.01
+    assert assumes["current_command"] == pytest.approx(knows["current_command"], abs=5e-4)
 
 
 def test_a_law_with_sensors_sees_filtered_readings():

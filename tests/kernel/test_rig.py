@@ -45,8 +45,8 @@ class SeatEffect(NamedTuple):
 
 
 def test_without_effects_it_is_the_linear_seat():
-    rates, forces = derivative(Rig(PLANT, Linear(k=0.0)), STATE, Disturbance(1.3, 0.0, 0.0), 0.5, HOT, 0.0)
-    force = 950.0 * 0.8 * 0.7 * STATE[1]
+    rates, forces = derivative(Rig(PLANT, Linear()), STATE, Disturbance(1.3, 0.0, 0.0), 0.5, HOT, 0.0)
+    force = 950.0 * 0.8 * 0.7 * STATE[1] + 900.0 * 0.7 * STATE[0]
     s = state_space(PLANT)
     expected = s.A @ STATE[:4] + s.B1[:, 0] * 1.3 + s.B2[:, 0] * force
     assert rates[:4] == pytest.approx(expected, rel=1e-12)
@@ -94,7 +94,10 @@ def test_damper_and_linkage_share_the_friction(slip):
     assert rough[1].friction == pytest.approx(slip * (limit + 30.0))
     assert rough[1].damper_force - smooth[1].damper_force == pytest.approx(slip * 70.0)
     assert rough[0][1] - smooth[0][1] == pytest.approx(-slip * limit / 20.0)
-    assert rough[0][SUSPENSION_WORK] == pytest.approx(smooth[0][SUSPENSION_WORK])
+    x, v = STATE[:2]
+    resistance = 150.0 * v + 460.0 * x + 7.0 * v + 0.3
+    assert rough[0][SUSPENSION_WORK] == pytest.approx((resistance + slip * 30.0) * v)
+    assert smooth[0][SUSPENSION_WORK] == pytest.approx((resistance + slip * 30.0) * v)
 
 
 def test_supplied_less_dissipated_power_is_the_rate_of_the_energy_stored():
