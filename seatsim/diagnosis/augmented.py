@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 
@@ -31,7 +33,7 @@ def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[s
     return content
 
 
-def _as_plain(values: dict[str, object]) -> dict[str, object]:
+def _as_plain(values: Mapping[str, object]) -> dict[str, object]:
     """Return the numbers of an effect's record as floats of Python, which a YAML file can hold; words stay."""
     return {name: float(value) if isinstance(value, int | float) else value for name, value in values.items()}
 

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from collections.abc import Hashable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.effects.base import ON_SEAT, Form, acts_on
-from seatsim.schema.fields import bounds, choices
-from seatsim.schema.registry import find, names, specification_of
+from seatsim.effects.base import EFFECTS, ON_SEAT, Form, acts_on
+from seatsim.schema.fields import bounds, choices, field_names
+from seatsim.schema.registry import Record
 
 Array = NDArray[np.float64]
+Fixed = Mapping[str, float | str]
+"""Parameters that are no part of a fit: numbers, and the channel that an effect acts on."""
 
 
 class Candidate(NamedTuple):
     """An effect with some of its parameters free: where a fit starts, and between which bounds."""
 
     effect: str
-    cls: Any
-    fixed: dict[str, Any]
+    cls: type[Record]
+    fixed: Fixed
     free: tuple[str, ...]
     start: tuple[float, ...]
     low: tuple[float, ...]
@@ -32,7 +34,7 @@ class Candidate(NamedTuple):
         """Natural size of each free parameter, shape (len(free),)."""
         return np.abs(self.start)
 
-    def record(self, values: Array | Sequence[float]) -> Any:
+    def record(self, values: Array | Sequence[float]) -> Record:
         """Return the effect at these values of the free parameters."""
         return self.cls(**self.fixed, **dict(zip(self.free, map(float, values), strict=True)))
 
@@ -44,11 +46,11 @@ class Candidate(NamedTuple):
     @property
     def limits(self) -> list[bool]:
         """Which free parameters are such limits: larger where the effect is off."""
-        off = specification_of(self.cls).off
+        off = EFFECTS.specification_of(self.cls).off
         return [abs(off.get(name, 0.0)) > abs(start) for name, start in zip(self.free, self.start, strict=True)]
 
     @property
-    def structure(self) -> tuple[Any, ...]:
+    def structure(self) -> Hashable:
         """What candidates share that differ in their start alone."""
         return self.effect, self.free, tuple(self.fixed.items())
 
@@ -63,17 +65,12 @@ def list_candidates(problem: DiagnosisProblem, without: Sequence[str] = ()) -> l
     settings = problem.settings.selection
     present = {type(effect) for effect in problem.scenario.effects}
     found = []
-    for name in names("effect"):
-        cls: Any = find("effect", name)
+    for name in EFFECTS.names():
+        cls = EFFECTS.find(name)
         if name in without or cls in present or not _fits(cls, problem):
             continue
-        for form in specification_of(cls).forms:
-            places = (
-                [{"channel": channel} for channel in _channels(cls, problem)]
-                if specification_of(cls).by_channel
-                else [{}]
-            )
-            placed = [_candidate(name, cls, form, place, settings.shape_reach) for place in places]
+        for form in EFFECTS.specification_of(cls).forms:
+            placed = [_candidate(name, cls, form, place, settings.shape_reach) for place in _places(cls, problem)]
             found += [start for each in placed for start in _starts(each, settings.limit_starts)]
     return found
 
@@ -85,35 +82,41 @@ def _starts(candidate: Candidate, limit_starts: Sequence[float]) -> list[Candida
     return [candidate._replace(start=tuple(f * x if limit else x for x, limit in starts)) for f in factors]
 
 
-def _fits(cls: Any, problem: DiagnosisProblem) -> bool:
+def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
     """Whether the effect has something to act on in this recording."""
     if problem.bench and acts_on(cls, (*ON_SEAT, "plant", "frame_force")):
         return False
     recorded = problem.recording.channels
     commanded = "current_command" in recorded or "command_voltage" in recorded
-    if hasattr(cls, "coil") and not commanded:
+    # Where only the current is recorded it drives the damper, so that nothing of the coil shows.
+    if acts_on(cls, ("coil",)) and not commanded:
         return False
-    return bool(specification_of(cls).suits(problem.scenario.damper.record))
+    return EFFECTS.specification_of(cls).suits(problem.scenario.damper.record)
 
 
-def _channels(cls: Any, problem: DiagnosisProblem) -> list[str]:
+def _places(cls: type[Record], problem: DiagnosisProblem) -> list[Fixed]:
+    """Return the channels that an effect may act on, or one empty place for an effect that acts on none."""
+    if not EFFECTS.specification_of(cls).by_channel:
+        return [{}]
     known = choices(cls, "channel")
     named = [*problem.channels, "floor_acceleration"]
-    return [name for name in named if name in problem.recording.channels and name in known]
+    return [{"channel": name} for name in named if name in problem.recording.channels and name in known]
 
 
-def _candidate(name: str, cls: Any, form: Form, place: dict[str, Any], reach: float) -> Candidate:
-    off = {field: 0.0 for field in cls._fields if field not in place} | dict(specification_of(cls).off)
-    fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.fixed) | place
+def _candidate(name: str, cls: type[Record], form: Form, place: Fixed, reach: float) -> Candidate:
+    """Return the candidate of one structure in one place; what the structure does not name stays off."""
+    off = {field: 0.0 for field in field_names(cls) if field not in place} | dict(EFFECTS.specification_of(cls).off)
+    fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.fixed) | dict(place)
+    # The first parameter is the effect's size, which may be anything; the others are its shape.
     ranges = [
-        form.within.get(f, _range(cls, f, value, reach if k > 0 else None))
-        for k, (f, value) in enumerate(form.free.items())
+        form.within.get(field, _bound(cls, field, value, reach if k > 0 else None))
+        for k, (field, value) in enumerate(form.free.items())
     ]
     low, high = zip(*ranges, strict=True)
     return Candidate(name, cls, fixed, tuple(form.free), tuple(form.free.values()), low, high)
 
 
-def _range(cls: Any, field: str, value: float, reach: float | None) -> tuple[float, float]:
+def _bound(cls: type[Record], field: str, value: float, reach: float | None) -> tuple[float, float]:
     """Return the bounds of a free parameter; one of shape, if it has a sign, stays within `reach` times its start."""
     low, high = bounds(cls, field)
     if reach is not None and low >= 0.0:

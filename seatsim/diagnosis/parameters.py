@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import Candidate
+from seatsim.schema.registry import Record
 
 Array = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ class Parameters:
     values: tuple[Array, ...] = ()
 
     @property
-    def effects(self) -> list[Any]:
+    def effects(self) -> list[Record]:
         """Records of the effects."""
         return [term.record(values) for term, values in zip(self.terms, self.values, strict=True)]
 

@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,7 @@ from seatsim.recordings.recording import Recording
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.errors import InputError, RunError
+from seatsim.schema.registry import Record
 from seatsim.simulation.inputs import RigInputs
 from seatsim.simulation.respond import respond
 
@@ -87,12 +87,14 @@ class DiagnosisProblem:
         """Return the problem with some of its runs; the channels stay, their spreads are those of the runs kept."""
         return dataclasses.replace(self, runs=tuple(runs))
 
-    def augmented(self, deviations: Array, effects: Sequence[Any]) -> Scenario:
+    def augmented(self, deviations: Array, effects: Sequence[Record]) -> Scenario:
         """Return the nominal scenario with other parameters and with effects."""
         varied = vary(self.scenario, self.parameters, deviations)
         return dataclasses.replace(varied, effects=(*self.scenario.effects, *effects))
 
-    def simulated(self, run: str, deviations: Array, effects: Sequence[Any], inputs: RigInputs | None = None) -> Array:
+    def simulated(
+        self, run: str, deviations: Array, effects: Sequence[Record], inputs: RigInputs | None = None
+    ) -> Array:
         """Return the compared channels of a run, shape (channels, samples), as `measured` has them.
 
         `inputs` drive the rig instead of the recorded ones.
@@ -103,14 +105,14 @@ class DiagnosisProblem:
         end = self.skip + self.measured[run].shape[1]
         return np.array([outputs[name][self.skip : end] for name in self.channels])
 
-    def _attempted(self, run: str, deviations: Array, effects: Sequence[Any]) -> Array:
+    def _attempted(self, run: str, deviations: Array, effects: Sequence[Record]) -> Array:
         """Return the simulated channels of a run, infinite where the rig leaves all bounds."""
         try:
             return self.simulated(run, deviations, effects)
         except RunError:
             return np.full(self.measured[run].shape, np.inf)
 
-    def residuals(self, rigs: Sequence[tuple[Array, Sequence[Any]]]) -> list[dict[str, Array]]:
+    def residuals(self, rigs: Sequence[tuple[Array, Sequence[Record]]]) -> list[dict[str, Array]]:
         """Return `measured - simulated` of every run for each rig (deviations, effects), on all cores."""
         jobs = [(index, run) for index in range(len(rigs)) for run in self.runs]
         answers = self.pool.map(lambda job: self._attempted(job[1], *rigs[job[0]]), jobs)

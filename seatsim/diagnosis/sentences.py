@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from seatsim.diagnosis.result import Cause, Diagnosis, Estimate
-from seatsim.schema.registry import find
+from seatsim.effects.base import EFFECTS
 
 
 def write_answer(diagnosis: Diagnosis) -> str:
@@ -50,7 +50,7 @@ def _unexplained(diagnosis: Diagnosis) -> str:
 
 def _cause(diagnosis: Diagnosis, name: str) -> str:
     cause = next(cause for cause in diagnosis.causes if cause.effect == name)
-    meaning = (find("effect", name).__doc__ or name).split("\n")[0].split(":")[0].rstrip(".")
+    meaning = (EFFECTS.find(name).__doc__ or name).split("\n")[0].split(":")[0].rstrip(".")
     values = _values(cause)
     return f"{name} ({meaning[0].lower()}{meaning[1:]}{'; ' + values if values else ''})"
 

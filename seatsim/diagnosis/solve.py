@@ -28,7 +28,7 @@ from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.select import Selection, select_effects
-from seatsim.schema.registry import names
+from seatsim.effects.base import EFFECTS
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], object]
@@ -44,7 +44,7 @@ class Method(NamedTuple):
     share_gap: Callable[[Objective, Evaluation, Remainder | None], list[Share]] = share_gap
 
 
-class Task(NamedTuple):
+class SearchTask(NamedTuple):
     """What a search is given: the candidates, the names of all effects, whom to tell of progress, and the method."""
 
     candidates: Sequence[Candidate]
@@ -76,8 +76,8 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
         progress: called with what is being done.
         method: the stages.
     """
-    effects = [name for name in names("effect") if name not in without]
-    task = Task(list_candidates(problem, without), effects, progress, method)
+    effects = [name for name in EFFECTS.names() if name not in without]
+    task = SearchTask(list_candidates(problem, without), effects, progress, method)
     progress("weighing the channels")
     objective = Objective(problem, method.weigh_noise(problem, None, None))
     forces = None if problem.bench else _estimate_nonrepeatable(objective)
@@ -96,12 +96,12 @@ def _estimate_nonrepeatable(objective: Objective) -> Forces:
     return estimate_nonrepeatable_force(objective, nominal)
 
 
-def _search(task: Task, objective: Objective) -> Solution:
+def _search(task: SearchTask, objective: Objective) -> Solution:
     selection = task.method.select_effects(objective, task.candidates, task.progress, None)
     return Solution(objective, selection, task.method.decide_verdict(objective.problem, selection, task.effects))
 
 
-def _search_beyond_broadband(task: Task, first: Solution, forces: Forces) -> Solution:
+def _search_beyond_broadband(task: SearchTask, first: Solution, forces: Forces) -> Solution:
     """Search again where most of what the best set leaves is broadband, and return what explains the gap beside it."""
     problem, best = first.objective.problem, first.selection.sets[-1][0]
     errors, weights = measure_broadband(problem, best.residuals), first.objective.weights.weights
@@ -113,7 +113,7 @@ def _search_beyond_broadband(task: Task, first: Solution, forces: Forces) -> Sol
     return second if second.decision.verdict in ("known", "ambiguous") else first
 
 
-def _search_by_gap(task: Task, first: Solution) -> Solution:
+def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
     """Return what is unexplained, beside the effects that runs left out support where only the gap counts."""
     task.progress("weighing the gap alone")
     problem, settings = first.objective.problem, first.objective.settings
@@ -134,7 +134,7 @@ def _search_by_gap(task: Task, first: Solution) -> Solution:
     )
 
 
-def _localise(task: Task, solution: Solution) -> Solution:
+def _localise(task: SearchTask, solution: Solution) -> Solution:
     """Return the solution with the blocks that the gap lies in, and the signal of what is unexplained."""
     objective, decision = solution.objective, solution.decision
     problem, share = objective.problem, task.method.share_gap
@@ -153,7 +153,7 @@ def _localise(task: Task, solution: Solution) -> Solution:
     return solution._replace(decision=decision, where=share(objective, rig, remainder), discrepancy=found)
 
 
-def _search_beside_stochastic(task: Task, first: Solution, without: Sequence[str]) -> Solution:
+def _search_beside_stochastic(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
     """Search again where the discrepancy may be a stochastic disturbance, counted as noise; keep what it explains."""
     problem, found = first.objective.problem, first.discrepancy
     if first.decision.verdict in ("known", "ambiguous") and not problem.bench:

@@ -17,7 +17,7 @@ LEAST_ROWS = 16
 LARGEST_JITTER = 0.25
 
 
-class Record(NamedTuple):
+class EvenSeries(NamedTuple):
     """Values at even intervals of time (s) or distance (m)."""
 
     interval: float
@@ -28,12 +28,12 @@ class Record(NamedTuple):
         """From the first to the last value, in s or m."""
         return self.interval * (len(self.values) - 1)
 
-    def after(self, start: float) -> Record:
+    def after(self, start: float) -> EvenSeries:
         """Return what is left from `start`, in s or m after the first value."""
         return self._replace(values=self.values[round(start / self.interval) :])
 
 
-def read_record(path: str, axis: str, column: str, start: float) -> Record:
+def read_record(path: str, axis: str, column: str, start: float) -> EvenSeries:
     """Read `column` of a CSV (or CSV.gz) table over its column `axis`, from `start` after its first row.
 
     Raises:
@@ -44,7 +44,7 @@ def read_record(path: str, axis: str, column: str, start: float) -> Record:
     if len(table) < LEAST_ROWS:
         raise InputError(f"{path}: {len(table)} rows are too few; permitted: at least {LEAST_ROWS}")
     position = _numbers(path, table[axis])
-    whole = Record(_interval(path, axis, position), _numbers(path, table[column]))
+    whole = EvenSeries(_interval(path, axis, position), _numbers(path, table[column]))
     record = whole.after(start)
     if len(record.values) < LEAST_ROWS:
         raise InputError(f"{path}: start {start:g} leaves fewer than {LEAST_ROWS} rows of {whole.length:g} (s or m)")

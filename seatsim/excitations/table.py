@@ -16,7 +16,7 @@ from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 
 if TYPE_CHECKING:
-    from seatsim.excitations.columns import Record
+    from seatsim.excitations.columns import EvenSeries
 
 # Part of a table's Nyquist frequency up to which its content is trusted.
 USABLE = 0.8
@@ -69,7 +69,7 @@ class Table(NamedTuple):
             return self._measured(read_record(self.path, self.time_column, self.column, self.start), step)
         return self._driven(read_record(self.path, str(self.distance_column), self.column, self.start), step)
 
-    def _measured(self, record: Record, step: float) -> Floor:
+    def _measured(self, record: EvenSeries, step: float) -> Floor:
         if self.speed is not None:
             raise InputError(f"table {self.path}: speed belongs to distance_column; drop it beside time_column")
         highest = min(self.low_pass, USABLE * 0.5 / record.interval)
@@ -85,7 +85,7 @@ class Table(NamedTuple):
         acceleration *= band(lines(acceleration, period), self.high_pass, highest)
         return self._play(integrated_twice(acceleration, period), record.length, highest, step)
 
-    def _driven(self, record: Record, step: float) -> Floor:
+    def _driven(self, record: EvenSeries, step: float) -> Floor:
         if self.speed is None:
             raise InputError(f"table {self.path}: a table over distance needs speed, in m/s")
         shortest = min(SHORTEST, USABLE * 0.5 / record.interval)

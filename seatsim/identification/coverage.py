@@ -24,7 +24,7 @@ SAME_CURRENT = 4
 """Decimals of a current in A that tell two steady currents apart."""
 
 
-class Coverage(NamedTuple):
+class VisitedRanges(NamedTuple):
     """The ranges that records visit, each with its least and greatest value, in SI units, degC and Hz.
 
     steady_currents: currents that were held over a record. temperature: None where it was not recorded. frequency:
@@ -41,12 +41,12 @@ class Coverage(NamedTuple):
     speeds: dict[str, float]
 
 
-def measure_coverage(records: Sequence[BenchRecord]) -> Coverage:
+def measure_coverage(records: Sequence[BenchRecord]) -> VisitedRanges:
     """Return the ranges that the records visit."""
     steady = {round(record.mean_current, SAME_CURRENT) for record in records if np.ptp(record.current) == 0.0}
     temperatures = [record.temperature for record in records if record.temperature is not None]
     bands = [_band(record) for record in records]
-    return Coverage(
+    return VisitedRanges(
         displacement=_range([record.displacement for record in records]),
         velocity=_range([record.velocity for record in records]),
         current=_range([record.current for record in records]),

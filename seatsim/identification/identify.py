@@ -19,10 +19,10 @@ from seatsim.identification.assessment import (
     assess_predictions,
     load_prediction_data,
 )
-from seatsim.identification.coverage import Coverage, measure_coverage, note_limits
+from seatsim.identification.coverage import VisitedRanges, measure_coverage, note_limits
 from seatsim.identification.damper_record import find_model, find_specification
 from seatsim.identification.information import Information, compute_information
-from seatsim.identification.prediction import BenchInputs, BenchModel, predict_force
+from seatsim.identification.prediction import BenchModel, RecordInputs, predict_force
 from seatsim.identification.problem import IdentificationProblem
 from seatsim.identification.problem_statement import find_origin, state_problem
 from seatsim.identification.search import Progress, ignore_progress, search_parameters
@@ -56,7 +56,7 @@ class Identification(NamedTuple):
     ns_per_step: float
     warm: bool
     commanded: bool
-    coverage: Coverage
+    coverage: VisitedRanges
     notes: list[str]
 
     def mean(self, part: str) -> Agreement | None:
@@ -177,7 +177,7 @@ def _note_divergence(assessments: Sequence[Assessment]) -> Iterator[str]:
         yield f"the state runs away on {', '.join(diverged)}: the force counts as 0 N from there"
 
 
-def _time_step(bench: BenchModel, inputs: Sequence[BenchInputs]) -> float:
+def _time_step(bench: BenchModel, inputs: Sequence[RecordInputs]) -> float:
     """Return the nanoseconds of a step of the simulation."""
     times = []
     for _ in range(TIMED_RUNS):

@@ -41,7 +41,7 @@ class BenchModel(NamedTuple):
     offset_per_kelvin: float = 0.0
 
 
-class BenchInputs(NamedTuple):
+class RecordInputs(NamedTuple):
     """A record as it drives the bench: samples every half step, shape (2 n + 1,), and the measured force at steps.
 
     x [m] from the origin, v [m/s], current [A] (a command for the coil where `commanded`), temperature [degC], step
@@ -58,7 +58,7 @@ class BenchInputs(NamedTuple):
     counted: int = 0
 
 
-def prepare_inputs(record: BenchRecord, origin: float, every: bool) -> BenchInputs:
+def prepare_inputs(record: BenchRecord, origin: float, every: bool) -> RecordInputs:
     """Return a record as inputs: every row a step, or, unless `every`, each second one where the rows are close.
 
     origin: displacement in m that counts as x = 0.
@@ -69,10 +69,10 @@ def prepare_inputs(record: BenchRecord, origin: float, every: bool) -> BenchInpu
     if not every and rate >= FAST_ENOUGH:
         odd = slice(0, len(x) - 1 + len(x) % 2)
         x, v, current, warm = (np.ascontiguousarray(y[odd]) for y in (x, v, record.current, warm))
-        return BenchInputs(x, v, current, record.commanded, warm, 2.0 / rate, record.force[odd][::2].copy())
+        return RecordInputs(x, v, current, record.commanded, warm, 2.0 / rate, record.force[odd][::2].copy())
     # A command holds until its next row; a current that was measured goes straight on to it.
     current = np.repeat(record.current, 2)[:-1] if record.commanded else _halve_linearly(record.current)
-    return BenchInputs(
+    return RecordInputs(
         _halve_cubically(x), _halve_cubically(v), current, record.commanded, _halve_linearly(warm), 1.0 / rate,
         record.force.copy(),
     )  # fmt: skip
@@ -94,7 +94,7 @@ def _halve_linearly(y: Array) -> Array:
 
 
 def predict_force(
-    bench: BenchModel, inputs: BenchInputs, most: int = MOST_PARTS, tolerance: float = TOLERANCE
+    bench: BenchModel, inputs: RecordInputs, most: int = MOST_PARTS, tolerance: float = TOLERANCE
 ) -> Array:
     """Return the force in N at the inputs' steps, shape (n + 1,); NaN from where the state ran away.
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.identification.coordinates import Coordinates
-from seatsim.identification.prediction import BenchInputs, BenchModel, predict_force
+from seatsim.identification.prediction import BenchModel, RecordInputs, predict_force
 from seatsim.kernel.bench import TOLERANCE
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.temperature import TemperatureFactors
@@ -49,7 +49,7 @@ class IdentificationProblem(NamedTuple):
     """
 
     coordinates: Coordinates
-    inputs: list[BenchInputs]
+    inputs: list[RecordInputs]
     weights: list[float]
     fits_coil: bool
     reference: float | None
@@ -115,7 +115,7 @@ class IdentificationProblem(NamedTuple):
         return float(np.sum(self.residuals(vector) ** 2)) / len(self.inputs)
 
 
-def weight_records(records: Sequence[BenchRecord], inputs: Sequence[BenchInputs]) -> list[float]:
+def weight_records(records: Sequence[BenchRecord], inputs: Sequence[RecordInputs]) -> list[float]:
     """Return the factors `1 / (std(y) sqrt(N))` that make every record count alike."""
     spreads = np.array([np.std(record.force) for record in records])
     least = LEAST_SPREAD * float(np.max(spreads))

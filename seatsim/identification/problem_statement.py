@@ -9,7 +9,7 @@ import numpy as np
 from seatsim.identification.adjustment import fix_parameters, rescale_damper
 from seatsim.identification.coordinates import Coordinates
 from seatsim.identification.damper_record import DamperRecord, find_specification
-from seatsim.identification.prediction import BenchInputs, prepare_inputs
+from seatsim.identification.prediction import RecordInputs, prepare_inputs
 from seatsim.identification.problem import IdentificationProblem, weight_records
 from seatsim.identification.scales import Scales
 from seatsim.identification.settings import IdentificationSettings
@@ -98,7 +98,7 @@ def _reference_temperature(records: Sequence[BenchRecord]) -> float | None:
     return float(np.mean(np.concatenate(warmth)))
 
 
-def _with_run_up(record: BenchRecord, stretch: tuple[int, int], origin: float) -> BenchInputs:
+def _with_run_up(record: BenchRecord, stretch: tuple[int, int], origin: float) -> RecordInputs:
     """Return the inputs of a stretch and of as many rows before it, in which the state forgets its start at rest."""
     first, last = stretch
     begin = max(0, 2 * first - last)

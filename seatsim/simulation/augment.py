@@ -9,14 +9,14 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on, off
+from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.chain import Effects, state_at_rest
 from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
-from seatsim.schema.registry import find, names, specification_of
+from seatsim.schema.registry import specification_of
 from seatsim.simulation.effect_hooks import COIL, FACTORS, FRAME_FORCE, PLANT, READING, TEMPERATURE, TRUTH
 
 Array = NDArray[np.float64]
@@ -88,7 +88,7 @@ def select_in_loop(effects: Sequence[object], carry_all: bool = False) -> tuple[
 
 
 def _carried(effects: Sequence[object], hooks: tuple[str, ...]) -> Effects:
-    registered = _acting(tuple(find("effect", name) for name in names("effect")), hooks)
+    registered = _acting(tuple(EFFECTS.find(name) for name in EFFECTS.names()), hooks)
     chosen = [effect for effect in effects if acts_on(type(effect), hooks)]
     first = {type(effect): effect for effect in reversed(chosen)}
     carried = [first.get(cls) or off(cls) for cls in registered]

@@ -11,7 +11,7 @@ from scipy.signal import welch
 from seatsim.blind.truth import excitation, frame_forces, sensors
 from seatsim.blind.truth.faults.scenario import FrameForce, SensorFault
 from seatsim.blind.truth.noise import coloured_noise
-from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE, Motion
+from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE, RigMotion
 
 
 def test_coloured_noise_has_unit_variance_and_its_slope() -> None:
@@ -99,9 +99,9 @@ def test_lagging_sensors_delay_a_ramp_by_their_size(kind: str, delay: float) -> 
     np.testing.assert_allclose((ramp - faulty(kind, ramp, delay))[500:], 5.0 * delay, rtol=1e-6)
 
 
-def motion(rows: int = 500) -> Motion:
+def motion(rows: int = 500) -> RigMotion:
     flat, fine = np.zeros(rows), np.arange(rows * 20) / (20.0 * SAMPLE_RATE)
-    return Motion(flat, flat + 1.0, flat, flat + 2.0, np.arange(rows) * 1.0, fine[::20], flat + 3.0, fine)
+    return RigMotion(flat, flat + 1.0, flat, flat + 2.0, np.arange(rows) * 1.0, fine[::20], flat + 3.0, fine)
 
 
 def test_a_late_log_is_late_by_its_size() -> None:

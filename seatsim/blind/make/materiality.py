@@ -15,7 +15,7 @@ import numpy as np
 from seatsim.blind.truth.experiment import Experiment, read_channels, simulate_run
 from seatsim.blind.truth.faults.scenario import Changes
 from seatsim.blind.truth.physics.compiled import Array
-from seatsim.blind.truth.physics.rig import SAMPLE_RATE, Motion
+from seatsim.blind.truth.physics.rig import SAMPLE_RATE, RigMotion
 from seatsim.blind.truth.sensors import Readings
 
 MATERIAL_SHARE = 0.05
@@ -40,7 +40,7 @@ class CommandedRuns:
     experiment: Experiment
     commands: list[Array]
     """A, one per row, for each recorded run."""
-    known: dict[str, list[Motion]] = field(default_factory=dict)
+    known: dict[str, list[RigMotion]] = field(default_factory=dict)
     """Motions simulated so far, by what makes them."""
 
     @property
@@ -48,7 +48,7 @@ class CommandedRuns:
         """Recorded runs."""
         return range(len(self.commands))
 
-    def simulate(self, changes: Changes) -> list[Motion]:
+    def simulate(self, changes: Changes) -> list[RigMotion]:
         """Return the motion of each run; sensor faults do not change it, so one simulation serves all of those."""
         key = repr((sorted(changes.parameters.items()), changes.frame_forces))
         if key not in self.known:

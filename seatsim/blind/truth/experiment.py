@@ -16,7 +16,7 @@ from seatsim.blind.truth.physics.rig import (
     INTEGRATION_STEP,
     SAMPLE_RATE,
     Inputs,
-    Motion,
+    RigMotion,
     simulate,
 )
 from seatsim.blind.truth.sensors import Readings, read_sensors
@@ -74,7 +74,7 @@ class Experiment:
 def simulate_run(
     experiment: Experiment, changes: Changes, run: int, command: Array | None = None, floor: Array | None = None,
     step: float = INTEGRATION_STEP,
-) -> Motion:  # fmt: skip
+) -> RigMotion:  # fmt: skip
     """Simulate the true rig through a run.
 
     With `command` (A, one per row) the loop is open; a `floor` (m/s^2) in place of the run's is given at the rows.
@@ -100,7 +100,7 @@ def _run_parameters(experiment: Experiment, changes: Changes, run: int) -> dict[
     return values
 
 
-def read_channels(experiment: Experiment, changes: Changes, run: int, motion: Motion) -> Readings:
+def read_channels(experiment: Experiment, changes: Changes, run: int, motion: RigMotion) -> Readings:
     """Return what the channels show of a motion, without noise, in the contract's order."""
     readings = read_sensors(motion, experiment.runs[run].floor, changes.sensor_faults, run)
     return {name: readings[name] for name in CHANNELS}

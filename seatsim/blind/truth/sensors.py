@@ -11,7 +11,7 @@ from seatsim.blind.truth.faults.scenario import SensorFault
 from seatsim.blind.truth.faults.sensor import NEIGHBOUR
 from seatsim.blind.truth.noise import coloured_noise
 from seatsim.blind.truth.physics.compiled import Array
-from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE, Motion
+from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE, RigMotion
 
 Readings = dict[str, Array]
 """What each channel reads in a run, shape (rows,) each."""
@@ -21,7 +21,7 @@ EVEN_RUN_DRIFT = 0.6
 """Share of the clock's drift in runs of even number: a fault that is the same in all runs is easier to find."""
 
 
-def read_sensors(motion: Motion, floor: Array, faults: Iterable[SensorFault], run: int) -> Readings:
+def read_sensors(motion: RigMotion, floor: Array, faults: Iterable[SensorFault], run: int) -> Readings:
     """Return what each channel reads, without noise; `floor` is the run's acceleration at 2 kHz, m/s^2."""
     rows = motion.frame.size
     true = {
@@ -43,7 +43,7 @@ def read_sensors(motion: Motion, floor: Array, faults: Iterable[SensorFault], ru
     return read
 
 
-def read_late_log(motion: Motion, fault: SensorFault, run: int) -> tuple[Array, Array]:
+def read_late_log(motion: RigMotion, fault: SensorFault, run: int) -> tuple[Array, Array]:
     """Return command and coil current as logged `size` seconds late; `detail` is the share that drifts away.
 
     The command is held between rows; the current is read between the steps of the integration.

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike
 
 from seatsim.plots import style
 from seatsim.plots.runs import naming
 from seatsim.plots.runs.placing import Spot, place_names
 from seatsim.plots.style import COLOURS, DARK, Entry, Grid
-from seatsim.plots.thinning import Array
+from seatsim.simulation.performance_bounds import PerformanceBounds
 from seatsim.simulation.result import Run
 
 COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
@@ -29,28 +28,6 @@ LONGEST = 40
 """Letters of the name of a point."""
 SIDES = (4.6, 2.9)
 """Height in inches of a panel that is alone, and of one among others."""
-
-
-class PerformanceBounds(Protocol):
-    """The bracket of a rig: runs of an ideal damper, and between which accelerations any semi-active one can be.
-
-    `travel` in m and `acceleration` in m/s^2 are those runs', shape (N,) each. `bound` and `best` return the least
-    weighted acceleration in m/s^2 that no damper comes below, and the least one found, at a travel in m.
-    """
-
-    @property
-    def travel(self) -> Array:
-        """RMS travel in m of each run of the ideal damper."""
-
-    @property
-    def acceleration(self) -> Array:
-        """Weighted RMS acceleration in m/s^2 of each run of the ideal damper."""
-
-    def bound(self, travel: ArrayLike) -> Array:
-        """Return the weighted RMS acceleration in m/s^2 that no damper comes below."""
-
-    def best(self, travel: ArrayLike) -> Array:
-        """Return the least weighted RMS acceleration found in m/s^2; NaN below the shortest travel found."""
 
 
 class RunPoint(NamedTuple):

@@ -35,7 +35,7 @@ FORGETTING = 0.8
 
 
 @dataclass(frozen=True)
-class Motion:
+class RigMotion:
     """What the rig did, shape (rows,) each, before sensors and noise; `fine_current` has a value for every step."""
 
     frame: Array  # m/s^2
@@ -69,13 +69,13 @@ class _Stages(NamedTuple):
     acc: Array
 
 
-def simulate(record: np.void, inputs: Inputs, step: float = INTEGRATION_STEP) -> Motion:
+def simulate(record: np.void, inputs: Inputs, step: float = INTEGRATION_STEP) -> RigMotion:
     """Run the rig from rest for as many rows as the schedule has; `record` is that of `parameter_record`."""
     rows = inputs.schedule.size
     out: Array = np.zeros((7, rows))
     fine = np.zeros(rows * round(1.0 / (SAMPLE_RATE * step)))
     _run(cast(Parameters, record), inputs, step, out, fine)
-    return Motion(out[0], out[1], out[2], out[3], out[4], out[5], out[6], fine)
+    return RigMotion(out[0], out[1], out[2], out[3], out[4], out[5], out[6], fine)
 
 
 @compiled
