@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from seatsim.diagnosis.settings.designing import DesignSettings
-from seatsim.diagnosis.settings.fitting import FitSettings, NoiseSettings, SelectionSettings
+from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings
 from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings, ReconstructionSettings
+from seatsim.diagnosis.settings.noise_model import NoiseSettings
 
 
 class DiagnosisSettings(NamedTuple):
