@@ -48,6 +48,7 @@ from typing import NamedTuple, TypeVar
 
 from seatsim.kernel.hooks import method_of
 from seatsim.rig.state import State
+from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import field_names
 from seatsim.schema.registry import Record, Registry
 
@@ -62,6 +63,9 @@ ON_DAMPER = (
 """Hooks of the time loop by which an effect acts on the damper."""
 ON_SEAT = ("suspension_force", "linkage_friction", "cushion_force", "inner_mass", "inner_force")
 """Hooks of the time loop by which an effect acts on suspension, cushion or driver."""
+ONCE_A_RUN = ("plant", "coil", "factors", "temperature", "frame_force", "reading", "truth")
+"""Hooks that are called once a run, in Python."""
+HOOKS = (*ONCE_A_RUN, *ON_DAMPER, *ON_SEAT, "rates")
 
 
 class Form(NamedTuple):
@@ -108,9 +112,21 @@ def effect(
     """Register a record class as `effect: name`, where the part before the dot is the block it lives in.
 
     The rest is that of `EffectSpecification`; a form without fixed parameters may be given by its free ones alone.
+
+    Raises:
+        InputError: the class has a method that is no hook, which nothing would ever call.
     """
     stated = tuple(form if isinstance(form, Form) else Form(form) for form in forms)
-    return EFFECTS.register(name, EffectSpecification(source, initial, off or {}, stated, suits, by_channel))
+    enter = EFFECTS.register(name, EffectSpecification(source, initial, off or {}, stated, suits, by_channel))
+
+    def check_and_enter(cls: T) -> T:
+        for method, value in vars(cls).items():
+            if callable(value) and not method.startswith("_") and method not in HOOKS:
+                hint = f"{nearest(method, HOOKS)}; hooks: {', '.join(HOOKS)}; a method of your own begins with '_'"
+                raise InputError(f"effect '{name}': method '{method}' is no hook, so that nothing would call it{hint}")
+        return enter(cls)
+
+    return check_and_enter
 
 
 def off(cls: type[R]) -> R:

@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import pytest
 
-from seatsim.effects.base import ON_DAMPER, acts_on, off
+from seatsim.effects.base import EFFECTS, ON_DAMPER, acts_on, effect, off
 from seatsim.scenario.scenario import Solver
+from seatsim.schema.errors import InputError
 from seatsim.schema.fields import adapter, bounds, choices, describe
 from seatsim.schema.registry import find, specification_of
 from seatsim.simulation.simulate import simulate
@@ -103,3 +105,15 @@ def test_each_form_moves_a_channel_at_its_start(even, nominal, name):
 def test_the_order_of_effects_does_not_matter(bingham):
     effects = [starts(name)[0] for name in WITH_FORMS if not name.startswith("sensor.")]
     assert distance(shaken(bingham, *effects), shaken(bingham, *effects[::-1])) < 1e-12
+
+
+def test_a_method_that_is_no_hook_is_refused_with_the_nearest_hook():
+    class Push(NamedTuple):
+        size: float = 0.0
+
+        def frame_forces(self, time, seed):
+            return self.size * time
+
+    with pytest.raises(InputError, match=r"effect 'floor.push': method 'frame_forces' is no hook.*'frame_force'"):
+        effect("floor.push")(Push)
+    assert "floor.push" not in EFFECTS.names()
