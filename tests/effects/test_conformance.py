@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import pytest
 
-from seatsim.effects.base import EFFECTS, ON_DAMPER, acts_on, effect, off
+from seatsim.effects import base
+from seatsim.effects.base import EFFECTS, ON_DAMPER, acts_on, off
 from seatsim.scenario.scenario import Solver
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import adapter, bounds, choices, describe
@@ -115,5 +116,5 @@ def test_a_method_that_is_no_hook_is_refused_with_the_nearest_hook():
             return self.size * time
 
     with pytest.raises(InputError, match=r"effect 'floor.push': method 'frame_forces' is no hook.*'frame_force'"):
-        effect("floor.push")(Push)
+        base.effect("floor.push")(Push)
     assert "floor.push" not in EFFECTS.names()
