@@ -70,7 +70,7 @@ def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
     calibrated = selection.calibrated
     if calibrated.excess < problem.settings.selection.nothing_left:
         return True
-    if not _largest_remainder(problem, calibrated) < problem.settings.decision.material:
+    if _largest_remainder(problem, calibrated) >= problem.settings.decision.material:
         return False
     # Where every candidate is withheld there is no set of one effect.
     return len(selection.sets) == 1 or not is_material(problem, selection.sets[1][0])
