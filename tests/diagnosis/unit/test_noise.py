@@ -140,6 +140,23 @@ def test_a_random_force_counts_with_its_spectrum_wherever_it_comes_from():
     np.testing.assert_array_equal(found.weights["second"][0], without.weights["second"][0])
 
 
+def test_a_burst_of_the_force_counts_as_if_it_were_spread_over_the_run():
+    problem = pose({"model_error": 0.0, "replicates": 12}, force_gain=(0.0, 0.3))
+    burst = np.zeros(2401 + 200)
+    # Within the first second, which is not compared.
+    burst[:150] = 8.0 * np.random.default_rng(3).standard_normal(150)
+    found = weigh_noise(problem, {"first": burst[:2001], "second": burst})
+    level = np.mean(2.0 / found.weights["second"][1] ** 2) / 2400
+    assert level == pytest.approx(NOISE[1] ** 2 + (0.3 * 8.0) ** 2 * 150 / 2601, rel=0.2)
+
+
+def test_the_spectrum_of_the_carried_noise_is_smoothed():
+    problem = pose({"model_error": 0.0}, floor_noise=0.4, floor_gain=(3.0, 0.5))
+    power = 1.0 / weigh_noise(problem).weights["second"][:, 600:] ** 2
+    # Three draws of at least 181 bins each; unsmoothed, their mean would scatter by 1/sqrt(3).
+    assert np.all(power.std(axis=1) < 0.1 * power.mean(axis=1))
+
+
 def test_noise_of_the_current_is_carried_only_where_no_command_is_recorded():
     seen = []
 
@@ -263,14 +280,16 @@ def test_broadband_power_begins_at_a_factor_of_the_stated_noise():
 
 
 def test_content_that_is_compared_is_not_broadband():
-    problem = pose({"highest_frequency": 40.0})
-    time = {run: np.arange(count) / RATE for run, count in RUNS.items()}
-    tones = {run: np.tile(100.0 * np.sin(2.0 * np.pi * 20.0 * t), (2, 1)) for run, t in time.items()}
-    found = measure_broadband(problem, tones)
+    problem, low = pose({"highest_frequency": 40.0}), {}
+    for run, values in draw(problem, 100.0 * NOISE).items():
+        spectrum = np.fft.rfft(values)
+        spectrum[:, np.fft.rfftfreq(values.shape[1], 1.0 / RATE) > 40.0] = 0.0
+        low[run] = np.fft.irfft(spectrum, values.shape[1])
+    found = measure_broadband(problem, low)
     assert all(np.all(values == 0.0) for values in found.values())
     # With all frequencies compared there is nothing to measure it on.
-    every = measure_broadband(pose({"highest_frequency": 100.0}), tones)
-    assert all(np.all(values == 0.0) for values in every.values())
+    every = measure_broadband(pose({"highest_frequency": 100.0}), draw(problem, 100.0 * NOISE))
+    assert all(values.shape == (2, 1) and np.all(values == 0.0) for values in every.values())
 
 
 def test_weights_are_frozen():
