@@ -197,3 +197,5 @@ def test_a_refit_linearises_where_it_starts():
     best = np.linalg.lstsq(matrix, target, rcond=None)[0]
     values = np.concatenate([found.parameters.deviations, found.parameters.values[0]])
     np.testing.assert_allclose(values, best, rtol=1e-4, atol=1e-6)
+    tried = {(deviations, effects[0].amount) for _, deviations, effects in objective.problem.calls}
+    assert {((0.2, 0.3), 0.5), ((0.22, 0.3), 0.5), ((0.2, 0.32), 0.5), ((0.2, 0.3), 0.51)} <= tried

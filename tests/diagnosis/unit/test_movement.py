@@ -87,6 +87,15 @@ def test_an_effect_is_material_by_size_and_by_noise(noise, size, material):
     assert is_material(objective.problem, evaluated(objective, a_one=1.0)) is material
 
 
+def test_noise_counts_in_the_spread_of_its_channel():
+    objective = pose((0.2, 0.2), {"a.one": (0.17, 0.17)})
+    four = {run: 4.0 * values for run, values in objective.problem.measured.items()}
+    wide = dataclasses.replace(objective, problem=dataclasses.replace(objective.problem, measured=four))
+    # In standard deviations 0.9 of the noise is 0.045 then: an RMS of 0.17 is less, one of 0.19 more.
+    assert not is_material(wide.problem, evaluated(wide, a_one=1.0))
+    assert is_material(wide.problem, evaluated(wide, a_one=0.19 / 0.17))
+
+
 def test_every_effect_of_a_set_must_be_material():
     objective = pose()
     assert is_material(objective.problem, evaluated(objective, a_one=1.0, b_two=1.0))
@@ -164,6 +173,7 @@ def having(names):
         # Neither stands c for b as well, nor is it listed twice.
         ("ab", ["cb", "cb"], [["a", "c"]]),
         ("ab", ["cb", "ac"], [["a", "c"]]),
+        ("ab", ["cb", "acd"], [["a", "c"]]),
         ("abc", ["abd", "eba", "ebd"], [["c", "d", "e"]]),
         ("abc", ["abd", "ebc", "ebd"], [["c", "d"], ["a", "e"]]),
     ],

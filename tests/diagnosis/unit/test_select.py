@@ -109,7 +109,8 @@ def test_a_search_ends_where_nothing_is_left_or_an_effect_gains_too_little():
 
 
 def test_a_further_effect_is_tried_only_where_it_promises_to_help():
-    amounts = {"true.one": 1.4, "true.two": -0.6, "true.three": 0.5}
+    # Hardly more than the noise, so that its own share of the cost counts too.
+    amounts = {"true.one": 0.07, "true.two": -0.03, "true.three": 0.025}
     objective = pose(amounts)
     rows = sum(2 * samples for samples in RUNS.values())
     left = {pair: best_cost(objective, ["true.one", pair]) / rows - 1.0 for pair in ("true.two", "true.three")}
@@ -191,7 +192,7 @@ def test_sets_are_not_eliminated_where_the_largest_is_not_reached_or_gains_too_l
 
 
 def test_an_effect_is_in_a_set_once_and_the_best_structure_of_it_is_kept():
-    objective = pose({"true.one": 1.4, "true.two": -0.6})
+    objective = pose({"true.one": 1.4, "true.two": -0.6}, promising=9.0)
     candidates = [offer("true.one", "decoy.0", 0.3), offer("true.one", "true.one", 0.3), offer("true.two", start=0.3)]
     found = select_effects(objective, candidates, lambda _: None)
     singles = {next(iter(each.parameters.names)): each for each in found.sets[1]}
@@ -208,6 +209,17 @@ def test_only_finalists_are_carried_to_their_end_and_the_best_under_its_own_sens
     assert all(each.cost > best_cost(objective, each.parameters.names) + 1e-6 for each in found.sets[1][1:])
     every, _ = search(pose({"true.one": 1.4}, begun_steps=0, finalists=9))
     assert all(each.cost == pytest.approx(best_cost(objective, each.parameters.names)) for each in every.sets[1])
+
+
+def test_finished_fits_are_ranked_anew():
+    # The first decoy imitates the effect only where the nuisance parameter takes back what else it adds.
+    mixtures = {
+        "decoy.x": {"true.one": 1.0, "nuisance 0": 0.9}, "decoy.y": {"true.one": 0.8, "decoy.0": 0.3},
+    }  # fmt: skip
+    objective = pose({"true.one": 0.5}, mixtures, begun_steps=0)
+    found, _ = search(objective, ("decoy.x", "decoy.y"), largest=1)
+    assert names_of(found.sets[1]) == [{"decoy.x"}, {"decoy.y"}]
+    assert found.sets[1][0].cost == pytest.approx(best_cost(objective, ["decoy.x"]), rel=1e-6)
 
 
 def test_without_candidates_the_calibrated_rig_is_all_there_is():
