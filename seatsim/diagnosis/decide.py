@@ -70,9 +70,10 @@ def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
     calibrated = selection.calibrated
     if calibrated.excess < problem.settings.selection.nothing_left:
         return True
-    return _largest_remainder(problem, calibrated) < problem.settings.decision.material and not is_material(
-        problem, selection.sets[1][0]
-    )
+    if _largest_remainder(problem, calibrated) >= problem.settings.decision.material:
+        return False
+    # Where every candidate is withheld there is no set of one effect.
+    return len(selection.sets) == 1 or not is_material(problem, selection.sets[1][0])
 
 
 def _explains(

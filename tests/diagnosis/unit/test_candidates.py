@@ -1,0 +1,165 @@
+"""Which candidates the registered effects make on a recording, where their fits start, and between which bounds."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from seatsim.dampers.bouc_wen import BoucWen
+from seatsim.diagnosis.candidates import Candidate, list_candidates
+from seatsim.effects.cushion import Hardening, Separation
+from seatsim.effects.damper import GasSpring
+from seatsim.effects.driver import Biodynamics
+from seatsim.effects.sensor import Gain
+from seatsim.effects.suspension import EndStop
+from seatsim.recordings.recording import ChannelEntry
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.scenario.scenario import DamperChoice
+from seatsim.schema.registry import names
+
+from .toy import add_up, draw_signals, make_problem
+
+COIL = {"coil.lag", "coil.asymmetric_lag", "coil.delay", "coil.current_limit"}
+OF_THE_SEAT = {
+    "cushion.hardening", "cushion.separation", "driver.biodynamics", "driver.mass", "suspension.end_stop",
+    "suspension.friction", "suspension.progressive_spring",
+}  # fmt: skip
+
+
+def posed(rig="seat", recorded=("current_command", "damper_force"), effects=(), damper=None, settings=None):
+    """Return a problem on two accelerations with further channels that are recorded but not compared."""
+    signals = draw_signals(["nominal"])
+    problem = make_problem(signals, add_up(signals, {}), settings=settings)
+    channels = problem.recording.channels | {name: ChannelEntry("-", 0.0) for name in recorded}
+    header = problem.recording.header._replace(rig=rig)
+    scenario = dataclasses.replace(problem.scenario, effects=effects)
+    if damper is not None:
+        scenario = dataclasses.replace(scenario, damper=DamperChoice(damper, TemperatureFactors()))
+    recording = dataclasses.replace(problem.recording, header=header, channels=channels)
+    return dataclasses.replace(problem, recording=recording, scenario=scenario)
+
+
+def by_effect(found):
+    return {name: [each for each in found if each.effect == name] for name in {each.effect for each in found}}
+
+
+@pytest.fixture(scope="module")
+def listed():
+    return by_effect(list_candidates(posed()))
+
+
+def test_every_effect_with_a_form_is_a_candidate_on_a_seat_with_a_command(listed):
+    # An unmeasured input is random: no form of it is fitted.
+    assert set(listed) == set(names("effect")) - {"floor.unmeasured_input"}
+
+
+def test_effects_come_in_the_order_of_their_names():
+    found = [each.effect for each in list_candidates(posed())]
+    assert found == sorted(found)
+
+
+def test_what_is_withheld_or_in_the_nominal_scenario_is_no_candidate():
+    found = by_effect(list_candidates(posed(effects=(GasSpring(10.0, 0.0),)), without=["coil.lag", "sensor.gain"]))
+    left_out = {"damper.gas_spring", "coil.lag", "sensor.gain", "floor.unmeasured_input"}
+    assert set(found) == set(names("effect")) - left_out
+
+
+def test_without_a_command_nothing_can_be_said_of_the_coil():
+    assert not COIL & set(by_effect(list_candidates(posed(recorded=("coil_current",)))))
+    assert set(by_effect(list_candidates(posed(recorded=("command_voltage",))))) >= COIL
+
+
+def test_a_bench_has_neither_seat_nor_driver():
+    found = set(by_effect(list_candidates(posed("damper_bench"))))
+    assert not found & OF_THE_SEAT
+    assert found >= COIL | {"damper.gas_spring", "damper.free_play", "sensor.gain"}
+
+
+def test_a_form_that_the_damper_has_already_is_no_candidate():
+    assert "damper.preyield_hysteresis" in by_effect(list_candidates(posed()))
+    assert "damper.preyield_hysteresis" not in by_effect(list_candidates(posed(damper=BoucWen())))
+
+
+def test_an_effect_of_a_sensor_is_tried_on_every_compared_channel_and_the_floor(listed):
+    places = [each.fixed["channel"] for each in listed["sensor.gain"]]
+    assert places == ["frame_acceleration", "driver_acceleration", "floor_acceleration"]
+    assert all(each.free == ("error",) and each.record([0.1]).error == 0.1 for each in listed["sensor.gain"])
+    assert listed["sensor.gain"][1].record([0.1]) == Gain("driver_acceleration", 0.1)
+    # Two forms on three channels.
+    assert len(listed["sensor.bias"]) == 6
+
+
+def test_a_form_frees_fixes_and_switches_off(listed):
+    plain, bent, loss, soft = listed["cushion.hardening"]
+    assert plain == Candidate(
+        "cushion.hardening", Hardening, {"bend": 0.0, "loss": 0.0, "unload": 0.0}, ("rise",), (40.0,), (0.0,), (1e4,)
+    )
+    assert bent.fixed == {"loss": 0.0, "unload": 0.0} and bent.start == (40.0, 2e3)
+    assert soft.fixed == {"loss": 0.0, "unload": 1.0}
+    assert loss.record([30.0, 20.0]) == Hardening(30.0, 0.0, 20.0, 0.0)
+
+
+def test_the_first_parameter_keeps_the_fields_bounds_and_shapes_stay_near_their_start(listed):
+    bent = listed["cushion.hardening"][1]
+    # The reach is 8: a shape from 2e3 stays within 250 and 16e3; the field itself would permit 0 to 1e7.
+    assert bent.low == (0.0, 2e3 / 8.0) and bent.high == (1e4, 8.0 * 2e3)
+    held = listed["cushion.separation"][5]
+    assert held.free == ("limit", "held") and held.low == (0.0, 0.5 / 8.0)
+    # The field's own bound is nearer than the reach.
+    assert held.high == (1e9, 1.0)
+
+
+def test_a_parameter_of_both_signs_keeps_the_bounds_of_its_field(listed):
+    (spring,) = listed["damper.gas_spring"]
+    assert spring.free == ("preload", "stiffness")
+    assert spring.low[0] == -1e4 and spring.high[0] == 1e4
+    skewed = next(each for each in listed["suspension.progressive_spring"] if each.free == ("rise", "skew"))
+    assert (skewed.low[1], skewed.high[1]) == (-200.0, 200.0)
+
+
+def test_the_reach_is_that_of_the_settings():
+    settings = posed().settings
+    wider = settings._replace(selection=settings.selection._replace(shape_reach=2.0))
+    bent = by_effect(list_candidates(posed(settings=wider)))["cushion.hardening"][1]
+    assert (bent.low[1], bent.high[1]) == (1e3, 4e3)
+
+
+def test_a_forms_own_bounds_come_first(listed):
+    (body,) = listed["driver.biodynamics"]
+    assert body.cls is Biodynamics and body.free == ("share", "frequency", "damping")
+    assert (body.low[1], body.high[1]) == (3.0, 8.0)
+
+
+def test_a_limit_is_started_at_several_sizes_and_its_shape_at_one(listed):
+    assert [each.start for each in listed["cushion.separation"][:5]] == [
+        (250.0,), (125.0,), (175.0,), (350.0,), (500.0,)
+    ]  # fmt: skip
+    assert [each.start for each in listed["cushion.separation"][5:10]] == [
+        (100.0, 0.5), (50.0, 0.5), (70.0, 0.5), (140.0, 0.5), (200.0, 0.5)
+    ]  # fmt: skip
+    assert len({each.structure for each in listed["cushion.separation"]}) == 3
+    stop = listed["suspension.end_stop"][1]
+    assert stop.start == (-0.006, 0.006, 10000.0, 0.5)
+    assert (stop.low[2], stop.high[2]) == (5000.0, 1e6)
+
+
+def test_only_what_grows_towards_off_is_a_limit(listed):
+    assert listed["cushion.separation"][0].is_limit
+    assert listed["suspension.end_stop"][0].limits == [True, True, False, False]
+    assert listed["coil.current_limit"][0].is_limit
+    assert not listed["cushion.hardening"][0].is_limit
+    # It is off at a larger speed, but its first parameter is none.
+    turned = next(each for each in listed["damper.asymmetry"] if "speed" in each.free)
+    assert not turned.is_limit
+
+
+def test_the_natural_size_is_the_size_of_the_start():
+    stop = Candidate("suspension.end_stop", EndStop, {}, ("low", "high"), (-0.02, 0.01), (-1.0, 0.0), (0.0, 1.0))
+    np.testing.assert_array_equal(stop.scale, [0.02, 0.01])
+    assert stop.block == "suspension"
+    assert stop.record(np.array([-0.03, 0.04])) == EndStop(-0.03, 0.04)
+    assert stop._replace(start=(-0.04, 0.02)).structure == stop.structure
+    assert stop._replace(fixed={"power": 2.0}).structure != stop.structure
+    assert stop._replace(free=("low",), start=(-0.02,)).structure != stop.structure
+    limit = Candidate("cushion.separation", Separation, {}, ("limit",), (100.0,), (0.0,), (1e9,))
+    assert limit.limits == [True] and not limit._replace(start=(2e9,)).is_limit

@@ -1,0 +1,174 @@
+"""Gaps of runs left out, against fits that are computed directly, and the sets of effects that they support."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
+from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.noise import weigh_gap
+from seatsim.diagnosis.objective import Objective
+from seatsim.diagnosis.problem import normalise_rms_errors
+from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+
+from .toy import add_up, draw_signals, make_problem, offer, place, stack, weigh_stated
+
+RUNS = {"first": 80, "second": 100, "third": 120}
+NAMES = ["nominal", "nuisance 0", "rig.one", "rig.two", "rig.alike", "rig.overfit", "sensor.alike", "rig.unknown"]
+TRUE = {"rig.one": 1.0, "rig.two": 0.7, "rig.unknown": 0.4}
+
+
+def pose(runs=RUNS, amounts=TRUE, **settings):
+    """Return an objective by its gap: two effects at work, their likes, one that fits a single run, and an unknown."""
+    default = DiagnosisSettings()
+    default = default._replace(cross_validation=default.cross_validation._replace(**settings))
+    signals = draw_signals(NAMES, runs)
+    for run, own in signals.items():
+        own["rig.alike"] = 0.99 * own["rig.one"] + 0.1 * own["rig.alike"]
+        own["sensor.alike"] = 0.999 * own["rig.one"] + 0.01 * own["sensor.alike"]
+        # It imitates the gap of the last run, and is another thing in the others.
+        last = own["rig.one"] + 0.5 * own["rig.two"]
+        own["rig.overfit"] = 1.5 * last if run == list(runs)[-1] else 0.5 * own["rig.overfit"]
+    problem = make_problem(signals, add_up(signals, amounts), nuisances=1, settings=default)
+    nominal = weigh_stated(problem).evaluate([place(problem)])[0]
+    return Objective(problem, weigh_gap(problem, nominal.residuals))
+
+
+def fitted(objective, *names):
+    return refit(objective, place(objective.problem, *((offer(name), 0.5) for name in names)))
+
+
+def left_out(objective, names, folds):
+    """Return the errors of runs in the order of the problem, each from least squares over the runs of other folds."""
+    problem, errors = objective.problem, []
+    for k, run in enumerate(problem.runs):
+        others = [other for j, other in enumerate(problem.runs) if j % folds != k % folds]
+        matrix, target = stack(objective.on_runs(others), names)
+        reach = np.concatenate([[1.0], np.full(len(names), 10.0)])
+        best = lsq_linear(matrix, target, (-reach, reach), method="bvls", tol=1e-14).x
+        own = problem.signals[run]
+        simulated = own["nominal"] + sum(b * own[n] for b, n in zip(best, ["nuisance 0", *names], strict=True))
+        left = (problem.measured[run] - simulated) / problem.spread[:, None]
+        errors.append(np.sqrt(np.mean(left**2)))
+    return np.array(errors)
+
+
+@pytest.mark.parametrize("names", [(), ("rig.one",), ("rig.one", "rig.overfit")])
+def test_the_gap_of_each_run_is_that_of_a_fit_without_it(names):
+    objective = pose()
+    found = cross_validate(objective, fitted(objective, *names))
+    assert found.shape == (3,)
+    np.testing.assert_allclose(found, left_out(objective, names, 3), rtol=2e-3)
+
+
+def test_the_gap_left_out_is_not_that_of_a_fit_with_all_runs():
+    objective = pose()
+    evaluation = fitted(objective, "rig.overfit")
+    inside = normalise_rms_errors(objective.problem, evaluation.residuals)
+    found = cross_validate(objective, evaluation)
+    # The run that the effect imitates is not foreseen by the others.
+    assert np.all(found > inside) and found[2] > 2.0 * inside[2]
+
+
+def test_several_runs_are_left_out_together_where_there_are_more_than_folds():
+    runs = {f"run {k}": 60 + 10 * k for k in range(5)}
+    objective = pose(runs, folds=2)
+    names = ("rig.one", "rig.overfit")
+    found = cross_validate(objective, fitted(objective, *names))
+    np.testing.assert_allclose(found, left_out(objective, names, 2), rtol=2e-3)
+    assert np.any(np.abs(found / left_out(objective, names, 3) - 1.0) > 0.01)
+
+
+def test_two_runs_are_left_out_in_turn():
+    objective = pose({"first": 90, "second": 100})
+    found = cross_validate(objective, fitted(objective, "rig.overfit"))
+    np.testing.assert_allclose(found, left_out(objective, ["rig.overfit"], 3), rtol=2e-3)
+
+
+def test_a_single_run_is_not_left_out():
+    objective = pose({"first": 90})
+    evaluation = fitted(objective, "rig.one")
+    left = evaluation.residuals["first"] / objective.problem.spread[:, None]
+    np.testing.assert_allclose(cross_validate(objective, evaluation), [np.sqrt(np.mean(left**2))])
+
+
+def select(objective, *sets):
+    """Return the names that runs left out support, and those of the sets that help as much."""
+    tried = [[fitted(objective, *names) for names in size] for size in sets]
+    calibrated = fitted(objective)
+    chosen, equivalent = select_by_cross_validation(
+        objective, Selection(calibrated, ((calibrated,), *map(tuple, tried)))
+    )
+    return set(chosen.parameters.names), [set(each.parameters.names) for each in equivalent]
+
+
+def gain(objective, names, before=()):
+    return float(np.mean(1.0 - left_out(objective, names, 3) / left_out(objective, before, 3)))
+
+
+def test_what_only_fits_one_run_is_not_chosen_though_it_fits_all_better():
+    objective = pose({"first": 80, "second": 100, "third": 300})
+    overfit, none = fitted(objective, "rig.overfit"), fitted(objective)
+    assert overfit.cost < 0.8 * none.cost
+    assert gain(objective, ["rig.overfit"]) < 0.1
+    assert select(objective, [("rig.overfit",)]) == (set(), [])
+    assert select(objective, [("rig.overfit",), ("rig.two",)]) == ({"rig.two"}, [])
+
+
+def test_the_smallest_set_is_chosen_that_no_larger_one_betters():
+    objective = pose()
+    assert gain(objective, ["rig.one"]) > 0.1
+    assert gain(objective, ["rig.one", "rig.two"], ["rig.one"]) > 0.1
+    assert gain(objective, ["rig.one", "rig.two", "rig.overfit"], ["rig.one", "rig.two"]) < 0.1
+    three = ("rig.one", "rig.two", "rig.overfit")
+    found = select(objective, [("rig.two",), ("rig.one",)], [("rig.one", "rig.two")], [three])
+    assert found == ({"rig.one", "rig.two"}, [])
+    # A larger set counts by what it takes off the gap that the smaller one leaves.
+    assert select(objective, [("rig.one",)], [("rig.one", "rig.overfit")]) == ({"rig.one"}, [])
+
+
+def test_a_search_ends_at_the_first_size_that_does_not_gain():
+    objective = pose({"first": 80, "second": 100, "third": 300})
+    assert select(objective, [("rig.overfit",)], [("rig.one", "rig.two")]) == (set(), [])
+
+
+@pytest.mark.parametrize("factor, chosen", [(0.98, {"rig.two"}), (1.02, set())])
+def test_the_least_gain_is_that_of_the_settings(factor, chosen):
+    own = gain(pose(), ["rig.two"])
+    assert select(pose(least_gain=factor * own), [("rig.two",)]) == (chosen, [])
+
+
+def test_sets_that_help_as_much_are_equivalent():
+    objective = pose()
+    # Two signals that differ by a tenth help alike; another effect does not.
+    difference = gain(objective, ["rig.one"]) - gain(objective, ["rig.alike"])
+    assert 0.001 < difference < 0.02
+    sets = [("rig.one",), ("rig.alike",), ("rig.two",)]
+    assert select(objective, sets) == ({"rig.one"}, [{"rig.alike"}])
+    assert select(pose(equivalent=0.98 * difference), sets) == ({"rig.one"}, [])
+    assert select(pose(equivalent=1.02 * difference), sets) == ({"rig.one"}, [{"rig.alike"}])
+
+
+def test_of_two_that_help_as_much_the_rig_is_chosen_before_the_sensor():
+    assert select(pose(), [("sensor.alike",), ("rig.one",)]) == ({"rig.one"}, [{"sensor.alike"}])
+    assert select(pose(), [("rig.alike",), ("rig.one",)]) == ({"rig.alike"}, [{"rig.one"}])
+    assert select(pose(), [("sensor.alike",)]) == ({"sensor.alike"}, [])
+
+
+def test_only_the_first_sets_of_a_size_are_cross_validated():
+    assert select(pose(sets_compared=1), [("rig.two",), ("rig.one",)])[0] == {"rig.two"}
+    assert select(pose(sets_compared=2), [("rig.two",), ("rig.one",)])[0] == {"rig.one"}
+
+
+def test_an_immaterial_effect_is_not_chosen_however_it_helps():
+    objective = pose(amounts={"rig.one": 0.02, "rig.unknown": 0.02})
+    loud = dataclasses.replace(
+        objective, problem=dataclasses.replace(objective.problem, settings=pose(least_gain=0.001).settings)
+    )
+    evaluation = fitted(loud, "rig.one")
+    selection = Selection(evaluation, ((fitted(loud),), (evaluation,)))
+    assert gain(loud, ["rig.one"]) > 0.001
+    assert select_by_cross_validation(loud, selection)[0].parameters.terms == ()

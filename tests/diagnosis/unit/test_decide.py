@@ -1,0 +1,256 @@
+"""A table of verdicts, with probabilities worked out by hand from the thresholds."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.decide import decide_beside_unknown, decide_verdict
+from seatsim.diagnosis.select import Selection
+
+from .toy import offer, place, pose_tones
+
+RUNS = {"first": 120, "second": 200}
+SIZES = {
+    "a.one": (0.3, 0.0), "b.two": (0.0, 0.5), "c.three": (0.02, 0.0), "d.four": (0.3, 0.1), "e.five": (0.2, 0.1),
+}  # fmt: skip
+EFFECTS = ["z.other", *SIZES]
+
+
+@pytest.fixture(scope="module")
+def rig():
+    """Two effects are at work, each in a channel of its own; the others are decoys."""
+    return pose_tones(SIZES, (0.001, 0.001), RUNS, ["a.one", "b.two"])
+
+
+@pytest.fixture(scope="module")
+def faint():
+    """What is at work moves nothing by a material size."""
+    return pose_tones(SIZES, (0.001, 0.001), RUNS, ["c.three"])
+
+
+def state(objective, effects, excess, channels=None):
+    """Return an evaluation with amounts by effect, whose excess is stated, overall and by channel."""
+    terms = [(offer(name), amount) for name, amount in effects.items()]
+    found = objective.evaluate([place(objective.problem, *terms)])[0]
+    levels = np.sqrt(1.0 + np.array(channels or (excess, excess)))
+    whitened = {run: np.outer(levels, np.ones(values.shape[1])) for run, values in found.whitened.items()}
+    return dataclasses.replace(found, whitened=whitened, cost=found.rows * (1.0 + excess))
+
+
+def both(one=1.0, two=1.0):
+    return {"a.one": one, "b.two": two}
+
+
+def selected(objective, before, *sets):
+    """Return a selection from the calibrated excess and, by size, lists of (effects, excess, ...)."""
+    calibrated = before if not isinstance(before, float) else state(objective, {}, before)
+    return Selection(calibrated, ((calibrated,), *(tuple(state(objective, *each) for each in size) for size in sets)))
+
+
+def decide(objective, before, *sets):
+    return decide_verdict(objective.problem, selected(objective, before, *sets), EFFECTS)
+
+
+def logistic(log_odds):
+    return 1.0 / (1.0 + math.exp(-log_odds))
+
+
+@pytest.mark.parametrize("excess, sure", [(0.0, logistic(5.0)), (0.1, logistic(3.0)), (0.149, logistic(2.02))])
+def test_where_noise_explains_all_there_is_no_gap(rig, excess, sure):
+    found = decide(rig, excess, [(both(), 0.0)])
+    assert (found.verdict, found.groups, found.chosen.parameters.terms) == ("none", [], ())
+    assert found.none == pytest.approx(sure)
+    assert found.unknown == 0.02
+    assert found.probabilities == dict.fromkeys(EFFECTS, 0.004) and list(found.probabilities) == EFFECTS
+
+
+def test_a_little_more_than_noise_is_a_gap(rig):
+    assert decide(rig, 0.151, [({"a.one": 1.0}, 0.01)]).verdict == "known"
+
+
+def test_a_gap_that_is_not_material_in_any_channel_is_none(faint):
+    # RMS of 0.02 standard deviations are left, and the best effect moves no more.
+    found = decide(faint, 0.2, [({"c.three": 1.0}, 0.0)])
+    assert found.verdict == "none" and found.none == pytest.approx(logistic(2.0 - 0.05 / 0.05))
+    # However large the excess, the verdict is likelier than not.
+    assert decide(faint, 5.0, [({"c.three": 1.0}, 0.0)]).none == 0.6
+
+
+def test_a_gap_that_a_material_effect_explains_is_none_of_it(faint):
+    assert decide(faint, 0.2, [({"c.three": 2.5}, 0.01)]).verdict == "known"
+
+
+def test_without_any_set_nothing_explains_the_gap(rig, faint):
+    assert decide(faint, 5.0).verdict == "none"
+    found = decide(rig, 5.0)
+    assert found.verdict == "unknown" and found.probabilities == dict.fromkeys(EFFECTS, 0.006)
+
+
+@pytest.mark.parametrize(
+    "share, unknown",
+    [
+        # logistic((log share - log 0.12) / 0.4), from 0.02 to 0.45.
+        (0.0, 0.02),
+        (0.001, 0.02),
+        (0.05, logistic(math.log(0.05 / 0.12) / 0.4)),
+        (0.1, logistic(math.log(0.1 / 0.12) / 0.4)),
+    ],
+)
+def test_a_set_that_leaves_little_is_known(rig, share, unknown):
+    # Half of the effect is left, which is a material remainder: only the shares can tell.
+    found = decide(rig, 10.0, [({"b.two": 0.5}, 10.0 * share)])
+    assert (found.verdict, found.groups) == ("known", [])
+    assert found.unknown == pytest.approx(unknown)
+    expected = dict.fromkeys(EFFECTS, 0.006) | {"b.two": 1.0 - unknown}
+    assert found.probabilities == pytest.approx(expected) and list(found.probabilities) == EFFECTS
+    assert found.none == 0.01
+    assert found.chosen.parameters.names == {"b.two"}
+
+
+@pytest.mark.parametrize("share, unknown", [(0.121, 0.55), (0.2, logistic(math.log(0.2 / 0.12) / 0.4)), (0.4, None)])
+def test_a_set_that_leaves_much_is_unknown(rig, share, unknown):
+    found = decide(rig, 10.0, [({"b.two": 0.5}, 10.0 * share)])
+    expected = logistic(math.log(share / 0.12) / 0.4) if unknown is None else unknown
+    assert found.verdict == "unknown" and found.unknown == pytest.approx(expected)
+    assert found.probabilities["b.two"] == pytest.approx(1.0 - expected)
+
+
+def test_a_set_that_leaves_much_of_one_channel_is_unknown(rig):
+    for left, verdict in ((5.2, "unknown"), (4.8, "known")):
+        before = state(rig, {}, 10.0)
+        after = ({"b.two": 0.5}, 0.5, (left, 0.1))
+        found = decide(rig, before, [after])
+        assert found.verdict == verdict
+    assert found.unknown == pytest.approx(logistic(math.log(0.05 / 0.12) / 0.4))
+
+
+def test_a_set_that_leaves_nothing_material_is_known_however_large_its_share(rig):
+    found = decide(rig, 10.0, [({"b.two": 1.0}, 8.0)], [(both(), 3.0)])
+    assert found.verdict == "known" and found.chosen.parameters.names == {"a.one", "b.two"}
+    # Of the probability 0.91 that the share alone would give, 0.45 is the most beside a known set.
+    assert found.unknown == 0.45
+    assert found.probabilities["a.one"] == found.probabilities["b.two"] == pytest.approx(0.55)
+
+
+def test_the_probability_of_an_unknown_cause_grows_with_what_is_left(rig):
+    shares = np.array([0.001, 0.01, 0.05, 0.08, 0.11, 0.119, 0.13, 0.2, 0.3, 0.44])
+    found = [decide(rig, 10.0, [({"b.two": 0.5}, 10.0 * share)]) for share in shares]
+    unknown = [each.unknown for each in found]
+    assert unknown == sorted(unknown) and unknown[0] < unknown[-1]
+    known = [each.probabilities["b.two"] for each in found]
+    assert known == sorted(known, reverse=True)
+    assert [each.verdict for each in found] == ["known"] * 6 + ["unknown"] * 4
+
+
+@pytest.mark.parametrize("other, verdict", [(0.619, "ambiguous"), (0.621, "known")])
+def test_an_effect_that_explains_as_well_makes_the_verdict_ambiguous(rig, other, verdict):
+    # As well means up to 1.2 times the excess and 0.02 more.
+    found = decide(rig, 10.0, [({"b.two": 0.5}, 0.5), ({"d.four": 1.0}, other)])
+    assert found.verdict == verdict
+    unknown = logistic(math.log(0.05 / 0.12) / 0.4)
+    if verdict == "ambiguous":
+        assert found.groups == [["b.two", "d.four"]]
+        # The chosen one counts twice beside the other.
+        assert found.probabilities["b.two"] == pytest.approx((1.0 - unknown) * 2.0 / 3.0)
+        assert found.probabilities["d.four"] == pytest.approx((1.0 - unknown) / 3.0)
+        assert found.probabilities["e.five"] == 0.006
+    else:
+        assert found.groups == [] and found.probabilities["d.four"] == 0.006
+
+
+def test_in_a_larger_set_each_group_shares_its_own_probability(rig):
+    equivalent = ({"d.four": 1.0, "b.two": 1.0}, 0.15)
+    found = decide(rig, 10.0, [({"a.one": 1.0}, 4.0)], [(both(), 0.16), equivalent])
+    assert found.verdict == "ambiguous" and found.groups == [["a.one", "d.four"]]
+    assert found.probabilities["b.two"] == pytest.approx(1.0 - found.unknown)
+    assert found.probabilities["a.one"] == pytest.approx((1.0 - found.unknown) * 2.0 / 3.0)
+
+
+def test_a_long_group_under_a_small_remainder_explains_nothing(rig):
+    first, second = ({"d.four": 1.0, "b.two": 1.0}, 3.0), ({"e.five": 1.0, "b.two": 1.0}, 3.0)
+    one = [({"b.two": 1.0}, 8.0)]
+    short = decide(rig, 10.0, one, [(both(), 3.0), first])
+    assert short.verdict == "ambiguous" and short.groups == [["a.one", "d.four"]]
+    long = decide(rig, 10.0, one, [(both(), 3.0), first, second])
+    assert (long.verdict, long.groups) == ("unknown", [])
+    assert long.unknown == pytest.approx(logistic(math.log(0.3 / 0.12) / 0.4))
+    assert long.probabilities["d.four"] == 0.006
+    assert long.probabilities["a.one"] == pytest.approx(1.0 - long.unknown)
+    # Where the excess is explained too, the group may be as long as it is.
+    clear = [({"d.four": 1.0, "b.two": 1.0}, 0.3), ({"e.five": 1.0, "b.two": 1.0}, 0.3)]
+    assert decide(rig, 10.0, one, [(both(), 0.3), *clear]).verdict == "ambiguous"
+
+
+@pytest.mark.parametrize("second, size", [(0.89, 2), (0.91, 1)])
+def test_a_set_is_enlarged_where_less_than_a_share_is_left(rig, second, size):
+    # 0.45 of 2.
+    found = decide(rig, 10.0, [({"b.two": 1.0}, 2.0)], [(both(), second)])
+    assert len(found.chosen.parameters.terms) == size
+
+
+def test_a_set_is_enlarged_where_one_channel_is_explained(rig):
+    first = ({"b.two": 1.0}, 2.0, (4.0, 0.05))
+    for left, size in ((1.7, 2), (1.9, 1)):
+        found = decide(rig, 10.0, [first], [(both(), 1.5, (left, 1.3))])
+        assert len(found.chosen.parameters.terms) == size
+
+
+def test_a_first_effect_is_not_counted_by_one_channel(rig):
+    # It leaves 0.95 of all and little of one channel: passed over, so that the second set is compared with none.
+    passed = ({"b.two": 1.0}, 9.5, (19.0, 0.1))
+    assert len(decide(rig, 10.0, [passed], [(both(), 9.8, (10.0, 9.0))]).chosen.parameters.terms) == 0
+    assert len(decide(rig, 10.0, [passed], [(both(), 4.4)]).chosen.parameters.terms) == 2
+
+
+@pytest.mark.parametrize("first, second, size", [(8.9, 4.1, 1), (8.9, 4.0, 2), (9.1, 4.4, 2), (9.1, 9.2, 0)])
+def test_a_first_effect_that_helps_little_is_kept_for_now(rig, first, second, size):
+    found = decide(rig, 10.0, [({"b.two": 0.5}, first)], [(both(0.5, 0.5), second)])
+    assert len(found.chosen.parameters.terms) == size
+
+
+def test_where_nothing_is_left_no_further_effect_is_chosen(rig):
+    found = decide(rig, 10.0, [({"b.two": 1.0}, 0.14)], [(both(), 0.0)])
+    assert found.chosen.parameters.names == {"b.two"}
+    found = decide(rig, 10.0, [({"b.two": 1.0}, 0.16)], [(both(), 0.0)])
+    assert found.chosen.parameters.names == {"a.one", "b.two"}
+
+
+def test_sets_with_an_immaterial_effect_are_passed_over_among_the_first_three(rig):
+    tiny = ({"c.three": 1.0}, 0.2)
+    found = decide(rig, 10.0, [tiny, tiny, ({"b.two": 1.0}, 0.3)])
+    assert found.chosen.parameters.names == {"b.two"}
+    late = decide(rig, 10.0, [tiny, tiny, tiny, ({"b.two": 1.0}, 0.3)])
+    assert late.chosen.parameters.terms == () and late.verdict == "unknown"
+    # Where no set of a size is material, no larger one is looked at.
+    skipped = decide(rig, 10.0, [tiny], [(both(), 0.3)])
+    assert skipped.chosen.parameters.terms == ()
+
+
+def test_beside_an_unknown_cause_an_effect_has_a_probability_of_at_least_3_in_10(rig):
+    found = decide(rig, 10.0, [({"b.two": 0.5}, 4.0)])
+    assert found.unknown > 0.9
+    chosen, other = state(rig, {"a.one": 1.0}, 4.0), state(rig, {"d.four": 1.0}, 4.0)
+    settings = rig.settings.decision
+    beside = decide_beside_unknown(settings, found, chosen)
+    assert (beside.verdict, beside.unknown, beside.none, beside.groups) == ("unknown", found.unknown, 0.01, [])
+    assert beside.chosen is chosen
+    assert beside.probabilities == pytest.approx(dict.fromkeys(EFFECTS, 0.006) | {"a.one": 0.3})
+    assert list(beside.probabilities) == EFFECTS
+    shared = decide_beside_unknown(settings, found, chosen, [other])
+    assert shared.groups == [["a.one", "d.four"]]
+    assert shared.probabilities["a.one"] == pytest.approx(0.2) and shared.probabilities["d.four"] == pytest.approx(0.1)
+
+
+def test_beside_a_less_likely_unknown_cause_an_effect_is_likelier(rig):
+    found = decide(rig, 10.0, [({"b.two": 0.5}, 1.21)])
+    assert found.unknown == 0.55
+    beside = decide_beside_unknown(rig.settings.decision, found, state(rig, {"a.one": 1.0}, 4.0))
+    assert beside.probabilities["a.one"] == pytest.approx(0.45)
+
+
+def test_the_probabilities_of_a_decision_are_probabilities(rig):
+    for share in (0.01, 0.1, 0.2, 0.44):
+        found = decide(rig, 10.0, [({"b.two": 0.5}, 10.0 * share), ({"d.four": 1.0}, 10.0 * share)])
+        assert all(0.0 < p < 1.0 for p in [*found.probabilities.values(), found.none, found.unknown])

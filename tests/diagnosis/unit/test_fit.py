@@ -1,0 +1,201 @@
+"""Steps and fits against scipy's bounded least squares on the stacked problem, which is exact on a linear rig."""
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+from seatsim.diagnosis.fit import fit, refit, solve_step
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+
+from .toy import (
+    Cubed,
+    Wild,
+    add_up,
+    draw_signals,
+    make_problem,
+    offer,
+    offer_two,
+    place,
+    stack,
+    weigh_stated,
+)  # fmt: skip
+
+NAMES = ["nominal", "nuisance 0", "nuisance 1", "a.one", "a.one beside", "b.two"]
+PAIR = offer_two("a.one", (-2.0, 0.5), (-9.0, -9.0), (9.0, 9.0))
+SINGLE = offer("b.two", start=0.5)
+
+
+def pose(amounts, **fit_settings):
+    settings = DiagnosisSettings()
+    settings = settings._replace(fit=settings.fit._replace(**fit_settings))
+    signals = draw_signals(NAMES)
+    return weigh_stated(make_problem(signals, add_up(signals, amounts), nuisances=2, settings=settings))
+
+
+def starting(objective, *terms, deviations=None):
+    start = objective.evaluate([place(objective.problem, *terms, deviations=deviations)])[0]
+    return start, objective.linearise_nuisances(start)
+
+
+def bounded(jacobian, residual, count, vector, low, high, prior_std):
+    """Return the step by scipy, with the prior as further rows of the least-squares problem."""
+    prior = np.eye(count, len(vector)) / prior_std
+    rows, target = np.vstack([jacobian, prior]), np.concatenate([residual, -vector[:count] / prior_std])
+    return lsq_linear(rows, target, (low - vector, high - vector), method="bvls", tol=1e-14).x
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("reach", [0.05, 0.4, 50.0])
+def test_a_step_is_that_of_bounded_least_squares_with_the_prior(seed, reach):
+    rng = np.random.default_rng(seed)
+    # Components of very unlike sizes, as dampings and travels are.
+    jacobian = rng.standard_normal((60, 6)) * np.array([1.0, 30.0, 0.2, 5.0, 1e3, 0.01])
+    residual, vector = jacobian @ rng.standard_normal(6) + rng.standard_normal(60), 0.3 * rng.standard_normal(6)
+    low, high = vector - reach * rng.random(6), vector + reach * rng.random(6)
+    arguments = (3, vector, low, high, 0.4)
+    step = solve_step(jacobian.T @ jacobian, jacobian.T @ residual, *arguments)
+    expected = bounded(jacobian, residual, *arguments)
+    size = np.linalg.norm(jacobian, axis=0)
+    np.testing.assert_allclose(step * size, expected * size, atol=1e-5 * np.abs(expected * size).max())
+    if reach < 1.0:
+        active = np.isclose(expected, low - vector) | np.isclose(expected, high - vector)
+        assert active.any()
+        assert np.all(step >= low - vector - 1e-6) and np.all(step <= high - vector + 1e-6)
+
+
+def test_without_data_a_step_leads_back_to_the_priors_centre():
+    vector = np.array([0.5, -0.2])
+    step = solve_step(np.zeros((2, 2)), np.zeros(2), 2, vector, -np.ones(2), np.ones(2), 0.58)
+    np.testing.assert_allclose(step, -vector, rtol=1e-6)
+
+
+def test_a_step_changes_neither_matrix_nor_right_hand_side():
+    matrix, right, vector = np.eye(2), np.ones(2), np.full(2, 0.5)
+    solve_step(matrix, right, 2, vector, -np.ones(2), np.ones(2), 0.58)
+    assert np.array_equal(matrix, np.eye(2)) and np.array_equal(right, np.ones(2))
+
+
+def test_collinear_components_share_a_step():
+    matrix, right = np.ones((2, 2)), np.array([1.0, 1.0])
+    step = solve_step(matrix, right, 0, np.zeros(2), np.full(2, -5.0), np.full(2, 5.0), 0.58)
+    np.testing.assert_allclose(step, 0.5, rtol=1e-5)
+
+
+def test_a_component_at_its_bound_stays_there():
+    step = solve_step(np.eye(2), np.array([3.0, -3.0]), 0, np.array([1.0, 0.0]), np.zeros(2), np.ones(2), 0.58)
+    np.testing.assert_allclose(step, 0.0, atol=1e-8)
+
+
+def test_one_step_finds_the_minimum_of_a_linear_rig():
+    objective = pose({"a.one": 3.0, "a.one beside": -0.4, "b.two": 1.2, "nuisance 0": 0.7})
+    start, nuisances = starting(objective, (PAIR, -2.0, 0.5), (SINGLE, 0.5), deviations=[0.1, -0.1])
+    found = fit(objective, start, nuisances, steps=1)
+    matrix, target = stack(objective, ["a.one", "a.one beside", "b.two"])
+    best = np.linalg.lstsq(matrix, target, rcond=None)[0]
+    parameters = found.parameters
+    np.testing.assert_allclose(np.concatenate([parameters.deviations, *parameters.values]), best, rtol=1e-4, atol=1e-6)
+    assert found.cost == pytest.approx(np.sum((target - matrix @ best) ** 2), rel=1e-8)
+
+
+def test_a_fit_keeps_the_bounds_and_is_the_best_within_them():
+    objective = pose({"a.one": 3.0, "b.two": 1.2, "nuisance 0": 4.0})
+    narrow = SINGLE._replace(low=(-0.5,), high=(0.7,))
+    start, nuisances = starting(objective, (PAIR, -2.0, 0.5), (narrow, 0.5))
+    found = fit(objective, start, nuisances)
+    matrix, target = stack(objective, ["a.one", "a.one beside", "b.two"])
+    limits = np.array([-1.0, -1.0, -9.0, -9.0, -0.5]), np.array([1.0, 1.0, 9.0, 9.0, 0.7])
+    best = lsq_linear(matrix, target, limits, method="bvls").x
+    values = np.concatenate([found.parameters.deviations, *found.parameters.values])
+    np.testing.assert_allclose(values, best, rtol=1e-4, atol=1e-5)
+    assert values[0] == 1.0 and values[4] == 0.7
+
+
+def test_a_fit_of_the_nuisances_alone():
+    objective = pose({"nuisance 0": 0.5, "nuisance 1": -0.3}, prior_std=0.001)
+    start, nuisances = starting(objective)
+    found = fit(objective, start, nuisances)
+    matrix, target = stack(objective, [])
+    np.testing.assert_allclose(found.parameters.deviations, np.linalg.lstsq(matrix, target, rcond=None)[0], rtol=1e-5)
+    # So narrow a prior draws the answer towards 0.
+    assert 0.1 < found.parameters.deviations[0] < 0.4
+
+
+def test_a_settled_fit_ends_and_takes_no_step_that_does_not_help():
+    objective = pose({"b.two": 1.2})
+    runs, tries = len(objective.problem.runs), 3
+    start, nuisances = starting(objective, (SINGLE, 0.5))
+    objective.problem.calls.clear()
+    found = fit(objective, start, nuisances)
+    # A Jacobian and a step that helps; then a Jacobian and at most three tries that hardly do.
+    assert 4 * runs <= len(objective.problem.calls) <= (2 + 1 + tries) * runs
+    objective.problem.calls.clear()
+    again = fit(objective, found, nuisances)
+    assert again.cost <= found.cost
+    assert len(objective.problem.calls) <= (1 + tries) * runs
+
+
+def test_no_step_and_a_settled_start_return_the_start():
+    objective = pose({"b.two": 1.2})
+    start, nuisances = starting(objective, (SINGLE, 0.5))
+    assert fit(objective, start, nuisances, steps=0) is start
+
+
+def bent(**fit_settings):
+    """Return an objective with an amount whose cube acts, and a start from which a whole step goes far too far."""
+    objective = pose({"b.two": 8.0}, difference_step=1e-4, **fit_settings)
+    return objective, *starting(objective, (offer("b.two", low=0.0, high=20.0, cls=Cubed), 0.5))
+
+
+def test_a_step_that_goes_too_far_is_shortened():
+    objective, start, nuisances = bent()
+    found = fit(objective, start, nuisances, steps=1)
+    # (8 - 0.5^3) / (3 * 0.5^2) = 10.5; the whole of it and 0.4 of it cost more than the start, 0.12 of it less.
+    assert found.parameters.values[0][0] == pytest.approx(0.5 + 0.12 * 10.5, rel=0.01)
+    assert found.cost < start.cost
+
+
+def test_the_first_fraction_that_helps_is_taken():
+    objective, start, nuisances = bent(backtracking=(0.1, 0.12))
+    found = fit(objective, start, nuisances, steps=1)
+    assert found.parameters.values[0][0] == pytest.approx(0.5 + 0.1 * 10.5, rel=0.01)
+
+
+def test_where_no_fraction_helps_the_start_is_returned():
+    objective, start, nuisances = bent(backtracking=(1.0, 0.4))
+    assert fit(objective, start, nuisances) is start
+
+
+def test_more_steps_never_cost_more_and_end_at_the_minimum():
+    objective, start, nuisances = bent()
+    ends = [fit(objective, start, nuisances, steps) for steps in range(7)]
+    costs = [end.cost for end in ends]
+    assert costs == sorted(costs, reverse=True) and costs[1] > costs[2] > costs[3]
+    assert ends[6].parameters.values[0][0] == pytest.approx(2.0, rel=0.01)
+    # Without a number it is that of the settings.
+    assert fit(objective, start, nuisances).cost == costs[6]
+    short, start, nuisances = bent(most_steps=2)
+    assert fit(short, start, nuisances).cost == pytest.approx(costs[2])
+
+
+def test_a_fit_ends_where_a_step_gains_less_than_the_settled_share():
+    objective, start, nuisances = bent(settled=0.999)
+    one = fit(objective, start, nuisances, steps=1)
+    assert fit(objective, start, nuisances).parameters.values[0][0] == one.parameters.values[0][0]
+
+
+def test_a_rig_that_leaves_all_bounds_is_no_better_than_the_start():
+    objective = pose({"b.two": 1.2})
+    start, nuisances = starting(objective, (offer("b.two", cls=Wild), 1.0))
+    assert fit(objective, start, nuisances, steps=2).cost == np.inf
+
+
+def test_a_refit_linearises_where_it_starts():
+    objective = pose({"b.two": 1.2, "nuisance 1": -0.6})
+    found = refit(objective, Parameters(np.array([0.2, 0.3])).add(SINGLE, np.array([0.5])))
+    matrix, target = stack(objective, ["b.two"])
+    best = np.linalg.lstsq(matrix, target, rcond=None)[0]
+    values = np.concatenate([found.parameters.deviations, found.parameters.values[0]])
+    np.testing.assert_allclose(values, best, rtol=1e-4, atol=1e-6)
+    tried = {(deviations, effects[0].amount) for _, deviations, effects in objective.problem.calls}
+    assert {((0.2, 0.3), 0.5), ((0.22, 0.3), 0.5), ((0.2, 0.32), 0.5), ((0.2, 0.3), 0.51)} <= tried

@@ -1,0 +1,183 @@
+"""How much effects move a rig, against root mean squares that are known, and which effects stand for each other."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.movement import (
+    group_equivalent,
+    is_material,
+    measure_channel_excess,
+    measure_movements,
+    measure_remainders,
+    measure_shares_left,
+)
+from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.parameters import Parameters
+
+from .toy import offer, place, pose_tones
+
+RUNS = {"first": 200, "second": 400}
+SIZES = {"a.one": (0.3, 0.0), "b.two": (0.1, 0.5), "c.three": (0.0, 0.02)}
+
+
+def pose(noise=(0.1, 0.02), sizes=SIZES):
+    return pose_tones(sizes, noise, RUNS)
+
+
+def evaluated(objective, deviation=0.0, **amounts):
+    terms = [(offer(name.replace("_", ".")), amount) for name, amount in amounts.items()]
+    return objective.evaluate([place(objective.problem, *terms, deviations=[deviation])])[0]
+
+
+def test_the_spread_of_the_toy_is_1():
+    np.testing.assert_allclose(pose().problem.spread, 1.0)
+
+
+def test_a_movement_is_the_rms_of_what_an_effect_changes_in_standard_deviations():
+    objective = pose()
+    moves = measure_movements(objective.problem, evaluated(objective, 0.3, a_one=1.0, b_two=-2.0))
+    np.testing.assert_allclose(moves, [[0.3, 0.0], [0.2, 1.0]], atol=1e-12)
+
+
+def test_a_movement_counts_in_the_spread_of_its_channel():
+    objective = pose()
+    wide = dataclasses.replace(
+        objective.problem, measured={run: v * np.array([[2.0], [4.0]]) for run, v in objective.problem.measured.items()}
+    )
+    found = evaluated(dataclasses.replace(objective, problem=wide), a_one=1.0, b_two=-2.0)
+    np.testing.assert_allclose(measure_movements(wide, found), [[0.15, 0.0], [0.1, 0.25]], atol=1e-12)
+
+
+def test_the_rms_is_that_over_all_rows_of_all_runs():
+    objective = pose()
+    problem = objective.problem
+    # An effect that acts in the second run alone, which has two thirds of the rows.
+    problem.signals["first"]["a.one"] = np.zeros((2, 200))
+    (move,) = measure_movements(problem, evaluated(objective, a_one=1.0))
+    np.testing.assert_allclose(move, [0.3 * np.sqrt(2.0 / 3.0), 0.0], atol=1e-12)
+
+
+def test_no_effect_moves_nothing_and_is_material():
+    objective = pose()
+    calibrated = evaluated(objective)
+    assert measure_movements(objective.problem, calibrated) == []
+    assert is_material(objective.problem, calibrated)
+
+
+@pytest.mark.parametrize(
+    "noise, size, material",
+    [
+        # In quiet channels from 0.04 standard deviations on.
+        ((0.0, 0.0), (0.041, 0.0), True),
+        ((0.0, 0.0), (0.039, 0.0), False),
+        ((0.0, 0.0), (0.0, 0.041), True),
+        # In noisy ones from 0.9 times the noise on.
+        ((0.2, 0.2), (0.181, 0.0), True),
+        ((0.2, 0.2), (0.179, 0.0), False),
+        # One channel must fulfil both.
+        ((0.2, 0.0), (0.17, 0.03), False),
+        ((0.2, 0.0), (0.17, 0.05), True),
+        ((0.0, 0.2), (0.05, 0.0), True),
+    ],
+)
+def test_an_effect_is_material_by_size_and_by_noise(noise, size, material):
+    objective = pose(noise, {"a.one": size})
+    assert is_material(objective.problem, evaluated(objective, a_one=1.0)) is material
+
+
+def test_noise_counts_in_the_spread_of_its_channel():
+    objective = pose((0.2, 0.2), {"a.one": (0.17, 0.17)})
+    four = {run: 4.0 * values for run, values in objective.problem.measured.items()}
+    wide = dataclasses.replace(objective, problem=dataclasses.replace(objective.problem, measured=four))
+    # In standard deviations 0.9 of the noise is 0.045 then: an RMS of 0.17 is less, one of 0.19 more.
+    assert not is_material(wide.problem, evaluated(wide, a_one=1.0))
+    assert is_material(wide.problem, evaluated(wide, a_one=0.19 / 0.17))
+
+
+def test_every_effect_of_a_set_must_be_material():
+    objective = pose()
+    assert is_material(objective.problem, evaluated(objective, a_one=1.0, b_two=1.0))
+    assert not is_material(objective.problem, evaluated(objective, a_one=1.0, c_three=1.0))
+    assert is_material(objective.problem, evaluated(objective, a_one=1.0, c_three=2.5))
+
+
+def test_a_remainder_is_what_exceeds_the_noise_in_standard_deviations():
+    objective = pose((0.05, 0.01))
+    found = measure_remainders(objective.problem, evaluated(objective, b_two=1.0))
+    np.testing.assert_allclose(found, np.sqrt([0.3**2 - 0.05**2, 0.02**2 - 0.01**2]))
+    # Less than the noise is nothing.
+    np.testing.assert_allclose(
+        measure_remainders(objective.problem, evaluated(objective, a_one=1.0, b_two=1.0, c_three=0.8)), 0.0
+    )
+
+
+def test_a_remainder_counts_all_rows_of_all_runs_in_the_spread():
+    objective = pose((0.0, 0.0))
+    residuals = {"first": np.full((2, 200), 3.0), "second": np.zeros((2, 400))}
+    doubled = {run: 2.0 * values for run, values in objective.problem.measured.items()}
+    problem = dataclasses.replace(objective.problem, measured=doubled)
+    left = measure_remainders(problem, Evaluation(Parameters(np.zeros(1)), residuals, {}, 0.0))
+    np.testing.assert_allclose(left, 3.0 * np.sqrt(1.0 / 3.0) / 2.0)
+
+
+def stated(by_run, remainder=(0.0, 0.0)):
+    """Return an evaluation with a mean square of every channel by run, and a remainder in standard deviations."""
+    whitened = {run: np.sqrt(np.outer(mean, np.ones(10))) for run, mean in zip(RUNS, by_run, strict=True)}
+    residuals = {run: np.outer(remainder, np.ones(samples)) for run, samples in RUNS.items()}
+    return Evaluation(Parameters(np.zeros(1)), residuals, whitened, 0.0)
+
+
+def test_the_excess_of_a_channel_is_the_mean_over_the_runs():
+    np.testing.assert_allclose(measure_channel_excess(stated([(3.0, 1.0), (6.0, 0.5)])), [3.5, -0.25])
+
+
+def test_the_share_left_is_that_of_channels_with_a_material_gap():
+    problem = pose((0.0, 0.0)).problem
+    after = stated([(3.0, 1.5), (3.0, 1.5)])
+    before = [(9.0, 5.0), (9.0, 5.0)]
+    np.testing.assert_allclose(measure_shares_left(problem, stated(before, (0.1, 0.1)), after), [2.0 / 8.0, 0.5 / 4.0])
+    # A gap of 0.03 standard deviations is not material, an excess of 0.1 is nothing to explain.
+    np.testing.assert_allclose(measure_shares_left(problem, stated(before, (0.03, 0.1)), after), [0.125])
+    faint = [(9.0, 1.1), (9.0, 1.1)]
+    np.testing.assert_allclose(measure_shares_left(problem, stated(faint, (0.1, 0.1)), after), [0.25])
+    assert measure_shares_left(problem, stated(faint, (0.03, 0.1)), after) == []
+    np.testing.assert_allclose(measure_shares_left(problem, stated([(9.0, 1.16)] * 2, (0.041, 0.041)), after)[0], 0.25)
+    assert len(measure_shares_left(problem, stated([(9.0, 1.16)] * 2, (0.041, 0.041)), after)) == 2
+
+
+def having(names):
+    """Return an evaluation with effects of one letter each, of which nothing else is asked."""
+    return Evaluation(Parameters(np.zeros(0), tuple(offer(name) for name in names)), {}, {}, 0.0)
+
+
+@pytest.mark.parametrize(
+    "chosen, equivalent, groups",
+    [
+        ("a", [], []),
+        ("a", ["b"], [["a", "b"]]),
+        ("a", ["b", "c"], [["a", "b", "c"]]),
+        # Sets of another size and the chosen one itself say nothing.
+        ("a", ["bc", "a"], []),
+        ("ab", ["a", "b"], []),
+        ("", ["a"], []),
+        ("ab", ["cb"], [["a", "c"]]),
+        ("ab", ["cb", "ad"], [["a", "c"], ["b", "d"]]),
+        # Two effects at once stand for two others: nobody knows which for which.
+        ("ab", ["cd"], []),
+        # Until it is known that c stands for a; then d stands for b, whatever the order of the sets.
+        ("ab", ["cb", "cd"], [["a", "c"], ["b", "d"]]),
+        ("ab", ["cd", "cb"], [["a", "c"], ["b", "d"]]),
+        ("ab", ["cb", "ad", "cd", "ce", "fg"], [["a", "c"], ["b", "d", "e"]]),
+        # Neither stands c for b as well, nor is it listed twice.
+        ("ab", ["cb", "cb"], [["a", "c"]]),
+        ("ab", ["cb", "ac"], [["a", "c"]]),
+        ("ab", ["cb", "acd"], [["a", "c"]]),
+        ("abc", ["abd", "eba", "ebd"], [["c", "d", "e"]]),
+        ("abc", ["abd", "ebc", "ebd"], [["c", "d"], ["a", "e"]]),
+    ],
+)
+def test_effects_that_stand_for_each_other_are_grouped(chosen, equivalent, groups):
+    found = group_equivalent(having(chosen), [having(names) for names in equivalent])
+    assert [[group[0], *sorted(group[1:])] for group in found] == groups

@@ -1,0 +1,96 @@
+"""Which nominal parameters are refitted, how far, and that varying them touches nothing else."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from seatsim.dampers.bingham import OriginalBingham
+from seatsim.dampers.bouc_wen import BoucWen
+from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
+from seatsim.rig.coil import Coil
+from seatsim.rig.plant import Plant
+from seatsim.rig.temperature import TemperatureFactors
+from seatsim.scenario.scenario import DamperChoice, Scenario
+
+PLANT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
+DAMPER = BoucWen(c_b=-350.0)
+
+
+def scenario(damper=DAMPER, coil=None, plant=PLANT):
+    return Scenario("toy", DamperChoice(damper, TemperatureFactors()), coil or Coil(), 20.0, plant=plant)
+
+
+def tolerances(posed, tolerance=0.1):
+    return {(each.section, each.name): each.tolerance for each in list_nuisances(posed, tolerance)}
+
+
+def test_every_parameter_varies_by_the_tolerance_times_its_size():
+    found = tolerances(scenario())
+    expected = {("plant", name): 0.1 * value for name, value in zip(Plant._fields[:6], PLANT[:6], strict=True)}
+    expected |= {("damper", "c_a"): 25.0, ("damper", "c_b"): 35.0, ("damper", "alpha_a"): 4.5}
+    expected |= {("damper", "alpha_b"): 62.0, ("damper", "A"): 200.0}
+    expected |= {("damper", "beta"): 100.0, ("damper", "gamma"): 100.0}
+    # Those that are nominally zero vary by a scale of their unit: the suspension's stiffness, 10 mm and 100 N.
+    expected |= {("damper", "k0"): 460.0, ("damper", "x0"): 0.001, ("damper", "f0"): 10.0}
+    expected |= {("coil", "rate"): 13.0, ("coil", "max_current"): 0.1}
+    assert found == pytest.approx(expected)
+
+
+def test_the_nominal_values_and_the_order_are_those_of_the_scenario():
+    found = list_nuisances(scenario(), 0.02)
+    assert [each.section for each in found] == ["plant"] * 6 + ["damper"] * 10 + ["coil"] * 2
+    nominal = {(each.section, each.name): each.nominal for each in found}
+    assert nominal[("damper", "c_b")] == -350.0
+    assert nominal[("damper", "f0")] == 0.0
+    assert nominal[("plant", "driver_mass")] == 80.0
+    assert all(isinstance(each.nominal, float) for each in found)
+
+
+def test_conventions_geometry_and_exponents_do_not_vary():
+    listed = {name for _, name in tolerances(scenario())}
+    assert not listed & {"damper_ratio", "travel", "v_ref", "n", "resistance"}
+    assert {name for section, name in tolerances(scenario(OriginalBingham())) if section == "damper"} == {"f0"}
+
+
+def test_a_coil_without_lag_or_delay_is_taken_at_its_word():
+    assert not {("coil", "delay"), ("coil", "rate_fall")} & set(tolerances(scenario()))
+    found = tolerances(scenario(coil=Coil(rate_fall=100.0, delay=0.01)))
+    assert found[("coil", "rate_fall")] == pytest.approx(10.0)
+    assert found[("coil", "delay")] == pytest.approx(0.001)
+
+
+def test_a_bench_has_no_plant_and_no_scale_for_a_stiffness_of_zero():
+    found = tolerances(scenario(plant=None))
+    assert "plant" not in {section for section, _ in found}
+    assert ("damper", "k0") not in found and found[("damper", "f0")] == pytest.approx(10.0)
+    assert tolerances(scenario(BoucWen(k0=-50.0), plant=None))[("damper", "k0")] == pytest.approx(5.0)
+
+
+def test_a_zero_of_another_unit_and_a_tolerance_of_zero_leave_nothing_to_vary():
+    assert ("damper", "beta") not in tolerances(scenario(BoucWen(beta=0.0)))
+    assert tolerances(scenario(), tolerance=0.0) == {}
+
+
+def test_a_parameter_is_off_by_its_tolerance_times_the_deviation():
+    nominal = scenario()
+    parameters = (
+        Nuisance("damper", "c_b", -350.0, 35.0), Nuisance("coil", "rate", 130.0, 13.0),
+        Nuisance("plant", "driver_mass", 80.0, 8.0), Nuisance("damper", "f0", 0.0, 10.0),
+    )  # fmt: skip
+    varied = vary(nominal, parameters, np.array([1.0, -0.5, 0.25, -1.0]))
+    assert varied.damper.record == DAMPER._replace(c_b=-315.0, f0=-10.0)
+    assert varied.coil == Coil(rate=123.5)
+    assert varied.plant == PLANT._replace(driver_mass=82.0)
+    assert nominal == scenario()
+    rest = {"damper": nominal.damper, "coil": nominal.coil, "plant": nominal.plant}
+    assert dataclasses.replace(varied, **rest) == nominal
+    assert varied.damper.factors == nominal.damper.factors
+
+
+def test_no_deviation_leaves_the_scenario_and_too_few_are_refused():
+    nominal = scenario()
+    parameters = list_nuisances(nominal, 0.1)
+    assert vary(nominal, parameters, np.zeros(len(parameters))) == nominal
+    with pytest.raises(ValueError):
+        vary(nominal, parameters, np.zeros(len(parameters) - 1))

@@ -1,0 +1,89 @@
+"""The vector of a rig's parameters: natural sizes, bounds, steps, and effects that come and go."""
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.parameters import Parameters
+
+from .toy import Added, offer, offer_two
+
+FIRST = offer_two("suspension.one", (-4.0, 0.5), (-8.0, 0.0), (2.0, 1.0))
+SECOND = offer("coil.two", start=0.02, low=0.0, high=0.1)
+
+
+@pytest.fixture
+def rig():
+    return Parameters(np.array([0.5, -1.0])).add(FIRST, np.array([-2.0, 0.25])).add(SECOND, np.array([0.03]))
+
+
+def test_the_vector_is_in_natural_sizes(rig):
+    # The natural size is the size of the start, so that a negative start turns no sign around.
+    np.testing.assert_allclose(rig.vector, [0.5, -1.0, -0.5, 0.5, 1.5])
+    np.testing.assert_allclose(Parameters(np.array([0.1])).vector, [0.1])
+
+
+def test_the_bounds_are_in_natural_sizes(rig):
+    low, high = rig.limits
+    np.testing.assert_allclose(low, [-1.0, -1.0, -2.0, 0.0, 0.0])
+    np.testing.assert_allclose(high, [1.0, 1.0, 0.5, 2.0, 5.0])
+
+
+def test_components_of_nuisances_and_of_effects_follow_each_other(rig):
+    assert rig.nuisance_components == range(2)
+    assert rig.effect_components == range(2, 5)
+    assert list(Parameters(np.zeros(3)).effect_components) == []
+
+
+def test_the_effects_are_records_at_their_values(rig):
+    assert rig.effects == [Added("suspension.one", -2.0, 0.25), Added("coil.two", 0.03)]
+    assert rig.names == {"suspension.one", "coil.two"}
+
+
+def test_moving_to_a_vector_undoes_the_natural_sizes(rig):
+    target = np.array([-0.25, 0.75, -1.5, 1.75, 4.0])
+    moved = rig.move_to(target)
+    np.testing.assert_allclose(moved.vector, target)
+    np.testing.assert_allclose(moved.deviations, [-0.25, 0.75])
+    np.testing.assert_allclose(np.concatenate(moved.values), [-6.0, 0.875, 0.08])
+    assert moved.terms == rig.terms
+    # The rig moved from stays as it is.
+    np.testing.assert_allclose(rig.vector, [0.5, -1.0, -0.5, 0.5, 1.5])
+
+
+def test_a_move_ends_at_the_bounds(rig):
+    low, high = rig.limits
+    np.testing.assert_allclose(rig.move_to(np.full(5, 9.0)).vector, high)
+    np.testing.assert_allclose(rig.move_to(np.full(5, -9.0)).vector, low)
+
+
+def test_effects_are_added_and_removed_with_their_values(rig):
+    alone = rig.remove("suspension.one")
+    assert alone.names == {"coil.two"}
+    np.testing.assert_allclose(alone.values[0], [0.03])
+    np.testing.assert_allclose(alone.deviations, [0.5, -1.0])
+    assert rig.remove("suspension.one", "coil.two").terms == ()
+    assert rig.remove("other").terms == rig.terms and len(rig.remove("other").values) == 2
+    again = alone.add(FIRST, np.array([1.0, 1.0]))
+    assert again.terms == (SECOND, FIRST)
+    np.testing.assert_allclose(again.values[1], [1.0, 1.0])
+    assert len(rig.terms) == 2
+
+
+@pytest.mark.parametrize("component", range(5))
+def test_a_shift_moves_one_component_by_the_step(rig, component):
+    moved, step = rig.shift(component, 0.02)
+    assert step == 0.02
+    np.testing.assert_allclose(moved.vector - rig.vector, 0.02 * (np.arange(5) == component), atol=1e-12)
+
+
+@pytest.mark.parametrize("component", range(5))
+def test_a_shift_goes_down_where_no_room_is_above(rig, component):
+    top = rig.move_to(rig.limits[1])
+    moved, step = top.shift(component, 0.02)
+    assert step == -0.02
+    np.testing.assert_allclose(moved.vector - top.vector, -0.02 * (np.arange(5) == component), atol=1e-12)
+
+
+def test_a_shift_goes_up_to_the_bound_itself():
+    moved, step = Parameters(np.array([0.75])).shift(0, 0.25)
+    assert step == 0.25 and moved.deviations[0] == 1.0

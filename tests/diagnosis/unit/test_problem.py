@@ -1,0 +1,186 @@
+"""A recording posed as a problem: what is compared, from which row, and how residuals come back."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis import problem as module
+from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors, pose_problem
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.recordings.recording import load_recording
+from seatsim.scenario.scenario import Start
+from seatsim.schema.errors import InputError, RunError
+
+from .toy import CHANNELS, NOISE, Added, SerialExecutor, add_up, draw_signals, make_problem
+
+HEADER = """\
+rig: seat
+sample_rate: 200.0
+parameter_tolerance: 0.05
+nominal: nominal.yaml
+runs: [{name: long, file: long.csv}, {name: short, file: short.csv, repeat_of: long}]
+channels:
+  floor_acceleration: {unit: m/s^2, noise_rms: 0.01}
+  driver_acceleration: {unit: m/s^2, noise_rms: 0.02}
+  frame_acceleration: {unit: m/s^2, noise_rms: 0.1}
+  suspension_displacement: {unit: m, noise_rms: 0.5}
+  coil_current: {unit: A}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, kept_seat_file):
+    """Write a recording whose suspension's sensor drowns in noise; row k of a channel holds k times its own factor."""
+    for name, rows in (("long", 520), ("short", 411)):
+        row = np.arange(float(rows))
+        columns = np.stack([np.sin(row), 0.1 * row, 0.2 * row, 1.0 + 0.001 * row, np.zeros(rows)], axis=1)
+        names = "floor_acceleration,driver_acceleration,frame_acceleration,suspension_displacement,coil_current"
+        np.savetxt(tmp_path / f"{name}.csv", columns, delimiter=",", header=names, comments="")
+    (tmp_path / "recording.yaml").write_text(HEADER)
+    text = kept_seat_file.read_text() + "start: {displacement: 0.01}\n"
+    (tmp_path / "nominal.yaml").write_text(text)
+    return tmp_path
+
+
+@pytest.fixture
+def posed(folder):
+    return pose_problem(load_recording(folder), SerialExecutor())
+
+
+def test_channels_above_their_noise_are_compared_in_the_order_of_the_outputs(posed):
+    assert posed.channels == ("frame_acceleration", "driver_acceleration")
+    np.testing.assert_array_equal(posed.noise, [0.1, 0.02])
+    assert posed.runs == ("long", "short") and not posed.bench
+
+
+def test_the_first_second_is_left_out_and_the_rest_cut_to_a_length_of_small_prime_factors(posed):
+    assert posed.rate == 200.0 and posed.skip == 200
+    # 320 rows are left of the long run; of the 211, a prime number, of the short run 200.
+    assert posed.measured["long"].shape == (2, 320)
+    assert posed.measured["short"].shape == (2, 200)
+    np.testing.assert_allclose(posed.measured["short"][0, :2], [0.2 * 200, 0.2 * 201])
+    np.testing.assert_allclose(posed.measured["long"][1, -1], 0.1 * 519)
+
+
+def test_a_step_divides_a_row_and_is_at_most_two_milliseconds(posed):
+    assert posed.scenario.solver.step == pytest.approx(0.005 / 3)
+    assert posed.parts == 3
+    assert posed.scenario.start == Start()
+    floor = posed.inputs["short"].floor
+    assert floor.step == pytest.approx(0.005 / 3) and posed.inputs["short"].interval == 0.005
+    assert len(floor.acceleration) == 410 * 3 + 1
+
+
+def test_the_tolerance_is_the_recordings(posed):
+    found = {each.name: each.tolerance for each in posed.parameters}
+    assert found["frame_mass"] == pytest.approx(0.05 * 20.0)
+    assert found["f0"] == pytest.approx(5.0)
+    np.testing.assert_array_equal(posed.nominal, np.zeros(len(posed.parameters)))
+
+
+def test_settings_are_passed_on(folder, posed):
+    assert posed.settings == DiagnosisSettings()
+    settings = posed.settings._replace(fit=posed.settings.fit._replace(most_steps=1))
+    assert pose_problem(load_recording(folder), SerialExecutor(), settings).settings.fit.most_steps == 1
+
+
+def test_nothing_above_the_noise_is_nothing_to_diagnose(folder):
+    (folder / "recording.yaml").write_text(HEADER.replace("0.02", "50.0").replace("0.1}", "50.0}"))
+    with pytest.raises(InputError, match="nothing to diagnose"):
+        pose_problem(load_recording(folder), SerialExecutor())
+
+
+def test_a_rig_is_simulated_with_parameters_effects_and_inputs_of_its_run(posed, monkeypatch):
+    asked = []
+
+    def respond(scenario, inputs, carry_all_effects=False):
+        asked.append((scenario, inputs, carry_all_effects))
+        row = np.arange(600.0)
+        return {"driver_acceleration": -row, "frame_acceleration": row, "coil_current": 7.0 * row}
+
+    monkeypatch.setattr(module, "respond", respond)
+    deviations = posed.nominal + 0.5
+    outputs = posed.simulated("short", deviations, (Added("x", 1.0),))
+    samples = posed.measured["short"].shape[1]
+    np.testing.assert_array_equal(outputs, [np.arange(200.0, 200 + samples), -np.arange(200.0, 200 + samples)])
+    scenario, inputs, carries = asked[0]
+    assert inputs is posed.inputs["short"] and carries
+    assert scenario.effects == (Added("x", 1.0),)
+    assert scenario.plant.frame_mass == pytest.approx(20.0 * (1.0 + 0.05 * 0.5))
+    posed.simulated("short", posed.nominal, (), posed.inputs["long"])
+    assert asked[1][1] is posed.inputs["long"]
+    (residuals,) = posed.residuals([(posed.nominal, ())])
+    np.testing.assert_allclose(residuals["short"][0], posed.measured["short"][0] - outputs[0])
+
+
+def test_effects_stand_beside_those_of_the_nominal_scenario(posed):
+    present = dataclasses.replace(posed, scenario=dataclasses.replace(posed.scenario, effects=(Added("own", 1.0),)))
+    rig = present.augmented(present.nominal, [Added("x", 2.0)])
+    assert rig.effects == (Added("own", 1.0), Added("x", 2.0))
+    assert present.scenario.effects == (Added("own", 1.0),)
+
+
+@pytest.fixture
+def linear():
+    signals = draw_signals(["nominal", "nuisance 0", "a", "b"])
+    return make_problem(signals, add_up(signals, {"a": 2.0}), nuisances=1)
+
+
+def test_residuals_are_measured_less_simulated_of_every_rig_and_run(linear):
+    rigs = [(np.array([0.5]), [Added("a", 2.0)]), (np.array([0.0]), []), (np.array([-1.0]), [Added("b", 1.0)])]
+    found = linear.residuals(rigs)
+    for (deviations, effects), residuals in zip(rigs, found, strict=True):
+        assert list(residuals) == list(linear.runs)
+        for run, values in residuals.items():
+            own = linear.signals[run]
+            simulated = own["nominal"] + deviations[0] * own["nuisance 0"]
+            simulated = simulated + sum(effect.amount * own[effect.signal] for effect in effects)
+            np.testing.assert_allclose(values, linear.measured[run] - simulated)
+
+
+def test_a_rig_that_leaves_all_bounds_is_infinitely_far_off(linear):
+    class Bursting(type(linear)):
+        def simulated(self, run, deviations, effects, inputs=None):
+            if effects and run == "second":
+                raise RunError("beyond all bounds")
+            return super().simulated(run, deviations, effects, inputs)
+
+    bursting = Bursting(**{each.name: getattr(linear, each.name) for each in dataclasses.fields(linear)})
+    with_it, without = bursting.residuals([(linear.nominal, [Added("a", 1.0)]), (linear.nominal, [])])
+    assert np.all(np.isinf(with_it["second"])) and with_it["second"].shape == linear.measured["second"].shape
+    assert np.all(np.isfinite(with_it["first"])) and np.all(np.isfinite(without["second"]))
+
+
+def test_the_spread_is_that_of_all_runs_together(linear):
+    together = np.concatenate([linear.measured[run] for run in linear.runs], axis=1)
+    np.testing.assert_allclose(linear.spread, together.std(axis=1))
+    np.testing.assert_array_equal(linear.noise, NOISE)
+    assert linear.channels == CHANNELS
+
+
+def test_a_part_of_the_runs_has_its_own_spread_and_the_same_rest(linear):
+    part = linear.on_runs(["third", "first"])
+    assert part.runs == ("third", "first")
+    together = np.concatenate([linear.measured["third"], linear.measured["first"]], axis=1)
+    np.testing.assert_allclose(part.spread, together.std(axis=1))
+    assert part.measured is linear.measured
+    assert list(part.residuals([(linear.nominal, [])])[0]) == ["third", "first"]
+    assert linear.runs == ("first", "second", "third")
+
+
+def test_an_error_is_counted_in_standard_deviations_by_run(linear):
+    residuals = {"first": np.ones((2, 120)), "second": np.zeros((2, 160)), "third": np.full((2, 200), 3.0)}
+    weight = np.sqrt(np.mean(linear.spread**-2.0))
+    np.testing.assert_allclose(normalise_rms_errors(linear, residuals), [weight, 0.0, 3.0 * weight])
+    uneven = residuals | {"first": np.stack([2.0 * np.ones(120), np.zeros(120)])}
+    expected = 2.0 / linear.spread[0] / np.sqrt(2.0)
+    assert normalise_rms_errors(linear.on_runs(["first"]), uneven)[0] != pytest.approx(expected)
+    part = linear.on_runs(["first"])
+    assert normalise_rms_errors(part, uneven)[0] == pytest.approx(2.0 / part.spread[0] / np.sqrt(2.0))
+
+
+def test_a_problem_is_frozen(posed):
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        posed.runs = ()
+    assert isinstance(posed, DiagnosisProblem)

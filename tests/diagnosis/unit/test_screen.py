@@ -1,0 +1,162 @@
+"""Predictions of the screening against the exact minimum, which a linear rig has."""
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.screen import measure_sensitivities, screen_candidates
+
+from .toy import (
+    Limited,
+    Wild,
+    add_up,
+    draw_signals,
+    make_problem,
+    offer,
+    offer_two,
+    place,
+    stack,
+    weigh_stated,
+    whiten,
+)  # fmt: skip
+
+NAMES = ["nominal", "nuisance 0", "a.one", "a.one beside", "b.two", "c.three", "d.limit"]
+INFINITE = float("inf")
+
+
+def pose(amounts):
+    signals = draw_signals(NAMES)
+    return weigh_stated(make_problem(signals, add_up(signals, amounts), nuisances=1))
+
+
+def screened(objective, candidates, base=(), bound=INFINITE, count=9):
+    """Return the starts that the screening finds beside a fitted base of (candidate, values)."""
+    calibrated = refit(objective, Parameters(objective.problem.nominal))
+    nuisances = objective.linearise_nuisances(calibrated)
+    offered = measure_sensitivities(objective, calibrated, candidates)
+    fitted = refit(objective, place(objective.problem, *base))
+    return screen_candidates(objective, fitted, offered, nuisances, bound, count)
+
+
+def least_cost(objective, names, last=(-6.0, 6.0)):
+    """Return the least cost with named signals, whose last amount has bounds, and that amount."""
+    matrix, target = stack(objective, names)
+    count = matrix.shape[1]
+    low, high = np.full(count, -10.0), np.full(count, 10.0)
+    low[0], high[0] = -1.0, 1.0
+    low[-1], high[-1] = last
+    best = lsq_linear(matrix, target, (low, high), method="bvls", tol=1e-14)
+    return 2.0 * best.cost, best.x[-1]
+
+
+def test_a_sensitivity_is_what_a_candidates_start_changes():
+    objective = pose({"b.two": 2.0})
+    calibrated = refit(objective, Parameters(objective.problem.nominal))
+    found = measure_sensitivities(
+        objective, calibrated, [offer("b.two", start=-0.5), offer("c.three", cls=Wild), offer("c.three", start=2.0)]
+    )
+    # What makes the rig leave all bounds is left out.
+    assert [each.candidate.effect for each in found] == ["b.two", "c.three"]
+    for each, expected in zip(found, (-0.5, 2.0), strict=True):
+        changes = np.concatenate([each.changes[run].ravel() for run in objective.problem.runs])
+        np.testing.assert_allclose(changes, expected * whiten(objective, each.candidate.effect), atol=1e-8)
+
+
+def shortlisted_below(objective, candidate, bound, base=()):
+    return bool(screened(objective, [candidate], base, bound))
+
+
+@pytest.mark.parametrize("start", [0.4, -0.7])
+def test_the_predicted_cost_is_the_least_that_the_candidate_leaves(start):
+    objective = pose({"b.two": 1.5, "c.three": 0.4, "nuisance 0": 0.6})
+    exact, amount = least_cost(objective, ["b.two"])
+    candidate = offer("b.two", start=start)
+    assert shortlisted_below(objective, candidate, exact * (1.0 + 1e-5))
+    assert not shortlisted_below(objective, candidate, exact * (1.0 - 1e-5))
+    (found,) = screened(objective, [candidate])
+    # Of 0, 0.6, 1 and 1.6 times the predicted amount, the predicted one is the best start.
+    assert found.parameters.values[0][0] == pytest.approx(amount, rel=1e-4)
+
+
+def test_the_base_takes_part_in_the_prediction():
+    objective = pose({"b.two": 1.5, "c.three": 0.4, "a.one": -0.8, "nuisance 0": 0.6})
+    exact, _ = least_cost(objective, ["b.two", "c.three"])
+    base = [(offer("b.two", start=0.4), 0.4)]
+    assert shortlisted_below(objective, offer("c.three", start=0.3), exact * (1.0 + 1e-5), base)
+    assert not shortlisted_below(objective, offer("c.three", start=0.3), exact * (1.0 - 1e-5), base)
+    (found,) = screened(objective, [offer("c.three", start=0.3)], base)
+    assert found.parameters.names == {"b.two", "c.three"}
+    assert [term.effect for term in found.parameters.terms] == ["b.two", "c.three"]
+
+
+def test_a_nuisance_at_its_bound_gives_no_way_in_the_prediction():
+    objective = pose({"b.two": 1.5, "nuisance 0": 3.0})
+    exact, _ = least_cost(objective, ["b.two"])
+    assert shortlisted_below(objective, offer("b.two"), exact * (1.0 + 1e-5))
+    assert not shortlisted_below(objective, offer("b.two"), exact * (1.0 - 1e-5))
+
+
+def test_a_start_is_enlarged_by_the_stretch_at_most():
+    objective = pose({"b.two": 9.0})
+    # 6 times 0.5, for which the linear model would go to 18 times.
+    exact, _ = least_cost(objective, ["b.two"], (-3.0, 3.0))
+    for start in (0.5, -0.5):
+        assert shortlisted_below(objective, offer("b.two", start=start), exact * (1.0 + 1e-5))
+        assert not shortlisted_below(objective, offer("b.two", start=start), exact * (1.0 - 1e-5))
+    (found,) = screened(objective, [offer("b.two", start=0.5)])
+    assert found.parameters.values[0][0] == pytest.approx(1.6 * 6.0 * 0.5)
+
+
+def test_a_candidate_without_a_sign_is_not_turned_around():
+    objective = pose({"b.two": -1.5})
+    none, _ = least_cost(objective, [], (-1.0, 1.0))
+    one_sided = offer("b.two", start=0.5, low=0.0)
+    assert shortlisted_below(objective, one_sided, none * (1.0 + 1e-5))
+    assert not shortlisted_below(objective, one_sided, none * (1.0 - 1e-3))
+    # The data do not show it at all: its own start is all that is left to try.
+    (found,) = screened(objective, [one_sided])
+    assert found.parameters.values[0][0] == 0.5
+    (turned,) = screened(objective, [offer("b.two", start=0.5)])
+    assert turned.parameters.values[0][0] == pytest.approx(-1.5, abs=0.05)
+
+
+def test_the_best_predicted_come_first_and_no_more_than_the_count():
+    objective = pose({"b.two": 1.5, "c.three": 0.8, "a.one": 0.3})
+    candidates = [offer("a.one"), offer("b.two"), offer("c.three")]
+    found = screened(objective, candidates)
+    assert [next(iter(each.parameters.names)) for each in found] == ["b.two", "c.three", "a.one"]
+    assert [next(iter(each.parameters.names)) for each in screened(objective, candidates, count=2)] == [
+        "b.two", "c.three"
+    ]  # fmt: skip
+
+
+def test_a_structure_is_tried_once_from_its_most_promising_start():
+    objective = pose({"b.two": 9.0})
+    near, far = offer("b.two", start=2.0), offer("b.two", start=0.1)
+    other = near._replace(fixed={"signal": "b.two", "second": 0.0}, start=(0.05,))
+    found = screened(objective, [far, near, other])
+    assert len(found) == 2
+    assert found[0].parameters.terms[0] is near
+
+
+def test_starts_keep_the_bounds_and_the_shape():
+    objective = pose({"a.one": 5.0, "a.one beside": 0.3})
+    candidate = offer_two("a.one", (1.0, 0.25), (-3.0, 0.1), (3.0, 0.5))
+    (found,) = screened(objective, [candidate])
+    np.testing.assert_allclose(found.parameters.values[0], [3.0, 0.25])
+
+
+@pytest.mark.parametrize("true, expected", [(1.28, 1.27), (1.17, 1.16), (1.07, 1.08), (0.85, 1 / 1.16), (1.0, 1.0)])
+def test_a_limit_is_tried_a_little_to_the_side_that_the_prediction_points_to(true, expected):
+    # What a limit adds falls with it: 2 - limit of the signal.
+    objective = pose({"d.limit": 2.0 - true})
+    (found,) = screened(objective, [offer("d.limit", start=1.0, low=0.0, high=1e3, cls=Limited)])
+    assert found.parameters.terms[0].is_limit
+    assert found.parameters.values[0][0] == pytest.approx(expected)
+
+
+def test_nothing_offered_finds_nothing():
+    assert screened(pose({"b.two": 1.0}), []) == []
+    assert screened(pose({"b.two": 1.0}), [offer("b.two")], bound=0.0) == []

@@ -1,0 +1,228 @@
+"""Selection on a linear rig: the planted effects are found among decoys, along each of the paths of the search."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+from seatsim.diagnosis.select import select_effects
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+
+from .toy import add_up, draw_signals, make_problem, offer, stack, weigh_stated
+
+DECOYS = [f"decoy.{k}" for k in range(5)]
+PLANTED = ["true.one", "true.two", "true.three"]
+RUNS = {"first": 80, "second": 120}
+
+
+def pose(amounts, mixtures=None, nuisances=1, **selection):
+    """Return an objective; `mixtures` are signals that are sums of others, `selection` changes settings."""
+    settings = DiagnosisSettings()
+    settings = settings._replace(selection=settings.selection._replace(**selection))
+    signals = draw_signals(["nominal", "nuisance 0", "nuisance 1", *PLANTED, *DECOYS], RUNS)
+    for own in signals.values():
+        for name, parts in (mixtures or {}).items():
+            own[name] = sum(share * own[part] for part, share in parts.items())
+    return weigh_stated(make_problem(signals, add_up(signals, amounts), nuisances, settings))
+
+
+def search(objective, names=(*DECOYS, *PLANTED), **arguments):
+    told = []
+    found = select_effects(objective, [offer(name, start=0.3) for name in names], told.append, **arguments)
+    return dataclasses.replace(found), told
+
+
+def names_of(sets):
+    return [set(each.parameters.names) for each in sets]
+
+
+def best_cost(objective, names):
+    matrix, target = stack(objective, list(names))
+    count = matrix.shape[1] - len(names)
+    reach = np.concatenate([np.ones(count), np.full(len(names), 10.0)])
+    return 2.0 * lsq_linear(matrix, target, (-reach, reach), method="bvls", tol=1e-14).cost
+
+
+def test_one_planted_effect_is_found_and_nothing_beside_it():
+    objective = pose({"true.one": 1.4, "nuisance 0": 0.5})
+    found, told = search(objective)
+    assert len(found.sets) == 2 and told == ["fitting sets of 1"]
+    best = found.sets[1][0]
+    assert best.parameters.names == {"true.one"}
+    assert best.parameters.values[0][0] == pytest.approx(1.4, abs=0.01)
+    assert best.cost == pytest.approx(best_cost(objective, ["true.one"]), rel=1e-6)
+    assert best.excess < 0.15
+
+
+def test_the_calibrated_rig_has_no_effect_and_the_nominal_one_no_deviation():
+    objective = pose({"true.one": 1.4, "nuisance 0": 0.5})
+    found, _ = search(objective)
+    np.testing.assert_array_equal(found.nominal.parameters.deviations, [0.0])
+    assert found.nominal.parameters.terms == () == found.calibrated.parameters.terms
+    assert found.calibrated is found.sets[0][0] and len(found.sets[0]) == 1
+    assert found.calibrated.cost == pytest.approx(best_cost(objective, []), rel=1e-8)
+    assert found.calibrated.cost < found.nominal.cost
+    matrix, target = stack(objective, [])
+    np.testing.assert_allclose(found.calibrated.parameters.deviations, np.linalg.lstsq(matrix, target, rcond=None)[0])
+
+
+def test_two_planted_effects_are_found_among_decoys():
+    objective = pose({"true.one": 1.4, "true.two": -0.6, "nuisance 0": -0.5})
+    found, told = search(objective)
+    assert told == ["fitting sets of 1", "fitting sets of 2"]
+    best = found.sets[2][0]
+    assert best.parameters.names == {"true.one", "true.two"}
+    assert best.cost == pytest.approx(best_cost(objective, ["true.one", "true.two"]), rel=1e-6)
+    amounts = {
+        term.effect: values[0] for term, values in zip(best.parameters.terms, best.parameters.values, strict=True)
+    }
+    assert amounts == pytest.approx({"true.one": 1.4, "true.two": -0.6}, abs=0.01)
+
+
+def test_sets_are_in_the_order_of_their_cost_and_each_once():
+    found, _ = search(pose({"true.one": 1.4, "true.two": -0.6}))
+    for sets in found.sets[1:]:
+        costs = [each.cost for each in sets]
+        assert costs == sorted(costs)
+        listed = names_of(sets)
+        assert len(listed) == len({frozenset(each) for each in listed}) > 1
+    assert all(len(each) == size for size, sets in enumerate(found.sets) for each in names_of(sets))
+
+
+def test_no_set_is_larger_than_the_largest():
+    amounts = {"true.one": 1.4, "true.two": -0.6, "true.three": 0.5}
+    assert len(search(pose(amounts))[0].sets) == 4
+    found, told = search(pose(amounts), largest=1)
+    assert len(found.sets) == 2 and told == ["fitting sets of 1"]
+    assert len(search(pose(amounts), largest=2)[0].sets) == 3
+    assert len(search(pose(amounts, largest_set=2))[0].sets) == 3
+
+
+def test_a_search_ends_where_nothing_is_left_or_an_effect_gains_too_little():
+    amounts = {"true.one": 1.4, "true.two": -0.6}
+    # Nothing that is below a very large excess is worth explaining.
+    assert len(search(pose(amounts, nothing_left=1e9))[0].sets) == 2
+    # The first effect leaves a sixth of the gap, which is not less than a tenth.
+    assert len(search(pose(amounts, worthwhile=0.1))[0].sets) == 2
+    assert len(search(pose(amounts, worthwhile=0.9))[0].sets) == 3
+
+
+def test_a_further_effect_is_tried_only_where_it_promises_to_help():
+    # Hardly more than the noise, so that its own share of the cost counts too.
+    amounts = {"true.one": 0.07, "true.two": -0.03, "true.three": 0.025}
+    objective = pose(amounts)
+    rows = sum(2 * samples for samples in RUNS.values())
+    left = {pair: best_cost(objective, ["true.one", pair]) / rows - 1.0 for pair in ("true.two", "true.three")}
+    before = best_cost(objective, ["true.one"]) / rows - 1.0
+    shares = {pair: excess / before for pair, excess in left.items()}
+    assert 0.4 < shares["true.two"] < shares["true.three"] < 0.7
+
+    def pairs(promising):
+        found, _ = search(pose(amounts, promising=promising, most_swaps=0, beam=1), largest=2)
+        return names_of(found.sets[2]) if len(found.sets) > 2 else []
+
+    assert pairs(0.99 * shares["true.two"]) == []
+    assert pairs(1.01 * shares["true.two"]) == [{"true.one", "true.two"}]
+    assert pairs(0.99 * shares["true.three"]) == [{"true.one", "true.two"}]
+    assert pairs(1.01 * shares["true.three"]) == [{"true.one", "true.two"}, {"true.one", "true.three"}]
+
+
+def test_the_shortlists_are_those_of_the_settings():
+    amounts = {"true.one": 1.4, "true.two": -0.6}
+    found, _ = search(pose(amounts, first_shortlist=3, beam=1, most_swaps=0, further_shortlist=2, promising=9.0))
+    assert [len(sets) for sets in found.sets] == [1, 3, 2]
+    found, _ = search(pose(amounts, first_shortlist=3, beam=2, most_swaps=0, further_shortlist=2, promising=9.0))
+    # Two of each of two bases, one of which both have in common.
+    assert [len(sets) for sets in found.sets] == [1, 3, 3]
+
+
+MIXED = {"decoy.mix": {"true.one": 1.0, "true.two": 1.0, "decoy.0": 0.5}}
+"""A decoy that explains more alone than either of the planted effects, which it imitates together."""
+
+
+def test_the_toy_of_the_decoy_misleads():
+    objective = pose({"true.one": 1.0, "true.two": 0.9}, MIXED)
+    alone = {name: best_cost(objective, [name]) for name in ("decoy.mix", "true.one", "true.two")}
+    assert min(alone, key=alone.get) == "decoy.mix"
+
+
+def test_a_wrong_first_effect_is_swapped_for_one_that_did_nearly_as_well():
+    amounts, offered = {"true.one": 1.0, "true.two": 0.9}, ("decoy.mix", "true.one", "true.two", "decoy.1")
+    narrow = {"beam": 1, "swap_within": 20.0}
+    found, _ = search(pose(amounts, MIXED, **narrow), offered)
+    assert names_of(found.sets[2])[0] == {"true.one", "true.two"}
+    exact = best_cost(pose(amounts, MIXED), ["true.one", "true.two"])
+    assert found.sets[2][0].cost == pytest.approx(exact, rel=1e-6)
+    # Neither without swaps nor where none did nearly as well.
+    for without in ({"beam": 1, "most_swaps": 0}, {"beam": 1, "swap_within": 1.001}):
+        kept, _ = search(pose(amounts, MIXED, **without), offered, largest=2)
+        assert "decoy.mix" in kept.sets[2][0].parameters.names
+        assert {"true.one", "true.two"} not in names_of(kept.sets[2])
+
+
+def test_a_wider_beam_needs_no_swap():
+    amounts, offered = {"true.one": 1.0, "true.two": 0.9}, ("decoy.mix", "true.one", "true.two", "decoy.1")
+    found, _ = search(pose(amounts, MIXED, beam=2, most_swaps=0), offered)
+    assert names_of(found.sets[2])[0] == {"true.one", "true.two"}
+
+
+def test_a_first_effect_that_later_ones_make_idle_is_eliminated():
+    amounts, offered = {"true.one": 1.0, "true.two": 0.9}, ("decoy.mix", "true.one", "true.two", "decoy.1")
+    settings = {"beam": 1, "most_swaps": 0}
+    found, told = search(pose(amounts, MIXED, **settings), offered)
+    assert told[-1] == "eliminating backwards"
+    assert names_of(found.sets[3])[0] == {"decoy.mix", "true.one", "true.two"}
+    assert names_of(found.sets[2])[0] == {"true.one", "true.two"}
+    exact = best_cost(pose(amounts, MIXED), ["true.one", "true.two"])
+    assert found.sets[2][0].cost == pytest.approx(exact, rel=1e-6)
+    costs = [each.cost for each in found.sets[2]]
+    assert costs == sorted(costs)
+
+
+def test_sets_are_not_eliminated_where_the_largest_is_not_reached_or_gains_too_little():
+    amounts, offered = {"true.one": 1.0, "true.two": 0.9}, ("decoy.mix", "true.one", "true.two", "decoy.1")
+    settings = {"beam": 1, "most_swaps": 0}
+    for changes, largest in (({}, 2), ({"enlarge": 1e-9}, 3)):
+        objective = pose(amounts, MIXED, **settings, **changes)
+        found, told = search(objective, offered, largest=largest)
+        assert "eliminating backwards" not in told or found.sets[-1][0].excess == 0.0
+        if largest == 2:
+            assert {"true.one", "true.two"} not in names_of(found.sets[2])
+
+
+def test_an_effect_is_in_a_set_once_and_the_best_structure_of_it_is_kept():
+    objective = pose({"true.one": 1.4, "true.two": -0.6}, promising=9.0)
+    candidates = [offer("true.one", "decoy.0", 0.3), offer("true.one", "true.one", 0.3), offer("true.two", start=0.3)]
+    found = select_effects(objective, candidates, lambda _: None)
+    singles = {next(iter(each.parameters.names)): each for each in found.sets[1]}
+    assert singles["true.one"].parameters.terms[0].fixed == {"signal": "true.one"}
+    assert len(found.sets[1]) == 2
+    assert names_of(found.sets[2]) == [{"true.one", "true.two"}]
+
+
+def test_only_finalists_are_carried_to_their_end_and_the_best_under_its_own_sensitivities():
+    objective = pose({"true.one": 1.4}, begun_steps=0, finalists=1)
+    found, _ = search(objective)
+    assert found.sets[1][0].cost == pytest.approx(best_cost(objective, ["true.one"]), rel=1e-6)
+    # What was only begun stays at its start.
+    assert all(each.cost > best_cost(objective, each.parameters.names) + 1e-6 for each in found.sets[1][1:])
+    every, _ = search(pose({"true.one": 1.4}, begun_steps=0, finalists=9))
+    assert all(each.cost == pytest.approx(best_cost(objective, each.parameters.names)) for each in every.sets[1])
+
+
+def test_finished_fits_are_ranked_anew():
+    # The first decoy imitates the effect only where the nuisance parameter takes back what else it adds.
+    mixtures = {
+        "decoy.x": {"true.one": 1.0, "nuisance 0": 0.9}, "decoy.y": {"true.one": 0.8, "decoy.0": 0.3},
+    }  # fmt: skip
+    objective = pose({"true.one": 0.5}, mixtures, begun_steps=0)
+    found, _ = search(objective, ("decoy.x", "decoy.y"), largest=1)
+    assert names_of(found.sets[1]) == [{"decoy.x"}, {"decoy.y"}]
+    assert found.sets[1][0].cost == pytest.approx(best_cost(objective, ["decoy.x"]), rel=1e-6)
+
+
+def test_without_candidates_the_calibrated_rig_is_all_there_is():
+    objective = pose({"true.one": 1.4})
+    found, _ = search(objective, ())
+    assert len(found.sets) == 1 and found.calibrated.parameters.terms == ()

@@ -1,0 +1,88 @@
+"""Smoothed spectra against plain loops, responses against known ones, and Wiener's filter against its formula."""
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.spectra import (
+    as_complex,
+    estimate_response,
+    measure_power,
+    randomise_phases,
+    smooth_spectrum,
+    wiener_share,
+)
+
+
+def averaged(power, half_width):
+    """Return the average over at least 4 bins and `half_width` of the frequency to either side, bin by bin."""
+    found = np.empty_like(power)
+    for k in range(power.shape[1]):
+        half = max(4, int(half_width * k))
+        found[:, k] = power[:, max(0, k - half) : k + half + 1].mean(axis=1)
+    return found
+
+
+@pytest.mark.parametrize("half_width", [0.0, 0.15, 0.5])
+def test_a_smoothed_spectrum_is_the_mean_over_a_relative_band(half_width):
+    power = np.random.default_rng(0).exponential(size=(2, 90))
+    np.testing.assert_allclose(smooth_spectrum(power, half_width), averaged(power, half_width), rtol=1e-10)
+
+
+def test_smoothing_leaves_a_constant_and_a_line_away_from_the_ends():
+    line = np.stack([np.full(200, 3.0), np.arange(200.0)])
+    smoothed = smooth_spectrum(line, 0.1)
+    np.testing.assert_allclose(smoothed[0], 3.0)
+    np.testing.assert_allclose(smoothed[1, 4:180], line[1, 4:180])
+
+
+def test_a_power_is_the_smoothed_square_and_never_zero():
+    values = np.random.default_rng(1).standard_normal(60) + 1j * np.random.default_rng(2).standard_normal(60)
+    np.testing.assert_allclose(measure_power(values, 0.15), averaged(np.abs(values[None]) ** 2, 0.15)[0])
+    assert np.all(measure_power(np.zeros(20, dtype=complex), 0.15) > 0.0)
+    assert np.all(measure_power(np.zeros(20, dtype=complex), 0.15) < 1e-20)
+
+
+def test_a_response_is_found_with_its_sign_and_phase():
+    rng = np.random.default_rng(3)
+    cause = rng.standard_normal(400) + 1j * rng.standard_normal(400)
+    responses = np.array([[2.0 - 1.0j], [-0.5j]])
+    found = estimate_response(responses * cause, cause, 0.15)
+    np.testing.assert_allclose(found, np.broadcast_to(responses, found.shape), rtol=1e-9)
+
+
+def test_noise_of_the_outputs_averages_out_of_a_response():
+    rng = np.random.default_rng(4)
+    cause, noise = (rng.standard_normal(6000) + 1j * rng.standard_normal(6000) for _ in range(2))
+    found = estimate_response((3.0 * cause + noise)[None], cause, 0.15)[0]
+    # The mean over n bins leaves the share 1/n of the noise's power: n = 0.3 k + 1.
+    k = np.arange(3000, 5000)
+    spread = np.sqrt(np.mean(np.abs(found[k] - 3.0) ** 2))
+    assert spread == pytest.approx(np.sqrt(np.mean(1.0 / (0.3 * k + 1.0))), rel=0.6)
+    # Averages first and a quotient then; a mean of quotients would have no such limit.
+    assert np.abs(found[k] - 3.0).max() < 0.15
+
+
+def test_whitened_numbers_are_real_parts_and_then_imaginary_ones():
+    whitened = np.arange(12.0).reshape(2, 6)
+    expected = np.array([[0 + 3j, 1 + 4j, 2 + 5j], [6 + 9j, 7 + 10j, 8 + 11j]])
+    np.testing.assert_array_equal(as_complex(whitened), expected)
+
+
+def test_wieners_share_is_signal_over_signal_and_noise():
+    # Whitened noise has the power 2, of real and imaginary part; a signal of the power 6 is then 3/4 of both.
+    np.testing.assert_allclose(wiener_share(np.array([8.0, 4.0, 2.0, 1.0])), [0.75, 0.5, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("samples", [100, 101])
+def test_random_phases_keep_the_spectrum_and_change_the_signal(samples):
+    signal = np.random.default_rng(5).standard_normal(samples)
+    drawn = randomise_phases(signal, np.random.default_rng(6))
+    assert drawn.shape == signal.shape
+    inner = slice(1, -1 if samples % 2 == 0 else None)
+    np.testing.assert_allclose(np.abs(np.fft.rfft(drawn))[inner], np.abs(np.fft.rfft(signal))[inner], rtol=1e-9)
+    assert abs(np.corrcoef(drawn, signal)[0, 1]) < 0.5
+    np.testing.assert_array_equal(drawn, randomise_phases(signal, np.random.default_rng(6)))
+    phases = np.angle(np.fft.rfft(randomise_phases(np.eye(1, 4001)[0], np.random.default_rng(7)))[1:-1])
+    # Over the whole circle, so that their mean direction vanishes.
+    assert abs(np.mean(np.exp(1j * phases))) < 0.1
+    assert phases.max() > 3.0 and phases.min() < -3.0
