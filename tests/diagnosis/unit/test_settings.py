@@ -6,9 +6,10 @@ import pytest
 
 from seatsim.diagnosis.settings.designing import DesignSettings
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.fitting import FitSettings, NoiseSettings, SelectionSettings
+from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings
 from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings, ReconstructionSettings
+from seatsim.diagnosis.settings.noise_model import NoiseSettings
 from seatsim.diagnosis.settings.threshold import Threshold, list_thresholds
 
 GROUPS = (
