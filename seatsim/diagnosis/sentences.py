@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from seatsim.diagnosis.result import Cause, Diagnosis, Estimate
 from seatsim.effects.base import EFFECTS
+from seatsim.schema.text import join_names
 
 
 def write_answer(diagnosis: Diagnosis) -> str:
@@ -17,7 +18,7 @@ def write_answer(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.verdict == "unknown":
         if diagnosis.selected:
-            rest = f" beside {_listed(diagnosis.selected)}: {gap.after.overall:.3f} of {size} remain"
+            rest = f" beside {join_names(diagnosis.selected)}: {gap.after.overall:.3f} of {size} remain"
         else:
             rest = f": {size} nominal, noise {gap.floor.overall:.3f} (in standard deviations)"
         where = f"Something in the {_unexplained(diagnosis)} that no effect of the library explains makes the gap"
@@ -35,7 +36,7 @@ def _alike(diagnosis: Diagnosis) -> str:
     """Return which effects could stand for those that were selected."""
     what = "it" if len(diagnosis.selected) == 1 else "{}"
     said = [
-        f"; these data cannot tell {what.format(group[0])} from {_listed(group[1:])}"
+        f"; these data cannot tell {what.format(group[0])} from {join_names(group[1:])}"
         for group in diagnosis.indistinguishable
     ]
     return "".join(said)
@@ -63,7 +64,3 @@ def _values(cause: Cause) -> str:
         else:
             parts.append(str(found))
     return ", ".join(parts)
-
-
-def _listed(names: list[str]) -> str:
-    return " and ".join(names)

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.plots.diagnosis.answer import Key, plot_gaps, read_gap, select_stages
-from seatsim.report.formatting import format_percent, format_sentence, join_names
+from seatsim.report.formatting import format_percent, format_sentence
 from seatsim.report.html import Html, embed_pictures, join, make_table, tag
+from seatsim.schema.text import join_names
 
 VERDICTS = {
     "none": ("✓", "No material gap", "Nothing to explain gap beyond noise and the tolerance of the parameters."),

@@ -13,9 +13,9 @@ from seatsim.report.formatting import (
     format_percent,
     format_sentence,
     format_value,
-    join_names,
 )
 from seatsim.report.html import Html, embed_pictures, join, make_list, make_table, tag
+from seatsim.schema.text import join_names
 
 LIKELY = 0.05
 """Probability from which on the parameters of a cause are printed."""

@@ -6,7 +6,6 @@ import inspect
 import json
 import math
 import re
-from collections.abc import Sequence
 
 from seatsim.diagnosis.result import Estimate
 from seatsim.plots import labels
@@ -48,12 +47,6 @@ def format_sentence(text: str) -> str:
     first = text.split()[0]
     start = text if re.search(r"[._\d]", first.rstrip(".,:;")) else text[0].upper() + text[1:]
     return start if start[-1] in ".!?" else f"{start}."
-
-
-def join_names(names: Sequence[str], last: str = "and") -> str:
-    """Return one or more names as they stand in a sentence: `a, b and c`."""
-    *first, end = names
-    return f"{', '.join(first)} {last} {end}" if first else end
 
 
 def describe_effect(effect: str) -> str:

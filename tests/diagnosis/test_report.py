@@ -40,9 +40,9 @@ from seatsim.report.formatting import (
     format_percent,
     format_sentence,
     format_value,
-    join_names,
 )
 from seatsim.report.html import Html, join, make_list, make_table, tag
+from seatsim.schema.text import join_names
 
 RATE = 500.0
 SEAT = {

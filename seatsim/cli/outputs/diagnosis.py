@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
 
 from rich.table import Table
 from ruamel.yaml import YAML
 
+from seatsim.blind.processes import run_jobs
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.report import write_report
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import plain, write_json, write_whole
-from seatsim.schema.modules import use_all, used_files
 
 PROCESSES = 2
 """Recordings of a set that are diagnosed at once."""
@@ -81,15 +79,8 @@ def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
     cases = sorted(path.parent for path in folder.glob("case-*/recording.yaml"))
     open_cases = [case for case in cases if not (case / "diagnosis" / "diagnosis.json").exists()]
     count(len(cases) - len(open_cases), len(cases))
-    with ProcessPoolExecutor(PROCESSES, get_context("spawn"), initializer=use_all, initargs=(used_files(),)) as pool:
-        futures = [pool.submit(_diagnose_one, case) for case in open_cases]
-        try:
-            for done, future in enumerate(as_completed(futures), len(cases) - len(open_cases) + 1):
-                future.result()
-                count(done, len(cases))
-        except KeyboardInterrupt:
-            pool.shutdown(cancel_futures=True)
-            raise
+    jobs, kept = [(case,) for case in open_cases], len(cases) - len(open_cases)
+    run_jobs(_diagnose_one, jobs, PROCESSES, lambda done, _: count(kept + done, len(cases)))
 
 
 def _diagnose_one(case: Path) -> None:

@@ -23,6 +23,8 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import maximum_bipartite_matching
 
+from seatsim.schema.text import join_names
+
 
 class Equation(NamedTuple):
     """An equation of a rig: the unknowns in it, and whose fault enters it (None: it cannot be wrong)."""
@@ -121,7 +123,8 @@ def describe_missing_sensors(rig: str, channels: Collection[str]) -> list[str]:
     sentences = [_loss(rig, channels, groups, name) for name in FOR_RIG[rig] if not _is_recorded(name, channels)]
     everything = {*channels, *(name for name in FOR_RIG[rig] if not _is_recorded(name, channels))}
     sentences += [
-        f"{_listed(group)} cannot be told apart by any channel: only the form of an effect, or a repeat of a run, can"
+        f"{join_names(group)} cannot be told apart by any channel:"
+        " only the form of an effect, or a repeat of a run, can"
         for group in find_isolable_groups(rig, everything)
         if len(group) > 1
     ]
@@ -176,16 +179,13 @@ def _loss(rig: str, channels: Collection[str], groups: list[list[str]], absent: 
     unseen = [block for block in itertools.chain(*better) if not any(block in group for group in groups)]
     parts = [[[b for b in group if b in new] for new in better] for group in groups]
     split = [[part for part in found if part] for found in parts]
-    costs = [f"{_listed([_named(part) for part in found])} cannot be told apart" for found in split if len(found) > 1]
-    costs += [f"{_listed(unseen)} cannot be judged"] if unseen else []
-    return f"without {absent}, {_listed(costs)}: {REMEDIES[absent]}" if costs else ""
+    costs = [
+        f"{join_names([_named(part) for part in found])} cannot be told apart" for found in split if len(found) > 1
+    ]
+    costs += [f"{join_names(unseen)} cannot be judged"] if unseen else []
+    return f"without {absent}, {join_names(costs)}: {REMEDIES[absent]}" if costs else ""
 
 
 def _named(part: list[str]) -> str:
     """Return the blocks of a part; `floor` goes without saying beside the suspension."""
     return " or ".join(block for block in part if block != "floor" or "suspension" not in part)
-
-
-def _listed(names: Collection[str]) -> str:
-    *first, last = names
-    return f"{', '.join(first)} and {last}" if first else last
