@@ -248,9 +248,3 @@ def test_beside_a_less_likely_unknown_cause_an_effect_is_likelier(rig):
     assert found.unknown == 0.55
     beside = decide_beside_unknown(rig.settings.decision, found, state(rig, {"a.one": 1.0}, 4.0))
     assert beside.probabilities["a.one"] == pytest.approx(0.45)
-
-
-def test_the_probabilities_of_a_decision_are_probabilities(rig):
-    for share in (0.01, 0.1, 0.2, 0.44):
-        found = decide(rig, 10.0, [({"b.two": 0.5}, 10.0 * share), ({"d.four": 1.0}, 10.0 * share)])
-        assert all(0.0 < p < 1.0 for p in [*found.probabilities.values(), found.none, found.unknown])

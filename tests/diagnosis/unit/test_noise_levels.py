@@ -1,0 +1,60 @@
+"""Weights that are the same at all frequencies, and the power of broadband residuals."""
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.noise import measure_broadband, weigh_gap, weigh_uniformly
+from seatsim.diagnosis.problem import normalise_rms_errors
+
+from .noisy import RUNS, draw, mean_squares, pose
+from .toy import NOISE, RATE
+
+
+def test_uniform_weights_are_those_of_white_power():
+    problem = pose()
+    power = {run: np.array([[4.0], [9.0]]) * count for run, count in RUNS.items()}
+    weights = weigh_uniformly(problem, power)
+    assert weights.bins == {"first": 900, "second": 1200}
+    found, count = mean_squares(weights, draw(problem, np.array([2.0, 3.0])))
+    np.testing.assert_allclose(found, 1.0, atol=3.5 * np.sqrt(2.0 / count))
+    assert np.all(np.ptp(weights.weights["first"], axis=1) == 0.0)
+
+
+def test_weights_by_the_gap_give_every_channel_the_same_share_of_it():
+    problem = pose()
+    residuals = draw(problem, 0.3 * problem.spread)
+    weights = weigh_gap(problem, residuals)
+    # 10 % of the gap counts as noise, so that the gap itself has the mean square 1 / 0.1^2.
+    found, _ = mean_squares(weights, residuals)
+    np.testing.assert_allclose(found, 100.0, rtol=0.06)
+    level = 0.1 * np.sqrt(np.mean(normalise_rms_errors(problem, residuals) ** 2)) * problem.spread
+    np.testing.assert_allclose(weights.weights["first"][:, 0], np.sqrt(2.0 / 1800) / level)
+
+
+def test_broadband_power_is_what_exceeds_the_stated_noise_above_all_compared():
+    problem = pose({"highest_frequency": 40.0})
+    found = measure_broadband(problem, draw(problem, np.array([3.0 * NOISE[0], NOISE[1]])))
+    for run, count in RUNS.items():
+        assert found[run].shape == (2, 1)
+        assert found[run][0, 0] == pytest.approx(8.0 * NOISE[0] ** 2 * count, rel=0.15)
+        assert found[run][1, 0] == 0.0
+
+
+def test_broadband_power_begins_at_a_factor_of_the_stated_noise():
+    problem = pose({"highest_frequency": 40.0})
+    # Powers of 1.6 and 2.6 of the stated one; the settings take from 2 on for broadband.
+    found = measure_broadband(problem, draw(problem, np.sqrt([1.6, 2.6]) * NOISE))
+    assert all(values[0, 0] == 0.0 and values[1, 0] > 0.0 for values in found.values())
+
+
+def test_content_that_is_compared_is_not_broadband():
+    problem, low = pose({"highest_frequency": 40.0}), {}
+    for run, values in draw(problem, 100.0 * NOISE).items():
+        spectrum = np.fft.rfft(values)
+        spectrum[:, np.fft.rfftfreq(values.shape[1], 1.0 / RATE) > 40.0] = 0.0
+        low[run] = np.fft.irfft(spectrum, values.shape[1])
+    found = measure_broadband(problem, low)
+    assert all(np.all(values == 0.0) for values in found.values())
+    # With all frequencies compared there is nothing to measure it on.
+    every = measure_broadband(pose({"highest_frequency": 100.0}), draw(problem, 100.0 * NOISE))
+    assert all(values.shape == (2, 1) and np.all(values == 0.0) for values in every.values())
