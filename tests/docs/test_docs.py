@@ -33,7 +33,7 @@ def test_every_setting_of_a_diagnosis_is_stated_on_its_page():
     for group, settings in DiagnosisSettings()._asdict().items():
         section = text.partition(f"## `{group}`\n")[2].partition("\n## ")[0]
         assert re.findall(r"^\| `(\w+)`", section, re.MULTILINE) == list(settings._fields)
-        assert not re.search(r"\|\s*\|", section), f"an empty cell in {group}"
+        assert not re.search(r"\| *\|", section), f"an empty cell in {group}"
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
