@@ -92,7 +92,7 @@ def _notes(tested: DamperSpecimen, chosen: SweepSettings) -> Iterator[str]:
     if max(chosen.currents) > specification.max_current:
         yield f"currents reach {max(chosen.currents):g} A; the model holds up to {specification.max_current:g} A"
     if max(chosen.currents) > tested.coil.max_current:
-        yield f"the coil carries {tested.coil.max_current:g} A at most: no response to a larger current is told"
+        yield f"the coil carries {tested.coil.max_current:g} A at most: no response to a larger current is stated"
     low, high = specification.temperatures
     if any(tested.factors[:3]) and not low <= min(chosen.temperatures) <= max(chosen.temperatures) <= high:
         yield f"the model's temperatures are {low:g} to {high:g} degC"

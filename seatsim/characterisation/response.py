@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 SHARES = (0.05, 0.90, 0.95)
-"""Shares of the change whose instants are told."""
+"""Shares of the change whose instants are stated."""
 RESAMPLES = 200
 """Draws of the steps from which the deviation of t95 is taken: it is then known to some 5 %."""
 SETTLED_BY = 0.1

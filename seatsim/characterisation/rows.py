@@ -19,13 +19,13 @@ Array = NDArray[np.float64]
 COARSE = 16
 """Rows of a cycle below which its peaks and areas are coarse."""
 DISAGREE = 0.05
-"""Difference of the energy over displacement from that over velocity that is told, relative."""
+"""Difference of the energy over displacement from that over velocity from which on a note says so, relative."""
 DRIFT = 0.1
-"""Change of the energy over the cycles that is told, relative to its mean."""
+"""Change of the energy over the cycles from which on a note says so, relative to its mean."""
 UNEVEN = 0.05
-"""Asymmetric part of the motion itself, RMS over that of the motion, that is told."""
+"""Asymmetric part of the motion itself, RMS over that of the motion, from which on a note says so."""
 VARIES = 0.05
-"""Range of a current, over its largest, that is told."""
+"""Range of a current, over its largest, from which on a note says so."""
 MOST_POINTS = 3000
 """Points of the cloud of a record without cycles."""
 

@@ -40,7 +40,7 @@ def main() -> None:
 
 
 def _show_command_with_file(error: BaseException) -> None:
-    """Print this command with `--with FILE`, where it failed for a module whose file lies beside what names it."""
+    """Print this command with `--with FILE`, where a module is missing whose file lies where it is named."""
     cause: BaseException | None = error
     while cause is not None and not isinstance(cause, MissingModuleError):
         cause = cause.__cause__

@@ -13,9 +13,9 @@ from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME
 
 
 def design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
-    """Return a design as a table: gain, norm beside what no controller can go below, certificate, margins, poles.
+    """Return a design as a table: gain, norm and what no controller can go below, certificate, margins, poles.
 
-    The margins beside the disk's are those of the scenario's own plant, coil and controller.
+    The margins in the same row as the disk's are those of the scenario's own plant, coil and controller.
     """
     table = Table(title="H-infinity static output feedback", title_justify="left", show_header=False, box=None)
     proof = design.certificate

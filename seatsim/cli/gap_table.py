@@ -8,7 +8,7 @@ from seatsim.recordings.gap import Gap
 
 
 def gap_table(found: Gap) -> Table:
-    """Return the gap as a table: each channel and the overall figure beside the noise floor."""
+    """Return the gap as a table: each channel and the overall figure, with the noise floor."""
     table = Table(title="gap, in standard deviations of what was measured", title_justify="left")
     for heading in ("channel", "gap", "noise floor"):
         table.add_column(heading, justify="left" if heading == "channel" else "right")

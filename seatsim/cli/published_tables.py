@@ -1,4 +1,4 @@
-"""Published figures of a scenario file beside those of its runs."""
+"""Published figures of a scenario file next to those of its runs."""
 
 from __future__ import annotations
 

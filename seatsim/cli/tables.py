@@ -52,7 +52,7 @@ def comparison(runs: Sequence[Run], title: str) -> Table:
 
 
 def distances(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Table:
-    """Return the table of how far each run with a bracket is from its two ends, at the run's travel."""
+    """Return the table of how far each run with performance bounds is from both of them, at the run's travel."""
     chosen = [run for run in runs if run.scenario.rig in brackets]
     keys = _label_keys(chosen)
     table = _headed("Distance from the clairvoyant bracket, at each run's travel", keys)

@@ -39,7 +39,7 @@ def wrote_one(path: Path) -> None:
 
 
 def warn(texts: Iterable[str], kind: str = "note") -> None:
-    """Print what the user has to know beside the result."""
+    """Print what the user has to know about the result."""
     for text in texts:
         err.print(f"{kind}: {text}", style="yellow", markup=False, highlight=False, soft_wrap=True)
 

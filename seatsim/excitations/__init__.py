@@ -1,4 +1,4 @@
-"""What shakes the floor: random roads, machine spectra, tones, bumps and measured tables."""
+"""What excites the floor: random roads, machine spectra, tones, bumps and measured tables."""
 
 from seatsim.excitations.base import Excitation, Floor, excitation
 from seatsim.excitations.bumps import Bumps

@@ -1,4 +1,4 @@
-"""Keys that several excitations share: stated once, read alike by YAML, docs and errors."""
+"""Keys that several excitations share: stated once, read in the same way by YAML, docs and errors."""
 
 from __future__ import annotations
 

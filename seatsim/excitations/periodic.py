@@ -104,7 +104,7 @@ class Chirp(NamedTuple):
     amplitude: Amplitude
     duration: Duration
     quantity: Quantity = "displacement"
-    sweep: Annotated[Literal["linear", "logarithmic"], choice("course of the frequency in time")] = "logarithmic"
+    sweep: Annotated[Literal["linear", "logarithmic"], choice("how the frequency changes in time")] = "logarithmic"
 
     def floor(self, step: float, seed: int) -> Floor:
         """Return the motion of the floor; `seed` plays no part.

@@ -44,5 +44,5 @@ def assess_agreement(measured: Array, predicted: Array) -> Agreement:
 
 
 def mean_agreement(each: Sequence[Agreement]) -> Agreement:
-    """Return the mean of every figure over records, each of which counts alike."""
+    """Return the mean of every figure over records, each of which has the same weight."""
     return Agreement(*(float(np.mean(values)) for values in zip(*each, strict=True)))

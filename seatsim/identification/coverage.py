@@ -27,7 +27,7 @@ SAME_CURRENT = 4
 class VisitedRanges(NamedTuple):
     """The ranges that records visit, each with its least and greatest value, in SI units, degC and Hz.
 
-    steady_currents: currents that were held over a record. temperature: None where it was not recorded. frequency:
+    steady_currents: currents that were constant over a record. temperature: None where it was not recorded. frequency:
     where nine tenths of the power of the velocity lie. speeds: share of time by the upper end of each tenth of the
     largest speed.
     """

@@ -98,7 +98,7 @@ def correlation_length(residuals: Array) -> float:
 
 def _invert_normal_matrix(jacobian: Array) -> Array:
     """Return (J' J)^-1, large but finite in directions that the data say nothing of."""
-    # Columns of equal length: the eigenvalues then tell how alike columns are, and not how their units differ.
+    # Columns of equal length: the eigenvalues then show how collinear columns are, and not how their units differ.
     scale = np.sqrt(np.sum(jacobian**2, axis=0))
     scale = np.maximum(scale, LEAST * (float(np.max(scale)) or 1.0))
     value, basis = np.linalg.eigh((jacobian / scale).T @ (jacobian / scale))

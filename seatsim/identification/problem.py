@@ -62,7 +62,7 @@ class IdentificationProblem(NamedTuple):
 
     @property
     def bench_names(self) -> list[str]:
-        """Names of what is free beside the damper."""
+        """Names of what is free in addition to the damper."""
         warm = [*(f"temperature_factors.{name}" for name in TemperatureFactors._fields[:3]), "bench.offset_per_kelvin"]
         coil = ["actuator.rate", "actuator.rate_fall"] if self.fits_coil else []
         return coil + (warm if self.reference is not None else [])
@@ -116,7 +116,7 @@ class IdentificationProblem(NamedTuple):
 
 
 def weight_records(records: Sequence[BenchRecord], inputs: Sequence[RecordInputs]) -> list[float]:
-    """Return the factors `1 / (std(y) sqrt(N))` that make every record count alike."""
+    """Return the factors `1 / (std(y) sqrt(N))` that give every record the same weight."""
     spreads = np.array([np.std(record.force) for record in records])
     least = LEAST_SPREAD * float(np.max(spreads))
     counted = [len(each.force) - each.counted for each in inputs]

@@ -84,7 +84,7 @@ def _measure_scales(records: Sequence[BenchRecord]) -> Scales:
 
 
 def _count_levels(records: Sequence[BenchRecord]) -> int | None:
-    """Return the number of currents that are held, None where the current varies within a record."""
+    """Return the number of constant currents, None where the current varies within a record."""
     if any(np.ptp(record.current) > 0.0 for record in records):
         return None
     return len({round(record.mean_current, 3) for record in records})

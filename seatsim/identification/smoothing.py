@@ -1,4 +1,4 @@
-"""Records whose owner smoothed them by a moving average: the motion sharpened again, predictions smoothed alike."""
+"""Records that their owner smoothed by a moving average: motion sharpened again, predictions smoothed as they were."""
 
 from __future__ import annotations
 

@@ -135,7 +135,7 @@ def _inverse(values: object, source: Source) -> Inverse:
 
 
 def _resolve_path(own: dict[str, object], key: str, source: Source) -> None:
-    """Let a file that is named under a key be beside the scenario."""
+    """Take a file that is named under a key from the folder of the scenario."""
     name = own.get(key)
     if isinstance(name, str):
         own[key] = str(source.path.parent / name)

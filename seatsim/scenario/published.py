@@ -1,4 +1,4 @@
-"""Published figures in a scenario file, beside which the table puts its own.
+"""Published figures in a scenario file, next to which the table puts its own.
 
     published:
       source: where the figures stand

@@ -43,7 +43,7 @@ class DamperChoice:
 
 @dataclass(frozen=True)
 class Inverse:
-    """The damper that the inverse believes in, at the temperature in degC it believes in (None: the measured one)."""
+    """The damper that the inverse assumes, at the temperature in degC that it assumes (None: the measured one)."""
 
     damper: DamperChoice
     temperature: float | None
@@ -91,7 +91,7 @@ class Scenario:
 
     @property
     def rig(self) -> str:
-        """What is shaken and how, without its control: runs of one rig are alternatives to each other."""
+        """Rig and excitation without the control: runs of one rig are alternatives to each other."""
         damper, drive = (self.damper, self.coil.max_current, self.temperature), (self.excitation, self.seed, self.start)
         return repr((self.plant, damper, drive, self.effects, self.solver))
 

@@ -23,7 +23,7 @@ class _Named(Protocol):
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
-    """Let `write` fill a file beside `path`, then put it in place at once; nothing stays where it fails.
+    """Let `write` fill a temporary file next to `path`, then put it in place at once; nothing stays where it fails.
 
     Raises:
         InputError: the folder or the file cannot be written.

@@ -3,7 +3,7 @@
 A plug-in is a module or package that an entry point of the group ``seatsim.plugins`` names; importing it and its
 submodules registers its classes. Files are named on the command line or in Python, and one that nobody named is never
 run, wherever it lies. A scenario or a recording from a stranger may say ``model: powerlaw:PowerLaw``; whether the
-``powerlaw.py`` beside it can be trusted is for the user to say, with ``--with powerlaw.py`` or
+``powerlaw.py`` in its folder can be trusted is for the user to say, with ``--with powerlaw.py`` or
 ``seatsim.use("powerlaw.py")``. No folder is put on the import path for it.
 """
 
@@ -183,7 +183,7 @@ def _find_installed(name: str) -> ModuleSpec | None:
 
 
 def _failure(error: Exception, shown: Path, path: Path) -> str:
-    """Say in which line of the file its import failed, and how a module beside it is named."""
+    """Say in which line of the file its import failed, and how a module in its folder is named."""
     lines = [(frame.lineno, frame.line) for frame in traceback.extract_tb(error.__traceback__)
              if frame.filename == str(path)]  # fmt: skip
     if isinstance(error, SyntaxError) and error.filename == str(path):

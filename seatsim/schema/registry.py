@@ -5,7 +5,7 @@ submodules) runs the decorators that register its classes. A class that is in no
 ``"package.module:Class"``; it is registered by the same decorator when its module is imported, which is installed or
 one of the files in use (`seatsim.schema.modules`).
 
-Each kind of part has a `Registry` beside the definition of what such a part is: `DAMPERS` in `seatsim.dampers.base`,
+Each kind of part has a `Registry` in the module that defines what such a part is: `DAMPERS` in `seatsim.dampers.base`,
 `EFFECTS` in `seatsim.effects.base`, `EXCITATIONS` in `seatsim.excitations.base`, `LAWS` in `seatsim.rig.control`.
 """
 

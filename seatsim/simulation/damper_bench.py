@@ -123,7 +123,7 @@ def bench_force(
     if x.ndim != 1 or len(x) % 2 == 0:
         raise InputError(f"a bench needs two samples a step and one more, in one dimension, not {x.shape}")
     try:
-        v, i, scaling = (np.array(np.broadcast_to(a, x.shape), float) for a in (velocity, current, temperature))
+        v, i, degrees = (np.array(np.broadcast_to(a, x.shape), float) for a in (velocity, current, temperature))
     except ValueError as error:
         raise InputError(f"the samples of a bench differ in number: {error}") from error
     out = np.full((len(x) + 1) // 2, math.nan)
@@ -131,7 +131,7 @@ def bench_force(
         specification: DamperSpecification = specification_of(type(damper))
         state, factors = specification.initial if state is None else state, factors or specification.factors
     run = compiled(run_bench, classes_of(damper))
-    reached = run(damper, factors, x, v, i, scaling, state, float(step), MOST_PARTS, TOLERANCE, out)
+    reached = run(damper, factors, x, v, i, degrees, state, float(step), MOST_PARTS, TOLERANCE, out)
     if reached < len(out) or not np.all(np.isfinite(out)):
         raise RunError(f"the force of {type(damper).__name__} is not finite after {reached * step:.3g} s")
     return out

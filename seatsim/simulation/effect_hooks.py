@@ -48,7 +48,7 @@ class ChangesTemperature(Protocol):
 
 
 class PushesFrame(Protocol):
-    """An effect that pushes the frame."""
+    """An effect that exerts a force on the frame."""
 
     def frame_force(self, time: Array, seed: int) -> Array:
         """Return the force in N at each time in s, shape (N,)."""

@@ -1,4 +1,4 @@
-"""What drives a rig: plain values, whether they were measured, designed or disturbed on purpose."""
+"""What drives a rig, as values, whether they were measured, designed or disturbed on purpose."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class SeatInputs(NamedTuple):
 
     floor: motion of the floor with the command or current of the coil and the damper's temperature, sampled every step
         of the simulation. interval: seconds between the rows at which the sensors are read, a whole number of steps.
-        forces: on frame and driver, beside those of the effects.
+        forces: on frame and driver, in addition to those of the effects.
     """
 
     floor: Floor

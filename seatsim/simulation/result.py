@@ -74,7 +74,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Result:
-    """The runs of one or several scenarios, and the brackets of their rigs (by `Scenario.rig`) where asked for."""
+    """The runs of one or several scenarios, and performance bounds by rig (`Scenario.rig`) where asked for."""
 
     runs: Sequence[Run]
     brackets: Mapping[str, Any] = field(default_factory=dict)

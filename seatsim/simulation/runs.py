@@ -47,7 +47,7 @@ def run_one(scenario: Scenario) -> Run:
 def run_many(
     scenarios: list[Scenario], done: Callable[[Scenario], None]
 ) -> Iterator[tuple[Scenario, Run | RunError | SynthesisError]]:
-    """Run scenarios on all processors and yield each with its run or its failure, in order; `done` is told of each.
+    """Run scenarios on all processors and yield each with its run or its failure, in order; `done` is called with each.
 
     Raises:
         InputError: a scenario turned out to be wrong.

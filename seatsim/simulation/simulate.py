@@ -63,7 +63,7 @@ class History:
 def simulate(
     scenario: Scenario, floor: Floor | None = None, forces: Forces | None = None, carry_all_effects: bool = False
 ) -> History:
-    """Simulate one run, shaken as the scenario's excitation says, or by a `floor` that is at hand.
+    """Simulate one run, excited as the scenario says, or by a `floor` that is at hand.
 
     `forces` are added to those of the effects. With `carry_all_effects` the loop is compiled with every registered
     effect, off where it is not chosen, so that runs with different effects share it.
@@ -168,11 +168,19 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) 
         flowing = undo_reading(effects, floor.coil_current, "coil_current", step)
     start = float(flowing[0]) if flowing.size else 0.0
     prescribed = flowing if replays and floor.command is None else NONE
-    push = sum_frame_forces(effects, floor.time, scenario.seed)
+    frame_force = sum_frame_forces(effects, floor.time, scenario.seed)
     if len(forces.frame):
-        push = push + forces.frame if len(push) else forces.frame
+        frame_force = frame_force + forces.frame if len(frame_force) else forces.frame
     return LoopInputs(
-        acceleration, floor.velocity, temperature, command, prescribed, push, forces.driver, start, *scenario.start
+        acceleration,
+        floor.velocity,
+        temperature,
+        command,
+        prescribed,
+        frame_force,
+        forces.driver,
+        start,
+        *scenario.start,
     )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from seatsim.cli.app import app
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCH = (
@@ -17,12 +18,22 @@ BENCH = (
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 
 
-def test_the_reference_is_up_to_date():
+@pytest.mark.parametrize("name", ["reference", "settings"])
+def test_built_pages_are_up_to_date(name):
     # In a process of its own: other tests register models that are none of the package's.
     code = "import runpy, sys; sys.stdout.write(runpy.run_path(sys.argv[1])['page']())"
-    builder = ROOT / "docs" / "build_reference.py"
+    builder = ROOT / "docs" / f"build_{name}.py"
     done = subprocess.run([sys.executable, "-c", code, str(builder)], capture_output=True, encoding="utf-8", check=True)
-    assert (ROOT / "docs" / "reference.md").read_text(encoding="utf-8") == done.stdout, f"run python {builder}"
+    assert (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8") == done.stdout, f"run python {builder}"
+
+
+def test_every_setting_of_a_diagnosis_is_stated_on_its_page():
+    """A field without unit and meaning would be missing from the table in silence."""
+    text = (ROOT / "docs" / "settings.md").read_text(encoding="utf-8")
+    for group, settings in DiagnosisSettings()._asdict().items():
+        section = text.partition(f"## `{group}`\n")[2].partition("\n## ")[0]
+        assert re.findall(r"^\| `(\w+)`", section, re.MULTILINE) == list(settings._fields)
+        assert not re.search(r"\| *\|", section), f"an empty cell in {group}"
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -56,10 +67,12 @@ def test_every_command_and_option_has_an_example():
 
 # In a process of its own, where what the examples register stays.
 CODE = """
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 from seatsim import load, load_recording, use
-from seatsim.diagnosis.candidates import candidates
-from seatsim.diagnosis.problem import problem
+from seatsim.diagnosis.candidates import list_candidates
+from seatsim.diagnosis.problem import pose_problem
 from seatsim.effects.base import off
 from seatsim.kernel.rig import Disturbance, Rig, derivative
 from seatsim.rig.state import MECHANICAL
@@ -83,7 +96,9 @@ def rates(*effects):
 change = rates(*scenario.effects)[1] - rates()[1]
 assert np.isclose(change, -350.0 * 0.3**2 / scenario.plant.frame_mass)
 assert rates(off(AirDrag)) == rates()
-found = [candidate for candidate in candidates(problem(load_recording(RECORDING))) if candidate.cls is AirDrag]
+with ThreadPoolExecutor() as pool:
+    candidates = list_candidates(pose_problem(load_recording(RECORDING), pool))
+found = [candidate for candidate in candidates if candidate.cls is AirDrag]
 assert [(candidate.effect, candidate.start, candidate.high) for candidate in found] == [
     ("suspension.air_drag", (200.0,), (1e5,))
 ]

@@ -57,7 +57,7 @@ def characterise(
 
 def identify(
     data: Annotated[Path, typer.Argument(help="A bench table, or a folder of them.", show_default=False)],
-    model: Annotated[str, typer.Option("--model", help="A damper model, or all for the league.", show_default=False)],
+    model: Annotated[str, typer.Option("--model", help="A damper model, or all to compare them.", show_default=False)],
     test: Annotated[
         list[str] | None, typer.Option("--test", metavar="GLOB", help="Hold out the files whose names match.")
     ] = None,
@@ -79,12 +79,12 @@ def identify(
     out_folder: Out = None,
     own_code: OwnCode = None,
 ) -> None:
-    """Fit a damper model to bench records and judge it on records held out; or every model, as a league."""
+    """Fit a damper model, or every model, to bench records and assess it on records held out."""
     from seatsim.identification.assessment import load_prediction_data
     from seatsim.identification.settings import IdentificationSettings
     from seatsim.recordings.bench_tables import load_bench
 
-    # That each value is a number is checked beside the bounds of its field, once the model is known.
+    # That each value is a number is checked with the bounds of its field, once the model is known.
     fixed = cast("Mapping[str, float]", pairs(fix, "--fix", "v_ref=0.005"))
     request = IdentificationSettings(tuple(test or ()), test_fraction, fixed, ignore_temperature, seed)
     folder = out_folder or Path("out") / f"identify-{_title(data)}-{model.rpartition(':')[2]}"

@@ -12,7 +12,7 @@ from seatsim.cli.terminal import out, say, show_progress, warn, wrote, wrote_one
 
 
 def gap(scenario: OneScenario, recording: Path, out_folder: Out = None, own_code: OwnCode = None) -> None:
-    """Replay a scenario against a recording and print the gap beside the noise floor."""
+    """Replay a scenario against a recording and print the gap with the noise floor."""
     from seatsim.cli.gap_table import gap_table
     from seatsim.recordings.gap import gap as find_gap
     from seatsim.schema.files import write_json

@@ -76,7 +76,7 @@ def make_tables(found: Characterisation) -> list[Table]:
 
 
 def collect_remarks(found: Characterisation) -> list[str]:
-    """Return the notes beside the tables in sentences, records with the same note together."""
+    """Return the notes on the tables in sentences, records with the same note together."""
     affected: dict[str, list[str]] = {}
     for row in found.rows:
         for note in row.notes:

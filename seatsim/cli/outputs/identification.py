@@ -91,7 +91,7 @@ def encode_identification(found: Identification) -> dict[str, object]:
 
 
 def _name_records(found: Identification) -> list[str]:
-    """Return the names of the judged records, with the part they had where the name alone does not tell them apart."""
+    """Return the names of the assessed records, with the part they had where names alone are ambiguous."""
     names = [each.record.name for each in found.assessments]
     full = [
         f"{name} ({each.part})" if names.count(name) > 1 else name
@@ -131,7 +131,7 @@ def write_league(places: Sequence[BenchmarkEntry], folder: Path) -> Path:
 
 
 def make_league_table(places: Sequence[BenchmarkEntry]) -> Table:
-    """Return the league as a table."""
+    """Return the benchmark of models as a table."""
     table = _make_table("league", ("model", "train [%]", "test [%]", "parameters", "ns a step", "BIC", "s"))
     for place in places:
         if place.failed:

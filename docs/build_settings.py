@@ -1,0 +1,59 @@
+"""Write `settings.md`: every threshold of a diagnosis, as `seatsim.diagnosis.settings` states it."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator
+from pathlib import Path
+
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings.threshold import Settings, list_thresholds
+
+PAGE = Path(__file__).with_name("settings.md")
+BAR = r"\|"
+HEAD = """# Settings of a diagnosis
+
+Every threshold on which a diagnosis rests: a frozen value with its unit and meaning, what is lost where it is raised or
+lowered, and how it was chosen. Built by `python docs/build_settings.py` from `seatsim/diagnosis/settings`. The stages
+that the groups belong to are described in [Diagnosis](diagnosis.md), their symbols in the
+[nomenclature](nomenclature.md).
+
+A diagnosis with another value is asked for in Python; the command line keeps to the values below:
+
+<!-- not run -->
+```python
+import seatsim
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+
+usual = DiagnosisSettings()
+stricter = usual._replace(decision=usual.decision._replace(explained=0.06))
+diagnosis = seatsim.diagnose("recording_folder", settings=stricter)
+```
+"""
+
+
+def show(value: object) -> str:
+    """Return a value as a table shows it: numbers short, several of them in a row."""
+    if isinstance(value, tuple):
+        return ", ".join(show(each) for each in value)
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def tables() -> Iterator[str]:
+    """Yield a section for each group of settings."""
+    for group, settings in DiagnosisSettings()._asdict().items():
+        cls: type[Settings] = type(settings)
+        yield f"\n## `{group}`\n\n{inspect.getdoc(cls)}\n"
+        yield "| name | value | unit | meaning | what it trades off | how it was chosen |\n|---|---|---|---|---|---|"
+        for name, threshold in list_thresholds(cls):
+            cells = [f"`{name}`", show(getattr(settings, name)), *threshold]
+            yield f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |"
+
+
+def page() -> str:
+    """Return the text of the page."""
+    return HEAD + "\n".join(tables()) + "\n"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

@@ -1,0 +1,112 @@
+"""The page on the architecture draws the layers that the import contracts hold, and names what exists."""
+
+import re
+import tomllib
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+CONTRACTS = {
+    contract["name"]: contract
+    for contract in tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
+        "contracts"
+    ]
+}
+DIAGRAMS = dict(re.findall(r"<!-- contract: (.+?) -->\n```text\n(.*?)```", PAGE, re.DOTALL))
+HOUSE = "values flow one way through the house"
+DIAGNOSIS = "a recording passes the stages of the diagnosis one way"
+MOST_ROOMS = 12
+NAMES = sorted(set(re.findall(r"`((?:seatsim|controllers)(?:\.\w+)+)`", PAGE)) - {"seatsim.plugins"})
+PATHS = sorted(set(re.findall(r"`((?:seatsim|controllers|benchmarks|tests|docs)/[\w/.]+)`", PAGE)))
+
+
+def layers_of(name):
+    """Return the layers of a contract from the top, each as the names of its members without the container."""
+    containers = CONTRACTS[name].get("containers", ["seatsim"])
+    return [
+        [member.strip().removeprefix(f"{containers[0]}.") for member in layer.split("|")]
+        for layer in CONTRACTS[name]["layers"]
+    ]
+
+
+def drawn(name):
+    """Return the layers of a diagram; each line is the members, two spaces at least, and a sentence on them."""
+    lines = [re.split(r" {2,}", line, maxsplit=1) for line in DIAGRAMS[name].splitlines()]
+    assert all(len(line) == 2 and line[1] for line in lines), "a layer has no sentence"
+    return [[member.strip() for member in line[0].split(" | ")] for line in lines]
+
+
+def inside(container):
+    """Return the names of the contracts that layer the inside of a package, or of one within it."""
+    return [
+        name for name, each in CONTRACTS.items() for held in each.get("containers", ()) if held.startswith(container)
+    ]
+
+
+@pytest.mark.parametrize("name", DIAGRAMS)
+def test_a_diagram_is_its_contract(name):
+    assert drawn(name) == layers_of(name)
+
+
+def test_the_house_and_every_contract_of_the_diagnosis_are_drawn():
+    assert {HOUSE, *inside("seatsim.diagnosis")} <= set(DIAGRAMS)
+    assert len(inside("seatsim.diagnosis")) >= 3
+
+
+def test_every_package_stands_in_the_diagram():
+    there = {path.parent.name for path in (ROOT / "seatsim").glob("*/__init__.py")}
+    there |= {path.stem for path in (ROOT / "seatsim").glob("*.py")} - {"__init__"}
+    assert {member.partition(".")[0] for layer in drawn(HOUSE) for member in layer} == there
+
+
+def test_a_recording_passes_its_rooms_upwards():
+    rooms = re.findall(r"^\| (\d+)\. `(seatsim[\w.]+)` \| `([\w.]+)`", PAGE, re.MULTILINE)
+    assert [int(number) for number, _, _ in rooms] == list(range(1, len(rooms) + 1))
+    assert len(rooms) <= MOST_ROOMS
+    assert all(called.startswith(f"{room}.") for _, room, called in rooms)
+    heights = [height_of(room) for _, room, _ in rooms]
+    assert heights == sorted(heights), "a room stands below one that a recording passes before it"
+
+
+def height_of(room):
+    """Return how high a room stands: layers from the ground of the house, then from that of the diagnosis."""
+    name = room.removeprefix("seatsim.")
+    part = name.removeprefix("diagnosis.") if name.startswith("diagnosis.") else None
+    return height_in(HOUSE, name if part is None else "diagnosis"), 0 if part is None else height_in(DIAGNOSIS, part)
+
+
+def height_in(contract, member):
+    """Return the layer of a member of a contract, counted from the ground."""
+    return next(k for k, layer in enumerate(reversed(layers_of(contract))) if member in layer)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_is_named_exists(name):
+    """A name is a module, or something in one, or a method or field of a class in one."""
+    parts = name.split(".")
+    for end in range(len(parts), 0, -1):
+        if is_module(parts[:end]):
+            found = import_module(".".join(parts[:end]))
+            break
+    for part in parts[end:]:
+        assert hasattr(found, part), f"{name}: no '{part}' in {found}"
+        found = getattr(found, part)
+
+
+def is_module(parts):
+    """Whether a module or package of this dotted name lies in the repository."""
+    path = ROOT.joinpath(*parts)
+    return path.with_suffix(".py").is_file() or (path / "__init__.py").is_file()
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_paths_exist(path):
+    assert (ROOT / path).exists()
+
+
+def test_the_walks_name_functions():
+    assert len(NAMES) > 60
+    assert len(PATHS) > 10
