@@ -19,7 +19,11 @@ DIAGRAMS = dict(re.findall(r"<!-- contract: (.+?) -->\n```text\n(.*?)```", PAGE,
 HOUSE = "values flow one way through the house"
 DIAGNOSIS = "a recording passes the stages of the diagnosis one way"
 MOST_ROOMS = 12
-NAMES = sorted(set(re.findall(r"`((?:seatsim|controllers)(?:\.\w+)+)`", PAGE)) - {"seatsim.plugins"})
+ENTRY_POINTS = "seatsim.plugins"
+DOTTED = re.compile(r"`((?:seatsim|controllers)(?:\.\w+)+)[`(]")
+# The changelog names what was, too.
+PAGES = [*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
+NAMES = sorted({name for page in PAGES for name in DOTTED.findall(page.read_text(encoding="utf-8"))} - {ENTRY_POINTS})
 PATHS = sorted(set(re.findall(r"`((?:seatsim|controllers|benchmarks|tests|docs)/[\w/.]+)`", PAGE)))
 
 
@@ -108,5 +112,5 @@ def test_paths_exist(path):
 
 
 def test_the_walks_name_functions():
-    assert len(NAMES) > 60
+    assert len(set(DOTTED.findall(PAGE))) > 60
     assert len(PATHS) > 10

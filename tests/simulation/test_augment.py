@@ -49,7 +49,7 @@ class Doubled(NamedTuple):
     def temperature(self, step, values):
         return 2.0 * values + step
 
-    def push(self, time, seed):
+    def frame_force(self, time, seed):
         return time + seed
 
     def reading(self, channel, step, values):
