@@ -28,7 +28,7 @@ def write_answer(diagnosis: Diagnosis) -> str:
     sentence = f"{named}: it takes {credit:.0%} off the gap that refitted parameters leave ({size} to"
     sentence += f" {gap.after.overall:.3f}, noise {gap.floor.overall:.3f})"
     if diagnosis.stochastic:
-        sentence += "; its random course cannot be foretold, so that its share of the gap stays"
+        sentence += "; its random signal cannot be predicted, so that its share of the gap stays"
     return sentence + _alike(diagnosis) + "."
 
 

@@ -124,7 +124,7 @@ def test_shrink_claimed_and_reached(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             raise InputError("cannot be replayed")
         return SimpleNamespace(overall=gaps[scenario.name])
 
-    monkeypatch.setattr("seatsim.recordings.gap.gap", gap)
+    monkeypatch.setattr("seatsim.recordings.gap.measure_gap", gap)
     names = ["a", "b", "c", "d", "e"]
     opened = Sealed(dict.fromkeys(names, ONE), {name: {"run-u.csv.gz": b"unseen"} for name in names}, {})
     verdicts = {

@@ -77,12 +77,12 @@ def _choose(objective: Objective, seen: Sequence[_Verdict], first: str, now: flo
     best = min(seen, key=lambda each: (each.separability <= separated, each.likeness))
     if best.separability <= separated:
         best = max(seen, key=lambda each: each.separability)
-        reason = f"none on the menu separates them: the best, {best.candidate.name}, does so by"
+        reason = f"no candidate experiment separates them: the best, {best.candidate.name}, does so by"
         reason += f" {best.separability:.1f} times the noise only"
         return _propose("none", "none on the menu", first + reason, now, best.likeness)
     candidate = best.candidate
     reason = f"{candidate.text}: they then differ by {best.separability:.0f} times the noise,"
-    reason += f" alikeness {best.likeness:.2f} instead of {now:.2f}"
+    reason += f" likeness {best.likeness:.2f} instead of {now:.2f}"
     kind: Kind = "excitation" if candidate.scenario else "intervention"
     proposal = _propose(kind, candidate.name, first + reason, now, best.likeness)
     return dataclasses.replace(proposal, scenario=_write_scenario(objective.problem, candidate))
