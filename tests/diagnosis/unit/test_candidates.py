@@ -107,6 +107,8 @@ def test_the_first_parameter_keeps_the_fields_bounds_and_shapes_stay_near_their_
     assert held.free == ("limit", "held") and held.low == (0.0, 0.5 / 8.0)
     # The field's own bound is nearer than the reach.
     assert held.high == (1e9, 1.0)
+    sharp = listed["damper.magnetic_saturation"][1]
+    assert sharp.free == ("bend", "sharpness") and sharp.low[1] == 0.5
 
 
 def test_a_parameter_of_both_signs_keeps_the_bounds_of_its_field(listed):
@@ -148,9 +150,11 @@ def test_only_what_grows_towards_off_is_a_limit(listed):
     assert listed["suspension.end_stop"][0].limits == [True, True, False, False]
     assert listed["coil.current_limit"][0].is_limit
     assert not listed["cushion.hardening"][0].is_limit
-    # It is off at a larger speed, but its first parameter is none.
-    turned = next(each for each in listed["damper.asymmetry"] if "speed" in each.free)
-    assert not turned.is_limit
+    # Its share is off at 1, but it is the travel that says how much it acts.
+    shared = listed["damper.preyield_hysteresis"][1]
+    assert shared.free == ("travel", "share") and shared.limits == [False, True] and not shared.is_limit
+    starts = [each.start for each in listed["damper.preyield_hysteresis"] if each.structure == shared.structure]
+    assert starts == [(3e-4, 0.3)]
 
 
 def test_the_natural_size_is_the_size_of_the_start():

@@ -207,6 +207,8 @@ def test_only_finalists_are_carried_to_their_end_and_the_best_under_its_own_sens
     assert found.sets[1][0].cost == pytest.approx(best_cost(objective, ["true.one"]), rel=1e-6)
     # What was only begun stays at its start.
     assert all(each.cost > best_cost(objective, each.parameters.names) + 1e-6 for each in found.sets[1][1:])
+    begun, _ = search(pose({"true.one": 1.4}, begun_steps=0, finalists=0))
+    assert begun.sets[1][0].cost == pytest.approx(best_cost(objective, ["true.one"]), rel=1e-6)
     every, _ = search(pose({"true.one": 1.4}, begun_steps=0, finalists=9))
     assert all(each.cost == pytest.approx(best_cost(objective, each.parameters.names)) for each in every.sets[1])
 
