@@ -128,10 +128,10 @@ def _largest_remainder(problem: DiagnosisProblem, evaluation: Evaluation) -> flo
 
 
 def _list_equivalent(settings: DecisionSettings, selection: Selection, chosen: Evaluation) -> list[Evaluation]:
-    """Return the other sets of as many effects that fit as well."""
+    """Return the sets of as many effects that fit as well, the chosen one among them."""
     limit = settings.equivalent * chosen.excess + settings.equivalent_floor
     others = selection.sets[len(chosen.parameters.terms)]
-    return [evaluation for evaluation in others if evaluation is not chosen and evaluation.excess <= limit]
+    return [evaluation for evaluation in others if evaluation.excess <= limit]
 
 
 def _assign_probabilities(

@@ -40,10 +40,9 @@ def list_nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
     for section, record in sections.items():
         for specification in describe(type(record)) if record is not None else []:
             value = getattr(record, specification.name)
-            # A coil's lag, delay or limit of zero means that it has none, not that it is known to be small.
-            absent = section == "coil" and value == 0.0
-            if specification.name in NOT_UNCERTAIN or not isinstance(value, float | int) or absent:
+            if specification.name in NOT_UNCERTAIN or not isinstance(value, float | int):
                 continue
+            # Rates and times have no scale: a coil without a delay has none, and not one that is known to be small.
             largest = tolerance * (abs(value) if value else scales.get(specification.unit, 0.0))
             if largest > 0.0:
                 found.append(Nuisance(section, specification.name, float(value), largest))
