@@ -21,39 +21,47 @@ sindy  Sparse regression (STLSQ of pysindy) of what equations leave that are fed
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from unittest.mock import patch
 
 import numpy as np
 from cases import (
     Array,
-    Content,
-    Method,
+    Diagnoser,
+    EncodedDiagnosis,
     Ranked,
-    can_be_fed,
     diagnose_cases,
     make_parser,
     open_labels,
     rank_by_figure,
-    show,
-    uniform_weights,
+    show_scores,
+    weigh_stated_noise,
 )
-from regressed import regressed
+from measured_motion import has_measured_motion
+from sparse_regression import rank_by_regression
 
-from seatsim.diagnosis import select as searching
-from seatsim.diagnosis.candidates import candidates
-from seatsim.diagnosis.decide import movements
+from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.design.isolability import find_isolable_groups
-from seatsim.diagnosis.fit import Engine, Point, State
-from seatsim.diagnosis.problem import Problem, problem
+from seatsim.diagnosis.fit import fit
+from seatsim.diagnosis.movement import measure_movements
+from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
+from seatsim.diagnosis.select import select_effects
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.recordings.recording import load_recording
 
 NAMED, NAMED_NEXT, LARGE = 0.85, 0.8, 0.02
 MISFIT = 8.0
 TERM, TERM_NEXT, LEFT = 0.4, 1.2, 2.0
+FULL = DiagnosisSettings()
+TO_THE_END = FULL._replace(selection=FULL.selection._replace(worthwhile=np.inf, promising=1e9, nothing_left=-1.0))
+"""Settings under which every larger set is sought, so that BIC alone says how many effects there are."""
 
 
-def verdict(posed: Problem, kind: str, effects: Sequence[str], blocks: Sequence[str] = ()) -> Content:
+def encode_verdict(
+    problem: DiagnosisProblem, kind: str, effects: Sequence[str], blocks: Sequence[str] = ()
+) -> EncodedDiagnosis:
     """Return the content of `diagnosis.json`; blocks are those of the effects unless stated."""
     ranked = list(dict.fromkeys([*blocks, *(effect.partition(".")[0] for effect in effects)]))
     return {
@@ -61,101 +69,107 @@ def verdict(posed: Problem, kind: str, effects: Sequence[str], blocks: Sequence[
         "where": [{"block": block, "share": 1.0 / len(ranked)} for block in ranked] if kind != "none" else [],
         "causes": [{"effect": effect, "probability": 1.0} for effect in effects],
         "selected": list(effects), "indistinguishable": [],
-        "isolable": find_isolable_groups(posed.recording.header.rig, posed.recording.channels),
+        "isolable": find_isolable_groups(problem.recording.header.rig, problem.recording.channels),
     }  # fmt: skip
 
 
-def calibrated(engine: Engine) -> State:
+def calibrate(objective: Objective) -> Evaluation:
     """Return the nominal rig with its parameters refitted inside their tolerance."""
-    state = engine.states([Point(engine.problem.rest)])[0]
+    evaluation = objective.evaluate([Parameters(objective.problem.nominal)])[0]
     for _ in range(2):
-        engine.refresh(state)
-        state = engine.fitted(state)
-    return state
+        evaluation = fit(objective, evaluation, objective.linearise_nuisances(evaluation))
+    return evaluation
 
 
-def correlation(case: Path) -> Content:
+def diagnose_by_correlation(case: Path) -> EncodedDiagnosis:
     """Return the verdict by correlation."""
-    posed = problem(load_recording(case))
-    engine = Engine(posed, uniform_weights(posed))
-    off, first, second = correlations(engine, calibrated(engine))
+    with ThreadPoolExecutor() as pool:
+        problem = pose_problem(load_recording(case), pool)
+        objective = Objective(problem, weigh_stated_noise(problem))
+        off, first, second = correlate(objective, calibrate(objective))
     if first[0][1] < NAMED:
-        return verdict(posed, "unknown" if off > LARGE else "none", [], [first[0][0].partition(".")[0]])
+        return encode_verdict(problem, "unknown" if off > LARGE else "none", [], [first[0][0].partition(".")[0]])
     named = [first[0][0]] + [effect for effect, cosine in second[:1] if cosine >= NAMED_NEXT]
-    return verdict(posed, "known", named)
+    return encode_verdict(problem, "known", named)
 
 
-def correlations(engine: Engine, state: State) -> tuple[float, Ranked, Ranked]:
+def correlate(objective: Objective, calibrated: Evaluation) -> tuple[float, Ranked, Ranked]:
     """Return the largest gap of a channel beyond its noise, the effects by |cosine|, and again without the first."""
-    posed = engine.problem
-    offered = candidates(posed)
-    starts = engine.states([Point(state.point.u, (c,), (np.array(c.start),)) for c in offered])
-    residual = _pooled(state, posed)
-    changes = [(c.effect, residual - _pooled(s, posed)) for c, s in zip(offered, starts, strict=True)]
-    power = np.mean(residual**2, axis=1) - posed.noise**2
-    off = float(np.max(np.sqrt(power.clip(0.0)) / posed.spread))
-    cosines = [(effect, _cosine(residual, change, posed)) for effect, change in changes]
+    problem = objective.problem
+    candidates = list_candidates(problem)
+    starts = objective.evaluate([calibrated.parameters.add(c, np.array(c.start)) for c in candidates])
+    residual = _pool_runs(calibrated, problem)
+    changes = [(c.effect, residual - _pool_runs(start, problem)) for c, start in zip(candidates, starts, strict=True)]
+    power = np.mean(residual**2, axis=1) - problem.noise**2
+    off = float(np.max(np.sqrt(power.clip(0.0)) / problem.spread))
+    cosines = [(effect, _largest_cosine(residual, change, problem)) for effect, change in changes]
     best = max(range(len(cosines)), key=lambda k: cosines[k][1])
     first, change = changes[best]
     share = np.sum(residual * change, axis=1) / np.maximum(np.sum(change**2, axis=1), 1e-30)
     rest = residual - share[:, None] * change
-    again = [(effect, _cosine(rest, other, posed)) for effect, other in changes if effect != first]
+    again = [(effect, _largest_cosine(rest, other, problem)) for effect, other in changes if effect != first]
     return off, rank_by_figure(cosines), rank_by_figure(again)
 
 
-def _pooled(state: State, posed: Problem) -> Array:
-    return np.concatenate([state.residual[run] for run in posed.runs], axis=1)
+def _pool_runs(evaluation: Evaluation, problem: DiagnosisProblem) -> Array:
+    return np.concatenate([evaluation.residuals[run] for run in problem.runs], axis=1)
 
 
-def _cosine(residual: Array, change: Array, posed: Problem) -> float:
+def _largest_cosine(residual: Array, change: Array, problem: DiagnosisProblem) -> float:
     """Return the largest |cosine| of a channel, 0 where the change leaves the bounds or is no change."""
     size = np.linalg.norm(change, axis=1)
-    seen = np.isfinite(size) & (size > 1e-6 * posed.spread * np.sqrt(change.shape[1]))
+    seen = np.isfinite(size) & (size > 1e-6 * problem.spread * np.sqrt(change.shape[1]))
     if not np.any(seen):
         return 0.0
     product = np.abs(np.sum(residual[seen] * change[seen], axis=1))
     return float(np.max(product / (size[seen] * np.linalg.norm(residual[seen], axis=1))))
 
 
-def bic(case: Path) -> Content:
+def diagnose_by_bic(case: Path) -> EncodedDiagnosis:
     """Return the verdict by BIC."""
-    posed = problem(load_recording(case))
-    engine = Engine(posed, uniform_weights(posed))
-    chosen, misfit = selected(engine)
-    sizes = [float(np.mean(move**2)) for move in movements(engine, chosen)]
-    ranked = rank_by_figure([(term.effect, size) for term, size in zip(chosen.point.terms, sizes, strict=True)])
+    with ThreadPoolExecutor() as pool:
+        problem = pose_problem(load_recording(case), pool, TO_THE_END)
+        chosen, misfit = select_by_bic(Objective(problem, weigh_stated_noise(problem)))
+        sizes = [float(np.mean(move**2)) for move in measure_movements(problem, chosen)]
+    ranked = rank_by_figure([(term.effect, size) for term, size in zip(chosen.parameters.terms, sizes, strict=True)])
     kind = "unknown" if misfit > MISFIT else "known" if ranked else "none"
-    return verdict(posed, kind, [effect for effect, _ in ranked])
+    return encode_verdict(problem, kind, [effect for effect, _ in ranked])
 
 
-def selected(engine: Engine) -> tuple[State, float]:
+def select_by_bic(objective: Objective) -> tuple[Evaluation, float]:
     """Return the set from which BIC falls no more, and its chi^2 / N."""
-    with patch.multiple(searching, WORTHWHILE=np.inf, PROMISING=1e9, NOTHING=-1.0):
-        found = searching.search(engine, candidates(engine.problem), lambda _: None)
-    best = [sets[0] for sets in found.sets]
-    worth = [
-        found.rows * np.log(state.cost / found.rows) + sum(len(t.free) for t in state.point.terms) * np.log(found.rows)
-        for state in best
-    ]
+    selection = select_effects(objective, list_candidates(objective.problem), lambda _: None)
+    best = [sets[0] for sets in selection.sets]
+    worth = [_evaluate_bic(evaluation) for evaluation in best]
     size = next((k for k in range(len(best) - 1) if worth[k + 1] >= worth[k]), len(best) - 1)
-    return best[size], best[size].cost / found.rows
+    return best[size], best[size].cost / best[size].rows
 
 
-def sindy(case: Path) -> Content:
+def _evaluate_bic(evaluation: Evaluation) -> float:
+    """Return `N ln(chi^2 / N) + k ln N` with N the numbers compared and k the free parameters of the effects."""
+    rows = evaluation.rows
+    free = sum(len(term.free) for term in evaluation.parameters.terms)
+    return float(rows * np.log(evaluation.cost / rows) + free * np.log(rows))
+
+
+def diagnose_by_regression(case: Path) -> EncodedDiagnosis:
     """Return the verdict by sparse regression."""
-    posed = problem(load_recording(case))
-    if not can_be_fed(posed):
-        return verdict(posed, "unknown", [], ["damper"])
-    ranked, left = regressed(posed)
+    with ThreadPoolExecutor() as pool:
+        problem = pose_problem(load_recording(case), pool)
+        if not has_measured_motion(problem):
+            return encode_verdict(problem, "unknown", [], ["damper"])
+        ranked, left = rank_by_regression(problem)
     block = max(left, key=lambda name: left[name])
     named = [effect for effect, worth in ranked[:1] if worth >= TERM]
     named += [effect for effect, worth in ranked[1:2] if named and worth >= TERM_NEXT]
     if left[block] > LEFT:
-        return verdict(posed, "unknown", named, [block])
-    return verdict(posed, "known" if named else "none", named)
+        return encode_verdict(problem, "unknown", named, [block])
+    return encode_verdict(problem, "known" if named else "none", named)
 
 
-BASELINES: dict[str, Method] = {"correlation": correlation, "bic": bic, "sindy": sindy}
+BASELINES: dict[str, Diagnoser] = {
+    "correlation": diagnose_by_correlation, "bic": diagnose_by_bic, "sindy": diagnose_by_regression,
+}  # fmt: skip
 
 
 def main() -> None:
@@ -163,7 +177,7 @@ def main() -> None:
     options = make_parser("baselines of the diagnosis on a blind set").parse_args()
     labels = open_labels(options)
     diagnose_cases(options.folder, list(labels), BASELINES)
-    show("baselines", options.folder, labels, [*BASELINES, "diagnosis"])
+    show_scores("baselines", options.folder, labels, [*BASELINES, "diagnosis"])
 
 
 if __name__ == "__main__":

@@ -16,24 +16,26 @@ import argparse
 import dataclasses
 import json
 from collections.abc import Mapping, Sequence
-from functools import partial
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NotRequired, TypedDict, cast
 
 import numpy as np
-from cases import Label, run
-from seatsim.blind.make.case import RunPlan, Setting, drive, read
-from seatsim.blind.make.draw import Case, Order, draw_case
-from seatsim.blind.truth.commands import SCHEDULE
-from seatsim.blind.truth.rig import FINE, RATE
-from seatsim.blind.truth.truth import Changes
+from cases import PROCESSES, show_progress
 from threadpoolctl import threadpool_limits
 
 import seatsim
-from seatsim.blind.make.folder import recording_files, write_files
-from seatsim.diagnosis.design.experiment import Trial, menu
-from seatsim.diagnosis.problem import problem
-from seatsim.diagnosis.result import Diagnosis
+from seatsim.blind.make.draw_case import Case, CaseSpecification, draw_case
+from seatsim.blind.make.folder import encode_recording, write_folder
+from seatsim.blind.make.unfinished import case_name
+from seatsim.blind.processes import run_jobs
+from seatsim.blind.truth.experiment import Experiment, RunPlan, read_channels, simulate_run
+from seatsim.blind.truth.faults.scenario import Changes
+from seatsim.blind.truth.physics.control_laws import SCHEDULE
+from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE
+from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, list_candidate_experiments
+from seatsim.diagnosis.problem import pose_problem
+from seatsim.diagnosis.result import Diagnosis, ProposedExperiment
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.files import write_json
 
@@ -48,7 +50,7 @@ WARM = 60.0
 """degC of a run for which the damper was warmed up."""
 
 
-class Said(TypedDict):
+class VerdictSummary(TypedDict):
     """What a verdict names."""
 
     verdict: str
@@ -56,33 +58,45 @@ class Said(TypedDict):
     indistinguishable: list[list[str]]
 
 
-class Found(TypedDict):
+class Proposal(TypedDict):
+    """The experiment that an ambiguous diagnosis proposes."""
+
+    kind: str
+    name: str
+    reason: str
+    alikeness_now: float
+    alikeness_then: float
+
+
+class Outcome(TypedDict):
     """What came of a case; `second` where an experiment was proposed and carried out."""
 
     effects: list[str]
-    first: Said
-    experiment: Mapping[str, str] | None
-    second: NotRequired[Said]
+    first: VerdictSummary
+    experiment: Proposal | None
+    second: NotRequired[VerdictSummary]
 
 
-def try_experiment(out: Path, k: int, effect: str, seed: int) -> str:
+def try_experiment(out: Path, k: int, effect: str, seed: int) -> None:
     """Write what came of one case."""
-    folder, rng = out / f"case-{k + 1:04d}", np.random.default_rng([seed, k])
+    folder, rng = out / case_name(k), np.random.default_rng([seed, k])
     with threadpool_limits(1):
-        case = draw_case(Order("one", (effect,), WITHOUT[effect]), rng)
+        case = draw_case(CaseSpecification("one", (effect,), WITHOUT[effect]), rng)
         record(case, folder, rng)
         first = seatsim.diagnose(folder)
-        label = cast("Label", case.label())
-        found: Found = {"effects": label["effects"], "first": summarise(first), "experiment": first.experiment}
-        if first.verdict == "ambiguous" and first.experiment and first.experiment["kind"] != "none":
+        proposed = first.experiment
+        outcome: Outcome = {
+            "effects": case.label()["effects"], "first": summarise(first),
+            "experiment": None if proposed is None else describe_proposal(proposed),
+        }  # fmt: skip
+        if first.verdict == "ambiguous" and proposed is not None and proposed.kind != "none":
             after = folder.with_name(f"{folder.name}-after")
-            without = carry_out(case, first, folder, after, rng)
-            found["second"] = summarise(seatsim.diagnose(after, without=without))
-    write_json(out / f"{folder.name}.json", found)
-    return folder.name
+            ruled_out = carry_out(case, first, proposed, folder, after, rng)
+            outcome["second"] = summarise(seatsim.diagnose(after, without=ruled_out))
+    write_json(out / f"{folder.name}.json", outcome)
 
 
-def summarise(diagnosis: Diagnosis) -> Said:
+def summarise(diagnosis: Diagnosis) -> VerdictSummary:
     """Return what a verdict names."""
     return {
         "verdict": diagnosis.verdict,
@@ -91,69 +105,107 @@ def summarise(diagnosis: Diagnosis) -> Said:
     }
 
 
+def describe_proposal(proposed: ProposedExperiment) -> Proposal:
+    """Return a proposal without its scenario, under the keys of `diagnosis.json`."""
+    return {
+        "kind": proposed.kind, "name": proposed.name, "reason": proposed.reason,
+        "alikeness_now": proposed.likeness_now, "alikeness_then": proposed.likeness_then,
+    }  # fmt: skip
+
+
+def calibrates(reason: str) -> bool:
+    """Whether a proposal, by the reason it gives, has a sensor calibrated, alone or beside another experiment."""
+    return "calibrating" in reason
+
+
 def record(case: Case, folder: Path, rng: np.random.Generator) -> None:
     """Write the runs of a case but the last, which is the unseen one."""
-    write_files(folder, recording_files(case.setting, case.shown, rng, list(range(len(case.setting.runs) - 1))))
+    recorded = range(len(case.experiment.runs) - 1)
+    write_folder(folder, encode_recording(case.experiment, case.readings, rng, recorded))
 
 
-def carry_out(case: Case, first: Diagnosis, folder: Path, after: Path, rng: np.random.Generator) -> list[str]:
-    """Write the recording that holds the proposed experiment; return the effects that it rules out."""
-    assert first.experiment
-    changes = Changes()
-    for placed in case.placed:
-        changes += placed.changes
-    setting, ruled_out = case.setting, []
-    if "calibrating" in first.experiment["reason"]:
-        changes = dataclasses.replace(changes, faults=())
+def carry_out(
+    case: Case, first: Diagnosis, proposed: ProposedExperiment, folder: Path, after: Path, rng: np.random.Generator
+) -> list[str]:
+    """Write the recording that holds the proposed experiment into `after`; return the effects that it rules out."""
+    changes = sum((fault.changes for fault in case.faults), Changes())
+    ruled_out: list[str] = []
+    if calibrates(proposed.reason):
+        changes = dataclasses.replace(changes, sensor_faults=())
         ruled_out = [name for group in first.indistinguishable for name in group if name.startswith("sensor.")]
-    if first.experiment["name"] != "calibrate_sensor":
-        trials = menu(problem(load_recording(folder)))
-        setting = change_setting(setting, next(trial for trial in trials if trial.name == first.experiment["name"]))
-    shown = [read(setting, changes, k, drive(setting, changes, k)) for k in range(len(setting.runs))]
-    record(dataclasses.replace(case, setting=setting, shown=shown), after, rng)
+    experiment = case.experiment
+    if proposed.name != "calibrate_sensor":
+        experiment = change_experiment(experiment, find_candidate(folder, proposed.name))
+    motions = [simulate_run(experiment, changes, k) for k in range(len(experiment.runs))]
+    readings = [read_channels(experiment, changes, k, motion) for k, motion in enumerate(motions)]
+    record(dataclasses.replace(case, experiment=experiment, readings=readings), after, rng)
     return ruled_out
 
 
-def change_setting(setting: Setting, trial: Trial) -> Setting:
-    """Return the rig and the runs of an entry of the menu."""
-    if trial.extra:
-        return dataclasses.replace(setting, channels=(*setting.channels, *trial.extra))
-    if trial.mass:
-        nominal, true = ({**values, "m": values["m"] + trial.mass} for values in (setting.nominal, setting.true))
-        return dataclasses.replace(setting, nominal=nominal, true=true)
-    floor, command = trial.floor, trial.floor.command
+def find_candidate(folder: Path, name: str) -> CandidateExperiment:
+    """Return the candidate experiment of a name for a recording."""
+    with ThreadPoolExecutor() as pool:
+        candidates = list_candidate_experiments(pose_problem(load_recording(folder), pool))
+        return next(candidate for candidate in candidates if candidate.name == name)
+
+
+def change_experiment(experiment: Experiment, candidate: CandidateExperiment) -> Experiment:
+    """Return the true rig and its runs with what a candidate experiment adds: a sensor, a mass, or a run."""
+    if candidate.added_sensors:
+        return dataclasses.replace(experiment, channels=(*experiment.channels, *candidate.added_sensors))
+    if candidate.added_mass:
+        nominal, true = (
+            {**values, "m": values["m"] + candidate.added_mass} for values in (experiment.nominal, experiment.true)
+        )
+        return dataclasses.replace(experiment, nominal=nominal, true=true)
+    plan = plan_run(experiment, candidate)
+    return dataclasses.replace(experiment, runs=(*experiment.runs[:-1], plan, experiment.runs[-1]))
+
+
+def plan_run(experiment: Experiment, candidate: CandidateExperiment) -> RunPlan:
+    """Return the run in which a candidate experiment shakes the true rig."""
+    floor, command = candidate.floor, candidate.floor.command
     assert command is not None
     time = np.arange(len(floor.acceleration)) * floor.step
-    ground = np.interp(np.arange(0.0, time[-1], 1.0 / FINE), time, floor.acceleration)
-    schedule = np.interp(np.arange(0.0, time[-1], 1.0 / RATE), time, command)
-    hot = WARM if trial.name == "warm_up" else setting.runs[0].temperature
-    plan = RunPlan("run-x", ground, np.array([SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0]), schedule, hot)
-    return dataclasses.replace(setting, runs=(*setting.runs[:-1], plan, setting.runs[-1]))
+    ground = np.interp(np.arange(0.0, time[-1], 1.0 / EXCITATION_RATE), time, floor.acceleration)
+    schedule = np.interp(np.arange(0.0, time[-1], 1.0 / SAMPLE_RATE), time, command)
+    temperature = WARM if candidate.name == "warm_up" else experiment.runs[0].temperature
+    return RunPlan("run-x", ground, np.array([SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0]), schedule, temperature)
 
 
-def is_separated(found: Found) -> bool:
+def is_separated(outcome: Outcome) -> bool:
     """Tell whether the second verdict names the effect alone; a sensor that was calibrated leaves nothing to name."""
-    second, sensor = found["second"], found["effects"][0].startswith("sensor.")
-    assert found["experiment"]
-    if "calibrating" in found["experiment"]["reason"] and sensor:
-        return bool(second["verdict"] == "none")
-    return bool(second["verdict"] == "known" and second["selected"] == found["effects"])
+    second, sensor = outcome["second"], outcome["effects"][0].startswith("sensor.")
+    assert outcome["experiment"]
+    if calibrates(outcome["experiment"]["reason"]) and sensor:
+        return second["verdict"] == "none"
+    return second["verdict"] == "known" and second["selected"] == outcome["effects"]
 
 
-def table(results: Sequence[Found]) -> list[str]:
+def table(results: Sequence[Outcome]) -> list[str]:
     """Return the lines of a markdown table, an effect each, and all."""
     headings = "effect", "cases", "ambiguous", "the effect among the named", "experiment proposed", "separated", "by"
     lines = [f"| {' | '.join(headings)} |", "|---" * len(headings) + "|"]
-    for effect in [*sorted({found["effects"][0] for found in results}), "**all**"]:
-        own = [found for found in results if effect in (found["effects"][0], "**all**")]
-        open_ = [found for found in own if found["first"]["verdict"] == "ambiguous"]
-        held = [found for found in open_ if any(found["effects"][0] in g for g in found["first"]["indistinguishable"])]
-        tried = [found for found in open_ if "second" in found]
-        names = ", ".join(sorted({found["experiment"]["name"] for found in tried if found["experiment"]}))
-        counts = len(own), len(open_), f"{len(held)}/{len(open_)}", f"{len(tried)}/{len(open_)}"
-        cells = (effect, *counts, f"{sum(map(is_separated, tried))}/{len(tried)}", names or "-")
-        lines.append(f"| {' | '.join(map(str, cells))} |")
+    for effect in [*sorted({outcome["effects"][0] for outcome in results}), "**all**"]:
+        own = [outcome for outcome in results if effect in (outcome["effects"][0], "**all**")]
+        lines.append(f"| {' | '.join(map(str, (effect, *_list_cells(own))))} |")
     return lines
+
+
+def _list_cells(results: Sequence[Outcome]) -> list[str]:
+    """Return the cells of a row but the first."""
+    ambiguous = [outcome for outcome in results if outcome["first"]["verdict"] == "ambiguous"]
+    among = [o for o in ambiguous if any(o["effects"][0] in group for group in o["first"]["indistinguishable"])]
+    tried = [outcome for outcome in ambiguous if "second" in outcome]
+    names = ", ".join(sorted({outcome["experiment"]["name"] for outcome in tried if outcome["experiment"]}))
+    shares = [f"{len(some)}/{len(ambiguous)}" for some in (among, tried)]
+    separated = f"{sum(map(is_separated, tried))}/{len(tried)}"
+    return [str(len(results)), str(len(ambiguous)), *shares, separated, names or "-"]
+
+
+def load_outcome(file: Path) -> Outcome:
+    """Return what came of a case, as `try_experiment` wrote it."""
+    return cast(Outcome, json.loads(file.read_text(encoding="utf-8")))
 
 
 def main() -> None:
@@ -166,11 +218,12 @@ def main() -> None:
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     effects = list(WITHOUT)
-    jobs = [(k, effects[k % len(effects)]) for k in range(options.cases_per_effect * len(effects))]
-    jobs = [(k, effect) for k, effect in jobs if effect in options.effects]
-    files = {k: options.out / f"case-{k + 1:04d}.json" for k, _ in jobs}
-    run([partial(try_experiment, options.out, k, effect, options.seed) for k, effect in jobs if not files[k].exists()])
-    print("\n".join(table([json.loads(file.read_text(encoding="utf-8")) for file in files.values()])))
+    wanted = [(k, effects[k % len(effects)]) for k in range(options.cases_per_effect * len(effects))]
+    wanted = [(k, effect) for k, effect in wanted if effect in options.effects]
+    files = {k: options.out / f"{case_name(k)}.json" for k, _ in wanted}
+    jobs = [(options.out, k, effect, options.seed) for k, effect in wanted if not files[k].exists()]
+    run_jobs(try_experiment, jobs, PROCESSES, show_progress)
+    print("\n".join(table([load_outcome(file) for file in files.values()])))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ the labels in `DIR/labels`. Each is diagnosed twice: with the whole library, by 
 skipped; more cases per effect may be asked for later.
 
 Which effects could stand for the withheld one is said without the recording's outputs: the rig with the true effect, as
-fitted, is simulated without noise, and each other effect is fitted to that twin with the parameters inside their
+fitted, is simulated without noise, and each other effect is fitted to that replicate with the parameters inside their
 tolerance. An effect counts as imitable where one other explains IMITATED of it in at least half of its cases.
 """
 
@@ -17,31 +17,37 @@ import dataclasses
 import json
 from collections import Counter
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
-from cases import Content, Job, Label, run, write_verdict
+from cases import PROCESSES, Diagnoser, EncodedDiagnosis, show_progress, write_verdict
 from threadpoolctl import threadpool_limits
 
+from seatsim.blind.labels import Label
 from seatsim.blind.make.draw_case import CaseSpecification
 from seatsim.blind.make.make import make_case
+from seatsim.blind.make.unfinished import case_name
+from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.cli.outputs.diagnosis import encode_diagnosis
-from seatsim.diagnosis.candidates import candidates
-from seatsim.diagnosis.decide import EXPLAINED
-from seatsim.diagnosis.design.collinearity import with_member
+from seatsim.diagnosis.candidates import list_candidates
+from seatsim.diagnosis.design.collinearity import fit_member
 from seatsim.diagnosis.diagnose import diagnose
-from seatsim.diagnosis.fit import Engine, Point
-from seatsim.diagnosis.noise import whitening
-from seatsim.diagnosis.problem import problem
-from seatsim.diagnosis.select import search
+from seatsim.diagnosis.fit import fit
+from seatsim.diagnosis.noise import weigh_noise
+from seatsim.diagnosis.objective import Objective
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
+from seatsim.diagnosis.select import select_effects
+from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.files import write_json
 from seatsim.schema.registry import names
 
-IMITATED = 1.0 - EXPLAINED
-"""Share of the whitened gap of a twin from which an effect explains another."""
+IMITATED = 1.0 - DecisionSettings().explained
+"""Share of the whitened gap of a replicate from which an effect explains another."""
 
 
 class WithheldCase(NamedTuple):
@@ -49,51 +55,56 @@ class WithheldCase(NamedTuple):
 
     effect: str
     without: Verdict
-    alike: dict[str, float]
+    imitators: dict[str, float]
     right: bool
 
 
-def make(k: int, effect: str, seed: int, out: Path) -> str:
+def make(k: int, effect: str, seed: int, out: Path) -> None:
     """Make one case; where the effect cannot be made material the makers take another, and its label says so."""
     make_case(k, CaseSpecification("one", (effect,)), seed, out, out / "labels")
-    return f"made {case_name(k)}"
 
 
-def case_name(k: int) -> str:
-    """Return the name that the makers give to a case."""
-    return f"case-{k + 1:04d}"
-
-
-def diagnose_without(without: Sequence[str], case: Path) -> Content:
+def diagnose_without(without: Sequence[str], case: Path) -> EncodedDiagnosis:
     """Return the diagnosis of a case by a library without some effects."""
     return encode_diagnosis(diagnose(case, without=without))
 
 
-def find_imitators(case: Path, effect: str) -> str:
-    """Write what share of the true effect each other could explain; nothing where that has no trace to foretell."""
-    shares: dict[str, float] = {}
-    with threadpool_limits(1):
-        posed = problem(load_recording(case))
-        offered = candidates(posed)
-        others = [candidate for candidate in offered if candidate.effect != effect]
-        if len(others) < len(offered):
-            engine = Engine(posed, whitening(posed))
-            nominal = engine.states([Point(posed.rest)])[0]
-            engine.refresh(nominal)
-            true = with_member(engine, engine.fitted(nominal), effect, [effect]).point
-            measured = {run: posed.simulated(run, true.u, true.effects) for run in posed.runs}
-            twin = Engine(dataclasses.replace(posed, measured=measured), engine.white)
-            found = search(twin, others, lambda _: None, 1)
-            whole = found.calibrated.cost
-            shares = {state.point.terms[0].effect: 1.0 - state.cost / whole for state in found.sets[1]}
+def write_imitators(case: Path, effect: str) -> None:
+    """Write what share of the true effect each other could explain."""
+    with threadpool_limits(1), ThreadPoolExecutor() as pool:
+        shares = find_imitators(pose_problem(load_recording(case), pool), effect)
     write_json(case / "imitated.json", shares)
-    return f"{case.name} imitated"
+
+
+def find_imitators(problem: DiagnosisProblem, effect: str) -> dict[str, float]:
+    """Return what share of the true effect each other could explain; nothing where no simulation shows it."""
+    candidates = list_candidates(problem)
+    others = [candidate for candidate in candidates if candidate.effect != effect]
+    if len(others) == len(candidates):
+        return {}
+    objective = Objective(problem, weigh_noise(problem))
+    rig = fit_true_effect(objective, effect)
+    measured = {run: problem.simulated(run, rig.deviations, rig.effects) for run in problem.runs}
+    replicate = Objective(dataclasses.replace(problem, measured=measured), objective.weights)
+    selection = select_effects(replicate, others, lambda _: None, 1)
+    whole = selection.calibrated.cost
+    return {single.parameters.terms[0].effect: 1.0 - single.cost / whole for single in selection.sets[1]}
+
+
+def fit_true_effect(objective: Objective, effect: str) -> Parameters:
+    """Return the rig with the true effect, fitted to the recording."""
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    nuisances = objective.linearise_nuisances(nominal)
+    calibrated = fit(objective, nominal, nuisances)
+    # Sensitivities to the nuisances hardly change as they are refitted: those about the nominal rig serve both fits.
+    about_calibrated = dataclasses.replace(nuisances, evaluation=calibrated)
+    return fit_member(objective, about_calibrated, effect, [effect]).parameters
 
 
 def load_label(out: Path, case: str) -> Label:
     """Return the label of a case."""
-    label: Label = json.loads((out / "labels" / f"{case}.json").read_text(encoding="utf-8"))
-    return label
+    # The file was written by `make_case`, so that its form need not be checked.
+    return cast(Label, json.loads((out / "labels" / f"{case}.json").read_text(encoding="utf-8")))
 
 
 def work(out: Path, wanted: Sequence[str], count: int, seed: int) -> list[str]:
@@ -104,28 +115,44 @@ def work(out: Path, wanted: Sequence[str], count: int, seed: int) -> list[str]:
         raise SystemExit(f"{out}: holds cases of another seed; give that, or another --out")
     write_json(note, seed)
     effects = names("effect")
+    # A case keeps its number, and with it its draws, however many cases and whichever effects are asked for.
     orders = {k: effects[k % len(effects)] for k in range(count * len(effects)) if effects[k % len(effects)] in wanted}
     there = {path.stem for path in (out / "labels").glob("case-*.json")}
-    run([partial(make, k, effect, seed, out) for k, effect in orders.items() if case_name(k) not in there])
+    missing = [(k, effect, seed, out) for k, effect in orders.items() if case_name(k) not in there]
+    run_jobs(make, missing, PROCESSES, show_progress)
     cases = [case_name(k) for k in orders]
-    jobs: list[Job] = []
-    for case in cases:
-        (effect,) = load_label(out, case)["effects"]
-        folder = out / case
-        jobs += [partial(find_imitators, folder, effect)] if not (folder / "imitated.json").exists() else []
-        for name, without in (("diagnosis", ()), ("withheld", (effect,))):
-            if not (folder / name / "diagnosis.json").exists():
-                jobs.append(partial(write_verdict, folder / name, partial(diagnose_without, without)))
-    run(jobs)
+    open_cases = [case for case in cases if not (out / case / "imitated.json").exists()]
+    run_jobs(write_imitators, [(out / case, _effect(out, case)) for case in open_cases], PROCESSES, show_progress)
+    run_jobs(write_verdict, _list_diagnoses(out, cases), PROCESSES, show_progress)
     return cases
+
+
+def _list_diagnoses(out: Path, cases: Sequence[str]) -> list[tuple[Path, Diagnoser]]:
+    """Return folder and method of each diagnosis that is not there yet."""
+    wanted = [
+        (out / case / name, without)
+        for case in cases
+        for name, without in (("diagnosis", ()), ("withheld", (_effect(out, case),)))
+    ]
+    return [
+        (folder, partial(diagnose_without, without))
+        for folder, without in wanted
+        if not (folder / "diagnosis.json").exists()
+    ]
+
+
+def _effect(out: Path, case: str) -> str:
+    """Return the effect that a case has."""
+    (effect,) = load_label(out, case)["effects"]
+    return effect
 
 
 def load_case(out: Path, case: str) -> WithheldCase:
     """Return what came of a case."""
     label = load_label(out, case)
-    alike = json.loads((out / case / "imitated.json").read_text(encoding="utf-8"))
+    imitators: dict[str, float] = json.loads((out / case / "imitated.json").read_text(encoding="utf-8"))
     whole, without = (read_verdict(out / case / name / "diagnosis.json") for name in ("diagnosis", "withheld"))
-    return WithheldCase(label["effects"][0], without, alike, is_right(label, whole))
+    return WithheldCase(label["effects"][0], without, imitators, is_right(label, whole))
 
 
 def table(cases: Sequence[WithheldCase]) -> list[str]:
@@ -137,7 +164,7 @@ def table(cases: Sequence[WithheldCase]) -> list[str]:
     for effect in sorted({case.effect for case in cases}):
         own = [case for case in cases if case.effect == effect]
         taken = Counter(case.without.named for case in own if case.without.verdict != "unknown")
-        imitators = Counter(name for case in own for name, value in case.alike.items() if value > IMITATED)
+        imitators = Counter(name for case in own for name, value in case.imitators.items() if value > IMITATED)
         (imitable if any(2 * times >= len(own) for times in imitators.values()) else alone).extend(own)
         others = ", ".join(f"{name} {times}/{len(own)}" for name, times in imitators.most_common())
         mistaken = ", ".join(f"{name} {times}" for name, times in taken.most_common())
@@ -150,8 +177,8 @@ def table(cases: Sequence[WithheldCase]) -> list[str]:
 
 
 def _nearest(cases: Sequence[WithheldCase]) -> str:
-    """Return the effect with the largest alikeness on average, with that."""
-    sums = {name: sum(case.alike.get(name, 0.0) for case in cases) for name in cases[0].alike}
+    """Return the effect with the largest share on average, with that."""
+    sums = {name: sum(case.imitators.get(name, 0.0) for case in cases) for name in cases[0].imitators}
     nearest = max(sums, key=lambda name: sums[name], default=None)
     return f"{nearest} {sums[nearest] / len(cases):.2f}" if nearest else "-"
 

@@ -18,11 +18,11 @@ import numpy as np
 import pandas as pd
 
 import seatsim
-from controllers.clairvoyant import Bracket, clairvoyant
+from controllers.clairvoyant import ClairvoyantBounds, clairvoyant
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.files import write_json, write_text
-from seatsim.simulation.performance_bounds import distance
+from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import run_many
 
@@ -51,7 +51,7 @@ def load_variants(path: str, excitation: dict[str, object], temperature: float) 
     return seatsim.load(path, settings)
 
 
-def load_bracket(scenario: Scenario, name: str, hold: float, folder: Path) -> Bracket:
+def load_bracket(scenario: Scenario, name: str, hold: float, folder: Path) -> ClairvoyantBounds:
     """Return the bracket of a scenario, from its file where that is there."""
     settings = hashlib.sha256(f"{scenario.rig} {hold} {WEIGHTS.tolist()}".encode()).hexdigest()[:12]
     path = folder / f"bracket-{name.replace(' ', '-')}-{settings}.json"
@@ -61,13 +61,15 @@ def load_bracket(scenario: Scenario, name: str, hold: float, folder: Path) -> Br
     weights, lower, acceleration, travel = (
         np.array(kept[key]) for key in ("weights", "lower", "acceleration", "travel")
     )
-    return Bracket(weights, lower, acceleration, travel, np.zeros((len(WEIGHTS), 0)), hold)
+    return ClairvoyantBounds(weights, lower, acceleration, travel, np.zeros((len(WEIGHTS), 0)), hold)
 
 
-def compare_laws(found: Bracket, runs: list[Run], floor: str, temperature: float) -> list[dict[str, object]]:
+def compare_laws(found: ClairvoyantBounds, runs: list[Run], floor: str, temperature: float) -> list[dict[str, object]]:
     """Return a row for each law: where it stands, and how far from the bracket at its own travel."""
     place: dict[str, object] = {"floor": floor, "temperature": temperature}
-    return [place | {"law": run.scenario.label.get("variant", "")} | distance(run, found)._asdict() for run in runs]
+    return [
+        place | {"law": run.scenario.label.get("variant", "")} | measure_distance(run, found)._asdict() for run in runs
+    ]
 
 
 def render_markdown(laws: pd.DataFrame, brackets: pd.DataFrame) -> str:

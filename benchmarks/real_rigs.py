@@ -34,12 +34,11 @@ import seatsim
 from seatsim.recordings.compared import LEFT_OUT
 from seatsim.recordings.gap import pool_runs
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Recording, load_recording
-from seatsim.rig.plant import Plant
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
-from seatsim.schema.fields import bounds
+from seatsim.schema.fields import bounds, replace_fields
 from seatsim.schema.files import write_whole
-from seatsim.schema.registry import find
+from seatsim.schema.registry import Record, find
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 TOLERANCE = 0.1
@@ -141,15 +140,16 @@ def varied(scenario: Scenario, names: Sequence[str], factors: Array) -> Scenario
         section, _, key = name.partition(".")
         if section == "damper":
             keys = ("A", "beta", "gamma") if key == "A" else (key,)
-            damper = damper._replace(**multiply(damper._asdict(), keys, float(factor)))
+            damper = replace_fields(damper, multiply(damper, keys, float(factor)))
         elif plant is not None:
-            plant = Plant(**(plant._asdict() | multiply(plant._asdict(), (key,), float(factor))))
+            plant = replace_fields(plant, multiply(plant, (key,), float(factor)))
     return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=damper), plant=plant)
 
 
-def multiply(values: Mapping[str, float], names: Sequence[str], factor: float) -> dict[str, float]:
+def multiply(record: Record, names: Sequence[str], factor: float) -> dict[str, float]:
     """Return some of the numbers of a record times a factor."""
-    return {name: values[name] * factor for name in names}
+    numbers = {name: record._asdict()[name] for name in names}
+    return {name: value * factor for name, value in numbers.items() if isinstance(value, int | float)}
 
 
 def by_hand(rig: RigRecords, folder: Path) -> list[Evidence]:

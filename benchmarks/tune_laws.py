@@ -73,6 +73,7 @@ def score(law: str, keys: Keys) -> tuple[float, float]:
     source = seatsim.load("laws")[0].source
     assert source is not None
     stated = source.data["controller"]
+    assert isinstance(stated, dict)
     controller = {key: stated[key] for key in ("sample_time", "sensors")} | {"law": law} | keys
     metrics = seatsim.run("laws", {"variants": {}, "seed": SEED, "controller": controller}).runs[0].metrics
     return metrics["driver_acceleration_weighted"].value, metrics["suspension_displacement_peak"].value

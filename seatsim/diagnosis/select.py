@@ -26,7 +26,7 @@ class Selection:
 
 
 def select_effects(
-    objective: Objective, candidates: Sequence[Candidate], progress: Callable[[str], None], largest: int | None = None
+    objective: Objective, candidates: Sequence[Candidate], progress: Callable[[str], object], largest: int | None = None
 ) -> Selection:
     """Fit the nuisance parameters alone, then single effects, then larger sets as long as they gain.
 

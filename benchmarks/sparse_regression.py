@@ -10,12 +10,21 @@ import warnings
 from collections.abc import Mapping
 
 import numpy as np
-from cases import CORNER, CURRENT, FORCE, FRAME, TRAVEL, Array, Ranked, fed, rank_by_figure, replicate
+from cases import Array, Ranked, rank_by_figure
+from measured_motion import (
+    CORNER,
+    CURRENT,
+    FORCE,
+    FRAME,
+    TRAVEL,
+    replicate_nominal,
+    simulate_fed,
+    vary_plant,
+)
 from scipy.optimize import lsq_linear
 from scipy.signal import bilinear, butter, lfilter, sosfiltfilt
 
-from seatsim.diagnosis.nuisance import varied
-from seatsim.diagnosis.problem import Problem
+from seatsim.diagnosis.problem import DiagnosisProblem
 
 SPARSE = 0.1
 """Contribution, in noise units, below which STLSQ drops a term."""
@@ -48,26 +57,26 @@ Without a load cell the terms of the damper stand in the equation of the suspens
 DRIVER = "driver_acceleration"
 
 
-def regressed(posed: Problem) -> tuple[Ranked, dict[str, float]]:
+def rank_by_regression(problem: DiagnosisProblem) -> tuple[Ranked, dict[str, float]]:
     """Return the effects by what their terms take off an equation, and what each equation keeps, in noise units."""
-    u, noise = refitted(posed)
-    left = joined(posed, u)
-    terms = [library(posed, run) for run in posed.runs]
+    deviations, noise = refit_parameters(problem)
+    left = join_runs(problem, deviations)
+    terms = [list_terms(problem, run) for run in problem.runs]
     worth, kept = [], {}
     for block, target in left.items():
         effects = list(terms[0][block])
         columns = np.concatenate([np.array(list(part[block].values())) for part in terms], axis=1).T
         columns /= np.maximum(np.sqrt(np.mean(columns**2, axis=0)), 1e-30)
-        found = _sparse(columns, target / noise[block])
-        kept[block] = _left(columns[:, found], target / noise[block])
+        found = _select_columns(columns, target / noise[block])
+        kept[block] = _rms_left(columns[:, found], target / noise[block])
         for effect in {effects[k][0] for k in found}:
             others = columns[:, [k for k in found if effects[k][0] != effect]]
-            gain = _left(others, target / noise[block]) ** 2 - kept[block] ** 2
+            gain = _rms_left(others, target / noise[block]) ** 2 - kept[block] ** 2
             worth.append((effect, float(np.sqrt(max(gain, 0.0)))))
     return rank_by_figure(worth), kept
 
 
-def _sparse(columns: Array, target: Array) -> list[int]:
+def _select_columns(columns: Array, target: Array) -> list[int]:
     """Return the columns that STLSQ keeps."""
     try:
         from pysindy import STLSQ
@@ -79,79 +88,80 @@ def _sparse(columns: Array, target: Array) -> list[int]:
     return [int(k) for k in np.flatnonzero(shares)]
 
 
-def _left(columns: Array, target: Array) -> float:
+def _rms_left(columns: Array, target: Array) -> float:
     """Return the RMS that a regression leaves."""
     return float(np.sqrt(np.mean((target - columns @ np.linalg.lstsq(columns, target, rcond=None)[0]) ** 2)))
 
 
-def refitted(posed: Problem) -> tuple[Array, dict[str, float]]:
+def refit_parameters(problem: DiagnosisProblem) -> tuple[Array, dict[str, float]]:
     """Return the parameters inside their tolerance at which the equations leave least, and what noise alone leaves."""
-    base = joined(posed, posed.rest)
-    noise = {block: float(np.sqrt(np.mean(v**2))) for block, v in joined(replicate(posed), posed.rest).items()}
-    moved = [joined(posed, one) for one in np.eye(len(posed.rest))]
-    slopes = [np.concatenate([(m[block] - base[block]) / noise[block] for block in base]) for m in moved]
+    base = join_runs(problem, problem.nominal)
+    quiet = join_runs(replicate_nominal(problem), problem.nominal)
+    noise = {block: float(np.sqrt(np.mean(values**2))) for block, values in quiet.items()}
+    moved = [join_runs(problem, one) for one in np.eye(len(problem.nominal))]
+    jacobian = [np.concatenate([(m[block] - base[block]) / noise[block] for block in base]) for m in moved]
     target = np.concatenate([base[block] / noise[block] for block in base])
-    return lsq_linear(np.array(slopes).T, -target, (-1.0, 1.0)).x, noise
+    return lsq_linear(np.array(jacobian).T, -target, (-1.0, 1.0)).x, noise
 
 
-def joined(posed: Problem, u: Array) -> dict[str, Array]:
+def join_runs(problem: DiagnosisProblem, deviations: Array) -> dict[str, Array]:
     """Return what the equations of all runs leave, on end."""
-    parts = [equations(posed, run, u) for run in posed.runs]
+    parts = [evaluate_equations(problem, run, deviations) for run in problem.runs]
     return {block: np.concatenate([part[block] for part in parts]) for block in parts[0]}
 
 
-def equations(posed: Problem, run: str, u: Array) -> dict[str, Array]:
+def evaluate_equations(problem: DiagnosisProblem, run: str, deviations: Array) -> dict[str, Array]:
     """Return by block what its equation leaves, in its band: N, A (coil), m/s^2 (sensor)."""
-    given, rate = _given(posed, run), posed.recording.header.sample_rate
-    plant = varied(posed.scenario, posed.parameters, u).plant
-    assert plant is not None
-    off = dict(zip(posed.channels, posed.measured[run] - fed(posed, run, u, ()), strict=True))
+    given, rate = _table_of(problem, run), problem.rate
+    plant = vary_plant(problem, deviations)
+    off = dict(zip(problem.channels, problem.measured[run] - simulate_fed(problem, run, deviations, ()), strict=True))
     left = {"suspension": plant.frame_mass * off[FRAME]}
     if DRIVER in off:
-        y, w = _cushion(given, rate)
+        y, w = _integrate_cushion(given, rate)
         left["suspension"] = left["suspension"] + plant.driver_mass * off[DRIVER]
         left["driver"] = plant.driver_mass * given[DRIVER] + plant.cushion_stiffness * y + plant.cushion_damping * w
     if FORCE in off:
         left["damper"] = off[FORCE]
     if CURRENT in off and "current_command" in given:
         left["coil"] = off[CURRENT]
-    left["sensor"] = given[FRAME] - given["floor_acceleration"] - _slope(_slope(given[TRAVEL], rate), rate)
-    return {block: _within(EQUATIONS[block][0], values, rate) for block, values in left.items()}
+    relative = _differentiate(_differentiate(given[TRAVEL], rate), rate)
+    left["sensor"] = given[FRAME] - given["floor_acceleration"] - relative
+    return {block: _filter_band(EQUATIONS[block][0], values, rate) for block, values in left.items()}
 
 
-def library(posed: Problem, run: str) -> dict[str, dict[tuple[str, str], Array]]:
+def list_terms(problem: DiagnosisProblem, run: str) -> dict[str, dict[tuple[str, str], Array]]:
     """Return by block the terms of its equation by effect and name, in its band."""
-    given, rate = _given(posed, run), posed.recording.header.sample_rate
-    columns = _terms(posed, given)
-    merged = {} if FORCE in posed.channels else EQUATIONS["damper"][1]
+    given, rate = _table_of(problem, run), problem.rate
+    columns = _form_columns(problem, given)
+    merged = {} if FORCE in problem.channels else EQUATIONS["damper"][1]
     return {
         block: {
-            (effect, name): _within(band, columns[name], rate)
+            (effect, name): _filter_band(band, columns[name], rate)
             for name, effect in (own | (merged if block == "suspension" else {})).items() if name in columns
         }
         for block, (band, own) in EQUATIONS.items()
     }  # fmt: skip
 
 
-def _given(posed: Problem, run: str) -> dict[str, Array]:
+def _table_of(problem: DiagnosisProblem, run: str) -> dict[str, Array]:
     """Return all recorded channels of the rows compared."""
-    samples = posed.measured[run].shape[1]
-    given = {name: values[posed.skip :][:samples] for name, values in posed.recording.table(run).items()}
-    return given | dict(zip(posed.channels, posed.measured[run], strict=True))
+    samples = problem.measured[run].shape[1]
+    given = {name: values[problem.skip :][:samples] for name, values in problem.recording.table(run).items()}
+    return given | dict(zip(problem.channels, problem.measured[run], strict=True))
 
 
-def _terms(posed: Problem, given: Mapping[str, Array]) -> dict[str, Array]:
+def _form_columns(problem: DiagnosisProblem, given: Mapping[str, Array]) -> dict[str, Array]:
     """Return the columns that EQUATIONS names, as far as the channels let, shape (N,) each.
 
     x, v, a are of the suspension, s the side tanh(v / 0.01 m/s) of its force; y the displacement of the cushion; a0,
     as, ad accelerations of floor, frame and driver; i the current, F the force of the load cell, T the warmth above
     20 degC.
     """
-    rate = posed.recording.header.sample_rate
+    rate = problem.rate
     one = np.ones(len(given[TRAVEL]))
     x = given[TRAVEL]
-    v = _slope(x, rate)
-    a, s = _slope(v, rate), np.tanh(v / 0.01)
+    v = _differentiate(x, rate)
+    a, s = _differentiate(v, rate), np.tanh(v / 0.01)
     command = given.get("current_command", 0.0 * one)
     i = given.get(CURRENT, command)
     warm = given["damper_temperature"] - 20.0 if "damper_temperature" in given else one
@@ -160,19 +170,19 @@ def _terms(posed: Problem, given: Mapping[str, Array]) -> dict[str, Array]:
     past = lfilter([1.0 / (0.5 * rate)], [1.0, 1.0 / (0.5 * rate) - 1.0], i)
     found = {
         "1": one, "x": x, "s": s, "|v|": np.abs(v), "i|s|": i * np.abs(s), "Tv": warm * v, "Tis": warm * i * s,
-        "iis": i**2 * s, "past i s": (past - i) * s, "a(1-ss)": a * (1.0 - s**2), "di/dt s": _slope(i, rate) * s,
-        "xxx": x**3, "x|x|": x * np.abs(x), "i": i,
+        "iis": i**2 * s, "past i s": (past - i) * s, "a(1-ss)": a * (1.0 - s**2),
+        "di/dt s": _differentiate(i, rate) * s, "xxx": x**3, "x|x|": x * np.abs(x), "i": i,
         "stop": np.sign(x) * (np.abs(x) - 0.6 * np.max(np.abs(x))).clip(0.0),
     }  # fmt: skip
     for name, channel in (("a0", "floor_acceleration"), ("as", FRAME), ("ad", DRIVER), ("F", FORCE)):
         if channel in given:
-            found |= {name: given[channel], f"d{name}/dt": _slope(given[channel], rate)}
+            found |= {name: given[channel], f"d{name}/dt": _differentiate(given[channel], rate)}
     if "F" in found:
         found["F after reversals"] = found["F"] * np.exp(-turned / 1e-3)
-    return found | _of_driver(given, rate) | _of_coil(posed, command, rate)
+    return found | _form_driver_columns(given, rate) | _form_coil_columns(problem, command, rate)
 
 
-def _cushion(given: Mapping[str, Array], rate: float) -> tuple[Array, Array]:
+def _integrate_cushion(given: Mapping[str, Array], rate: float) -> tuple[Array, Array]:
     """Return displacement and velocity of the cushion, integrals above half the lowest frequency of its equation."""
     low, samples = 0.5 * EQUATIONS["driver"][0][0], len(given[DRIVER])
     frequency = np.fft.rfftfreq(samples, 1.0 / rate)
@@ -181,19 +191,19 @@ def _cushion(given: Mapping[str, Array], rate: float) -> tuple[Array, Array]:
     return np.fft.irfft(spectrum / speed**2, samples), np.fft.irfft(spectrum / speed, samples)
 
 
-def _of_driver(given: Mapping[str, Array], rate: float) -> dict[str, Array]:
+def _form_driver_columns(given: Mapping[str, Array], rate: float) -> dict[str, Array]:
     """Return the terms of cushion and driver."""
     if DRIVER not in given:
         return {}
-    y, ad, own = _cushion(given, rate)[0], given[DRIVER], 2.0 * np.pi * 5.0
+    y, ad, own = _integrate_cushion(given, rate)[0], given[DRIVER], 2.0 * np.pi * 5.0
     resonance = lfilter(*bilinear([own**2], [1.0, 0.6 * own, own**2], rate), ad)
     tension = (-ad - 0.5 * np.max(-ad)).clip(0.0)
     return {"yyy": y**3, "y|y|": y * np.abs(y), "resonance": resonance, "tension": tension}
 
 
-def _of_coil(posed: Problem, command: Array, rate: float) -> dict[str, Array]:
+def _form_coil_columns(problem: DiagnosisProblem, command: Array, rate: float) -> dict[str, Array]:
     """Return how the current of the nominal coil would change were it slower by 3 ms or later by 4 ms, and its top."""
-    coil = posed.scenario.coil
+    coil = problem.scenario.coil
     kept = np.exp(-coil.rate / rate)
     plain = lfilter([0.0, 1.0 - kept], [1.0, -kept], command.clip(0.0, coil.max_current))
     decay = np.exp(-1.0 / (0.003 * rate))
@@ -208,12 +218,12 @@ def _of_coil(posed: Problem, command: Array, rate: float) -> dict[str, Array]:
     }
 
 
-def _slope(values: Array, rate: float) -> Array:
+def _differentiate(values: Array, rate: float) -> Array:
     return np.gradient(sosfiltfilt(butter(3, CORNER, fs=rate, output="sos"), values), 1.0 / rate)
 
 
-def _within(band: tuple[float, float], values: Array, rate: float) -> Array:
-    """Return a course between two frequencies, without phase, and without its first and last second."""
+def _filter_band(band: tuple[float, float], values: Array, rate: float) -> Array:
+    """Return a signal between two frequencies, without phase, and without its first and last second."""
     low, high = band[0], min(band[1], 0.45 * rate)
     if low:
         sections = butter(3, (low, high), "bandpass", fs=rate, output="sos")
