@@ -28,7 +28,7 @@ NEGLIGIBLE = 1e-6
 """AC1, UWV and NN10 have an infimum of zero."""
 
 
-class Found(TypedDict, total=False):
+class ProblemResult(TypedDict, total=False):
     """A line of the file: the problem, then either why there is no design or its figures, then the times in s."""
 
     name: str
@@ -50,11 +50,11 @@ def load_problem(path: Path) -> GeneralisedPlant:
     return GeneralisedPlant(*(p[key] for key in ("A", "B1", "B", "C1", "C", "D11", "D12", "D21")))
 
 
-def solve(path: Path, budget: float, max_gain: float, designs: Path) -> Found:
+def solve(path: Path, budget: float, max_gain: float, designs: Path) -> ProblemResult:
     """Return what a synthesis found, with its time on the wall and on the processor."""
     plant = load_problem(path)
     wall, processor = time.monotonic(), time.process_time()
-    found: Found = {"name": path.stem, "order": plant.order, "gains": int(plant.free.sum())}
+    found: ProblemResult = {"name": path.stem, "order": plant.order, "gains": int(plant.free.sum())}
     try:
         design = synthesise(plant, max_gain=max_gain, time_budget=budget)
     except SynthesisError as error:
@@ -65,7 +65,7 @@ def solve(path: Path, budget: float, max_gain: float, designs: Path) -> Found:
     return found | {"wall": time.monotonic() - wall, "processor": time.process_time() - processor}
 
 
-def describe(plant: GeneralisedPlant, design: Design) -> Found:
+def describe(plant: GeneralisedPlant, design: Design) -> ProblemResult:
     """Return the figures of a design; `grid` is its norm from frequencies alone."""
     return {
         "gamma": design.gamma,
@@ -76,7 +76,7 @@ def describe(plant: GeneralisedPlant, design: Design) -> Found:
     }
 
 
-def tabulate(found: list[Found], best: dict[str, float]) -> Table:
+def tabulate(found: list[ProblemResult], best: dict[str, float]) -> Table:
     """Return one row a problem: gamma, best known, their ratio, certified delta, disagreement of the norms, times."""
     rows = Table(box=None)
     for name in ("problem", "n", "gains", "gamma", "best", "ratio", "delta", "norms", "bound", "s", "cpu s"):
@@ -107,7 +107,7 @@ def ratio(gamma: float, known: float) -> float:
     return 1.0 if max(gamma, known) < NEGLIGIBLE else gamma / max(known, NEGLIGIBLE)
 
 
-def summarise(found: list[Found], best: dict[str, float]) -> str:
+def summarise(found: list[ProblemResult], best: dict[str, float]) -> str:
     """Return the counts: within 1 %, better by 0.5 %, certified."""
     ratios = [ratio(f["gamma"], best[f["name"]]) if "gamma" in f else np.inf for f in found if f["name"] in best]
     deltas = [f["delta"] for f in found if "gamma" in f]

@@ -23,7 +23,7 @@ Exact = NDArray[np.object_]
 """Array of fractions."""
 
 
-class Certificate(TypedDict):
+class ExactCertificate(TypedDict):
     """The factor T of P = T'T, the level of gamma that it proves, and how far that is above the design's gamma."""
 
     factor: Rows
@@ -31,11 +31,11 @@ class Certificate(TypedDict):
     delta: float
 
 
-class Loop(TypedDict):
+class ExactLoop(TypedDict):
     """The plant's matrices by name, and the certificate of the loop that the design's gain closes around it."""
 
     plant: dict[str, Rows]
-    certificate: Certificate | None
+    certificate: ExactCertificate | None
 
 
 def to_fractions(rows: Rows) -> Exact:
@@ -53,7 +53,7 @@ def is_positive_definite(M: Exact) -> bool:
     return True
 
 
-def is_proven(gain: Rows, loop: Loop) -> bool:
+def is_proven(gain: Rows, loop: ExactLoop) -> bool:
     """Whether the certificate of a loop proves its gamma; no certificate proves nothing."""
     proof, K = loop["certificate"], to_fractions(gain)
     if proof is None:
@@ -77,7 +77,7 @@ def main() -> None:
             print(f"{path} loop {i}: {verdict} in {time.process_time() - begin:.1f} s", flush=True)
 
 
-def check(gain: Rows, loop: Loop) -> str:
+def check(gain: Rows, loop: ExactLoop) -> str:
     """Return what a loop's certificate is worth, in words."""
     proof = loop["certificate"]
     if proof is None:

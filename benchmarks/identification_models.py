@@ -60,7 +60,7 @@ class Ranges(TypedDict):
     temperature: list[float]
 
 
-class Found(TypedDict):
+class FitResult(TypedDict):
     """What is read again of a result: `fit.json` of `seatsim identify`."""
 
     train: Mean | None
@@ -108,18 +108,18 @@ def list_temperatures(data: Path, models: list[str]) -> list[FitTask]:
     return [FitTask("heat", file, model, settings) for file in files for model in models for settings in every]
 
 
-def load_or_fit(task: FitTask, out: Path) -> Found:
+def load_or_fit(task: FitTask, out: Path) -> FitResult:
     """Return the result of a task, from its file where that is there."""
     path = out / task.name
     if not path.exists():
         found = identify(task.data, task.model, task.settings)
         found = predict(found, task.predicted, AVERAGE, centred=True) if task.predicted else found
         write_json(path, {**encode_identification(found), "warm": found.warm, "file": encode_parameters(found)})
-    result: Found = json.loads(path.read_text(encoding="utf-8"))
+    result: FitResult = json.loads(path.read_text(encoding="utf-8"))
     return result
 
 
-def fit_all(tasks: list[FitTask], out: Path) -> Iterator[tuple[FitTask, Found]]:
+def fit_all(tasks: list[FitTask], out: Path) -> Iterator[tuple[FitTask, FitResult]]:
     """Yield every task with its result; one that failed is told and left out."""
     for task in track(tasks, tasks[0].group, disable=not Console().is_terminal):
         try:
@@ -128,13 +128,13 @@ def fit_all(tasks: list[FitTask], out: Path) -> Iterator[tuple[FitTask, Found]]:
             print(f"{task.name}: {type(error).__name__}: {error}")
 
 
-def fit(found: Found, part: Part) -> float:
+def fit(found: FitResult, part: Part) -> float:
     """Return the mean fit in percent of a part, NaN where there is none."""
     mean = found.get(part)
     return math.nan if mean is None or mean["fit_percent"] is None else mean["fit_percent"]
 
 
-def tabulate_fits(title: str, results: list[tuple[FitTask, Found]], parts: tuple[Part, ...]) -> Table:
+def tabulate_fits(title: str, results: list[tuple[FitTask, FitResult]], parts: tuple[Part, ...]) -> Table:
     """Return a table of fits, the best prediction of held-out records first."""
     table = Table(title=title, title_justify="left")
     for column in ("model", *(f"{part} fit %" for part in parts), "parameters", "unknown", "ns/step", "s"):
@@ -146,7 +146,7 @@ def tabulate_fits(title: str, results: list[tuple[FitTask, Found]], parts: tuple
     return table
 
 
-def tabulate_order(results: list[tuple[FitTask, Found]]) -> Table:
+def tabulate_order(results: list[tuple[FitTask, FitResult]]) -> Table:
     """Return the errors of the models that a paper ordered."""
     table = Table(title="root mean square error in N; the paper finds the first worst, the last best")
     for column in ("model", "train", "test", "predicted"):
@@ -159,12 +159,12 @@ def tabulate_order(results: list[tuple[FitTask, Found]]) -> Table:
     return table
 
 
-def tabulate_temperatures(results: list[tuple[FitTask, Found]]) -> Table:
+def tabulate_temperatures(results: list[tuple[FitTask, FitResult]]) -> Table:
     """Return the fits of the second halves with and without temperature."""
     table = Table(title="second half of each file, fit %", title_justify="left")
     for column in ("file", "degC", "model", "train with", "without", "test with", "without", "unknown with"):
         table.add_column(column, justify="left" if column in ("file", "model") else "right")
-    pairs: dict[tuple[str, str], dict[bool, Found]] = {}
+    pairs: dict[tuple[str, str], dict[bool, FitResult]] = {}
     for task, found in results:
         pairs.setdefault((task.data.name.partition(".")[0], task.model), {})[task.settings.ignore_temperature] = found
     for (file, model), pair in pairs.items():

@@ -53,7 +53,7 @@ UNKNOWN, WITHIN = 0.025, 0.05
 DRAWS = 20
 
 
-class Row(TypedDict):
+class RecoveryRow(TypedDict):
     """A parameter: its truth, what was found, its declared uncertainty and its error, both over its size."""
 
     name: str
@@ -66,7 +66,7 @@ class Row(TypedDict):
 class Recovery(TypedDict):
     """What came back of a damper; noise and what the fit leaves in percent, the duration in s."""
 
-    rows: list[Row]
+    rows: list[RecoveryRow]
     noise: float
     left: float | None
     seconds: float
@@ -177,7 +177,7 @@ def recover(model: str) -> Recovery:
         known = compute_information(problem, vector, executor)
     found = identify_records(records, model)
     values = {estimate.name: estimate.value for estimate in found.information.estimates}
-    rows: list[Row] = [
+    rows: list[RecoveryRow] = [
         {"name": e.name, "truth": e.value, "found": values[e.name], "uncertainty": e.std / size,
          "error": abs(values[e.name] - e.value) / size}
         for e, size in zip(known.estimates, reference_sizes(problem, known), strict=True)

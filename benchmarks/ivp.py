@@ -134,14 +134,14 @@ def compiled_model() -> Model:
 MethodName = Literal["RK23", "RK45", "DOP853", "Radau", "LSODA"]
 
 
-class Method(NamedTuple):
+class IntegrationMethod(NamedTuple):
     """A method of `solve_ivp` and its relative tolerance; the absolute one is a thousandth of it."""
 
     name: MethodName
     rtol: float
 
 
-def simulate(model: Model, method: Method, acceleration: Array, sample_every: int) -> dict[str, Array]:
+def simulate(model: Model, method: IntegrationMethod, acceleration: Array, sample_every: int) -> dict[str, Array]:
     """Simulate from rest; return the channels at the law's samples, shape (N - 1) // sample_every + 1."""
     floor, state = model.floor(acceleration), np.zeros(7)
     states = [state]

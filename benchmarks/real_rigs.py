@@ -47,7 +47,7 @@ STEP = 1e-3
 """Relative step of the finite differences, above the error of the time integration."""
 
 
-class Evidence(NamedTuple):
+class RigEvidence(NamedTuple):
     """What an effect added by hand is worth: overall gaps on runs that it was not fitted to, and on unseen records."""
 
     rig: str
@@ -152,7 +152,7 @@ def multiply(record: Record, names: Sequence[str], factor: float) -> dict[str, f
     return {name: value * factor for name, value in numbers.items() if isinstance(value, int | float)}
 
 
-def by_hand(rig: RigRecords, folder: Path) -> list[Evidence]:
+def by_hand(rig: RigRecords, folder: Path) -> list[RigEvidence]:
     """Fit each trial's effects to every second run, parameters inside their tolerance, and judge them on the others."""
     recording, nominal = load_recording(folder), single(folder / "nominal.yaml")
     other = folder.with_name(f"{rig.name}-unseen")
@@ -166,7 +166,7 @@ def by_hand(rig: RigRecords, folder: Path) -> list[Evidence]:
         effects = " + ".join(effect for effect, _, _ in trial)
         gaps = before.floor["overall"], before.overall, refitted, after
         found.append(
-            Evidence(rig.name, effects, shown, *gaps, None if first is None or last is None else (first, last))
+            RigEvidence(rig.name, effects, shown, *gaps, None if first is None or last is None else (first, last))
         )
     return found
 
@@ -226,7 +226,7 @@ def nominal_table(folders: Mapping[str, Path], known: Mapping[str, str]) -> Tabl
     return table
 
 
-def evidence_table(found: Sequence[Evidence]) -> Table:
+def evidence_table(found: Sequence[RigEvidence]) -> Table:
     """Return what the effects added by hand are worth."""
     columns = ("rig", "effect by hand", "fitted", "floor", "nominal", "calibrated", "with effect", "shrink", "unseen")
     table = _table("effects added by hand, overall gap on held-out runs and unseen records", *columns)

@@ -25,7 +25,7 @@ from seatsim.kernel.channels import CHANNELS
 
 AGREEMENT = {"loop.c": 1e-9, "lean.c": 1e-2}
 """Largest difference of a channel from seatsim's, over its largest value; lean.c integrates the current numerically."""
-REFERENCE = ivp.Method("DOP853", 1e-11)
+REFERENCE = ivp.IntegrationMethod("DOP853", 1e-11)
 METHODS: dict[ivp.MethodName, tuple[float, ...]] = {
     "RK23": (1e-4, 1e-5, 1e-6),
     "RK45": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
@@ -130,12 +130,12 @@ def beside_scipy(sample_every: int, duration: float) -> None:
 
 def accurate(
     model: ivp.Model, acceleration: np.ndarray, sample_every: int, exact: Mapping[str, np.ndarray], permitted: float
-) -> list[tuple[ivp.Method, float]]:
+) -> list[tuple[ivp.IntegrationMethod, float]]:
     """Return the loosest setting of each method that is at least as accurate as permitted, with its error."""
     found = []
     for name, tolerances in METHODS.items():
         for rtol in tolerances:
-            method = ivp.Method(name, rtol)
+            method = ivp.IntegrationMethod(name, rtol)
             reached = error(ivp.simulate(model, method, acceleration, sample_every), exact)
             if reached <= permitted:
                 found.append((method, reached))

@@ -9,7 +9,7 @@ import math
 
 from seatsim.blind.truth.physics import state
 from seatsim.blind.truth.physics.compiled import Array, compiled
-from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.parameters import RigParameters
 
 ROUNDING = 1e-6
 """Of a row: a time that lies on a row but for rounding counts as that row."""
@@ -35,7 +35,7 @@ def repeatable_noise(k: float, seed: float) -> float:
 
 
 @compiled
-def held_command(commands: Array, time: float, interval: float, p: Parameters) -> float:
+def held_command(commands: Array, time: float, interval: float, p: RigParameters) -> float:
     """Return the command that reaches the driver: held, `delay` late, with jitter from row to row."""
     if p.delay == 0.0:
         return float(commands[int(time / interval + ROUNDING)])
@@ -47,7 +47,7 @@ def held_command(commands: Array, time: float, interval: float, p: Parameters) -
 
 
 @compiled
-def target_current(command: float, time: float, h: float, y: Array, memory: Array, p: Parameters) -> float:
+def target_current(command: float, time: float, h: float, y: Array, memory: Array, p: RigParameters) -> float:
     """Return the current that the driver aims at: quantised, with a dead band, limited softly, with dropouts.
 
     The soft limit is `i / (1 + (i / limit)^n)^(1/n)`, with the limit lowered by the mean current where it sags.
@@ -66,7 +66,7 @@ def target_current(command: float, time: float, h: float, y: Array, memory: Arra
 
 
 @compiled
-def drops_out(time: float, h: float, memory: Array, p: Parameters) -> bool:
+def drops_out(time: float, h: float, memory: Array, p: RigParameters) -> bool:
     """Tell whether the driver is off in this step; dropouts begin at random, `dropout_interval` apart on average."""
     if memory[state.DROPOUT_LEFT] > 0.0:
         memory[state.DROPOUT_LEFT] -= h
@@ -77,7 +77,7 @@ def drops_out(time: float, h: float, memory: Array, p: Parameters) -> bool:
 
 
 @compiled
-def falling_rate(i: float, aim: float, p: Parameters) -> float:
+def falling_rate(i: float, aim: float, p: RigParameters) -> float:
     """Return the rate of the coil, 1/s: lower while the current falls, at every current or mostly at low ones."""
     if p.fall_law == 1.0 and aim < i:
         return p.rate / (1.0 + p.fall_slow)
@@ -87,7 +87,7 @@ def falling_rate(i: float, aim: float, p: Parameters) -> float:
 
 
 @compiled
-def write_coil_rates(y: Array, rates: Array, target: float, v: float, p: Parameters) -> None:
+def write_coil_rates(y: Array, rates: Array, target: float, v: float, p: RigParameters) -> None:
     """Write the rates of the coil's states: one pole, two poles, two branches, or a ringing regulator.
 
     The back EMF takes `back_emf |v|` off the current that the driver can force.

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from seatsim.blind.truth.physics import state
 from seatsim.blind.truth.physics.compiled import Array, compiled
-from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.parameters import RigParameters
 
 SCHEDULE, SKYHOOK, FEEDBACK = 0.0, 1.0, 2.0
 """Kinds of law; numbers, because compiled code reads them from the vector."""
@@ -18,7 +18,7 @@ FRICTION, VISCOUS, YIELD_GAIN, VISCOUS_GAIN = 40.0, 250.0, 600.0, 350.0
 
 
 @compiled
-def command_of(law: Array, schedule: Array, row: int, y: Array, memory: Array, p: Parameters) -> float:
+def command_of(law: Array, schedule: Array, row: int, y: Array, memory: Array, p: RigParameters) -> float:
     """Return the commanded current at a row, A.
 
     Skyhook (Karnopp 1974): full level where absolute and relative velocity have one sign, off below the relative speed

@@ -7,14 +7,14 @@ import math
 from seatsim.blind.truth.physics import state
 from seatsim.blind.truth.physics.compiled import Array, compiled
 from seatsim.blind.truth.physics.friction import FASTEST
-from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.parameters import RigParameters
 
 DEEPEST = 3.0
 """Deflection of an exponential foam over its length, beyond which its force grows no further (19 times its scale)."""
 
 
 @compiled
-def foam_force(d: float, w: float, p: Parameters) -> float:
+def foam_force(d: float, w: float, p: RigParameters) -> float:
     """Return the force of foam deflected by d at speed w, N: linear, exponential, or polynomial in compression."""
     force = p.kc * d
     damping = p.cc
@@ -31,7 +31,7 @@ def foam_force(d: float, w: float, p: Parameters) -> float:
 
 
 @compiled
-def limit_tension(force: float, p: Parameters) -> float:
+def limit_tension(force: float, p: RigParameters) -> float:
     """Return the cushion force where driver and cushion separate: its tension is limited, softly or by a power, N."""
     if p.separation_law == 1.0:
         u = (force - p.separation_force) / p.separation_width
@@ -44,7 +44,7 @@ def limit_tension(force: float, p: Parameters) -> float:
 
 
 @compiled
-def cushion_force(y: Array, rates: Array, p: Parameters) -> float:
+def cushion_force(y: Array, rates: Array, p: RigParameters) -> float:
     """Return Fc, N: foam, memory foam (a Maxwell element), friction of the cover (Dahl); all of it may separate."""
     w = y[state.W]
     force = foam_force(y[state.Y], w, p)

@@ -12,7 +12,7 @@ from seatsim.blind.truth.physics import state
 from seatsim.blind.truth.physics.compiled import Array, compiled
 from seatsim.blind.truth.physics.friction import FASTEST, MICRO_DAMPING, bristle_rate
 from seatsim.blind.truth.physics.magnetisation import yield_current
-from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.parameters import RigParameters
 from seatsim.blind.truth.physics.temperature import viscous_factor, yield_factor
 
 LEAST_GAS_COLUMN = 0.2
@@ -30,7 +30,7 @@ LARGEST_SEAL_LOAD = 3.0
 
 
 @compiled
-def yield_variable(y: Array, v: float, p: Parameters) -> float:
+def yield_variable(y: Array, v: float, p: RigParameters) -> float:
     """Return the yield variable z: Bouc-Wen state, `tanh(v / v_ref)`, or a hysteretic stand-in for the latter."""
     if p.is_bingham == 0.0:
         return float(y[state.Z])
@@ -42,7 +42,7 @@ def yield_variable(y: Array, v: float, p: Parameters) -> float:
 
 
 @compiled
-def gas_force(x: float, p: Parameters) -> float:
+def gas_force(x: float, p: RigParameters) -> float:
     """Return the force of the accumulator: polytropic `-F (1 + x / L)^-n`, or preload with a falling stiffness."""
     if p.gas_law == 2.0:
         return -p.gas_force + p.gas_rate * (x - 0.5 * x * x / p.gas_length)
@@ -52,7 +52,7 @@ def gas_force(x: float, p: Parameters) -> float:
 
 
 @compiled
-def viscous_damping(y: Array, v: float, p: Parameters) -> float:
+def viscous_damping(y: Array, v: float, p: RigParameters) -> float:
     """Return the viscous damping at the fluid's temperature, the direction and the speed, N s/m."""
     viscous = p.c_a + p.c_b * y[state.CURRENT]
     if p.fade_law != 0.0:
@@ -65,7 +65,7 @@ def viscous_damping(y: Array, v: float, p: Parameters) -> float:
 
 
 @compiled
-def yield_force(y: Array, memory: Array, z: float, p: Parameters) -> float:
+def yield_force(y: Array, memory: Array, z: float, p: RigParameters) -> float:
     """Return the yield force at the fluid's temperature and the direction of z, N."""
     strength = p.y_a + p.y_b * yield_current(y, memory, p)
     if p.fade_law != 0.0:
@@ -75,7 +75,7 @@ def yield_force(y: Array, memory: Array, z: float, p: Parameters) -> float:
 
 
 @compiled
-def main_force(y: Array, memory: Array, x: float, v: float, p: Parameters) -> float:
+def main_force(y: Array, memory: Array, x: float, v: float, p: RigParameters) -> float:
     """Return the force of fluid and field before seal and gas, N."""
     z = yield_variable(y, v, p)
     force = viscous_damping(y, v, p) * v + p.k0 * (x - p.x0) + yield_force(y, memory, z, p) * z + p.f0
@@ -91,7 +91,7 @@ def main_force(y: Array, memory: Array, x: float, v: float, p: Parameters) -> fl
 
 
 @compiled
-def write_yield_rates(y: Array, rates: Array, v: float, p: Parameters) -> None:
+def write_yield_rates(y: Array, rates: Array, v: float, p: RigParameters) -> None:
     """Write the rate of the yield variable.
 
     Bouc-Wen: `z' = A v - beta v |z|^n - gamma |v| z |z|^(n-1)`; Dahl-like: `u' = |v| / length (tanh(v / v_ref) - u)`;
@@ -113,7 +113,7 @@ def write_yield_rates(y: Array, rates: Array, v: float, p: Parameters) -> None:
 
 
 @compiled
-def seal_force(y: Array, rates: Array, v: float, force: float, p: Parameters) -> float:
+def seal_force(y: Array, rates: Array, v: float, force: float, p: RigParameters) -> float:
     """Return the friction of the seal, which the damper's `force` presses on, N, and write the rate of its bristle."""
     rate = bristle_rate(y[state.SEAL], v, p.seal_length, p.seal_stribeck, p.seal_speed)
     rates[state.SEAL] = rate
@@ -123,7 +123,7 @@ def seal_force(y: Array, rates: Array, v: float, force: float, p: Parameters) ->
 
 
 @compiled
-def update_cavity(y: Array, memory: Array, x: float, v: float, h: float, p: Parameters) -> None:
+def update_cavity(y: Array, memory: Array, x: float, v: float, h: float, p: RigParameters) -> None:
     """Carry the open stroke of the cavity over one step: it opens in extension and closes in compression."""
     force = main_force(y, memory, x, v, p)
     if v > 0.0 and force >= p.cavitation_force:

@@ -6,7 +6,7 @@ import math
 
 from seatsim.blind.truth.physics import state
 from seatsim.blind.truth.physics.compiled import Array, compiled
-from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.parameters import RigParameters
 
 SERIES = 1e-3
 """Argument below which the Langevin function is its own tangent, whose closed form would cancel."""
@@ -15,7 +15,7 @@ RISE = 200.0
 
 
 @compiled
-def yield_current(y: Array, memory: Array, p: Parameters) -> float:
+def yield_current(y: Array, memory: Array, p: RigParameters) -> float:
     """Return the current that the yield force feels, A.
 
     Remanence: mean of relays with several widths (Preisach), or a magnetisation that rises at once and decays slowly.
@@ -37,7 +37,7 @@ def yield_current(y: Array, memory: Array, p: Parameters) -> float:
 
 
 @compiled
-def write_magnetisation_rate(y: Array, rates: Array, p: Parameters) -> None:
+def write_magnetisation_rate(y: Array, rates: Array, p: RigParameters) -> None:
     """Write the rate of a magnetisation that follows a rising current and decays after a falling one.
 
     The further the current has fallen, the faster it decays: `(0.4 + 2 |di|) / tau`, as domains need a field to turn.
@@ -49,7 +49,7 @@ def write_magnetisation_rate(y: Array, rates: Array, p: Parameters) -> None:
 
 
 @compiled
-def update_relays(y: Array, memory: Array, relays: Array, p: Parameters) -> None:
+def update_relays(y: Array, memory: Array, relays: Array, p: RigParameters) -> None:
     """Switch the hysteresis relays (Preisach 1935) with the current, and keep their mean.
 
     Relay k is centred at `(k + 1/2) / N` A; widths of 0.4 to 1.6 times the mean are dealt out in steps of seven, which

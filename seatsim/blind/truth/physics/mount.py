@@ -6,7 +6,7 @@ from seatsim.blind.truth.physics import state
 from seatsim.blind.truth.physics.compiled import Array, compiled
 from seatsim.blind.truth.physics.damper import gas_force, main_force, seal_force, write_yield_rates
 from seatsim.blind.truth.physics.magnetisation import write_magnetisation_rate
-from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.parameters import RigParameters
 from seatsim.blind.truth.physics.temperature import write_heat_rates
 
 CLOSE_ENOUGH = 0.05
@@ -25,7 +25,7 @@ BRACKET_STEPS = 40
 
 
 @compiled
-def mount_force(u: float, p: Parameters) -> float:
+def mount_force(u: float, p: RigParameters) -> float:
     """Return the force of a mount stretched by u: contact outside a gap, or air that is squeezed before it carries."""
     if p.play_air > 0.0:
         return p.mount_stiffness * u * u * u / (u * u + p.play_air * p.play_air)
@@ -36,7 +36,7 @@ def mount_force(u: float, p: Parameters) -> float:
 
 
 @compiled
-def piston_speed(y: Array, memory: Array, x: float, wanted: float, p: Parameters) -> float:
+def piston_speed(y: Array, memory: Array, x: float, wanted: float, p: RigParameters) -> float:
     """Return the speed at which the damper bears the force `wanted`, m/s.
 
     Newton from the last solution; where that does not settle in a few steps, false position (Illinois), which cannot
@@ -57,7 +57,7 @@ def piston_speed(y: Array, memory: Array, x: float, wanted: float, p: Parameters
 
 
 @compiled
-def bracketed_speed(y: Array, memory: Array, x: float, wanted: float, guess: float, p: Parameters) -> float:
+def bracketed_speed(y: Array, memory: Array, x: float, wanted: float, guess: float, p: RigParameters) -> float:
     """Return the same by false position from a guess, halving the residual of the end that stays (Illinois)."""
     low, high = -FASTEST_PISTON, FASTEST_PISTON
     f_low = main_force(y, memory, x, low, p) - wanted
@@ -75,13 +75,13 @@ def bracketed_speed(y: Array, memory: Array, x: float, wanted: float, guess: flo
 
 
 @compiled
-def rests(stretch: float, speed: float, p: Parameters) -> bool:
+def rests(stretch: float, speed: float, p: RigParameters) -> bool:
     """Tell whether a damper with play rests: its motion has turned and the gap is not crossed yet."""
     return abs(stretch) < 0.5 * p.play_gap or stretch * speed <= 0.0
 
 
 @compiled
-def damper_force(y: Array, rates: Array, memory: Array, x: float, speed: float, p: Parameters) -> float:
+def damper_force(y: Array, rates: Array, memory: Array, x: float, speed: float, p: RigParameters) -> float:
     """Return Fd at the load cell, N (positive opposes extension), and write the rates of its own states.
 
     `speed` is that of the mounts; the piston has the same, unless there is play. With `play_turn` the damper rests,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from seatsim.blind.truth.physics import state
 from seatsim.blind.truth.physics.compiled import Array, compiled
-from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.parameters import RigParameters
 
 
 @compiled
-def occupant_force(y: Array, late: float, p: Parameters) -> float:
+def occupant_force(y: Array, late: float, p: RigParameters) -> float:
     """Return the extra force on the seated mass, N; `late` is the speed y' of one muscle delay ago, m/s."""
     force = 0.0
     m = p.m * (1.0 + p.mass_gain)
@@ -24,7 +24,7 @@ def occupant_force(y: Array, late: float, p: Parameters) -> float:
 
 
 @compiled
-def write_occupant_rates(y: Array, rates: Array, seated: float, p: Parameters) -> None:
+def write_occupant_rates(y: Array, rates: Array, seated: float, p: RigParameters) -> None:
     """Write the rates of the inner bodies, `q'' = -w^2 q - 2 z w q' - zc''`; `seated` is zc'', m/s^2."""
     if p.body_fraction > 0.0:
         rates[state.BODY] = y[state.BODY_V]

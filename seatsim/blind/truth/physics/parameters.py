@@ -15,7 +15,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class Parameters:
+class RigParameters:
     """All parameters of one run. Compiled functions see them as a record with a 64-bit float for each field."""
 
     # seat
@@ -165,8 +165,8 @@ class Parameters:
     base_mass: float = 0.0  # kg, 0: the base is the floor
 
 
-RECORD = np.dtype([(field.name, np.float64) for field in dataclasses.fields(Parameters)])
-"""The layout in which compiled functions see `Parameters`."""
+RECORD = np.dtype([(field.name, np.float64) for field in dataclasses.fields(RigParameters)])
+"""The layout in which compiled functions see `RigParameters`."""
 
 
 def parameter_record(values: Mapping[str, float]) -> np.void:
@@ -175,5 +175,5 @@ def parameter_record(values: Mapping[str, float]) -> np.void:
     Raises:
         TypeError: there is no parameter of a given name.
     """
-    record: np.void = np.array([dataclasses.astuple(Parameters(**values))], dtype=RECORD)[0]
+    record: np.void = np.array([dataclasses.astuple(RigParameters(**values))], dtype=RECORD)[0]
     return record

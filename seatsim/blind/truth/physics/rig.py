@@ -21,7 +21,7 @@ from seatsim.blind.truth.physics.damper import update_cavity
 from seatsim.blind.truth.physics.magnetisation import update_relays
 from seatsim.blind.truth.physics.mount import damper_force
 from seatsim.blind.truth.physics.occupant import occupant_force, write_occupant_rates
-from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.parameters import RigParameters
 from seatsim.blind.truth.physics.suspension import suspension_force
 
 SAMPLE_RATE = 500.0
@@ -74,7 +74,7 @@ def simulate(record: np.void, inputs: Inputs, step: float = INTEGRATION_STEP) ->
     rows = inputs.schedule.size
     out: Array = np.zeros((7, rows))
     fine = np.zeros(rows * round(1.0 / (SAMPLE_RATE * step)))
-    _run(cast(Parameters, record), inputs, step, out, fine)
+    _run(cast(RigParameters, record), inputs, step, out, fine)
     return RigMotion(out[0], out[1], out[2], out[3], out[4], out[5], out[6], fine)
 
 
@@ -88,7 +88,7 @@ def _between(samples: Array, rate: float, time: float) -> float:
 
 
 @compiled
-def _base_acceleration(y: Array, rates: Array, floor: float, reaction: float, p: Parameters) -> float:
+def _base_acceleration(y: Array, rates: Array, floor: float, reaction: float, p: RigParameters) -> float:
     """Return the acceleration of the base, m/s^2, and write its rates; `reaction` is the suspension's force on it."""
     if p.base_rate > 0.0 and p.base_mass > 0.0:
         restoring = p.base_rate * (p.base_rate * y[state.BASE] + 2.0 * p.base_damping * y[state.BASE_V])
@@ -100,8 +100,8 @@ def _base_acceleration(y: Array, rates: Array, floor: float, reaction: float, p:
 
 @compiled
 def _write_rates(
-    y: Array, rates: Array, memory: Array, floor: float, frame_force: float, target: float, late: float, p: Parameters,
-    acc: Array,
+    y: Array, rates: Array, memory: Array, floor: float, frame_force: float, target: float, late: float,
+    p: RigParameters, acc: Array,
 ) -> None:  # fmt: skip
     """Write all rates; `acc` gets frame and driver acceleration (m/s^2) and the force at the load cell (N).
 
@@ -130,7 +130,7 @@ def _write_rates(
 @compiled
 def _finish_step(
     y: Array, memory: Array, stages: _Stages, middle: float, end: float, frame_force: float, target: float, late: float,
-    h: float, p: Parameters,
+    h: float, p: RigParameters,
 ) -> None:  # fmt: skip
     """Advance the state from the first stage to the end of the step; the floor is given in its middle and at its end.
 
@@ -154,7 +154,7 @@ def _finish_step(
 
 @compiled
 def _update_memory(
-    y: Array, memory: Array, relays: Array, frame: float, driver: float, h: float, p: Parameters
+    y: Array, memory: Array, relays: Array, frame: float, driver: float, h: float, p: RigParameters
 ) -> None:
     """Carry what changes once a step: the controller's velocities, the cavity, the relays."""
     memory[state.V_FRAME] += h * (frame - FORGETTING * memory[state.V_FRAME])
@@ -166,7 +166,7 @@ def _update_memory(
 
 
 @compiled
-def _run(p: Parameters, inputs: Inputs, h: float, out: Array, fine: Array) -> None:
+def _run(p: RigParameters, inputs: Inputs, h: float, out: Array, fine: Array) -> None:
     floor, floor_rate, frame_forces, law, schedule = inputs
     rows = out.shape[1]
     interval = 1.0 / SAMPLE_RATE

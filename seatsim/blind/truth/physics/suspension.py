@@ -7,7 +7,7 @@ import math
 from seatsim.blind.truth.physics import state
 from seatsim.blind.truth.physics.compiled import Array, compiled
 from seatsim.blind.truth.physics.friction import MICRO_DAMPING, bristle_rate
-from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.parameters import RigParameters
 
 DEEPEST = 6.0
 """Depth of an exponential buffer over its length, beyond which its force grows no further (400 times its scale)."""
@@ -18,7 +18,7 @@ LEAST_FRICTION = 0.2
 
 
 @compiled
-def stop_force(x: float, v: float, p: Parameters) -> float:
+def stop_force(x: float, v: float, p: RigParameters) -> float:
     """Return the buffer force: rubber `k d^1.5 (1 + loss d')`, or an exponential foam buffer; never pulls.
 
     The power 1.5 is that of Hertz' contact of a sphere; the loss is that of Hunt and Crossley (1975).
@@ -35,7 +35,7 @@ def stop_force(x: float, v: float, p: Parameters) -> float:
 
 
 @compiled
-def spring_force(x: float, p: Parameters) -> float:
+def spring_force(x: float, p: RigParameters) -> float:
     """Return the spring force: linear; hardening as sinh or by a helper leaf; softening with the lever's angle."""
     force = p.kf * x
     if p.sinh_length > 0.0:
@@ -49,7 +49,7 @@ def spring_force(x: float, p: Parameters) -> float:
 
 
 @compiled
-def linkage_friction(y: Array, rates: Array, p: Parameters) -> float:
+def linkage_friction(y: Array, rates: Array, p: RigParameters) -> float:
     """Return the linkage friction (LuGre), which may depend on travel, N, and write the rate of its bristle."""
     v = y[state.V]
     rate = bristle_rate(y[state.FRICTION], v, p.friction_length, p.friction_stribeck, p.friction_speed)
@@ -60,7 +60,7 @@ def linkage_friction(y: Array, rates: Array, p: Parameters) -> float:
 
 
 @compiled
-def suspension_force(y: Array, rates: Array, p: Parameters) -> float:
+def suspension_force(y: Array, rates: Array, p: RigParameters) -> float:
     """Return Fs, N, and write the rates of friction, bushing (a Maxwell element) and creep (a Kelvin-Voigt element)."""
     x = y[state.X]
     v = y[state.V]

@@ -6,7 +6,7 @@ import math
 
 from seatsim.blind.truth.physics import state
 from seatsim.blind.truth.physics.compiled import Array, compiled
-from seatsim.blind.truth.physics.parameters import Parameters
+from seatsim.blind.truth.physics.parameters import RigParameters
 
 REFERENCE = 20.0
 """degC at which the nominal parameters hold."""
@@ -18,7 +18,7 @@ COLDEST = -15.0
 
 
 @compiled
-def viscous_factor(t: float, p: Parameters) -> float:
+def viscous_factor(t: float, p: RigParameters) -> float:
     """Return viscosity at `t` degC over that at 20: Arrhenius `exp(B (1/T - 1/T20))` or `1 / (1 + b (t - 20))`."""
     if p.fade_law == 1.0:
         return math.exp(p.fade_viscous * (1000.0 / (t + ZERO) - 1000.0 / REFERENCE_KELVIN))
@@ -26,7 +26,7 @@ def viscous_factor(t: float, p: Parameters) -> float:
 
 
 @compiled
-def yield_factor(t: float, p: Parameters) -> float:
+def yield_factor(t: float, p: RigParameters) -> float:
     """Return yield stress at `t` degC over that at 20: exponential or a power of the absolute temperature."""
     if p.fade_law == 1.0:
         return math.exp(-p.fade_yield * (t - REFERENCE))
@@ -34,7 +34,7 @@ def yield_factor(t: float, p: Parameters) -> float:
 
 
 @compiled
-def write_heat_rates(y: Array, rates: Array, power: float, p: Parameters) -> None:
+def write_heat_rates(y: Array, rates: Array, power: float, p: RigParameters) -> None:
     """Write the rates of fluid, housing and thermometer, K/s: the fluid is heated by |power| and cools to the air."""
     flow = p.fluid_to_housing * (y[state.T_FLUID] - y[state.T_HOUSING])
     rates[state.T_FLUID] = (abs(power) - flow) / p.fluid_heat
