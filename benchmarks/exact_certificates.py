@@ -7,7 +7,7 @@ sign. That proves, without rounding, that the loop is stable with H-infinity nor
 
 from __future__ import annotations
 
-import sys
+import argparse
 import time
 from fractions import Fraction
 from pathlib import Path
@@ -69,7 +69,9 @@ def is_proven(gain: Rows, loop: ExactLoop) -> bool:
 
 def main() -> None:
     """Print a line for every loop of every design."""
-    for path in sys.argv[1:]:
+    parser = argparse.ArgumentParser(description="check the certificates of designs in fractions")
+    parser.add_argument("designs", nargs="+", metavar="DESIGN", help="a `design.yaml` of `seatsim synthesise`")
+    for path in parser.parse_args().designs:
         design = YAML(typ="safe").load(Path(path))
         for i, loop in enumerate(design["loops"]):
             begin = time.process_time()

@@ -8,8 +8,8 @@ settings whose travel stays within the buffers; where none does, the setting wit
 
 from __future__ import annotations
 
+import argparse
 import itertools
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 
 import seatsim
@@ -47,7 +47,9 @@ GRIDS: Mapping[str, Mapping[str, Sequence[object]]] = {
 
 def main() -> None:
     """Tune the laws named on the command line, or all of them."""
-    for law in sys.argv[1:] or GRIDS:
+    parser = argparse.ArgumentParser(description="tune every law of scenarios/laws.yaml by one rule")
+    parser.add_argument("laws", nargs="*", metavar="LAW", help=f"of {', '.join(GRIDS)}; all where none is named")
+    for law in parser.parse_args().laws or GRIDS:
         keys, (comfort, travel) = tune(law)
         print(f"{law}: {keys}  # {comfort:.3f} m/s^2, {1e3 * travel:.1f} mm", flush=True)
 
