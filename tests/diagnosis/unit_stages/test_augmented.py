@@ -23,9 +23,7 @@ NUISANCES = (
     Nuisance("coil", "rate", 130.0, 13.0), Nuisance("coil", "delay", 0.01, 0.002),
 )  # fmt: skip
 PRESENT = "effects: [{effect: driver.mass, parameters: {change: 3}}]\n"
-BIAS = Candidate(
-    "sensor.bias", Bias, {"channel": "damper_force", "drift": 0.0}, ("share",), (0.1,), (-1.0,), (1.0,)
-)
+BIAS = Candidate("sensor.bias", Bias, {"channel": "damper_force", "drift": 0.0}, ("share",), (0.1,), (-1.0,), (1.0,))
 BODY = Candidate(
     "driver.biodynamics", Biodynamics, {}, ("share", "frequency", "damping"), (0.2, 5.0, 0.3), (0,) * 3, (9,) * 3
 )

@@ -62,7 +62,10 @@ def test_excitations_say_what_to_shake(seat, bench):
     ("name", "excitation"),
     [
         ("bump", Bumps(shape="haversine", height=0.05, length=1.0, speed=3.0, duration=8.0, through="direct")),
-        ("sweep", Chirp(start_frequency=1.0, stop_frequency=20.0, amplitude=1.5, duration=12.0, quantity="acceleration")),
+        (
+            "sweep",
+            Chirp(start_frequency=1.0, stop_frequency=20.0, amplitude=1.5, duration=12.0, quantity="acceleration"),
+        ),
         ("large_slow_sine", Sine(amplitude=0.025, frequency=0.5, duration=12.0)),
         ("very_slow_sine", Sine(amplitude=0.025, frequency=0.05, duration=20.0)),
         ("current_steps", Sine(amplitude=0.03, frequency=1.0, duration=12.0)),

@@ -111,7 +111,7 @@ def test_an_effect_on_several_channels_is_as_collinear_as_the_one_that_is_most_s
         monkeypatch.setitem(TAPS, f"{name} scale", taps.tolist())
     objective = make_objective(folder, nuisances=0)
     nuisances = linearise(objective, (offer("a", "frame scale"), 0.1), (offer("b", "driver alone"), 0.1))
-    names, matrix = compare(objective, nuisances, "a", "sensor.gain", "b")
+    matrix = compare(objective, nuisances, "a", "sensor.gain", "b").matrix
     frame, driver = whiten(objective, "frame scale"), whiten(objective, "driver scale")
     assert matrix[0, 1] == pytest.approx(1.0) and cosine(frame, driver) < 1e-9
     assert matrix[1, 2] == pytest.approx(cosine(driver, whiten(objective, "driver alone")), abs=1e-6)
@@ -140,8 +140,10 @@ def test_what_runs_have_is_stacked_in_their_order(folder):
 
 
 def solve(objective, causes):
-    """Return the amounts of the causes, and the cost, of the least-squares problem with prior and bounds of the nuisances."""
-    columns = np.array([*(0.1 * whiten(objective, c) for c in ("mass", "stiffness")), *(whiten(objective, c) for c in causes)])
+    """Return the least-squares amounts of the causes, and the cost, under prior and bounds of the nuisances."""
+    columns = np.array(
+        [*(0.1 * whiten(objective, c) for c in ("mass", "stiffness")), *(whiten(objective, c) for c in causes)]
+    )
     rows = np.vstack([columns.T, np.eye(2, len(columns)) / PRIOR])
     nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
     target = np.concatenate([stack_whitened(objective, nominal.whitened), np.zeros(2)])
@@ -163,7 +165,9 @@ def test_a_member_stands_alone_for_its_group_and_is_fitted(rubbing):
     assert [term.effect for term in found.parameters.terms] == ["y.three", "suspension.friction"]
     amounts, cost = solve(objective, ["three", "two"])
     assert found.cost == pytest.approx(cost, rel=1e-6)
-    assert [found.parameters.values[0][0], 0.01 * found.parameters.values[1][0]] == pytest.approx(list(amounts), rel=1e-4)
+    assert [found.parameters.values[0][0], 0.01 * found.parameters.values[1][0]] == pytest.approx(
+        list(amounts), rel=1e-4
+    )
 
 
 def test_the_member_at_work_starts_from_its_own_values_and_stands_last(rubbing):

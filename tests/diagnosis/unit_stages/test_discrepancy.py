@@ -88,7 +88,10 @@ def test_words_name_what_predicts_it_best_and_the_next_two():
 def test_what_nothing_predicts_is_said_so():
     shares = {"velocity": 0.099, "displacement": 0.01, "everything": 0.099}
     said = describe_in_words(SETTINGS, found([np.ones(5)], shares))
-    assert said[1:] == ["Nothing that the simulated rig does predicts it on runs left out.", "Displacement predicts 1%."]
+    assert said[1:] == [
+        "Nothing that the simulated rig does predicts it on runs left out.",
+        "Displacement predicts 1%.",
+    ]
     shares["velocity"] = 0.1
     assert describe_in_words(SETTINGS, found([np.ones(5)], shares))[1].startswith("It follows velocity best")
 

@@ -20,7 +20,21 @@ from seatsim.diagnosis.result import Estimate, Trace
 from seatsim.diagnosis.select import Selection
 from seatsim.scenario.loading import single
 
-from .toy import CHANNELS, RATE, SIZES, SKIP, Added, AddedTwice, add_taps, offer, place, pose, record, weigh_stated, whiten
+from .toy import (
+    CHANNELS,
+    RATE,
+    SIZES,
+    SKIP,
+    Added,
+    AddedTwice,
+    add_taps,
+    offer,
+    place,
+    pose,
+    record,
+    weigh_stated,
+    whiten,
+)
 
 PRIOR = 0.58
 TWICE = Candidate(
@@ -28,8 +42,11 @@ TWICE = Candidate(
 )
 
 
-def pose_one(folder, truth=(Added("one", 0.5),), noise=0.05, **kept):
-    return weigh_stated(pose(record(folder, truth, noise=noise, **kept)))
+HALF = (Added("one", 0.5),)
+
+
+def pose_one(folder, truth=HALF, noise=0.05):
+    return weigh_stated(pose(record(folder, truth, noise=noise)))
 
 
 def scatter(objective, causes, scale=1.0):
@@ -134,8 +151,12 @@ def test_an_effect_shrinks_the_calibrated_gap_of_the_held_out_run(found):
     objective, _, _, causes, _ = found
     shrink = {cause.effect: cause.shrink for cause in causes}
     base = rms_gap(objective.problem, "second", {"mass": 0.01, "stiffness": 0.02})
-    assert shrink["a.one"] == pytest.approx(1.0 - rms_gap(objective.problem, "second", {"one": 0.4, "mass": 0.01}) / base)
-    assert shrink["b.twice"] == pytest.approx(1.0 - rms_gap(objective.problem, "second", {"one": 0.5, "two": 0.2}) / base)
+    assert shrink["a.one"] == pytest.approx(
+        1.0 - rms_gap(objective.problem, "second", {"one": 0.4, "mass": 0.01}) / base
+    )
+    assert shrink["b.twice"] == pytest.approx(
+        1.0 - rms_gap(objective.problem, "second", {"one": 0.5, "two": 0.2}) / base
+    )
     assert shrink["c.absent"] == shrink["d.absent"] == 0.0
 
 
@@ -203,7 +224,9 @@ def test_motion_is_that_of_the_held_out_run_with_the_slope_of_its_travel(folder)
     table = {"coil_current": 2.0 * rows, "damper_temperature": 3.0 * rows, "floor_acceleration": rows}
     found = trace_motion(with_table(problem, **table, suspension_displacement=wave), "first")
     assert list(found) == ["coil_current", "damper_temperature", "displacement", "velocity"]
-    assert np.array_equal(found["coil_current"], 2.0 * rows[SKIP:]) and np.array_equal(found["displacement"], wave[SKIP:])
+    assert np.array_equal(found["coil_current"], 2.0 * rows[SKIP:]) and np.array_equal(
+        found["displacement"], wave[SKIP:]
+    )
     # A peak in every fifth row is gone in an average over five.
     assert found["velocity"][10:-10] == pytest.approx(0.01)
     bench = trace_motion(with_table(problem, displacement=wave, velocity=rows), "first")

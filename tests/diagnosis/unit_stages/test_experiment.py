@@ -83,7 +83,9 @@ def test_separability_and_likeness_are_those_of_the_signals_under_the_floor_of_t
     found, candidate = assess(objective, nuisances, base, members, name)
     step = round(1.0 / RATE / candidate.floor.step)
     floor = candidate.floor.acceleration[::step]
-    rig = add_taps("floor", floor) + 0.5 * add_taps("one", floor) + candidate.added_mass / 80.0 * add_taps("mass", floor)
+    rig = (
+        add_taps("floor", floor) + 0.5 * add_taps("one", floor) + candidate.added_mass / 80.0 * add_taps("mass", floor)
+    )
     if candidate.floor.command is not None:
         rig = rig + add_taps("current", candidate.floor.command[::step])
     noise = NOISE * SIZES[:2]
@@ -133,7 +135,9 @@ def test_candidates_are_tried_as_far_as_the_first_that_parts_all_members(assesse
     settings = objective.settings
 
     def tried(**changed):
-        problem = dataclasses.replace(objective.problem, settings=settings._replace(design=settings.design._replace(**changed)))
+        problem = dataclasses.replace(
+            objective.problem, settings=settings._replace(design=settings.design._replace(**changed))
+        )
         other = dataclasses.replace(objective, problem=problem)
         return [each.candidate.name for each in experiment._assess_candidates(other, nuisances, base, members)]
 
@@ -169,7 +173,9 @@ def test_an_excitation_has_a_scenario_without_what_is_not_repeated(equivalent):
     stated = {"start": {"displacement": 0.1}, "sweep": {}, "name": "nominal", "effects": [{"effect": "driver.mass"}]}
     problem.scenario.source.data.update(stated)
     try:
-        candidate = verdict(90.0, 0.1, "b", {"controller": {"law": "constant"}, "excitation": {"kind": "sine"}}).candidate
+        candidate = verdict(
+            90.0, 0.1, "b", {"controller": {"law": "constant"}, "excitation": {"kind": "sine"}}
+        ).candidate
         found = experiment._write_scenario(problem, candidate)
     finally:
         for key in stated:
@@ -206,12 +212,16 @@ def test_beside_a_calibration_the_other_members_are_parted(folder):
 
 def test_sensors_are_named_unless_two_members_err_on_the_same(equivalent):
     objective = equivalent[0]
-    problem, clock = objective.problem, Candidate("sensor.clock_skew", ClockSkew, {}, ("shift",), (0.01,), (-1.0,), (1.0,))
+    problem, clock = (
+        objective.problem,
+        Candidate("sensor.clock_skew", ClockSkew, {}, ("shift",), (0.01,), (-1.0,), (1.0,)),
+    )
     lag = gain("frame_acceleration")[0]._replace(effect="sensor.lag")
     rigs = [(gain("driver_acceleration"),), (gain("frame_acceleration"),), ((lag, 0.1),), ((clock, 0.01),), ()]
     rigs[4] = ((offer("damper.x", "one"), 1.0),)
     driver, frame, late, skewed, other = (
-        dataclasses.replace(objective.evaluate([place(problem)])[0], parameters=place(problem, *terms)) for terms in rigs
+        dataclasses.replace(objective.evaluate([place(problem)])[0], parameters=place(problem, *terms))
+        for terms in rigs
     )
     assert experiment._name_sensors([driver, other, skewed]) == ["driver acceleration", "the clock"]
     assert experiment._name_sensors([frame, late, other]) == []
@@ -250,7 +260,9 @@ def test_a_seat_is_driven_by_the_floor_and_a_bench_by_every_row_of_its_motion(eq
     assert experiment._make_inputs(problem, floor) == SeatInputs(floor, 1.0 / RATE)
     channels = problem.recording.channels | {"displacement": problem.recording.channels["frame_acceleration"]}
     header = problem.recording.header._replace(rig="damper_bench")
-    bench = dataclasses.replace(problem, recording=dataclasses.replace(problem.recording, header=header, channels=channels))
+    bench = dataclasses.replace(
+        problem, recording=dataclasses.replace(problem.recording, header=header, channels=channels)
+    )
     ramp = np.arange(10.0)
     moved = Floor(1.0 / RATE / 2.0, 0 * ramp, 0 * ramp, ramp, 2.0 * ramp, None, 3.0 * ramp)
     found = experiment._make_inputs(bench, moved)

@@ -72,7 +72,7 @@ def test_the_evidence_is_that_of_the_dense_gaussian(folder, nuisances):
 
 
 def test_right_hypotheses_of_white_residuals_and_signals_have_the_evidence_of_their_entropy(folder):
-    # Residuals drawn from the covariance: the quadratic part is 1 in the mean, and the rest the log determinant's share.
+    # Residuals drawn from the covariance: the quadratic part is 1 in the mean, the rest the log determinant.
     rng, found = np.random.default_rng(3), []
     objective = weigh_stated(pose(record(folder)))
     response, power = np.full((2, 500), 1.0 + 1.0j), np.full(500, 3.0)
@@ -126,7 +126,9 @@ def test_a_planted_signal_is_likeliest_in_its_block(folder, block):
     assert likeliest(found) == block
     ranked = sorted(each.negative_log_evidence for each in found.values())
     assert ranked[0] < 1.0 and ranked[1] > ranked[0] + 1.0
-    assert (found[block].quantity, found[block].unit) == (("acceleration", "m/s^2") if block == "floor" else ("force", "N"))
+    assert (found[block].quantity, found[block].unit) == (
+        ("acceleration", "m/s^2") if block == "floor" else ("force", "N")
+    )
     assert found[block].channel == "" and list(found[block].signals) == ["first", "second"]
     for run, signal in signals.items():
         assert np.std(found[block].signals[run] - signal) < 0.35 * np.std(signal)
@@ -141,13 +143,20 @@ def test_an_error_of_one_channel_is_that_sensors(folder):
     found = evaluate(dataclasses.replace(objective, problem=problem))
     sensor = found["sensor"]
     assert likeliest(found) == "sensor"
-    assert (sensor.quantity, sensor.unit, sensor.channel) == ("error of suspension_displacement", "m", "suspension_displacement")
+    assert (sensor.quantity, sensor.unit, sensor.channel) == (
+        "error of suspension_displacement",
+        "m",
+        "suspension_displacement",
+    )
     residual = problem.measured["first"][2] - problem.simulated("first", problem.nominal, ())[2]
     assert np.allclose(sensor.signals["first"], residual)
 
 
 def test_without_a_load_cell_damper_and_suspension_are_one(folder):
-    with_it, without = plant(make_objective(folder), "suspension")[0], plant(make_objective(folder, CHANNELS[:3]), "suspension")[0]
+    with_it, without = (
+        plant(make_objective(folder), "suspension")[0],
+        plant(make_objective(folder, CHANNELS[:3]), "suspension")[0],
+    )
     assert with_it["damper"].negative_log_evidence > with_it["suspension"].negative_log_evidence + 1.0
     assert without["damper"] == without["suspension"] and likeliest(without) == "damper"
 
@@ -162,9 +171,11 @@ def test_a_coil_is_asked_where_its_current_is_recorded(folder):
         flowing = np.zeros(len(floor.acceleration))
         flowing += np.interp(np.arange(len(flowing)) / problem.parts, SKIP + np.arange(len(more)), more, 0.0, 0.0)
         driven = floor._replace(command=floor.command + flowing)
-        measured[run] = problem.measured[run] + problem.simulated(
-            run, problem.nominal, (), problem.inputs[run]._replace(floor=driven)
-        ) - problem.simulated(run, problem.nominal, ())
+        measured[run] = (
+            problem.measured[run]
+            + problem.simulated(run, problem.nominal, (), problem.inputs[run]._replace(floor=driven))
+            - problem.simulated(run, problem.nominal, ())
+        )
     found = evaluate(dataclasses.replace(objective, problem=dataclasses.replace(problem, measured=measured)))
     assert likeliest(found) == "coil"
     assert (found["coil"].quantity, found["coil"].unit, found["coil"].channel) == ("current", "A", "")
@@ -193,7 +204,11 @@ def test_a_floor_sensor_that_does_not_follow_errs_by_minus_what_the_floor_does_m
     found = plant(objective, "floor", 0.5)[0]
     assert "floor" not in found and likeliest(found) == "sensor"
     sensor = found["sensor"]
-    assert (sensor.quantity, sensor.unit, sensor.channel) == ("error of floor_acceleration", "m/s^2", "floor_acceleration")
+    assert (sensor.quantity, sensor.unit, sensor.channel) == (
+        "error of floor_acceleration",
+        "m/s^2",
+        "floor_acceleration",
+    )
     assert sensor.negative_log_evidence == moving.negative_log_evidence
     assert np.array_equal(sensor.signals["first"], -moving.signals["first"])
 

@@ -188,10 +188,12 @@ def test_a_unit_error_is_seen_by_its_own_channel_alone():
 
 
 def repeat(folder, forces, noise=LOUD):
-    """Return an objective with a run, its repeat and a third run; a force acts on the frame in each of the first two."""
+    """Return an objective with a run, its repeat and a third run, and the nominal rig; forces act on the frame."""
     floor = np.random.default_rng(4).standard_normal(SKIP + SAMPLES)
     runs = {"first": floor, "other": 250, "again": floor}
-    objective = weigh_stated(pose(record(folder, runs=runs, channels=CHANNELS[:3], noise=noise, repeats={"again": "first"})))
+    objective = weigh_stated(
+        pose(record(folder, runs=runs, channels=CHANNELS[:3], noise=noise, repeats={"again": "first"}))
+    )
     for run, force in forces.items():
         objective = plant(objective, PORTS["suspension"], force, run)[0]
     return objective, objective.evaluate([Parameters(objective.problem.nominal)])[0]

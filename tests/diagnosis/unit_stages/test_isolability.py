@@ -123,7 +123,10 @@ NEVER = "damper and sensor cannot be told apart by any channel: only the form of
         ({"displacement", "damper_force", "coil_current", "current_command"}, [NEVER]),
         (
             {"displacement", "damper_force", "command_voltage"},
-            ["without coil_current, damper or sensor and coil cannot be told apart: log the current of the coil", NEVER],
+            [
+                "without coil_current, damper or sensor and coil cannot be told apart: log the current of the coil",
+                NEVER,
+            ],
         ),
     ],
 )

@@ -1,5 +1,6 @@
-"""Shares of the gap by block: from movements of effects, from evidence, and the ties between blocks that move as one."""
+"""Shares of the gap by block: from movements of effects, from evidence, and ties between blocks that move as one."""
 
+import itertools
 import math
 
 import numpy as np
@@ -28,7 +29,7 @@ def hypothesis(evidence):
 
 
 def as_dict(shares):
-    assert all(a.share >= b.share for a, b in zip(shares, shares[1:], strict=False))
+    assert all(a.share >= b.share for a, b in itertools.pairwise(shares))
     assert sum(each.share for each in shares) == pytest.approx(1.0)
     return {each.block: each.share for each in shares}
 
@@ -46,7 +47,10 @@ def test_movements_count_in_standard_deviations_over_all_channels(folder, object
     found = as_dict(share_gap(objective, rig(objective, ("a.x", "frame alone", 1.0), ("b.x", "one", 1.0)), None))
     power = {}
     for cause in ("frame alone", "one"):
-        parts = [problem.simulated(r, problem.nominal, (Added(cause, 1.0),)) - problem.simulated(r, problem.nominal, ()) for r in problem.runs]
+        parts = [
+            problem.simulated(r, problem.nominal, (Added(cause, 1.0),)) - problem.simulated(r, problem.nominal, ())
+            for r in problem.runs
+        ]
         power[cause] = np.mean(np.mean(np.concatenate(parts, axis=1) ** 2, axis=1) / problem.spread**2)
     assert found["a"] / found["b"] == pytest.approx(power["frame alone"] / power["one"])
     assert CHANNELS[:2] == problem.channels
@@ -64,11 +68,15 @@ def test_a_remainder_stands_first_by_a_fifth_over_the_largest_effect(objective):
     # 1.2 times 4 to the likeliest block, a quarter of that to the other.
     total = 4.8 + 1.2 + 4.0 + 1.0
     assert list(found)[:2] == ["cushion", "damper"]
-    assert found == pytest.approx({"cushion": 4.8 / total, "damper": 4.0 / total, "driver": 1.2 / total, "coil": 1.0 / total})
+    assert found == pytest.approx(
+        {"cushion": 4.8 / total, "damper": 4.0 / total, "driver": 1.2 / total, "coil": 1.0 / total}
+    )
 
 
 def test_a_remainder_in_the_block_of_an_effect_adds_to_it(objective):
-    found = as_dict(share_gap(objective, rig(objective, ("damper.b", "one", 2.0)), Remainder({}, {"damper": 0.5, "coil": 0.5})))
+    found = as_dict(
+        share_gap(objective, rig(objective, ("damper.b", "one", 2.0)), Remainder({}, {"damper": 0.5, "coil": 0.5}))
+    )
     assert found == pytest.approx({"damper": 2.2 / 3.4, "coil": 1.2 / 3.4})
 
 
@@ -82,7 +90,9 @@ def weigh(objective, monkeypatch):
     """Return a function that weighs blocks from stated evidence, of a rig with a stated excess."""
 
     def weigh(evidence, before=1.0):
-        monkeypatch.setattr(localisation, "evaluate_hypotheses", lambda *_: {b: hypothesis(e) for b, e in evidence.items()})
+        monkeypatch.setattr(
+            localisation, "evaluate_hypotheses", lambda *_: {b: hypothesis(e) for b, e in evidence.items()}
+        )
         rig = objective.evaluate([place(objective.problem)])[0]
         rig = Evaluation(rig.parameters, rig.residuals, rig.whitened, (1.0 + before) * rig.rows)
         return localise_remainder(objective, rig, rig)[0]

@@ -8,7 +8,20 @@ import pytest
 from seatsim.diagnosis.localise.reconstruction import FAR_OFF, PORTS, Port, reconstruct
 from seatsim.diagnosis.spectra import measure_power
 
-from .toy import CHANNELS, RATE, SIZES, SKIP, TAPS, Diverging, add_taps, place, pose, record, respond_to_taps, weigh_stated
+from .toy import (
+    CHANNELS,
+    RATE,
+    SIZES,
+    SKIP,
+    TAPS,
+    Diverging,
+    add_taps,
+    place,
+    pose,
+    record,
+    respond_to_taps,
+    weigh_stated,
+)
 
 
 @pytest.fixture(scope="module")
@@ -92,7 +105,9 @@ def test_a_rig_that_leaves_all_bounds_misses_by_far(objective):
 
 def test_without_a_load_cell_none_errs(objective):
     problem = objective.problem
-    other = dataclasses.replace(problem, channels=CHANNELS[:2], measured={r: v[:2] for r, v in problem.measured.items()})
+    other = dataclasses.replace(
+        problem, channels=CHANNELS[:2], measured={r: v[:2] for r, v in problem.measured.items()}
+    )
     rig = build(dataclasses.replace(objective, problem=other), PORTS["damper"])
     assert rig.simulate_with(np.ones(rig.samples)).shape == (2, rig.samples)
 
@@ -145,7 +160,9 @@ def weighted(objective, run, response):
 @pytest.mark.parametrize("seed", [1, 2])
 def test_the_response_of_a_gain_is_measured_exactly(objective, seed):
     rig = build(objective, PORTS["cushion"])
-    gains = np.array([size * (d[0] - f[0]) for size, f, d in zip(SIZES, TAPS["frame force"], TAPS["driver force"], strict=True)])
+    gains = np.array(
+        [size * (d[0] - f[0]) for size, f, d in zip(SIZES, TAPS["frame force"], TAPS["driver force"], strict=True)]
+    )
     expected = weighted(objective, "first", np.tile(gains[:, None], rig.samples // 2 + 1))
     about = 30.0 * np.random.default_rng(1).standard_normal(rig.samples)
     for signal in (np.zeros(rig.samples), about):

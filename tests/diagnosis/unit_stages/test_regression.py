@@ -127,7 +127,9 @@ def own_families(problem, run):
 
 def test_families_are_those_of_the_simulated_motion(problem):
     rng = np.random.default_rng(4)
-    signals = of_motion(problem, lambda x, v, i, a: 300.0 * x + v + 5.0 * i * np.tanh(v / 0.005) + rng.standard_normal(len(x)))
+    signals = of_motion(
+        problem, lambda x, v, i, a: 300.0 * x + v + 5.0 * i * np.tanh(v / 0.005) + rng.standard_normal(len(x))
+    )
     found = explain_signal(problem, place(problem), signals)
     families = {run: own_families(problem, run) for run in problem.runs}
     target = {run: thin(values) for run, values in signals.items()}
@@ -143,7 +145,10 @@ def test_families_are_those_of_the_simulated_motion(problem):
 def test_the_rigs_own_motion_is_regressed_on_not_the_nominal_one(problem):
     heavy = place(problem, deviations=[1.0, 1.0])
     signals = of_motion(problem, lambda x, v, i, a: x)
-    assert explain_signal(problem, heavy, signals)["displacement"] < explain_signal(problem, place(problem), signals)["displacement"]
+    assert (
+        explain_signal(problem, heavy, signals)["displacement"]
+        < explain_signal(problem, place(problem), signals)["displacement"]
+    )
 
 
 @pytest.mark.parametrize(
@@ -169,7 +174,9 @@ def test_a_random_force_is_predicted_by_nothing(problem):
 
 def test_without_travel_only_the_floor_tells(problem):
     short = dataclasses.replace(problem, channels=CHANNELS[:2])
-    found = explain_signal(short, place(short), of_motion(problem, lambda x, v, i, a: np.convolve(a, [0.0, 0.0, 1.0])[: len(a)]))
+    found = explain_signal(
+        short, place(short), of_motion(problem, lambda x, v, i, a: np.convolve(a, [0.0, 0.0, 1.0])[: len(a)])
+    )
     assert list(found) == ["floor motion", "everything"]
     assert found["floor motion"] == found["everything"] > 0.2
 
@@ -180,7 +187,10 @@ def test_a_recorded_current_stands_in_for_one_that_is_not_compared(problem):
     assert explain_signal(short, place(short), signals)["velocity and current"] > 0.6
     # A command that is shorter than the run, or none at all, says nothing.
     for tables in (
-        {run: {n: v for n, v in t.items() if n not in ("coil_current", "current_command")} for run, t in problem.recording.tables.items()},
+        {
+            run: {n: v for n, v in t.items() if n not in ("coil_current", "current_command")}
+            for run, t in problem.recording.tables.items()
+        },
         {run: t | {"coil_current": t["coil_current"][:3]} for run, t in problem.recording.tables.items()},
     ):
         silent = dataclasses.replace(short, recording=dataclasses.replace(problem.recording, tables=tables))
@@ -188,6 +198,8 @@ def test_a_recorded_current_stands_in_for_one_that_is_not_compared(problem):
 
 
 def test_signals_at_a_low_rate_are_not_thinned(problem):
-    slow = dataclasses.replace(problem, settings=problem.settings._replace(localisation=SETTINGS._replace(regression_rate=200.0)))
+    slow = dataclasses.replace(
+        problem, settings=problem.settings._replace(localisation=SETTINGS._replace(regression_rate=200.0))
+    )
     signals = of_motion(problem, lambda x, v, i, a: 1e5 * x**3)
     assert explain_signal(slow, place(slow), signals)["displacement"] > 0.999

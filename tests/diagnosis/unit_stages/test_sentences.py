@@ -41,7 +41,9 @@ def test_something_unknown_alone_in_a_block_or_those_that_channels_cannot_tell_f
 
 
 def test_something_unknown_beside_effects():
-    found = diagnosis("unknown", ["driver.mass", "sensor.gain"], indistinguishable=[["driver.mass", "cushion.hardening"]])
+    found = diagnosis(
+        "unknown", ["driver.mass", "sensor.gain"], indistinguishable=[["driver.mass", "cushion.hardening"]]
+    )
     assert write_answer(found) == (
         "Something in the cushion or the suspension or the driver that no effect of the library explains makes the gap"
         " beside driver.mass and sensor.gain: 0.100 of 0.500 remain; these data cannot tell driver.mass from"
@@ -51,14 +53,16 @@ def test_something_unknown_beside_effects():
 
 def test_a_known_cause_with_its_parameters_and_what_it_takes_off():
     assert write_answer(diagnosis("known", ["driver.mass"])) == (
-        "driver.mass (an occupant heavier or lighter than the plant states; change 12.3 kg): it takes 75% off the gap that"
-        " refitted parameters leave (0.500 to 0.100, noise 0.052)."
+        "driver.mass (an occupant heavier or lighter than the plant states; change 12.3 kg): it takes 75% off the gap"
+        " that refitted parameters leave (0.500 to 0.100, noise 0.052)."
     )
 
 
 def test_several_causes_with_a_channel_and_a_number_without_unit():
     sentence = write_answer(diagnosis("known", ["sensor.gain", "driver.mass"]))
-    assert sentence.startswith("sensor.gain (one channel reads with a wrong scale; damper_force, error -0.0512); driver")
+    assert sentence.startswith(
+        "sensor.gain (one channel reads with a wrong scale; damper_force, error -0.0512); driver"
+    )
 
 
 @pytest.mark.parametrize(
@@ -76,9 +80,7 @@ def test_ambiguous_effects_are_said_last(groups, said):
 def test_of_several_effects_each_group_is_named():
     groups = [["driver.mass", "a"], ["sensor.gain", "b"]]
     sentence = write_answer(diagnosis("ambiguous", ["driver.mass", "sensor.gain"], indistinguishable=groups))
-    assert sentence.endswith(
-        "; these data cannot tell driver.mass from a; these data cannot tell sensor.gain from b."
-    )
+    assert sentence.endswith("; these data cannot tell driver.mass from a; these data cannot tell sensor.gain from b.")
 
 
 def test_a_random_signal_keeps_its_share_of_the_gap():

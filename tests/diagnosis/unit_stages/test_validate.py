@@ -35,7 +35,7 @@ class Moved:
 
     moves: dict
     runs: tuple
-    settings: DiagnosisSettings = DiagnosisSettings()
+    settings: DiagnosisSettings
     spread: tuple = (1.0,)
 
     def on_runs(self, runs):
@@ -144,7 +144,10 @@ def test_a_scenario_has_the_parameters_and_effects_of_a_rig_beside_its_own(folde
 
 def scenarios(problem, *amounts):
     nominal = single(problem.recording.nominal)
-    return tuple(make_scenario(problem, nominal, place(problem, (offer("x", "one"), a)) if a else place(problem)) for a in amounts)
+    return tuple(
+        make_scenario(problem, nominal, place(problem, (offer("x", "one"), a)) if a else place(problem))
+        for a in amounts
+    )
 
 
 def rms_by_channel(problem, run, amount):
@@ -204,7 +207,7 @@ BLOCKS, LENGTH = 40, 20
 
 @pytest.fixture
 def draw_residuals(monkeypatch, folder):
-    """Return a function that draws residuals of two rigs, whose blocks differ in strength, as measured and simulated."""
+    """Return a function that draws residuals of two rigs, whose blocks differ in strength, and bootstraps them."""
     problem = pose(record(folder), validation={"excitation_std": 0.0, "block_length": LENGTH / RATE, "draws": 200})
 
     def bootstrap(rng, shrink, correlation=0.0, spread=0.0):

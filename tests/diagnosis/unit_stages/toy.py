@@ -165,9 +165,9 @@ def _acting(effect):
 
 
 def record(
-    folder, truth=(), runs=None, channels=CHANNELS[:2], noise=0.05, deviations=None, repeats=None, commands=None, seed=0,
+    folder, truth=(), runs=None, channels=CHANNELS[:2], noise=0.05, repeats=None, commands=None, seed=0,
 ):  # fmt: skip
-    """Return a recording of the toy seat with effects, off by deviations of its nuisance parameters.
+    """Return a recording of the toy seat with effects that its nominal scenario lacks.
 
     Args:
         folder: holds the nominal scenario.
@@ -175,7 +175,6 @@ def record(
         runs: samples after the first second by run, or the whole acceleration of the floor.
         channels: outputs that are recorded.
         noise: of every channel, in its natural size; drawn and stated.
-        deviations: of `NUISANCES`, in tolerances.
         repeats: the run that a run repeats.
         commands: commanded current by run, shape (rows,).
         seed: of floor and noise.
@@ -185,7 +184,7 @@ def record(
     for run, given in (runs or {"first": 240, "second": 300}).items():
         floor = rng.standard_normal(SKIP + given) if isinstance(given, int) else np.asarray(given)
         table = {"floor_acceleration": floor} | ({"current_command": commands[run]} if commands else {})
-        true = _vary(nominal, deviations, truth[run] if isinstance(truth, dict) else truth)
+        true = replace(nominal, effects=tuple(truth[run] if isinstance(truth, dict) else truth))
         outputs = respond_linearly(true, recorded_inputs(_blank(folder), table, 1.0 / RATE))
         for name, size in zip(CHANNELS, SIZES, strict=True):
             drawn = noise * size * rng.standard_normal(len(floor))
@@ -202,13 +201,6 @@ def record(
 
 def _blank(folder):
     return TabledRecording(folder, Header("seat", RATE, "nominal.yaml", TOLERANCE), {}, {}, None)
-
-
-def _vary(scenario, deviations, effects):
-    plant = scenario.plant
-    for nuisance, deviation in zip(NUISANCES, deviations or (), strict=False):
-        plant = plant._replace(**{nuisance.name: nuisance.nominal + deviation * nuisance.tolerance})
-    return replace(scenario, plant=plant, effects=(*scenario.effects, *effects))
 
 
 def pose(recording, nuisances=2, **changed):
