@@ -1,0 +1,109 @@
+"""The augmented scenario as a file: the nominal one, its parameters moved, its effects beside those found."""
+
+import copy
+import dataclasses
+import io
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+from seatsim.diagnosis.augmented import write_augmented
+from seatsim.diagnosis.candidates import Candidate
+from seatsim.diagnosis.nuisance import Nuisance
+from seatsim.effects.driver import Biodynamics
+from seatsim.effects.sensor import Bias
+from seatsim.scenario.loading import single
+
+from .toy import NOMINAL, place, pose, record
+
+NUISANCES = (
+    Nuisance("plant", "driver_mass", 80.0, 8.0), Nuisance("damper", "c_a", 250.0, 25.0),
+    Nuisance("coil", "rate", 130.0, 13.0), Nuisance("coil", "delay", 0.01, 0.002),
+)  # fmt: skip
+PRESENT = "effects: [{effect: driver.mass, parameters: {change: 3}}]\n"
+BIAS = Candidate("sensor.bias", Bias, {"channel": "damper_force", "drift": 0.0}, ("share",), (0.1,), (-1.0,), (1.0,))
+BODY = Candidate(
+    "driver.biodynamics", Biodynamics, {}, ("share", "frequency", "damping"), (0.2, 5.0, 0.3), (0,) * 3, (9,) * 3
+)
+
+
+@pytest.fixture
+def problem(folder):
+    return dataclasses.replace(pose(record(folder)), parameters=NUISANCES)
+
+
+def loaded(problem, text, folder):
+    """Return the problem with another nominal file."""
+    (folder / "other.yaml").write_text(text)
+    return dataclasses.replace(problem, scenario=single(folder / "other.yaml"))
+
+
+def test_the_nominal_rig_is_the_nominal_file(problem):
+    content = write_augmented(problem, place(problem))
+    expected = copy.deepcopy(problem.scenario.source.data)
+    assert content.pop("effects") == []
+    expected["actuator"]["delay"] = 0.01
+    assert content == expected
+
+
+def test_parameters_move_by_their_deviations_in_tolerances_where_they_stand(problem):
+    before = copy.deepcopy(problem.scenario.source.data)
+    content = write_augmented(problem, place(problem, deviations=[0.5, -1.0, 1.0, 0.25]))
+    assert content["plant"]["driver_mass"] == 84.0 and content["plant"]["frame_mass"] == 20.0
+    assert content["damper"]["parameters"]["c_a"] == 225.0 and content["damper"]["parameters"]["fc_a"] == 45.0
+    assert content["damper"]["model"] == "bingham"
+    assert content["actuator"] == {"rate": 143.0, "max_current": 1.0, "delay": pytest.approx(0.0105)}
+    assert content["temperature"] == 20.0 and content["controller"] == before["controller"]
+    # What the scenario was read from stays as it is.
+    assert problem.scenario.source.data == before
+
+
+def test_effects_are_appended_with_all_their_parameters(problem, tmp_path):
+    other = loaded(problem, NOMINAL + PRESENT, tmp_path)
+    rig = place(problem, (BIAS, 0.25), (BODY, 0.3, 4.5, 0.2))
+    assert write_augmented(other, rig)["effects"] == [
+        {"effect": "driver.mass", "parameters": {"change": 3}},
+        {"effect": "sensor.bias", "parameters": {"channel": "damper_force", "share": 0.25, "drift": 0.0}},
+        {"effect": "driver.biodynamics", "parameters": {"share": 0.3, "frequency": 4.5, "damping": 0.2}},
+    ]
+    assert other.scenario.source.data["effects"] == [{"effect": "driver.mass", "parameters": {"change": 3}}]
+
+
+def test_a_section_that_the_file_lacks_is_made(problem):
+    data = {"damper": {"model": "bouc_wen"}}
+    scenario = dataclasses.replace(problem.scenario, source=SimpleNamespace(data=data))
+    other = dataclasses.replace(problem, scenario=scenario, parameters=NUISANCES[1:2])
+    content = write_augmented(other, place(other, deviations=[1.0]))
+    assert content == {"damper": {"model": "bouc_wen", "parameters": {"c_a": 275.0}}, "effects": []}
+    assert data == {"damper": {"model": "bouc_wen"}}
+
+
+def types_within(value):
+    """Yield the type of everything in a nested content."""
+    yield type(value)
+    if isinstance(value, dict):
+        for key, part in value.items():
+            yield type(key)
+            yield from types_within(part)
+    elif isinstance(value, list):
+        for part in value:
+            yield from types_within(part)
+
+
+def test_all_is_of_plain_types_and_reads_back_as_the_same_rig(problem, tmp_path):
+    text = NOMINAL.replace("amplitude: 0.01", "amplitude: 1.0e-2") + PRESENT
+    other = loaded(problem, text, tmp_path)
+    deviations = np.array([0.5, -1.0, 1.0, 0.25])
+    whole = BODY._replace(fixed={"damping": 1}, free=("share", "frequency"), start=(0.2, 5.0), low=(0, 0), high=(9, 9))
+    rig = place(problem, (BIAS, np.float64(0.25)), (whole, 0.3, 4.5), deviations=deviations)
+    content = write_augmented(other, rig)
+    assert set(types_within(content)) <= {dict, list, str, int, float}
+    assert type(content["effects"][2]["parameters"]["damping"]) is float
+    stream = io.StringIO()
+    YAML(typ="safe").dump(content, stream)
+    (tmp_path / "augmented.yaml").write_text(stream.getvalue())
+    back = single(tmp_path / "augmented.yaml")
+    assert back.plant.driver_mass == 84.0 and back.damper.record.c_a == 225.0 and back.coil.delay == 0.0105
+    assert back.effects[1:] == (Bias("damper_force", 0.25, 0.0), Biodynamics(0.3, 4.5, 1.0))

@@ -1,0 +1,127 @@
+"""Candidate experiments: their order, their words, what they do to floor, current, warmth, mass and sensors."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.design.candidate_experiments import list_candidate_experiments
+from seatsim.excitations.bumps import Bumps
+from seatsim.excitations.periodic import Chirp, Sine
+from seatsim.simulation.inputs import BenchInputs
+
+from .toy import CHANNELS, RATE, pose, record
+
+INTERVENTIONS = ["zero_current", "warm_up", "locked_seat", "added_mass"]
+EXCITED = ["bump", "sweep", "large_slow_sine", "very_slow_sine", "current_steps"]
+
+
+@pytest.fixture(scope="module")
+def seat(folder):
+    """A seat whose coil takes 2 A, with all channels but the current's and the load cell's."""
+    rows = np.full(440, 0.2)
+    problem = pose(record(folder, runs={"first": 240}, channels=CHANNELS[:3], commands={"first": rows}))
+    coil = problem.scenario.coil._replace(max_current=2.0)
+    return dataclasses.replace(problem, scenario=dataclasses.replace(problem.scenario, coil=coil))
+
+
+@pytest.fixture(scope="module")
+def bench(seat):
+    """The same as a bench, with the displacement of a damper."""
+    recording = dataclasses.replace(seat.recording, header=seat.recording.header._replace(rig="damper_bench"))
+    motion = np.sin(np.arange(400) / 20.0)
+    inputs = BenchInputs(1.0 / RATE, motion, current_command=np.full(400, 0.4), damper_temperature=np.full(400, 30.0))
+    return dataclasses.replace(seat, recording=recording, inputs={"first": inputs}, channels=("damper_force",))
+
+
+def by_name(problem):
+    return {each.name: each for each in list_candidate_experiments(problem)}
+
+
+def test_the_cheapest_come_first_and_a_sensor_is_added_where_it_lacks(seat):
+    assert list(by_name(seat)) == [*EXCITED, "coil_current", *INTERVENTIONS, "load_cell"]
+    added = {name: each.added_sensors for name, each in by_name(seat).items() if each.added_sensors}
+    assert added == {"coil_current": ("coil_current",), "load_cell": ("damper_force",)}
+    full = dataclasses.replace(seat, channels=CHANNELS)
+    assert list(by_name(full)) == [*EXCITED, *INTERVENTIONS]
+
+
+def test_a_bench_has_no_bump_no_seat_and_no_driver(bench):
+    names = ["sweep", "large_slow_sine", "very_slow_sine", "current_steps", "coil_current", "zero_current", "warm_up"]
+    assert list(by_name(bench)) == names
+
+
+def test_excitations_say_what_to_shake(seat, bench):
+    assert by_name(seat)["sweep"].text == "sweep the floor from 1 to 20 Hz at 1.5 m/s^2"
+    assert by_name(bench)["sweep"].text == "sweep the damper from 1 to 20 Hz at 1.5 m/s^2"
+    assert by_name(seat)["large_slow_sine"].text == "shake the floor at 0.5 Hz with 25 mm"
+    assert by_name(seat)["bump"].text == "drive over a bump of 50 mm"
+
+
+@pytest.mark.parametrize(
+    ("name", "excitation"),
+    [
+        ("bump", Bumps(shape="haversine", height=0.05, length=1.0, speed=3.0, duration=8.0, through="direct")),
+        (
+            "sweep",
+            Chirp(start_frequency=1.0, stop_frequency=20.0, amplitude=1.5, duration=12.0, quantity="acceleration"),
+        ),
+        ("large_slow_sine", Sine(amplitude=0.025, frequency=0.5, duration=12.0)),
+        ("very_slow_sine", Sine(amplitude=0.025, frequency=0.05, duration=20.0)),
+        ("current_steps", Sine(amplitude=0.03, frequency=1.0, duration=12.0)),
+    ],
+)  # fmt: skip
+def test_the_floor_of_an_excitation_is_that_of_its_scenario(seat, name, excitation):
+    found, step = by_name(seat)[name], seat.scenario.solver.step
+    floor = excitation.floor(step, 0)
+    assert found.floor.step == step
+    assert np.array_equal(found.floor.acceleration, floor.acceleration)
+    keys = {key: value for key, value in found.scenario["excitation"].items() if key != "kind"}
+    assert keys.items() <= excitation._asdict().items()
+    assert found.added_mass == 0.0 and found.added_sensors == ()
+
+
+def test_a_steady_current_is_a_share_of_the_largest(seat):
+    found = by_name(seat)["sweep"]
+    assert np.all(found.floor.command == 0.6) and len(found.floor.command) == len(found.floor.acceleration)
+    assert found.scenario["controller"] == {"law": "constant", "current": 0.6}
+
+
+def test_a_switched_current_is_off_and_nearly_full_every_quarter_of_a_second(seat):
+    found = by_name(seat)["current_steps"]
+    assert found.scenario["controller"] == {"law": "on_off_skyhook", "on": 1.8}
+    for candidate in (found, by_name(seat)["locked_seat"]):
+        rows = np.searchsorted(candidate.floor.time, [0.1, 0.2, 0.3, 0.45, 0.55, 0.8])
+        assert candidate.floor.command[rows] == pytest.approx([0.0, 0.0, 1.8, 1.8, 0.0, 1.8])
+
+
+def test_interventions_keep_the_floor_of_the_first_run_but_in_a_locked_seat(seat):
+    found, recorded = by_name(seat), seat.inputs["first"].floor
+    for name in ("coil_current", "zero_current", "warm_up", "added_mass", "load_cell"):
+        assert np.array_equal(found[name].floor.acceleration, recorded.acceleration)
+        assert found[name].scenario is None
+    assert found["locked_seat"].scenario is None
+    for values in found["locked_seat"].floor[1:4]:
+        assert np.array_equal(values, np.zeros(len(recorded.acceleration)))
+
+
+def test_each_intervention_changes_one_thing(seat):
+    found, recorded = by_name(seat), seat.inputs["first"].floor
+    zero = found["zero_current"].floor
+    assert not zero.command.any() and not zero.coil_current.any()
+    warm = found["warm_up"].floor
+    assert warm.temperature[[0, -1]] == pytest.approx([20.0, 60.0])
+    assert np.ptp(np.diff(warm.temperature)) < 1e-9
+    assert np.array_equal(warm.command, recorded.command)
+    masses = {name: each.added_mass for name, each in found.items() if each.added_mass}
+    assert masses == {"added_mass": 20.0}
+    assert found["added_mass"].floor is recorded and found["coil_current"].floor is recorded
+    assert found["load_cell"].floor is recorded
+
+
+def test_a_bench_repeats_the_motion_of_its_damper(bench):
+    found, inputs = by_name(bench)["coil_current"].floor, bench.inputs["first"]
+    assert found.step == 1.0 / RATE and not found.acceleration.any() and not found.velocity.any()
+    assert found.displacement is inputs.displacement
+    assert found.command is inputs.current_command and found.temperature is inputs.damper_temperature
+    assert found.coil_current is None

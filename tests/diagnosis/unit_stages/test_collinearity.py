@@ -1,0 +1,206 @@
+"""Collinearity of effects of a linear seat, against angles between what ridge regressions leave of their signals."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+from seatsim.diagnosis.candidates import list_candidates
+from seatsim.diagnosis.design.collinearity import fit_member, measure_collinearity, stack_jacobian, stack_whitened
+from seatsim.diagnosis.parameters import Parameters
+
+from .toy import TAPS, Added, offer, place, pose, record, weigh_stated, whiten
+
+PRIOR = 0.58
+
+
+def make_objective(folder, nuisances=2, truth=(), **settings):
+    return weigh_stated(pose(record(folder, truth), nuisances, **settings))
+
+
+def linearise(objective, *terms):
+    """Return the linearisation of the rig with terms (candidate, value), which need no fit here."""
+    rig = objective.evaluate([place(objective.problem, *terms)])[0]
+    return objective.linearise_nuisances(rig)
+
+
+def compare(objective, nuisances, *names):
+    return measure_collinearity(objective, nuisances, names)
+
+
+def leave(objective, signal, nuisances=("mass", "stiffness")):
+    """Return what a ridge regression on the nuisance parameters, a tenth each, leaves of a whitened signal."""
+    columns = np.array([0.1 * whiten(objective, cause) for cause in nuisances]).T
+    rows = np.vstack([columns, np.eye(len(nuisances)) / PRIOR])
+    target = np.concatenate([signal, np.zeros(len(nuisances))])
+    return target - rows @ np.linalg.lstsq(rows, target, rcond=None)[0]
+
+
+def cosine(a, b):
+    return abs(a @ b) / np.linalg.norm(a) / np.linalg.norm(b)
+
+
+def test_fitted_effects_are_as_collinear_as_what_nuisances_leave_of_their_signals(folder):
+    objective = make_objective(folder)
+    terms = [(offer(f"x.{cause}", cause), size) for cause, size in [("one", 1.0), ("two", -2.0), ("three", 0.5)]]
+    names, matrix = compare(objective, linearise(objective, *terms), "x.three", "x.one", "x.two")
+    left = [leave(objective, whiten(objective, cause)) for cause in ("three", "one", "two")]
+    assert names == ["x.three", "x.one", "x.two"]
+    assert np.allclose(matrix, [[cosine(a, b) for b in left] for a in left], atol=1e-6)
+
+
+def test_identical_effects_have_one_and_those_that_share_nothing_have_zero(folder):
+    objective = make_objective(folder, nuisances=0)
+    terms = [(offer("a", "frame alone"), 1.0), (offer("b", "frame alone"), -3.0), (offer("c", "driver alone"), 1.0)]
+    matrix = compare(objective, linearise(objective, *terms), "a", "b", "c").matrix
+    assert np.allclose(matrix, [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]], atol=1e-9)
+
+
+def test_what_a_nuisance_absorbs_of_two_effects_makes_them_collinear_no_more(folder, monkeypatch):
+    for name, alone in (("frame", "frame alone"), ("driver", "driver alone")):
+        taps = np.array(TAPS["mass"]) + 0.05 * np.array(TAPS[alone])
+        monkeypatch.setitem(TAPS, f"mass and {name}", taps.tolist())
+    terms = [(offer("a", "mass and frame"), 1.0), (offer("b", "mass and driver"), 1.0)]
+    without, with_it = make_objective(folder, nuisances=0), make_objective(folder, nuisances=1)
+    assert compare(without, linearise(without, *terms), "a", "b").matrix[0, 1] > 0.99
+    absorbed = compare(with_it, linearise(with_it, *terms), "a", "b").matrix[0, 1]
+    left = [leave(with_it, whiten(with_it, f"mass and {name}"), ["mass"]) for name in ("frame", "driver")]
+    assert absorbed == pytest.approx(cosine(*left), abs=1e-6) and absorbed < 0.95
+
+
+def test_an_effect_without_any_signal_is_collinear_with_itself_alone(folder):
+    objective = make_objective(folder)
+    # A force that the load cell alone sees, where none is recorded.
+    nuisances = linearise(objective, (offer("a", "force alone"), 1.0), (offer("b", "one"), 1.0))
+    assert np.array_equal(compare(objective, nuisances, "a", "b").matrix, np.eye(2))
+
+
+def bend(objective, share):
+    return share * whiten(objective, "one") + share**2 * whiten(objective, "three")
+
+
+@pytest.mark.parametrize("amount", [2.0, 0.5, 0.001, 15.0])
+def test_an_effect_that_the_rig_lacks_is_made_as_large_as_the_largest_fitted_one(folder, amount):
+    objective = make_objective(folder)
+    nuisances = linearise(objective, (offer("a", "two"), amount), (offer("b", "three"), 0.1 * amount))
+    sizes = [np.linalg.norm(amount * share * whiten(objective, cause)) for cause, share in [("two", 1), ("three", 0.1)]]
+    assert sizes[0] > sizes[1]
+    # From its start of 0.2, by no more than a factor of 8, within its bounds of 0 to 0.95.
+    share = min(0.2 * np.clip(sizes[0] / np.linalg.norm(bend(objective, 0.2)), 1.0 / 8.0, 8.0), 0.95)
+    expected = cosine(leave(objective, whiten(objective, "two")), leave(objective, bend(objective, share)))
+    names, matrix = compare(objective, nuisances, "a", "driver.biodynamics", "b")
+    assert names[1] == "driver.biodynamics"
+    assert matrix[0, 1] == pytest.approx(expected, abs=1e-6)
+
+
+def test_without_any_fitted_effect_candidates_keep_their_starts(folder):
+    objective = make_objective(folder)
+    nuisances = linearise(objective)
+    names, matrix = compare(objective, nuisances, "suspension.friction", "driver.biodynamics")
+    expected = cosine(leave(objective, whiten(objective, "two")), leave(objective, bend(objective, 0.2)))
+    assert names == ["suspension.friction", "driver.biodynamics"]
+    assert matrix[0, 1] == pytest.approx(expected, abs=1e-6)
+
+
+def test_an_effect_on_several_channels_is_as_collinear_as_the_one_that_is_most_so(folder, monkeypatch):
+    # A wrong scale of the driver's accelerometer, and of the frame's, are what these two add.
+    for name, k in (("frame", 0), ("driver", 1)):
+        taps = np.zeros((5, 2))
+        taps[k] = TAPS["floor"][k]
+        monkeypatch.setitem(TAPS, f"{name} scale", taps.tolist())
+    objective = make_objective(folder, nuisances=0)
+    nuisances = linearise(objective, (offer("a", "frame scale"), 0.1), (offer("b", "driver alone"), 0.1))
+    matrix = compare(objective, nuisances, "a", "sensor.gain", "b").matrix
+    frame, driver = whiten(objective, "frame scale"), whiten(objective, "driver scale")
+    assert matrix[0, 1] == pytest.approx(1.0) and cosine(frame, driver) < 1e-9
+    assert matrix[1, 2] == pytest.approx(cosine(driver, whiten(objective, "driver alone")), abs=1e-6)
+    assert matrix[1, 1] == 1.0 and np.array_equal(matrix, matrix.T)
+
+
+def test_names_that_cannot_act_here_are_left_out_and_repeated_ones_said_once(folder):
+    objective = make_objective(folder)
+    nuisances = linearise(objective, (offer("a", "one"), 1.0))
+    found = compare(objective, nuisances, "a", "no.such", "a")
+    assert found.effects == ["a"] and np.array_equal(found.matrix, [[1.0]])
+    assert compare(objective, nuisances).matrix.shape == (0, 0)
+
+
+def test_what_runs_have_is_stacked_in_their_order(folder):
+    objective = make_objective(folder)
+    nuisances = linearise(objective)
+    parts = nuisances.evaluation.whitened
+    expected = np.concatenate([parts["first"].ravel(), parts["second"].ravel()])
+    swapped = dict(reversed(parts.items()))
+    assert np.array_equal(stack_whitened(objective, swapped), expected)
+    jacobian = stack_jacobian(objective, nuisances)
+    assert np.allclose(jacobian, [0.1 * whiten(objective, cause) for cause in ("mass", "stiffness")], rtol=1e-6)
+    only = objective.on_runs(["second"])
+    assert np.array_equal(stack_whitened(only, parts), parts["second"].ravel())
+
+
+def solve(objective, causes):
+    """Return the least-squares amounts of the causes, and the cost, under prior and bounds of the nuisances."""
+    columns = np.array(
+        [*(0.1 * whiten(objective, c) for c in ("mass", "stiffness")), *(whiten(objective, c) for c in causes)]
+    )
+    rows = np.vstack([columns.T, np.eye(2, len(columns)) / PRIOR])
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    target = np.concatenate([stack_whitened(objective, nominal.whitened), np.zeros(2)])
+    limits = np.array([1.0, 1.0, *(np.inf for _ in causes)])
+    best = lsq_linear(rows, target, (-limits, limits), tol=1e-14).x
+    return best[2:], float(np.sum((target - rows @ best) ** 2))
+
+
+@pytest.fixture(scope="module")
+def rubbing(folder):
+    """A rig with two effects, one of which two others could stand for."""
+    objective = make_objective(folder, truth=(Added("one", 0.5), Added("two", 0.4), Added("three", 0.5)))
+    return objective, linearise(objective, (offer("x.one", "one"), 0.7), (offer("y.three", "three"), 0.5))
+
+
+def test_a_member_stands_alone_for_its_group_and_is_fitted(rubbing):
+    objective, nuisances = rubbing
+    found = fit_member(objective, nuisances, "suspension.friction", ["x.one", "suspension.friction"])
+    assert [term.effect for term in found.parameters.terms] == ["y.three", "suspension.friction"]
+    amounts, cost = solve(objective, ["three", "two"])
+    assert found.cost == pytest.approx(cost, rel=1e-6)
+    assert [found.parameters.values[0][0], 0.01 * found.parameters.values[1][0]] == pytest.approx(
+        list(amounts), rel=1e-4
+    )
+
+
+def test_the_member_at_work_starts_from_its_own_values_and_stands_last(rubbing):
+    objective, nuisances = rubbing
+    found = fit_member(objective, nuisances, "x.one", ["x.one", "suspension.friction"])
+    assert [term.effect for term in found.parameters.terms] == ["y.three", "x.one"]
+    assert found.cost == pytest.approx(solve(objective, ["three", "one"])[1], rel=1e-6)
+
+
+def test_of_all_structures_the_best_is_returned(rubbing):
+    objective, nuisances = rubbing
+    found = fit_member(objective, nuisances, "damper.seal_friction", ["x.one", "damper.seal_friction"])
+    starts = [c for c in list_candidates(objective.problem) if c.effect == "damper.seal_friction"]
+    assert len(starts) > 1 and found.cost == pytest.approx(solve(objective, ["three", "one"])[1], rel=1e-6)
+
+
+def count_fits(objective, nuisances, structures):
+    """Return how often rigs are simulated for a member with a wrong sensor, which has a start for every channel."""
+    calls, problem = [], objective.problem
+
+    class Counting(type(problem)):
+        def simulated(self, *given):
+            calls.append(given)
+            return problem.simulated(*given)
+
+    settings = problem.settings._replace(design=problem.settings.design._replace(structures=structures))
+    values = {field.name: getattr(problem, field.name) for field in dataclasses.fields(problem)}
+    counting = dataclasses.replace(objective, problem=Counting(**values | {"settings": settings}))
+    return fit_member(counting, nuisances, "sensor.gain", ["x.one"]), len(calls)
+
+
+def test_only_the_best_structures_are_fitted(rubbing):
+    objective, nuisances = rubbing
+    best, few = count_fits(objective, nuisances, 1)
+    all_fitted, many = count_fits(objective, nuisances, 3)
+    assert few < many and all_fitted.cost <= best.cost

@@ -1,0 +1,137 @@
+"""From a recording to its diagnosis: what is refused, what is passed on, and the whole way on a linear seat."""
+
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from threadpoolctl import threadpool_info
+
+from seatsim.diagnosis import diagnose as module
+from seatsim.diagnosis.diagnose import diagnose, diagnose_problem
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.solve import Method
+from seatsim.effects.driver import Mass
+from seatsim.recordings.quality.examination import Examination
+from seatsim.recordings.quality.issue import Issue
+from seatsim.schema.errors import InputError
+
+from .toy import CHANNELS, NOMINAL, SKIP, pose, record
+
+
+@pytest.fixture
+def stages(monkeypatch):
+    """Write down what each stage is given; each returns a word."""
+    seen = {}
+
+    def stage(name, answer):
+        def call(*given):
+            seen[name] = given
+            return answer
+
+        monkeypatch.setattr(module, name, call)
+
+    stage("load_recording", "loaded")
+    stage("examine", Examination([Issue("warning", "kind", "mind the clock")]))
+    stage("pose_problem", "problem")
+    stage("solve", "solution")
+    stage("state_diagnosis", "diagnosis")
+    return seen
+
+
+def test_a_recording_is_examined_posed_solved_and_stated(folder, stages):
+    said, recording, settings = [], record(folder), DiagnosisSettings()
+    assert diagnose(recording, ["driver.mass"], said.append, settings) == "diagnosis"
+    assert said == ["looking at the data"] and "load_recording" not in stages
+    assert stages["examine"] == (recording,)
+    posed, pool, given = stages["pose_problem"]
+    assert posed is recording and given is settings and isinstance(pool, ThreadPoolExecutor)
+    assert stages["solve"] == ("problem", ["driver.mass"], said.append, Method())
+    assert stages["state_diagnosis"] == ("solution", ["mind the clock"], said.append)
+
+
+@pytest.mark.parametrize("given", ["somewhere", Path("somewhere")])
+def test_a_recording_may_be_named_by_its_folder(stages, given):
+    assert diagnose(given) == "diagnosis"
+    assert stages["load_recording"] == (given,) and stages["examine"] == ("loaded",)
+    assert stages["pose_problem"][0] == "loaded" and stages["pose_problem"][2] is None
+    assert stages["solve"][1] == () and stages["solve"][2]("any word") is None
+
+
+def test_a_recording_with_an_error_is_refused_before_anything_is_fitted(folder, stages, monkeypatch):
+    error = Issue("error", "kind", "the sensor is dead")
+    monkeypatch.setattr(module, "examine", lambda recording: Examination([error, Issue("note", "x", "y")]))
+    with pytest.raises(InputError, match=r"^the sensor is dead$"):
+        diagnose(record(folder))
+    assert "pose_problem" not in stages and "solve" not in stages
+
+
+HEADER = """\
+rig: seat
+sample_rate: 200.0
+nominal: nominal.yaml
+runs: [{name: first, file: first.csv}]
+channels: {floor_acceleration: {unit: m/s^2, noise_rms: 0.01}, driver_acceleration: {unit: m/s^2, noise_rms: 0.01}}
+"""
+
+
+def test_a_dead_sensor_is_such_an_error(tmp_path, monkeypatch):
+    def pose_nothing(*given):
+        raise AssertionError("a damaged recording was posed")
+
+    monkeypatch.setattr(module, "pose_problem", pose_nothing)
+    floor = np.random.default_rng(1).standard_normal(SKIP + 2200)
+    (tmp_path / "nominal.yaml").write_text(NOMINAL)
+    (tmp_path / "recording.yaml").write_text(HEADER)
+    rows = [f"{k / 200.0},{value},0.0" for k, value in enumerate(floor)]
+    (tmp_path / "first.csv").write_text("\n".join(["time,floor_acceleration,driver_acceleration", *rows]))
+    with pytest.raises(InputError, match=r"driver_acceleration is 0 throughout; the sensor is dead"):
+        diagnose(tmp_path)
+
+
+def test_a_method_and_notes_are_passed_on_and_algebra_keeps_to_one_thread(stages, monkeypatch):
+    threads, other = [], Method(weigh_noise=None)
+
+    def solve(*given):
+        threads.extend(each["num_threads"] for each in threadpool_info())
+        stages["solve"] = given
+        return "solution"
+
+    monkeypatch.setattr(module, "solve", solve)
+    assert diagnose_problem("problem", ["a note"], ["x"], print, other) == "diagnosis"
+    assert stages["solve"] == ("problem", ["x"], print, other)
+    assert stages["state_diagnosis"] == ("solution", ["a note"], print)
+    assert threads and set(threads) == {1}
+
+
+@pytest.fixture(scope="module")
+def heavier(folder):
+    """A problem whose driver is heavier by far more than the tolerance."""
+    recording = record(folder, (Mass(30.0),), {"first": 300, "second": 360, "third": 240}, CHANNELS[:4], noise=0.02)
+    return pose(recording, 1)
+
+
+def test_a_heavier_driver_is_found(heavier):
+    said = []
+    found = diagnose_problem(heavier, ["a note"], progress=said.append)
+    assert (found.verdict, found.selected) == ("known", ["driver.mass"])
+    assert [share.block for share in found.where] == ["driver"] and found.causes[0].effect == "driver.mass"
+    # The tolerance of 8 kg takes its part, by its prior.
+    change = found.causes[0].parameters["change"]
+    moved = found.augmented["plant"]["driver_mass"] - 80.0
+    assert change.unit == "kg" and change.value + moved == pytest.approx(30.0, abs=0.5)
+    assert found.gap.after.overall < 0.1 * found.gap.before.overall
+    assert found.gap.shrink_interval[0] > 0.6 and found.notes[0] == "a note"
+    assert said[:3] == ["weighing the channels", "fitting sets of 1", "holding out a run"]
+    assert found.probability_unknown < 0.1 and found.probability_none < 0.1
+
+
+def test_what_is_withheld_is_not_found(heavier):
+    found = diagnose_problem(heavier, without=["driver.mass"])
+    assert "driver.mass" not in {cause.effect for cause in found.causes}
+    assert found.selected != ["driver.mass"]
+
+
+def test_a_sound_rig_has_no_gap(folder):
+    found = diagnose_problem(pose(record(folder, (), {"first": 300, "second": 360}, CHANNELS[:4]), 1))
+    assert (found.verdict, found.selected, found.where) == ("none", [], [])

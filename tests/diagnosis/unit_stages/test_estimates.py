@@ -1,0 +1,254 @@
+"""What a diagnosis rests on: standard deviations, each effect's own shrink, and the signals behind the pictures."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.candidates import Candidate
+from seatsim.diagnosis.decide import Decision
+from seatsim.diagnosis.estimates import (
+    compare_comfort,
+    estimate_causes,
+    estimate_standard_deviations,
+    trace_motion,
+    trace_run,
+)
+from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.result import Estimate, Trace
+from seatsim.diagnosis.select import Selection
+from seatsim.scenario.loading import single
+
+from .toy import (
+    CHANNELS,
+    RATE,
+    SIZES,
+    SKIP,
+    Added,
+    AddedTwice,
+    add_taps,
+    offer,
+    place,
+    pose,
+    record,
+    weigh_stated,
+    whiten,
+)
+
+PRIOR = 0.58
+TWICE = Candidate(
+    "b.twice", AddedTwice, {"channel": "damper_force"}, ("first", "second"), (0.5, -4.0), (-20.0,) * 2, (20.0,) * 2
+)
+
+
+HALF = (Added("one", 0.5),)
+
+
+def pose_one(folder, truth=HALF, noise=0.05):
+    return weigh_stated(pose(record(folder, truth, noise=noise)))
+
+
+def scatter(objective, causes, scale=1.0):
+    """Return the posterior standard deviations of nuisances and amounts of the causes, from their signals."""
+    signals = [0.1 * whiten(objective, "mass"), 0.1 * whiten(objective, "stiffness")]
+    signals += [whiten(objective, cause) for cause in causes]
+    precision = np.diag([PRIOR**-2, PRIOR**-2] + [0.0] * len(causes))
+    covariance = np.linalg.inv(np.array(signals) @ np.array(signals).T + precision)
+    return np.sqrt(scale * np.diag(covariance))
+
+
+def deviations_of(objective, *terms, deviations=None):
+    rig = objective.evaluate([place(objective.problem, *terms, deviations=deviations)])[0]
+    return estimate_standard_deviations(objective, rig, objective.linearise_nuisances(rig)), rig
+
+
+def test_standard_deviations_count_in_the_natural_sizes_of_the_parameters(folder):
+    objective = pose_one(folder)
+    # The starts of the free parameters, 0.5 and -4, are their sizes.
+    found, rig = deviations_of(objective, (TWICE, 0.5, 0.0), deviations=[0.1, 0.0])
+    expected = scatter(objective, ["one", "two"], max(1.0, rig.cost / rig.rows)) / [1.0, 1.0, 0.5, 4.0]
+    assert found == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize("amount", [0.5, 2.5])
+def test_what_the_fit_leaves_beyond_noise_scales_them_up(folder, amount):
+    objective = pose_one(folder)
+    term = (offer("a", "one", start=0.25), amount), (offer("c", "two", start=-4.0), 0.0)
+    found, rig = deviations_of(objective, *term)
+    expected = scatter(objective, ["one", "two"], max(1.0, rig.cost / rig.rows)) / [1.0, 1.0, 0.25, 4.0]
+    assert found == pytest.approx(expected, rel=1e-5)
+    assert (rig.cost > 100.0 * rig.rows) == (amount > 1.0)
+
+
+def test_a_fit_below_its_noise_does_not_scale_them_down(folder):
+    objective = pose_one(folder, noise=0.05)
+    loud = {n: e._replace(noise_rms=3.0 * e.noise_rms) for n, e in objective.problem.recording.channels.items()}
+    problem = objective.problem
+    quiet = weigh_stated(dataclasses.replace(problem, recording=dataclasses.replace(problem.recording, channels=loud)))
+    found, rig = deviations_of(quiet, (offer("a", "one"), 0.5))
+    assert rig.cost < 0.2 * rig.rows
+    assert found == pytest.approx(scatter(quiet, ["one"]), rel=1e-5)
+
+
+def test_they_are_the_spread_of_fits_to_other_noise(folder):
+    objective = pose_one(folder)
+    problem, rng, fits = objective.problem, np.random.default_rng(5), []
+    term = offer("a", "one", start=0.25)
+    true = {run: problem.simulated(run, problem.nominal, (Added("one", 0.5),)) for run in problem.runs}
+    for _ in range(150):
+        drawn = {run: v + problem.noise[:, None] * rng.standard_normal(v.shape) for run, v in true.items()}
+        other = dataclasses.replace(objective, problem=dataclasses.replace(problem, measured=drawn))
+        fits.append(refit(other, place(problem, (term, 0.4))))
+    found = estimate_standard_deviations(objective, fits[-1], objective.linearise_nuisances(fits[-1]))
+    spread = np.std([each.parameters.vector for each in fits], axis=0)
+    # The data outweigh the prior, which would draw the fits together.
+    assert np.all(found[:2] < 0.3 * PRIOR)
+    assert found == pytest.approx(spread, rel=0.25)
+    assert np.mean([each.parameters.values[0] for each in fits]) == pytest.approx(0.5, abs=0.25 * found[2])
+
+
+def rms_gap(problem, run, amounts):
+    """Return the gap of `measured - nominal - sum amounts` over the channels of a run, in standard deviations."""
+    table = problem.recording.table(run)
+    floor = table["floor_acceleration"]
+    simulated = add_taps("floor", floor) + sum(a * add_taps(c, floor) for c, a in amounts.items())
+    gaps = [
+        np.sqrt(np.mean((table[n] - simulated[k])[SKIP:] ** 2)) / np.std(table[n][SKIP:])
+        for k, n in enumerate(problem.channels)
+    ]
+    return np.sqrt(np.mean(np.square(gaps)))
+
+
+@pytest.fixture(scope="module")
+def found(folder):
+    """Causes of a rig with two effects, of four that may be, one of them chosen."""
+    objective = pose_one(folder, (Added("one", 0.5), Added("two", 0.2)))
+    problem = objective.problem
+    rigs = {
+        "calibrated": place(problem, deviations=[0.1, 0.2]),
+        "single": place(problem, (offer("a.one", "one", start=0.25), 0.4), deviations=[0.1, 0.0]),
+        "twice": place(problem, (TWICE, 0.5, 0.2)),
+        "augmented": place(problem, (offer("a.one", "one", start=0.25), 0.45), deviations=[0.0, 0.05]),
+    }
+    rigs = {name: objective.evaluate([rig])[0] for name, rig in rigs.items()}
+    without = objective.on_runs(["first"])
+    held = {name: without.evaluate([rigs[name].parameters])[0] for name in ("calibrated", "augmented")}
+    selection = Selection(rigs["calibrated"], ((rigs["calibrated"],), (rigs["single"], rigs["twice"])))
+    probabilities = {"c.absent": 0.1, "b.twice": 0.1, "a.one": 0.9, "d.absent": 0.2}
+    decision = Decision("known", rigs["single"], [], probabilities, 0.0, 0.0)
+    nominal = single(folder / "nominal.yaml")
+    given = objective, selection, decision, held["calibrated"], held["augmented"], nominal, "second"
+    return objective, rigs, held, estimate_causes(*given), given
+
+
+def test_causes_are_ranked_by_probability_then_by_shrink(found):
+    assert [cause.effect for cause in found[3]] == ["a.one", "d.absent", "b.twice", "c.absent"]
+    assert [cause.probability for cause in found[3]] == [0.9, 0.2, 0.1, 0.1]
+
+
+def test_an_effect_shrinks_the_calibrated_gap_of_the_held_out_run(found):
+    objective, _, _, causes, _ = found
+    shrink = {cause.effect: cause.shrink for cause in causes}
+    base = rms_gap(objective.problem, "second", {"mass": 0.01, "stiffness": 0.02})
+    assert shrink["a.one"] == pytest.approx(
+        1.0 - rms_gap(objective.problem, "second", {"one": 0.4, "mass": 0.01}) / base
+    )
+    assert shrink["b.twice"] == pytest.approx(
+        1.0 - rms_gap(objective.problem, "second", {"one": 0.5, "two": 0.2}) / base
+    )
+    assert shrink["c.absent"] == shrink["d.absent"] == 0.0
+
+
+def test_a_chosen_effect_has_the_parameters_of_the_fit_without_the_held_out_run(found):
+    objective, _, held, causes, _ = found
+    cause = {each.effect: each for each in causes}["a.one"]
+    augmented, first = held["augmented"], objective.on_runs(["first"])
+    scale = max(1.0, augmented.cost / augmented.rows)
+    (std,) = scatter(first, ["one"], scale)[2:]
+    estimate = cause.parameters["amount"]
+    assert list(cause.parameters) == ["amount"] and (estimate.value, estimate.unit) == (0.45, "N")
+    assert estimate.std == pytest.approx(std, rel=1e-5)
+
+
+def test_another_effect_has_those_of_its_own_fit_to_all_runs(found):
+    objective, rigs, _, causes, _ = found
+    cause = {each.effect: each for each in causes}["b.twice"]
+    assert list(cause.parameters) == ["channel", "first", "second"] and cause.parameters["channel"] == "damper_force"
+    scale = max(1.0, rigs["twice"].cost / rigs["twice"].rows)
+    std = scatter(objective, ["one", "two"], scale)[2:]
+    for name, value, unit, expected in zip(("first", "second"), (0.5, 0.2), ("kg", "m"), std, strict=True):
+        estimate = cause.parameters[name]
+        assert isinstance(estimate, Estimate) and (estimate.value, estimate.unit) == (value, unit)
+        assert estimate.std == pytest.approx(expected, rel=1e-5)
+    assert {each.effect: each.parameters for each in causes}["c.absent"] == {}
+
+
+def test_without_any_single_effect_nothing_is_estimated(found):
+    objective, selection, decision, calibrated, _, nominal, run = found[4]
+    alone = Selection(selection.nominal, selection.sets[:1])
+    causes = estimate_causes(objective, alone, decision, calibrated, calibrated, nominal, run)
+    assert all(cause.shrink == 0.0 and cause.parameters == {} for cause in causes)
+    assert [cause.effect for cause in causes] == ["a.one", "d.absent", "c.absent", "b.twice"]
+
+
+def test_traces_show_the_compared_channels_of_three_rigs(folder):
+    problem = pose(record(folder, channels=CHANNELS[:3]))
+    rigs = [place(problem), place(problem, deviations=[1.0, 0.0]), place(problem, (offer("a", "one"), 0.5))]
+    traces = trace_run(problem, rigs, "second")
+    table = problem.recording.table("second")
+    floor = table["floor_acceleration"]
+    nominal = add_taps("floor", floor)
+    end = SKIP + len(traces[0].measured)
+    assert [(t.run, t.channel, t.unit) for t in traces] == [
+        ("second", name, unit) for name, unit in zip(CHANNELS[:3], ("m/s^2", "m/s^2", "m"), strict=True)
+    ]
+    for k, trace in enumerate(traces):
+        assert trace.noise_rms == pytest.approx(0.05 * SIZES[k])
+        assert trace.time == pytest.approx(np.arange(SKIP, end) / RATE)
+        assert np.array_equal(trace.measured, table[trace.channel][SKIP:end])
+        assert np.allclose(trace.nominal, nominal[k, SKIP:end])
+        assert np.allclose(trace.calibrated, (nominal + 0.1 * add_taps("mass", floor))[k, SKIP:end])
+        assert np.allclose(trace.after, (nominal + 0.5 * add_taps("one", floor))[k, SKIP:end])
+
+
+def with_table(problem, **table):
+    rows = {name: np.asarray(values) for name, values in table.items()}
+    return dataclasses.replace(problem, recording=dataclasses.replace(problem.recording, tables={"first": rows}))
+
+
+def test_motion_is_that_of_the_held_out_run_with_the_slope_of_its_travel(folder):
+    problem = pose(record(folder, runs={"first": 240}))
+    rows = np.arange(SKIP + 240.0)
+    wave = 0.01 * rows / RATE + np.where(rows % 5 == 0, 1e-3, 0.0)
+    table = {"coil_current": 2.0 * rows, "damper_temperature": 3.0 * rows, "floor_acceleration": rows}
+    found = trace_motion(with_table(problem, **table, suspension_displacement=wave), "first")
+    assert list(found) == ["coil_current", "damper_temperature", "displacement", "velocity"]
+    assert np.array_equal(found["coil_current"], 2.0 * rows[SKIP:]) and np.array_equal(
+        found["displacement"], wave[SKIP:]
+    )
+    # A peak in every fifth row is gone in an average over five.
+    assert found["velocity"][10:-10] == pytest.approx(0.01)
+    bench = trace_motion(with_table(problem, displacement=wave, velocity=rows), "first")
+    assert list(bench) == ["displacement", "velocity"] and bench["velocity"][50] == pytest.approx(0.01)
+    assert list(trace_motion(with_table(problem, coil_current=rows), "first")) == ["coil_current"]
+
+
+def test_comfort_is_the_rms_of_the_quoted_channels(folder):
+    def trace(channel, unit):
+        return Trace("a", channel, unit, 0.0, *(np.array(pair) for pair in ((0, 1), (3, 5), (1, 7), (9, 9), (2, 4))))
+
+    known = [("damper_force", "N"), ("suspension_displacement", "m"), ("driver_acceleration", "m/s^2")]
+    found = compare_comfort([trace(*each) for each in known])
+    assert [(f.quantity, f.unit) for f in found] == [
+        ("RMS driver acceleration", "m/s^2"), ("RMS suspension displacement", "m"),
+    ]  # fmt: skip
+    for figure in found:
+        assert (figure.measured, figure.nominal, figure.after) == pytest.approx(np.sqrt([17.0, 25.0, 10.0]))
+
+
+def test_parameters_of_a_rig_without_effects_are_those_of_the_nuisances_alone(folder):
+    objective = pose_one(folder)
+    rig = objective.evaluate([Parameters(np.zeros(2))])[0]
+    found = estimate_standard_deviations(objective, rig, objective.linearise_nuisances(rig))
+    assert found == pytest.approx(scatter(objective, [], max(1.0, rig.cost / rig.rows)), rel=1e-5)

@@ -1,0 +1,224 @@
+"""Fault hypotheses: the evidence against the dense Gaussian formula, and the block that a planted fault lies in."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+from seatsim.diagnosis.localise import hypotheses
+from seatsim.diagnosis.localise.hypotheses import evaluate_hypotheses
+from seatsim.diagnosis.localise.input_estimate import InputEstimate, estimate_error, estimate_input
+from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
+from seatsim.diagnosis.objective import Evaluation, Linearisation
+from seatsim.diagnosis.parameters import Parameters
+
+from .toy import CHANNELS, RATE, SKIP, place, pose, record, weigh_stated
+
+PRIOR = 0.58
+SIZES = {"a": (2, 3), "b": (2, 4)}
+"""Channels and frequencies of two tiny runs."""
+
+
+def draw_tiny(rng, nuisances):
+    """Return random estimates by run and a linearisation about a rig that is off by some deviations."""
+    estimates, jacobian = {}, {}
+    for run, (channels, bins) in SIZES.items():
+        response = rng.standard_normal((channels, bins)) + 1j * rng.standard_normal((channels, bins))
+        residuals = rng.standard_normal((channels, 2 * bins))
+        estimates[run] = InputEstimate(residuals, response, rng.uniform(0.1, 3.0, bins), np.zeros(1))
+        jacobian[run] = rng.standard_normal((nuisances, residuals.size))
+    rig = Parameters(rng.uniform(-0.5, 0.5, nuisances))
+    return estimates, Linearisation(Evaluation(rig, {}, {}, 0.0), jacobian)
+
+
+def stack_dense(estimates, nuisances):
+    """Return residuals, Jacobian and covariance of all real and imaginary parts, frequency by frequency."""
+    parts, columns, blocks = [], [], []
+    for run, (residuals, response, power, _) in estimates.items():
+        channels, bins = response.shape
+        jacobian = nuisances.jacobian[run].reshape(-1, channels, 2 * bins)
+        for f in range(bins):
+            outer = np.eye(channels) + np.outer(response[:, f], response[:, f].conj()) * power[f] / 2.0
+            blocks.append(np.block([[outer.real, -outer.imag], [outer.imag, outer.real]]))
+            parts.append(np.concatenate([residuals[:, f], residuals[:, bins + f]]))
+            columns.append(np.concatenate([jacobian[:, :, f], jacobian[:, :, bins + f]], axis=1))
+    covariance = np.zeros([sum(len(block) for block in blocks)] * 2)
+    at = 0
+    for block in blocks:
+        covariance[at : at + len(block), at : at + len(block)] = block
+        at += len(block)
+    return np.concatenate(parts), np.concatenate(columns, axis=1), covariance
+
+
+@pytest.mark.parametrize("nuisances", [0, 1, 3])
+def test_the_evidence_is_that_of_the_dense_gaussian(folder, nuisances):
+    objective, rng = weigh_stated(pose(record(folder))), np.random.default_rng(nuisances)
+    for _ in range(5):
+        estimates, linearisation = draw_tiny(rng, nuisances)
+        residuals, jacobian, covariance = stack_dense(estimates, linearisation)
+        now = linearisation.evaluation.parameters.deviations
+        inverse = np.linalg.inv(covariance)
+        shift = np.zeros(nuisances)
+        if nuisances:
+            root = np.linalg.cholesky(inverse).T
+            rows = np.vstack([root @ jacobian.T, np.eye(nuisances) / PRIOR])
+            target = np.concatenate([root @ residuals, -now / PRIOR])
+            shift = lsq_linear(rows, target, (-1.0 - now, 1.0 - now), tol=1e-14).x
+        left = residuals - shift @ jacobian
+        expected = (left @ inverse @ left + np.linalg.slogdet(covariance)[1]) / len(residuals) - 1.0
+        found = hypotheses._negative_log_evidence(objective, linearisation, estimates)
+        assert found == pytest.approx(expected, abs=1e-5)
+
+
+def test_right_hypotheses_of_white_residuals_and_signals_have_the_evidence_of_their_entropy(folder):
+    # Residuals drawn from the covariance: the quadratic part is 1 in the mean, the rest the log determinant.
+    rng, found = np.random.default_rng(3), []
+    objective = weigh_stated(pose(record(folder)))
+    response, power = np.full((2, 500), 1.0 + 1.0j), np.full(500, 3.0)
+    drawn = np.sqrt(power / 2.0) * (rng.standard_normal((40, 500)) + 1j * rng.standard_normal((40, 500)))
+    for signal in drawn:
+        seen = response * signal + rng.standard_normal((2, 500)) + 1j * rng.standard_normal((2, 500))
+        estimate = InputEstimate(np.hstack([seen.real, seen.imag]), response, power, np.zeros(1))
+        rig = Linearisation(Evaluation(Parameters(np.zeros(0)), {}, {}, 0.0), {"a": np.zeros((0, 2000))})
+        found.append(hypotheses._negative_log_evidence(objective, rig, {"a": estimate}))
+    # |h|^2 p / 2 = 4 * 3 / 2 = 6 at each of 500 frequencies of 2000 numbers.
+    assert np.mean(found) == pytest.approx(2.0 * np.log(7.0) * 500 / 2000, abs=0.02)
+
+
+RUNS = {"first": 400, "second": 300}
+
+
+def make_objective(folder, channels=CHANNELS[:4], **kept):
+    return weigh_stated(pose(record(folder, runs=RUNS, channels=channels, noise=0.02, **kept)))
+
+
+def slow_signal(samples, rms, seed=1, corner=3.0):
+    spectrum = np.fft.rfft(np.random.default_rng(seed).standard_normal(samples))
+    signal = np.fft.irfft(spectrum / (1.0 + (np.fft.rfftfreq(samples, 1.0 / RATE) / corner) ** 2), samples)
+    return rms * signal / np.std(signal)
+
+
+def plant(objective, block, rms=40.0):
+    """Return the hypotheses on a nominal rig whose recording has a signal in a block more, and those signals."""
+    problem, measured, signals = objective.problem, {}, {}
+    for seed, run in enumerate(problem.runs):
+        rig = reconstruct(objective, place(problem), run, PORTS[block])
+        signals[run] = slow_signal(rig.samples, rms, seed)
+        added = rig.simulate_with(signals[run]) - rig.simulate_with(np.zeros(rig.samples))
+        measured[run] = problem.measured[run] + added
+    return evaluate(dataclasses.replace(objective, problem=dataclasses.replace(problem, measured=measured))), signals
+
+
+def evaluate(objective):
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    return evaluate_hypotheses(objective, objective.linearise_nuisances(nominal))
+
+
+def likeliest(found):
+    return min(found, key=lambda block: found[block].negative_log_evidence)
+
+
+@pytest.mark.parametrize("block", ["damper", "suspension", "cushion", "driver", "floor"])
+def test_a_planted_signal_is_likeliest_in_its_block(folder, block):
+    found, signals = plant(make_objective(folder), block, 0.5 if block == "floor" else 40.0)
+    assert set(found) == {"damper", "suspension", "cushion", "driver", "floor", "sensor"}
+    assert likeliest(found) == block
+    ranked = sorted(each.negative_log_evidence for each in found.values())
+    assert ranked[0] < 1.0 and ranked[1] > ranked[0] + 1.0
+    assert (found[block].quantity, found[block].unit) == (
+        ("acceleration", "m/s^2") if block == "floor" else ("force", "N")
+    )
+    assert found[block].channel == "" and list(found[block].signals) == ["first", "second"]
+    for run, signal in signals.items():
+        assert np.std(found[block].signals[run] - signal) < 0.35 * np.std(signal)
+
+
+def test_an_error_of_one_channel_is_that_sensors(folder):
+    objective = make_objective(folder)
+    measured = {run: values.copy() for run, values in objective.problem.measured.items()}
+    for seed, values in enumerate(measured.values()):
+        values[2] += slow_signal(values.shape[1], 0.01, seed)
+    problem = dataclasses.replace(objective.problem, measured=measured)
+    found = evaluate(dataclasses.replace(objective, problem=problem))
+    sensor = found["sensor"]
+    assert likeliest(found) == "sensor"
+    assert (sensor.quantity, sensor.unit, sensor.channel) == (
+        "error of suspension_displacement",
+        "m",
+        "suspension_displacement",
+    )
+    residual = problem.measured["first"][2] - problem.simulated("first", problem.nominal, ())[2]
+    assert np.allclose(sensor.signals["first"], residual)
+
+
+def test_without_a_load_cell_damper_and_suspension_are_one(folder):
+    with_it, without = (
+        plant(make_objective(folder), "suspension")[0],
+        plant(make_objective(folder, CHANNELS[:3]), "suspension")[0],
+    )
+    assert with_it["damper"].negative_log_evidence > with_it["suspension"].negative_log_evidence + 1.0
+    assert without["damper"] == without["suspension"] and likeliest(without) == "damper"
+
+
+def test_a_coil_is_asked_where_its_current_is_recorded(folder):
+    commands = {run: 0.4 + 0.2 * np.sin(np.arange(SKIP + rows) / 7.0) for run, rows in RUNS.items()}
+    objective = make_objective(folder, CHANNELS, commands=commands)
+    problem, measured = objective.problem, {}
+    for seed, run in enumerate(problem.runs):
+        more = slow_signal(problem.measured[run].shape[1], 0.1, seed)
+        floor = problem.inputs[run].floor
+        flowing = np.zeros(len(floor.acceleration))
+        flowing += np.interp(np.arange(len(flowing)) / problem.parts, SKIP + np.arange(len(more)), more, 0.0, 0.0)
+        driven = floor._replace(command=floor.command + flowing)
+        measured[run] = (
+            problem.measured[run]
+            + problem.simulated(run, problem.nominal, (), problem.inputs[run]._replace(floor=driven))
+            - problem.simulated(run, problem.nominal, ())
+        )
+    found = evaluate(dataclasses.replace(objective, problem=dataclasses.replace(problem, measured=measured)))
+    assert likeliest(found) == "coil"
+    assert (found["coil"].quantity, found["coil"].unit, found["coil"].channel) == ("current", "A", "")
+
+
+def test_a_slow_motion_that_the_floors_sensor_alone_does_not_see_is_its_error(folder, monkeypatch):
+    objective = make_objective(folder)
+    asked = []
+
+    def estimate(objective, evaluation, run, port, highest=np.inf):
+        asked.append((port, highest))
+        return estimate_input(objective, evaluation, run, port, highest)
+
+    monkeypatch.setattr(hypotheses, "estimate_input", estimate)
+    found = evaluate(objective)
+    # The drift of the floor's sensor is slow; a floor that does move is free.
+    assert {highest for port, highest in asked if port == PORTS["floor"]} == {np.inf, 0.5}
+    assert {highest for port, highest in asked if port != PORTS["floor"]} == {np.inf}
+    assert found["sensor"].channel != "" and "floor_acceleration" not in found
+
+
+def test_a_floor_sensor_that_does_not_follow_errs_by_minus_what_the_floor_does_more(folder, monkeypatch):
+    objective = make_objective(folder)
+    moving = plant(objective, "floor", 0.5)[0]["floor"]
+    monkeypatch.setattr(hypotheses, "follows_floor", lambda recording: False)
+    found = plant(objective, "floor", 0.5)[0]
+    assert "floor" not in found and likeliest(found) == "sensor"
+    sensor = found["sensor"]
+    assert (sensor.quantity, sensor.unit, sensor.channel) == (
+        "error of floor_acceleration",
+        "m/s^2",
+        "floor_acceleration",
+    )
+    assert sensor.negative_log_evidence == moving.negative_log_evidence
+    assert np.array_equal(sensor.signals["first"], -moving.signals["first"])
+
+
+def test_every_channel_has_a_hypothesis_of_its_own(folder):
+    objective = make_objective(folder)
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    linearisation = objective.linearise_nuisances(nominal)
+    each = []
+    for k in range(4):
+        estimates = {run: estimate_error(objective, nominal, run, k) for run in objective.problem.runs}
+        each.append(hypotheses._negative_log_evidence(objective, linearisation, estimates))
+    assert evaluate_hypotheses(objective, linearisation)["sensor"].negative_log_evidence <= min(each)

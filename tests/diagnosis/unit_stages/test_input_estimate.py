@@ -1,0 +1,238 @@
+"""Estimates of unknown inputs against signals that were planted, and against their formulas."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.localise.input_estimate import (
+    estimate_current,
+    estimate_error,
+    estimate_input,
+    estimate_nonrepeatable_force,
+    respond_to_error,
+)
+from seatsim.diagnosis.localise.reconstruction import PORTS, Port, reconstruct
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.spectra import measure_power
+
+from .toy import CHANNELS, RATE, SIZES, SKIP, TAPS, add_taps, place, pose, record, weigh_stated
+
+SAMPLES = 400
+LOUD = 1e-3
+"""Noise under which a planted signal is nearly all that is seen."""
+
+
+@pytest.fixture
+def gains(monkeypatch):
+    """Let forces act at once, without their second tap, so that their response is a gain."""
+    for cause in ("frame force", "driver force"):
+        monkeypatch.setitem(TAPS, cause, [[a, 0.0] for a, _ in TAPS[cause]])
+
+
+def make_objective(folder, noise=0.05, channels=CHANNELS[:3], **kept):
+    runs = {"first": SAMPLES, "second": 300}
+    return weigh_stated(pose(record(folder, runs=runs, channels=channels, noise=noise, **kept)))
+
+
+def slow_force(samples, rms, seed=1):
+    """Return a smooth signal, such as is plausible."""
+    spectrum = np.fft.rfft(np.random.default_rng(seed).standard_normal(samples))
+    frequency = np.fft.rfftfreq(samples, 1.0 / RATE)
+    signal = np.fft.irfft(spectrum / (1.0 + (frequency / 3.0) ** 2), samples)
+    return rms * signal / np.std(signal)
+
+
+def plant(objective, port, signal, run="first"):
+    """Return the objective with what a signal at a port adds to the measured channels of a run, and the nominal rig."""
+    problem = objective.problem
+    rig = reconstruct(objective, place(problem), run, port)
+    added = rig.simulate_with(signal) - rig.simulate_with(np.zeros(rig.samples))
+    measured = problem.measured | {run: problem.measured[run] + added}
+    planted = dataclasses.replace(objective, problem=dataclasses.replace(problem, measured=measured))
+    return planted, planted.evaluate([Parameters(problem.nominal)])[0]
+
+
+@pytest.mark.parametrize("block", ["suspension", "driver", "cushion", "floor"])
+def test_a_planted_signal_is_recovered_to_within_the_noise(folder, block):
+    signal = slow_force(SAMPLES, 0.5 if block == "floor" else 40.0)
+    objective, nominal = plant(make_objective(folder, LOUD), PORTS[block], signal)
+    found = estimate_input(objective, nominal, "first", PORTS[block])
+    assert found.signal.shape == (SAMPLES,)
+    assert np.sqrt(np.mean((found.signal - signal) ** 2)) < 0.03 * np.std(signal)
+
+
+def test_noise_hides_a_signal_by_as_much_as_its_response_is_weak(folder):
+    signal = slow_force(SAMPLES, 40.0)
+    objective, nominal = plant(make_objective(folder, 0.05), PORTS["suspension"], signal)
+    error = estimate_input(objective, nominal, "first", PORTS["suspension"]).signal - signal
+    # Were the gains sum a + b at all frequencies, unweighted noise of the channels would leave this much.
+    gain = np.array([a + b for a, b in TAPS["frame force"][:3]])
+    assert np.std(error) < 0.05 / np.linalg.norm(gain)
+    assert np.std(error) > 0.1 * 0.05 / np.linalg.norm(gain)
+
+
+@pytest.mark.usefixtures("gains")
+def test_residuals_are_what_is_left_without_the_input_where_the_rig_is_linear(folder):
+    objective, nominal = plant(make_objective(folder), PORTS["driver"], slow_force(SAMPLES, 40.0))
+    found = estimate_input(objective, nominal, "first", PORTS["driver"])
+    assert np.allclose(found.residuals, nominal.whitened["first"], atol=1e-6)
+    gain = np.array([size * a for size, (a, _) in zip(SIZES, TAPS["driver force"], strict=False)])[:3, None]
+    assert np.allclose(found.response, objective.weights.weights["first"] * gain)
+
+
+@pytest.mark.usefixtures("gains")
+@pytest.mark.parametrize("highest", [np.inf, 6.0])
+def test_a_correction_is_its_formula_and_the_signal_is_filtered_by_wieners(folder, highest):
+    runs = {"first": SAMPLES, "second": 300}
+    problem = pose(record(folder, runs=runs, channels=CHANNELS[:3]), reconstruction={"rounds": 1})
+    objective, nominal = plant(weigh_stated(problem), PORTS["driver"], slow_force(SAMPLES, 10.0))
+    found = estimate_input(objective, nominal, "first", PORTS["driver"], highest)
+    gain = np.array([size * a for size, (a, _) in zip(SIZES, TAPS["driver force"], strict=False)])[:3, None]
+    weights, bins = objective.weights.weights["first"], objective.weights.bins["first"]
+    response = weights * gain
+    whitened = weights * np.fft.rfft(nominal.residuals["first"])[:, :bins]
+    size = np.sum(response**2, axis=0)
+    plausible = reconstruct(objective, place(problem), "first", PORTS["driver"]).plausible_power()
+    free = np.sum(response * whitened, axis=0) / (size + 2.0 / plausible)
+    free[np.fft.rfftfreq(SAMPLES, 1.0 / RATE)[:bins] > highest] = 0.0
+    power = measure_power(free, 0.15)
+    assert np.allclose(found.power, power, rtol=1e-6)
+    wiener = np.maximum(0.0, 1.0 - 2.0 / (size * power))
+    assert np.any(wiener == 0.0) and np.any(wiener > 0.9)
+    expected = np.zeros(SAMPLES // 2 + 1, dtype=complex)
+    expected[:bins] = free * wiener
+    assert np.allclose(found.signal, np.fft.irfft(expected, SAMPLES), atol=1e-6)
+
+
+def test_what_is_noise_alone_needs_no_input(folder):
+    objective = make_objective(folder)
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    found = estimate_input(objective, nominal, "first", PORTS["suspension"])
+    strong, rig = plant(objective, PORTS["suspension"], slow_force(SAMPLES, 40.0))
+    assert np.std(found.signal) < 0.03 * np.std(estimate_input(strong, rig, "first", PORTS["suspension"]).signal)
+
+
+def test_an_input_below_a_highest_frequency_has_nothing_above(folder):
+    objective, nominal = plant(make_objective(folder, LOUD), PORTS["floor"], slow_force(SAMPLES, 0.5))
+    power = np.abs(np.fft.rfft(estimate_input(objective, nominal, "first", PORTS["floor"], 2.0).signal)) ** 2
+    frequency = np.fft.rfftfreq(SAMPLES, 1.0 / RATE)
+    assert np.sum(power[frequency > 2.0]) < 1e-12 * np.sum(power)
+    assert power[frequency == 2.0][0] > 0.0 and np.sum(power[frequency <= 0.5]) > 0.0
+
+
+def test_corrections_end_where_noise_is_all_that_is_left_or_where_they_are_fruitless(folder, monkeypatch):
+    seeds = []
+    objective, nominal = plant(make_objective(folder), PORTS["suspension"], slow_force(SAMPLES, 40.0))
+    measure = type(reconstruct(objective, place(objective.problem), "first", PORTS["suspension"])).measure_response
+
+    def counted(self, signal, outputs, seed=1):
+        seeds.append(seed)
+        return measure(self, signal, outputs, seed)
+
+    monkeypatch.setattr("seatsim.diagnosis.localise.reconstruction.Reconstruction.measure_response", counted)
+    estimate_input(objective, nominal, "first", PORTS["suspension"])
+    ended = list(seeds)
+    # Another port explains the gap in part: it ends after two corrections in a row that lower it by less than 2 %.
+    seeds.clear()
+    estimate_input(objective, nominal, "first", PORTS["driver"])
+    fruitless = list(seeds)
+    assert ended == list(range(1, len(ended) + 1)) and len(ended) <= 2
+    assert fruitless == list(range(1, len(fruitless) + 1)) and 3 <= len(fruitless) < 20
+
+
+def with_current(folder, logged_more):
+    rows = SKIP + SAMPLES
+    command = 0.4 + 0.2 * np.sin(np.arange(rows) / 7.0)
+    objective = make_objective(folder, 0.01, CHANNELS, commands={"first": command, "second": command[: SKIP + 300]})
+    measured = {run: values.copy() for run, values in objective.problem.measured.items()}
+    measured["first"][4] += logged_more
+    return dataclasses.replace(objective, problem=dataclasses.replace(objective.problem, measured=measured))
+
+
+def test_a_current_is_what_was_logged_beyond_that_of_the_simulated_coil(folder):
+    logged = slow_force(SAMPLES, 0.05)
+    objective = with_current(folder, logged)
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    found = estimate_current(objective, nominal, "first")
+    assert np.std(found.signal - logged) < 0.1 * np.std(logged)
+    weights, half = objective.weights.weights["first"], objective.weights.bins["first"]
+    row = nominal.whitened["first"][4]
+    error = row[:half] + 1j * row[half:]
+    expected = np.zeros(SAMPLES // 2 + 1, dtype=complex)
+    expected[:half] = error / weights[4] * np.maximum(0.0, 1.0 - 2.0 / measure_power(error, 0.15))
+    assert np.allclose(found.signal, np.fft.irfft(expected, SAMPLES))
+    assert found.power == pytest.approx(measure_power(error / weights[4], 0.15))
+    assert np.array_equal(found.response, respond_to_error(weights, 4))
+    # What the logged current does not explain of the other channels stays, and the log itself is what is explained.
+    rig = reconstruct(objective, place(objective.problem), "first", Port(current=1.0))
+    assert np.allclose(found.residuals[:4], rig.whiten_residuals(rig.simulate_with(found.signal))[:4])
+    assert np.array_equal(found.residuals[4], nominal.whitened["first"][4])
+
+
+def test_the_error_of_a_sensor_is_its_residual(folder):
+    objective = make_objective(folder)
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    found = estimate_error(objective, nominal, "second", 1)
+    assert found.residuals is nominal.whitened["second"]
+    assert np.array_equal(found.signal, nominal.residuals["second"][1])
+    spectrum = np.fft.rfft(nominal.residuals["second"][1])[: objective.weights.bins["second"]]
+    assert found.power == pytest.approx(measure_power(spectrum, 0.15))
+    assert np.array_equal(found.response, respond_to_error(objective.weights.weights["second"], 1))
+
+
+def test_a_unit_error_is_seen_by_its_own_channel_alone():
+    weights = np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]])
+    assert np.array_equal(respond_to_error(weights, 1), [[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]])
+    assert respond_to_error(weights, 2).dtype == complex
+
+
+def repeat(folder, forces, noise=LOUD):
+    """Return an objective with a run, its repeat and a third run, and the nominal rig; forces act on the frame."""
+    floor = np.random.default_rng(4).standard_normal(SKIP + SAMPLES)
+    runs = {"first": floor, "other": 250, "again": floor}
+    objective = weigh_stated(
+        pose(record(folder, runs=runs, channels=CHANNELS[:3], noise=noise, repeats={"again": "first"}))
+    )
+    for run, force in forces.items():
+        objective = plant(objective, PORTS["suspension"], force, run)[0]
+    return objective, objective.evaluate([Parameters(objective.problem.nominal)])[0]
+
+
+@pytest.mark.usefixtures("gains")
+def test_a_force_by_which_repeats_differ_is_half_the_power_of_their_difference(folder):
+    forces = {"first": slow_force(SAMPLES, 30.0, 1), "again": slow_force(SAMPLES, 30.0, 2)}
+    objective, nominal = repeat(folder, forces)
+    found = estimate_nonrepeatable_force(objective, nominal)
+    assert {run: len(force) for run, force in found.items()} == {"first": 400, "other": 250, "again": 400}
+    assert np.array_equal(found["other"], found["first"][:250])
+    assert np.array_equal(found["again"], found["first"])
+    # Twice the power of one over two: the difference, over the root of 2; a fifth more for what the filter takes.
+    expected = 1.2 * (forces["first"] - forces["again"]) / np.sqrt(2.0)
+    assert np.std(found["first"] - expected) < 0.02 * np.std(expected)
+
+
+@pytest.mark.usefixtures("gains")
+def test_the_filter_of_a_nonrepeatable_force_is_its_formula(folder):
+    forces = {"first": slow_force(SAMPLES, 5.0, 1), "again": slow_force(SAMPLES, 5.0, 2)}
+    objective, nominal = repeat(folder, forces, 0.05)
+    rig = reconstruct(objective, place(objective.problem), "again", PORTS["suspension"])
+    gain = np.array([size * a for size, (a, _) in zip(SIZES, TAPS["frame force"], strict=False)])[:3, None]
+    response, bins = objective.weights.weights["again"] * gain, objective.weights.bins["again"]
+    difference = (objective.problem.measured["first"] - objective.problem.measured["again"]) / np.sqrt(2.0)
+    whitened = objective.weights.weights["again"] * np.fft.rfft(difference)[:, :bins]
+    size = np.sum(response**2, axis=0)
+    spectrum = np.sum(response * whitened, axis=0) / (size + 2.0 / rig.plausible_power())
+    spectrum *= 1.2 * np.maximum(0.0, 1.0 - 2.0 / (size * measure_power(spectrum, 0.15)))
+    expected = np.fft.irfft(spectrum, SAMPLES)
+    assert np.std(expected) > 1.0
+    assert np.allclose(estimate_nonrepeatable_force(objective, nominal)["first"], expected, atol=1e-6)
+
+
+def test_without_repeats_of_the_same_length_there_is_no_such_force(folder):
+    objective = make_objective(folder)
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    assert estimate_nonrepeatable_force(objective, nominal) is None
+    unequal = make_objective(folder, repeats={"second": "first"})
+    assert estimate_nonrepeatable_force(unequal, nominal) is None
+    assert add_taps("floor", np.zeros(3)).shape == (5, 3)

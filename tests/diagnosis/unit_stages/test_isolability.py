@@ -1,0 +1,149 @@
+"""Isolable groups of small sets of channels, derived by hand from the equations of the rigs.
+
+A test is a set of equations with one unknown less than equations; a block that is in no test leaves no trace, and two
+blocks are told apart where a test holds one of them and not the other.
+"""
+
+import pytest
+
+from seatsim.diagnosis.design.isolability import (
+    BENCH,
+    COMMANDS,
+    SEAT,
+    Equation,
+    describe_missing_sensors,
+    find_isolable_groups,
+    find_overdetermined,
+)
+
+
+def equation(unknowns, fault=None):
+    return Equation(frozenset(unknowns), fault)
+
+
+def test_a_leftover_equation_reaches_what_shares_its_unknowns():
+    # a is measured twice; b is measured once and linked to c, which nothing else holds.
+    equations = [equation("a"), equation("a"), equation("b"), equation("bc")]
+    assert find_overdetermined(equations) == {0, 1}
+    # Through the link of a and b all three measurements check each other.
+    assert find_overdetermined([equation("a"), equation("b"), equation("ab")]) == {0, 1, 2}
+    # A chain: a, a = b, b = c, c.
+    assert find_overdetermined([equation("a"), equation("ab"), equation("bc"), equation("c")]) == {0, 1, 2, 3}
+    # With one more unknown the chain is cut.
+    assert find_overdetermined([equation("a"), equation("abx"), equation("bc"), equation("c")]) == set()
+
+
+def test_equations_without_unknowns_are_tests_of_their_own():
+    assert find_overdetermined([equation("")]) == {0}
+    assert find_overdetermined([equation(""), equation("a")]) == {0}
+
+
+def test_no_equation_is_overdetermined_where_there_is_none():
+    assert find_overdetermined([]) == set()
+
+
+@pytest.mark.parametrize(
+    ("channels", "groups"),
+    [
+        # x gives v, and without a command the current is stated: all of Fd = F(x, v, i) is known.
+        ({"displacement", "damper_force"}, [["damper", "coil", "sensor"]]),
+        # The coil's equation needs a current that is measured: with the command it is a test of its own.
+        ({"coil_current", "current_command"}, [["coil", "sensor"]]),
+        # Without a command the measured current tests nothing.
+        ({"coil_current"}, []),
+        ({"displacement", "velocity"}, [["sensor"]]),
+        # The two sensors of the motion check each other, so that one more block is told from sensors.
+        ({"displacement", "velocity", "damper_force"}, [["damper", "coil", "sensor"]]),
+        ({"damper_force"}, []),
+    ],
+)
+def test_groups_of_a_bench_by_hand(channels, groups):
+    assert find_isolable_groups("damper_bench", channels) == groups
+
+
+@pytest.mark.parametrize(
+    ("channels", "groups"),
+    [
+        # x' = v and v' = as - a0 with all three measured test the sensors alone. What the motion then says of all
+        # forces is left over once: the force balance of the frame, which every block enters.
+        (
+            {"floor_acceleration", "frame_acceleration", "suspension_displacement"},
+            [["damper", "coil", "suspension", "cushion", "driver", "floor"], ["sensor"]],
+        ),
+        # The driver hangs on the frame by the cushion: 4 unknowns xc, vc, Fc and the two measured accelerations.
+        ({"frame_acceleration", "driver_acceleration"}, [["cushion", "driver", "sensor"]]),
+        # Fd from x, v and the stated current, against the load cell.
+        ({"suspension_displacement", "damper_force"}, [["damper", "coil", "sensor"]]),
+        ({"frame_acceleration"}, []),
+    ],
+)
+def test_groups_of_a_seat_by_hand(channels, groups):
+    assert find_isolable_groups("seat", channels) == groups
+
+
+def test_every_channel_more_is_an_equation_more():
+    channels = {"frame_acceleration", "driver_acceleration"}
+    assert len(SEAT) == 9 and len(BENCH) == 2
+    before = find_isolable_groups("seat", channels)
+    # A sensor that measures no unknown of the rig, and a key that is none, change nothing.
+    assert find_isolable_groups("seat", {*channels, "damper_temperature", "no_channel"}) == before
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_any_command_makes_the_coil_a_test(command):
+    assert find_isolable_groups("seat", {"coil_current", command}) == [["coil", "sensor"]]
+
+
+def test_the_sensor_stands_once_with_the_first_block_that_it_could_be_taken_for():
+    groups = find_isolable_groups("damper_bench", {"displacement", "damper_force", "coil_current", "current_command"})
+    assert groups == [["damper", "sensor"], ["coil"]]
+
+
+NEVER = "damper and sensor cannot be told apart by any channel: only the form of an effect, or a repeat of a run, can"
+
+
+@pytest.mark.parametrize(
+    ("channels", "sentences"),
+    [
+        # A stated current is the coil's: neither its log alone nor a command alone parts the two.
+        ({"displacement", "damper_force"}, [NEVER]),
+        (
+            {"displacement", "damper_force", "coil_current"},
+            ["without current_command, coil cannot be judged: log the commanded current", NEVER],
+        ),
+        # With a load cell the sensor of the current checks damper and coil, so that it is told from the coil.
+        (
+            {"displacement", "coil_current", "current_command"},
+            [
+                "without damper_force, sensor and coil cannot be told apart and damper cannot be judged: add a load"
+                " cell at the damper",
+                NEVER,
+            ],
+        ),
+        ({"displacement", "damper_force", "coil_current", "current_command"}, [NEVER]),
+        (
+            {"displacement", "damper_force", "command_voltage"},
+            [
+                "without coil_current, damper or sensor and coil cannot be told apart: log the current of the coil",
+                NEVER,
+            ],
+        ),
+    ],
+)
+def test_sentences_on_a_bench(channels, sentences):
+    assert describe_missing_sensors("damper_bench", channels) == sentences
+
+
+def test_a_seat_without_the_driver_lists_what_cannot_be_told_and_what_cannot_be_judged():
+    full = {
+        "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
+        "coil_current", "current_command",
+    }  # fmt: skip
+    assert describe_missing_sensors("seat", full - {"driver_acceleration", "damper_force"}) == [
+        "without damper_force, damper and suspension or cushion or driver cannot be told apart: add a load cell at the"
+        " damper",
+        "without driver_acceleration, damper or suspension, cushion and driver cannot be told apart: add an"
+        " accelerometer at the driver",
+        "suspension and floor cannot be told apart by any channel: only the form of an effect, or a repeat of a run,"
+        " can",
+    ]

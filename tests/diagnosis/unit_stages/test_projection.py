@@ -1,0 +1,80 @@
+"""Projected changes against ridge regressions, and cosines and likenesses of vectors that are worked out by hand."""
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.design.projection import measure_cosines, measure_likeness, project
+
+
+def regress(change, sensitivities, deviations):
+    """Return the residual of `change = S' u + e` with `u / d = 0 + e`, solved as one stacked least-squares problem."""
+    rows = np.vstack([sensitivities.T, np.diag(1.0 / deviations)])
+    target = np.concatenate([change, np.zeros(len(deviations))])
+    return target - rows @ np.linalg.lstsq(rows, target, rcond=None)[0]
+
+
+@pytest.fixture
+def drawn():
+    rng = np.random.default_rng(1)
+    return rng.standard_normal((3, 12)), 2.0 * rng.standard_normal((4, 12)), np.array([0.1, 0.5, 1.0, 3.0])
+
+
+def test_a_projection_is_what_a_ridge_regression_leaves(drawn):
+    changes, sensitivities, deviations = drawn
+    projected = project(*drawn)
+    assert projected.shape == (3, 16)
+    for change, found in zip(changes, projected, strict=True):
+        assert np.allclose(found, regress(change, sensitivities, deviations), atol=1e-10)
+
+
+def test_its_power_is_the_least_cost_that_parameters_can_reach(drawn):
+    changes, sensitivities, deviations = drawn
+    least = np.sum(project(*drawn)[0] ** 2)
+
+    def cost(u):
+        return np.sum((changes[0] - u @ sensitivities) ** 2) + np.sum((u / deviations) ** 2)
+
+    best = np.linalg.solve(sensitivities @ sensitivities.T + np.diag(deviations**-2), sensitivities @ changes[0])
+    assert least == pytest.approx(cost(best))
+    assert all(cost(best + 0.01 * shift) > least for shift in np.vstack([np.eye(4), -np.eye(4)]))
+
+
+def test_one_parameter_by_hand():
+    # u = S a / (S S + 1 / d^2) = 2 3 / (4 + 1 / 0.25) = 0.75; left is [3 - 1.5, 4, -1.5].
+    found = project(np.array([[3.0, 4.0]]), np.array([[2.0, 0.0]]), np.array([0.5]))
+    assert found == pytest.approx(np.array([[1.5, 4.0, -1.5]]))
+
+
+def test_without_parameters_a_change_is_left_as_it_is():
+    changes = np.array([[1.0, 2.0]])
+    assert project(changes, np.zeros((0, 2)), np.zeros(0)) is changes
+
+
+def test_cosines_are_those_of_the_angles_between_vectors():
+    angles = np.radians([0.0, 60.0, 180.0, 90.0])
+    vectors = np.array([1.0, 5.0, 0.2, 3.0])[:, None] * np.array([np.cos(angles), np.sin(angles)]).T
+    expected = np.cos(angles[:, None] - angles)
+    assert np.allclose(measure_cosines(vectors, 1e-9), expected)
+    faint = measure_cosines(vectors, 0.2 + 1e-12)
+    assert np.all(faint[2] == 0.0) and np.all(faint[:, 2] == 0.0)
+    assert faint[0, 1] == pytest.approx(0.5) and faint[0, 0] == pytest.approx(1.0)
+
+
+def test_a_cosine_never_exceeds_one():
+    vectors = np.full((2, 3), 0.1) * np.array([[1.0], [1.0 / 3.0]])
+    assert np.all(np.abs(measure_cosines(np.vstack([vectors, -vectors]), 0.0)) <= 1.0)
+
+
+@pytest.mark.parametrize(
+    ("vectors", "likeness"),
+    [
+        ([[3.0, 0.0], [0.0, 4.0]], 1.0 / 26.0),
+        ([[3.0, 0.0], [3.0, 0.0]], 1.0),
+        ([[3.0, 0.0], [-3.0, 0.0]], 1.0),
+        ([[10.0, 0.0], [2.0, 0.0]], 41.0 / 105.0),
+        ([[0.1, 0.0], [0.0, 0.1]], 1.0 / 1.02),
+        ([[5.0, 0.0, 0.0], [0.0, 5.0, 0.0], [3.0, 4.0, 0.0]], (2.0 * 20.0 + 1.0) / 51.0),
+    ],
+)
+def test_likeness_is_that_of_the_most_alike_pair(vectors, likeness):
+    assert measure_likeness(np.array(vectors)) == pytest.approx(likeness)

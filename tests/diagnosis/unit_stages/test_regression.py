@@ -1,0 +1,205 @@
+"""Regressions on runs left out, against ridge regressions solved as least-squares problems."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.signal import decimate
+
+from seatsim.diagnosis.localise.regression import explain_signal, predict_share
+from seatsim.diagnosis.settings.localising import LocalisationSettings
+
+from .toy import CHANNELS, RATE, SKIP, place, pose, record
+
+SETTINGS = LocalisationSettings()
+
+
+def draw(counts, regressors=3, seed=1):
+    rng = np.random.default_rng(seed)
+    return {run: rng.standard_normal((regressors, count)) * [[1.0], [50.0], [0.02]] for run, count in counts.items()}
+
+
+def ridge_errors(settings, train, test):
+    """Return what a ridge regression, each regressor scaled to unit RMS, leaves of a target left out."""
+    (known, values), (outside, truth) = train, test
+    scale = np.sqrt(np.mean(known**2, axis=1))
+    strength = settings.ridge * len(values)
+    rows = np.vstack([(known / scale[:, None]).T, np.sqrt(strength) * np.eye(len(known))])
+    target = np.concatenate([values, np.zeros(len(known))])
+    coefficients = np.linalg.lstsq(rows, target, rcond=None)[0] / scale
+    return truth - coefficients @ outside
+
+
+def join(parts, runs):
+    return np.hstack([parts[run] for run in runs])
+
+
+@pytest.mark.parametrize("ridge", [1e-3, 0.5])
+def test_each_run_is_predicted_by_the_others(ridge):
+    regressors = draw({"a": 60, "b": 90, "c": 40})
+    rng, coefficients = np.random.default_rng(2), np.array([1.0, -0.02, 30.0])
+    target = {run: coefficients @ known + rng.standard_normal(known.shape[1]) for run, known in regressors.items()}
+    settings, missed = SETTINGS._replace(ridge=ridge), 0.0
+    for run in target:
+        others = [other for other in target if other != run]
+        train = join(regressors, others), join(target, others)
+        missed += np.sum(ridge_errors(settings, train, (regressors[run], target[run])) ** 2)
+    expected = 1.0 - missed / sum(np.sum(values**2) for values in target.values())
+    assert 0.3 < expected < 0.8
+    assert predict_share(settings, regressors, target) == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_single_run_is_predicted_by_halves():
+    regressors = draw({"a": 101})
+    known = regressors["a"]
+    target = np.array([1.0, -0.02, 30.0]) @ known + np.random.default_rng(2).standard_normal(101)
+    halves = slice(0, 50), slice(50, 101)
+    errors = [
+        ridge_errors(SETTINGS, (known[:, train], target[train]), (known[:, test], target[test]))
+        for train, test in (halves, halves[::-1])
+    ]
+    expected = 1.0 - np.sum(np.concatenate(errors) ** 2) / np.sum(target**2)
+    assert predict_share(SETTINGS, regressors, {"a": target}) == pytest.approx(expected, rel=1e-6)
+
+
+def test_what_the_regressors_make_is_predicted_and_what_they_do_not_is_not():
+    regressors = draw({"a": 200, "b": 200})
+    made = {run: np.array([1.0, -0.02, 30.0]) @ known for run, known in regressors.items()}
+    apart = {run: values[1] for run, values in draw({"a": 200, "b": 200}, seed=9).items()}
+    assert predict_share(SETTINGS, regressors, made) > 0.999
+    assert predict_share(SETTINGS, regressors, apart) < 0.05
+    # The sign of what was found in one run is the wrong one in the other.
+    turned = {"a": made["a"], "b": -made["b"]}
+    assert predict_share(SETTINGS, regressors, turned) == 0.0
+
+
+def test_regressors_at_rest_and_no_signal_at_all_are_no_trouble():
+    regressors = {run: np.zeros((2, 50)) for run in "ab"}
+    assert predict_share(SETTINGS, regressors, {run: np.ones(50) for run in "ab"}) == 0.0
+    assert predict_share(SETTINGS, draw({"a": 50, "b": 50}), {run: np.zeros(50) for run in "ab"}) == 1.0
+
+
+FAMILIES = ["displacement", "velocity", "velocity and current", "past motion", "floor motion"]
+
+
+@pytest.fixture(scope="module")
+def problem(folder):
+    """A seat whose current changes slowly, and whose noise is little."""
+    runs = {"first": 600, "second": 600}
+    commands = {
+        run: 0.5 + 0.4 * np.sin(np.arange(SKIP + rows) / 30.0 + k) for k, (run, rows) in enumerate(runs.items())
+    }
+    return pose(record(folder, runs=runs, channels=CHANNELS, commands=commands, noise=0.01))
+
+
+def of_motion(problem, make):
+    """Return a signal by run, made of travel, velocity, current and floor of the nominal simulation."""
+    signals = {}
+    for run in problem.runs:
+        outputs = dict(zip(problem.channels, problem.simulated(run, problem.nominal, ()), strict=True))
+        x, i = outputs["suspension_displacement"], outputs["coil_current"]
+        floor = problem.recording.table(run)["floor_acceleration"][SKIP : SKIP + len(x)]
+        signals[run] = make(x, np.gradient(x, 1.0 / RATE), i, floor)
+    return signals
+
+
+def thin(values):
+    """Return every second row of a signal, as `explain_signal` has it, as if it were sampled at 200 rows per second."""
+    return decimate(values, 2, ftype="fir")
+
+
+def own_families(problem, run):
+    """Return the families of regressors of a run by their formulas."""
+
+    def lagged(values):
+        return [np.concatenate([np.full(k, values[0]), values[: len(values) - k]]) for k in range(10)]
+
+    (x, v, i, a) = (thin(values) for values in of_motion(problem, lambda *parts: parts)[run])
+    slow, fast = np.tanh(v / 0.03), np.tanh(v / 0.005)
+    return {
+        "displacement": [x, x * abs(x), x**3],
+        "velocity": [v, v * abs(v), v**3, slow, fast],
+        "velocity and current": [i, i * v, i * slow, i * fast, i**2 * slow, i * x, np.gradient(i)],
+        "past motion": lagged(x) + lagged(v),
+        "floor motion": lagged(a),
+    }
+
+
+def test_families_are_those_of_the_simulated_motion(problem):
+    rng = np.random.default_rng(4)
+    signals = of_motion(
+        problem, lambda x, v, i, a: 300.0 * x + v + 5.0 * i * np.tanh(v / 0.005) + rng.standard_normal(len(x))
+    )
+    found = explain_signal(problem, place(problem), signals)
+    families = {run: own_families(problem, run) for run in problem.runs}
+    target = {run: thin(values) for run, values in signals.items()}
+    assert list(found) == [*FAMILIES, "everything"]
+    for family in FAMILIES:
+        regressors = {run: np.array(each[family]) for run, each in families.items()}
+        assert found[family] == pytest.approx(predict_share(SETTINGS, regressors, target), abs=1e-9)
+    together = {run: np.vstack(list(each.values())) for run, each in families.items()}
+    alone = max(found[family] for family in FAMILIES)
+    assert found["everything"] == pytest.approx(max(predict_share(SETTINGS, together, target), alone), abs=1e-9)
+
+
+def test_the_rigs_own_motion_is_regressed_on_not_the_nominal_one(problem):
+    heavy = place(problem, deviations=[1.0, 1.0])
+    signals = of_motion(problem, lambda x, v, i, a: x)
+    assert (
+        explain_signal(problem, heavy, signals)["displacement"]
+        < explain_signal(problem, place(problem), signals)["displacement"]
+    )
+
+
+@pytest.mark.parametrize(
+    ("make", "family"),
+    [
+        (lambda x, v, i, a: 1e5 * x**3, "displacement"),
+        (lambda x, v, i, a: 30.0 * np.tanh(v / 0.005), "velocity"),
+        (lambda x, v, i, a: 30.0 * i * v, "velocity and current"),
+    ],
+)
+def test_a_force_that_the_rig_makes_is_predicted_by_its_family(problem, make, family):
+    found = explain_signal(problem, place(problem), of_motion(problem, make))
+    assert max(FAMILIES, key=lambda each: found[each]) == family
+    # Averages of rows blur what bends within a row.
+    assert found[family] > 0.35 and found["everything"] >= found[family]
+
+
+def test_a_random_force_is_predicted_by_nothing(problem):
+    rng = np.random.default_rng(4)
+    found = explain_signal(problem, place(problem), of_motion(problem, lambda x, v, i, a: rng.standard_normal(len(x))))
+    assert found["everything"] < 0.05
+
+
+def test_without_travel_only_the_floor_tells(problem):
+    short = dataclasses.replace(problem, channels=CHANNELS[:2])
+    found = explain_signal(
+        short, place(short), of_motion(problem, lambda x, v, i, a: np.convolve(a, [0.0, 0.0, 1.0])[: len(a)])
+    )
+    assert list(found) == ["floor motion", "everything"]
+    assert found["floor motion"] == found["everything"] > 0.2
+
+
+def test_a_recorded_current_stands_in_for_one_that_is_not_compared(problem):
+    short = dataclasses.replace(problem, channels=CHANNELS[:4])
+    signals = of_motion(problem, lambda x, v, i, a: 30.0 * i * v)
+    assert explain_signal(short, place(short), signals)["velocity and current"] > 0.6
+    # A command that is shorter than the run, or none at all, says nothing.
+    for tables in (
+        {
+            run: {n: v for n, v in t.items() if n not in ("coil_current", "current_command")}
+            for run, t in problem.recording.tables.items()
+        },
+        {run: t | {"coil_current": t["coil_current"][:3]} for run, t in problem.recording.tables.items()},
+    ):
+        silent = dataclasses.replace(short, recording=dataclasses.replace(problem.recording, tables=tables))
+        assert explain_signal(silent, place(silent), signals)["velocity and current"] == 0.0
+
+
+def test_signals_at_a_low_rate_are_not_thinned(problem):
+    slow = dataclasses.replace(
+        problem, settings=problem.settings._replace(localisation=SETTINGS._replace(regression_rate=200.0))
+    )
+    signals = of_motion(problem, lambda x, v, i, a: 1e5 * x**3)
+    assert explain_signal(slow, place(slow), signals)["displacement"] > 0.999

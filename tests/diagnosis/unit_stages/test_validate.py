@@ -1,0 +1,249 @@
+"""Hold-out validation: which run is held out, what is fitted without it, and gaps with intervals that cover."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis import validate
+from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.validate import (
+    choose_held_out_run,
+    make_scenario,
+    measure_gaps,
+    refit_without,
+    shrink_by_run,
+)
+from seatsim.scenario.loading import single
+
+from .toy import RATE, SIZES, SKIP, Added, add_taps, offer, place, pose, record, weigh_stated
+
+
+def test_shrink_is_the_share_of_the_rms_that_is_gone_by_run(folder):
+    problem = pose(record(folder))
+    before = {run: np.ones_like(values) * problem.spread[:, None] for run, values in problem.measured.items()}
+    after = {"first": 0.3 * before["first"], "second": 1.5 * before["second"]}
+    rigs = [Evaluation(Parameters(problem.nominal), residuals, {}, 0.0) for residuals in (before, after)]
+    assert shrink_by_run(problem, *rigs) == pytest.approx([0.7, -0.5])
+
+
+@dataclasses.dataclass(frozen=True)
+class Moved:
+    """A problem that knows by how much each effect moves its one channel in each run."""
+
+    moves: dict
+    runs: tuple
+    settings: DiagnosisSettings
+    spread: tuple = (1.0,)
+
+    def on_runs(self, runs):
+        return dataclasses.replace(self, runs=tuple(runs))
+
+    def residuals(self, rigs):
+        return [{run: np.full((1, 4), self._gone(run, effects)) for run in self.runs} for _, effects in rigs]
+
+    def _gone(self, run, effects):
+        present = {effect.cause for effect in effects}
+        return sum(move for cause, move in self.moves[run].items() if cause not in present)
+
+
+def choose(shares, shrink, effects=("one",), **changed):
+    """Return the run chosen, from the share of what each effect moves in each run, and the shrink."""
+    runs = tuple(f"run {k}" for k in range(len(shrink)))
+    moves = {run: {e: np.sqrt(shares[e][k]) for e in shares} for k, run in enumerate(runs)}
+    settings = DiagnosisSettings()
+    settings = settings._replace(validation=settings.validation._replace(**changed))
+    problem = Moved(moves, runs, settings)
+    rig = Parameters(np.zeros(0))
+    for effect in effects:
+        rig = rig.add(offer(f"x.{effect}", effect), np.array([1.0]))
+    still = {run: np.zeros((1, 4)) for run in runs}
+    return choose_held_out_run(problem, Evaluation(rig, still, {}, 0.0), np.array(shrink))
+
+
+@pytest.mark.parametrize(
+    ("shares", "shrink", "chosen"),
+    [
+        # All suitable: the run at the lower quarter of shrink.
+        ([0.2, 0.2, 0.2, 0.2, 0.2], [0.5, 0.1, 0.9, 0.3, 0.7], "run 3"),
+        ([2.0, 2.0, 2.0, 2.0, 2.0], [0.5, 0.1, 0.9, 0.3, 0.7], "run 3"),
+        ([0.25, 0.25, 0.25, 0.25], [0.5, 0.6, 0.9, 0.7], "run 0"),
+        # A run that alone shows the effect stays in the fit, though it shrinks least.
+        ([0.61, 0.2, 0.19], [0.1, 0.5, 0.4], "run 2"),
+        ([0.59, 0.2, 0.21], [0.1, 0.5, 0.4], "run 0"),
+        # A run that the effect does not move checks nothing.
+        ([0.04, 0.5, 0.46], [0.1, 0.5, 0.6], "run 1"),
+        ([0.06, 0.5, 0.44], [0.1, 0.5, 0.6], "run 0"),
+        # Where one run has nearly all, the others check little, but are held out.
+        ([0.98, 0.01, 0.01], [0.1, 0.6, 0.5], "run 2"),
+    ],
+)
+def test_the_held_out_run_by_the_shares_of_one_effect(shares, shrink, chosen):
+    assert choose({"one": shares}, shrink) == chosen
+
+
+def test_every_effect_counts_for_itself():
+    shares = {"one": [0.3, 0.3, 0.4], "two": [0.3, 0.02, 0.68]}
+    # The last run has too much of the second effect, the middle one too little.
+    assert choose(shares, [0.9, 0.1, 0.2], ("one", "two")) == "run 0"
+    shares = {"one": [0.9, 0.1], "two": [0.15, 0.85]}
+    # Each run has too much of one: the one with less is held out.
+    assert choose(shares, [0.1, 0.9], ("one", "two")) == "run 1"
+    assert choose({"one": [0.9, 0.1], "two": [0.1, 0.9]}, [0.2, 0.1], ("one", "two")) == "run 1"
+    assert choose({"one": [0.9, 0.1], "two": [0.1, 0.9]}, [0.1, 0.2], ("one", "two")) == "run 0"
+
+
+def test_the_quantile_is_that_of_the_settings():
+    shrink = [0.5, 0.1, 0.9, 0.3, 0.7]
+    found = [choose({"one": [0.2] * 5}, shrink, quantile=q) for q in (0.0, 0.49, 0.5, 1.0)]
+    assert found == ["run 1", "run 3", "run 0", "run 2"]
+
+
+def test_without_effects_or_other_runs_the_last_is_held_out():
+    assert choose({"one": [0.2] * 3}, [0.5, 0.1, 0.9], ()) == "run 2"
+    assert choose({"one": [1.0]}, [0.5]) == "run 0"
+
+
+def test_a_rig_is_fitted_without_the_run(folder):
+    truth = {"first": (Added("one", 0.5),), "second": (Added("one", 0.5),), "other": (Added("one", 3.0),)}
+    runs = {"first": 240, "other": 300, "second": 240}
+    objective = weigh_stated(pose(record(folder, truth, runs, noise=1e-3)))
+    chosen = objective.evaluate([place(objective.problem, (offer("x.one", "one"), 1.0))])[0]
+    calibrated, augmented = refit_without(objective, chosen, "other")
+    assert set(augmented.whitened) == set(calibrated.whitened) == {"first", "second"}
+    assert augmented.parameters.values[0][0] == pytest.approx(0.5, abs=1e-3)
+    assert calibrated.parameters.terms == () and np.any(calibrated.parameters.deviations)
+    alone = refit_without(objective, chosen, "first")[1]
+    assert alone.parameters.values[0][0] > 1.0
+
+
+def test_without_effects_the_augmented_rig_is_the_calibrated_one(folder):
+    objective = weigh_stated(pose(record(folder)))
+    chosen = objective.evaluate([place(objective.problem)])[0]
+    calibrated, augmented = refit_without(objective, chosen, "first")
+    assert augmented is calibrated
+
+
+def test_a_single_run_is_not_left_out(folder):
+    objective = weigh_stated(pose(record(folder, (Added("one", 0.5),), {"only": 240}, noise=1e-3)))
+    chosen = objective.evaluate([place(objective.problem, (offer("x.one", "one"), 1.0))])[0]
+    assert refit_without(objective, chosen, "only")[1].parameters.values[0][0] == pytest.approx(0.5, abs=1e-3)
+
+
+def test_a_scenario_has_the_parameters_and_effects_of_a_rig_beside_its_own(folder):
+    problem = pose(record(folder))
+    nominal = dataclasses.replace(single(folder / "nominal.yaml"), effects=(Added("three", 1.0),))
+    rig = place(problem, (offer("x.one", "one"), 0.5), deviations=[0.5, -1.0])
+    found = make_scenario(problem, nominal, rig)
+    assert found.plant.driver_mass == 84.0 and found.plant.suspension_stiffness == 4140.0
+    assert found.effects == (Added("three", 1.0), Added("one", 0.5))
+    assert found.solver == nominal.solver and found.plant.frame_mass == 20.0
+
+
+def scenarios(problem, *amounts):
+    nominal = single(problem.recording.nominal)
+    return tuple(
+        make_scenario(problem, nominal, place(problem, (offer("x", "one"), a)) if a else place(problem))
+        for a in amounts
+    )
+
+
+def rms_by_channel(problem, run, amount):
+    """Return the RMS of `amount` of the signal `one`, in standard deviations of the measured channels."""
+    table = problem.recording.table(run)
+    signal = add_taps("one", table["floor_acceleration"])[:2, SKIP:]
+    spread = np.array([np.std(table[name][SKIP:]) for name in problem.channels])
+    return amount * np.sqrt(np.mean(signal**2, axis=1)) / spread
+
+
+def test_gaps_are_those_of_the_three_rigs_on_the_held_out_run(folder):
+    problem = pose(record(folder, (Added("one", 1.0),), {"first": 3000, "second": 800}, noise=0.0))
+    found = measure_gaps(problem, scenarios(problem, 0.0, 0.5, 0.6), ["second"], 0.2)
+    for figures, amount in ((found.before, 1.0), (found.calibrated, 0.5), (found.after, 0.4)):
+        channels = rms_by_channel(problem, "second", amount)
+        assert list(figures.channels) == list(problem.channels)
+        assert list(figures.channels.values()) == pytest.approx(list(channels))
+        assert figures.overall == pytest.approx(np.sqrt(np.mean(channels**2)))
+    assert found.shrink == pytest.approx(0.6)
+    assert measure_gaps(problem, scenarios(problem, 0.0, 0.5, 0.6), ["second"], 0.2) == found
+
+
+def test_other_excitations_and_the_spread_from_run_to_run_widen_the_interval(folder):
+    # Residuals that are all in proportion shrink alike in all blocks, so that nothing else is left of the interval.
+    problem = pose(record(folder, (Added("one", 1.0),), {"first": 3000}, noise=0.0))
+    three = scenarios(problem, 0.0, 0.0, 0.6)
+    narrow, wide = (np.array(measure_gaps(problem, three, ["first"], s).shrink_interval) - 0.6 for s in (0.0, 0.2))
+    assert narrow == pytest.approx([-0.1645, 0.1645], abs=0.04)
+    assert wide == pytest.approx(narrow * np.sqrt(0.1**2 + 0.2**2) / 0.1)
+
+
+def test_the_floor_is_the_noise_in_standard_deviations(folder):
+    problem = pose(record(folder, (Added("one", 1.0),)))
+    found = measure_gaps(problem, scenarios(problem, 0.0, 0.0, 1.0), ["first"], 0.0).floor
+    table = problem.recording.table("first")
+    stated = [0.05 * size / np.std(table[name][SKIP:]) for name, size in zip(problem.channels, SIZES, strict=False)]
+    assert list(found.channels.values()) == pytest.approx(stated)
+    assert found.overall == pytest.approx(np.sqrt(np.mean(np.square(stated))))
+
+
+def test_a_gap_that_does_not_shrink_has_no_interval(folder):
+    problem = pose(record(folder, (Added("one", 1.0),)))
+    found = measure_gaps(problem, scenarios(problem, 0.5, 0.2, 0.5), ["first"], 0.3)
+    assert found.shrink == 0.0 and found.shrink_interval == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("amount", [0.97, 1.3, 2.2])
+def test_an_interval_holds_its_shrink_and_no_gap_shrinks_by_more_than_itself(folder, amount):
+    problem = pose(record(folder, (Added("one", 1.0),), noise=1e-3))
+    found = measure_gaps(problem, scenarios(problem, 0.0, 0.0, amount), ["first"], 0.1)
+    low, high = found.shrink_interval
+    assert low <= found.shrink <= high <= 1.0
+
+
+BLOCKS, LENGTH = 40, 20
+
+
+@pytest.fixture
+def draw_residuals(monkeypatch, folder):
+    """Return a function that draws residuals of two rigs, whose blocks differ in strength, and bootstraps them."""
+    problem = pose(record(folder), validation={"excitation_std": 0.0, "block_length": LENGTH / RATE, "draws": 200})
+
+    def bootstrap(rng, shrink, correlation=0.0, spread=0.0):
+        strength = np.repeat(rng.uniform(0.5, 1.5, BLOCKS), LENGTH)
+        first, second = rng.standard_normal((2, 2, BLOCKS * LENGTH))
+        second = (1.0 - shrink) * (correlation * first + np.sqrt(1.0 - correlation**2) * second)
+        measured = dict(zip(("x", "y"), 10.0 * rng.standard_normal((2, BLOCKS * LENGTH)), strict=True))
+        left = [strength * first, strength * second]
+        # Both rigs miss what was measured by residuals that are small beside it.
+        outputs = {
+            rig: {name: measured[name] - np.std(measured[name]) * residual[k] for k, name in enumerate(measured)}
+            for rig, residual in zip(("before", "after"), left, strict=True)
+        }
+        monkeypatch.setattr(validate, "pool_runs", lambda rig, recording, runs: (measured, outputs[rig]))
+        point = 1.0 - np.sqrt(np.mean(left[1] ** 2) / np.mean(left[0] ** 2))
+        return validate._bootstrap_shrink(problem, ("before", "after"), ["first"], point, spread), point
+
+    return bootstrap
+
+
+@pytest.mark.parametrize("shrink", [0.0, 0.6])
+def test_an_interval_covers_a_known_shrink_in_nine_of_ten_draws(draw_residuals, shrink):
+    rng, covered, draws = np.random.default_rng(1), 0, 250
+    for _ in range(draws):
+        (low, high), point = draw_residuals(rng, shrink)
+        assert low <= point <= high
+        covered += low <= shrink <= high
+    assert 0.83 < covered / draws < 0.96
+
+
+def test_an_interval_narrows_where_both_rigs_miss_alike(draw_residuals):
+    rng = np.random.default_rng(2)
+    widths = [np.ptp(draw_residuals(rng, 0.5, correlation)[0]) for correlation in (0.0, 0.9, 1.0)]
+    assert widths[0] > 1.5 * widths[1] > 0.0 and widths[2] < 1e-9
+
+
+def test_a_spread_from_run_to_run_widens_it(draw_residuals):
+    (low, high), _ = draw_residuals(np.random.default_rng(3), 0.3, 1.0, spread=0.2)
+    assert high - low == pytest.approx(2.0 * 1.645 * 0.2, rel=0.15)
