@@ -1,4 +1,4 @@
-"""Nominal parameters that are known to within the recording's tolerance: they are refitted, and are no effect."""
+"""Nuisance parameters: nominal parameters known to within the recording's tolerance; refitting one is no effect."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def list_nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
     for section, record in sections.items():
         for specification in describe(type(record)) if record is not None else []:
             value = getattr(record, specification.name)
-            # A coil's lag, delay or limit of zero means that it has none, not that it is known to be small.
+            # A lag, delay or limit of zero means that the coil has none, not that the value is uncertain about zero.
             absent = section == "coil" and value == 0.0
             if specification.name in NOT_UNCERTAIN or not isinstance(value, float | int) or absent:
                 continue
@@ -51,7 +51,7 @@ def list_nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
 
 
 def vary(scenario: Scenario, parameters: Sequence[Nuisance], deviations: Array) -> Scenario:
-    """Return the scenario with every parameter off by tolerance times deviation, shape (parameters,), -1 to 1."""
+    """Return the scenario with each parameter changed by tolerance times deviation, shape (parameters,), -1 to 1."""
     changes: dict[str, dict[str, float]] = {"plant": {}, "damper": {}, "coil": {}}
     for parameter, deviation in zip(parameters, deviations, strict=True):
         changes[parameter.section][parameter.name] = parameter.nominal + parameter.tolerance * float(deviation)

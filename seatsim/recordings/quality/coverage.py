@@ -1,6 +1,6 @@
-"""What a recording visited: velocities, travels, currents, temperatures and frequencies, and what it left out.
+"""Operating range of a recording: velocities, travels, currents, temperatures and frequencies, and what is missing.
 
-An effect that acts where the rig has not been cannot be judged, however good the data are. The velocity is the slope of
+An effect outside the recorded range cannot be assessed, however good the data are. The velocity is the slope of
 the displacement below the frequency at which its spectrum meets its noise (a density of 2 noise^2 / sample_rate), or,
 where no displacement is recorded, the integral of frame acceleration - floor acceleration above 0.5 Hz.
 """
@@ -21,9 +21,9 @@ from seatsim.scenario.scenario import Scenario
 Array = NDArray[np.float64]
 PERCENTILES = (0.1, 5.0, 50.0, 95.0, 99.9)
 WARM = 5.0
-"""K above the temperature of the nominal scenario from which thermal fade can be seen."""
+"""K; least warming above the temperature of the nominal scenario at which thermal fade can be seen."""
 DROP, DROP_TIME = 0.1, 0.2
-"""Fall of the current, as a share of the largest, and the seconds within which it counts as one."""
+"""Least drop of the current, as a share of the largest, and the seconds within which it must happen."""
 FULL_CURRENT = 0.8
 """Share of the largest current that must be visited."""
 LARGE_TRAVEL, FAST, LIFT = 0.03, 0.3, 1.0
@@ -48,7 +48,7 @@ Visited = dict[str, VisitedRange]
 
 @dataclass(frozen=True)
 class Coverage:
-    """Seconds recorded, the quantities visited by name, the band of the excitation in Hz, and what is left out."""
+    """Seconds recorded, ranges by quantity, band of the excitation in Hz, and sentences on what is missing."""
 
     seconds: float
     visited: Visited
@@ -57,7 +57,7 @@ class Coverage:
 
 
 def measure_coverage(recording: Recording) -> Coverage:
-    """Return what the runs of a recording visited, and a sentence for each thing that they cannot judge.
+    """Return the operating range of the runs, and a sentence for each thing that they cannot show.
 
     Raises:
         InputError: a table or the nominal scenario cannot be read.
@@ -76,7 +76,7 @@ def measure_coverage(recording: Recording) -> Coverage:
 
 
 def _quantities(recording: Recording, table: dict[str, Array]) -> list[tuple[str, str, Array]]:
-    """Return name, unit and values of what one run visited."""
+    """Return name, unit and values of the quantities of one run."""
     found = []
     for channel in ("suspension_displacement", "displacement"):
         if channel in table:
@@ -101,7 +101,7 @@ def _quantities(recording: Recording, table: dict[str, Array]) -> list[tuple[str
 
 
 def _velocity(recording: Recording, table: dict[str, Array]) -> Array | None:
-    """Return the velocity across the damper in m/s, shape (N,); None where no channel tells it."""
+    """Return the velocity across the damper in m/s, shape (N,); None where no channel determines it."""
     from scipy.signal import butter, sosfiltfilt
 
     rate = recording.header.sample_rate
@@ -166,7 +166,7 @@ def _missing(
     drop: float,
     band: tuple[float, float] | None,
 ) -> list[str]:
-    """Return a sentence for each place where the rig has not been, with what cannot be judged for it."""
+    """Return a sentence for each part of the operating range that is missing, with what it leaves undecided."""
     sentences = [*_missing_motion(recording, visited), *_missing_current(nominal, visited, drop)]
     sentences += [_missing_temperature(nominal, visited.get("temperature"))]
     if recording.header.rig == "seat" and band is not None and not (band[0] < TRUNK[0] and band[1] > TRUNK[1]):
