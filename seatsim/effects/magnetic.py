@@ -62,8 +62,8 @@ class Remanence(NamedTuple):
 
     The plays' half-widths are `width (1 +- spread)`: after a reversal the current has to move by more than that before
     the magnetisation follows, and meanwhile the magnetisation creeps towards the current at the rate `decay`. `lift`
-    raises the play's output: at 0 it lags a rising and a falling current alike, at 1 it follows a rising current without
-    lag, so that only a falling current is remembered. The after-effect adds `share (m - i)`, where m follows a rising
+    raises the play's output: at 0 it lags a rising and a falling current alike, at 1 it follows a rising current at
+    once, so that only a falling current is remembered. The after-effect adds `share (m - i)`, where m follows a rising
     current at once and falls as `m' = decay (i - m)`.
     """
 

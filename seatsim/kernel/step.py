@@ -217,7 +217,7 @@ def _advance_divided(
             last = last and h == tried
             # The event is found to EVENT_TOLERANCE only; the velocity is then set to zero exactly, which marks rest.
             state = state[:VELOCITY] + (0.0,) + state[CUSHION_DISPLACEMENT:]
-            # A suspension that breaks loose slides in the force's direction; one that came to rest may stick or reverse.
+            # A suspension that breaks loose slides in the force's direction; one that came to rest may stick or turn.
             slip = math.copysign(1.0, forces.friction) if slip == STICKING else 0.0
             rates, forces = derivative(rig, state, disturbance_at(inputs, time + h), i_end, scaling, slip)
         if slip == 0.0 or forces.friction_limit <= 0.0:

@@ -1,6 +1,6 @@
 """Interfaces of a control law's design, for code that reports and saves it.
 
-The classes that implement them belong to the synthesis, which this module never imports.
+The classes that implement them stand with the synthesis, which `seatsim` never imports.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ class DesignSettings(NamedTuple):
         Threshold(
             "-",
             "likeness below which the cheapest experiment is taken",
-            "higher: experiments whose outcome a misfit of the model can turn",
+            "higher: experiments whose outcome a model error can reverse",
             SIMULATED_RIGS,
         ),
     ] = 0.9
