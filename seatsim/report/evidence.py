@@ -65,7 +65,7 @@ def render_notes(diagnosis: Diagnosis) -> Html:
     if groups:
         merged = [join_names(group, "or") for group in groups if len(group) > 1]
         text = (
-            f"These channels can tell these groups of blocks apart: {'; '.join(join_names(g, 'or') for g in groups)}."
+            f"These channels can distinguish these groups of blocks: {'; '.join(join_names(g, 'or') for g in groups)}."
         )
         mind = " Within a group only the form of an effect can." if merged else ""
         sentences.append(text + mind)

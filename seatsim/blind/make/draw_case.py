@@ -213,7 +213,7 @@ def _measure(
 ) -> tuple[list[DrawnFault], float] | None:
     """Return the faults with their materiality beside the others, and their collinearity; None where one is no case.
 
-    That is where the rig is unstable, or where two faults can hardly be told apart.
+    That is where the rig is unstable, or where two faults can hardly be distinguished.
     """
     sized, responses = [], []
     for k, fault in enumerate(faults):

@@ -123,7 +123,7 @@ def describe_missing_sensors(rig: str, channels: Collection[str]) -> list[str]:
     sentences = [_loss(rig, channels, groups, name) for name in FOR_RIG[rig] if not _is_recorded(name, channels)]
     everything = {*channels, *(name for name in FOR_RIG[rig] if not _is_recorded(name, channels))}
     sentences += [
-        f"{join_names(group)} cannot be told apart by any channel:"
+        f"{join_names(group)} cannot be distinguished by any channel:"
         " only the form of an effect, or a repeat of a run, can"
         for group in find_isolable_groups(rig, everything)
         if len(group) > 1
@@ -180,9 +180,9 @@ def _loss(rig: str, channels: Collection[str], groups: list[list[str]], absent: 
     parts = [[[b for b in group if b in new] for new in better] for group in groups]
     split = [[part for part in found if part] for found in parts]
     costs = [
-        f"{join_names([_named(part) for part in found])} cannot be told apart" for found in split if len(found) > 1
+        f"{join_names([_named(part) for part in found])} cannot be distinguished" for found in split if len(found) > 1
     ]
-    costs += [f"{join_names(unseen)} cannot be judged"] if unseen else []
+    costs += [f"{join_names(unseen)} cannot be assessed"] if unseen else []
     return f"without {absent}, {join_names(costs)}: {REMEDIES[absent]}" if costs else ""
 
 

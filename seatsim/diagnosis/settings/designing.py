@@ -8,7 +8,7 @@ from seatsim.diagnosis.settings.threshold import CONVENTION, NUMERICAL, SIMULATE
 
 
 class DesignSettings(NamedTuple):
-    """What can be told apart, now and by a further experiment."""
+    """What can be distinguished, now and by a further experiment."""
 
     faint: Annotated[
         float,

@@ -33,7 +33,7 @@ def _constant(run: RunUnderTest, channel: str) -> Iterator[Issue]:
         text = f"is {values[0]:g} throughout; the sensor is dead: repair it or remove the channel"
         yield run.issue("warning" if channel == "damper_temperature" else "error", "constant", text, channel)
     elif channel in MOTION and run.is_still(channel) and channel != run.driver:
-        text = f"shows hardly more than its noise of {noise:g}; it cannot be judged"
+        text = f"shows hardly more than its noise of {noise:g}; it cannot be assessed"
         yield run.issue("warning", "silent", text, channel)
 
 

@@ -172,7 +172,7 @@ def _missing(
     if recording.header.rig == "seat" and band is not None and not (band[0] < TRUNK[0] and band[1] > TRUNK[1]):
         place = f"the floor shakes between {band[0]:.2g} and {band[1]:.2g} Hz only"
         sentences.append(
-            f"{place}: a driver's inner resonance between {TRUNK[0]:g} and {TRUNK[1]:g} Hz is hard to judge"
+            f"{place}: a driver's inner resonance between {TRUNK[0]:g} and {TRUNK[1]:g} Hz is hard to assess"
         )
     return [sentence for sentence in sentences if sentence]
 
@@ -186,28 +186,28 @@ def _missing_motion(recording: Recording, visited: Visited) -> list[str]:
         )
     elif recording.header.rig == "seat" and max(-travel.low, travel.high) < LARGE_TRAVEL:
         place = f"travel stays within {1e3 * travel.low:.0f} to {1e3 * travel.high:.0f} mm"
-        sentences.append(f"{place}: end stops and progressive springs beyond that cannot be judged")
+        sentences.append(f"{place}: end stops and progressive springs beyond that cannot be assessed")
     if velocity is not None and max(-velocity.percentiles[0], velocity.percentiles[-1]) < FAST:
         reached = max(-velocity.percentiles[0], velocity.percentiles[-1])
-        sentences.append(f"velocity hardly exceeds {reached:.2g} m/s: the damper's force at speed cannot be judged")
+        sentences.append(f"velocity hardly exceeds {reached:.2g} m/s: the damper's force at speed cannot be assessed")
     if driver is not None and driver.low > -LIFT:
         place = f"the driver is never accelerated downwards by more than {max(0.0, -driver.low):.2g} m/s^2"
-        sentences.append(f"{place}: separation from the cushion cannot be judged")
+        sentences.append(f"{place}: separation from the cushion cannot be assessed")
     return sentences
 
 
 def _missing_current(nominal: Scenario, visited: Visited, drop: float) -> list[str]:
     current, most = visited.get("current"), nominal.coil.max_current
     if current is None:
-        return ["no current is recorded: what the coil does cannot be judged apart from the damper"]
+        return ["no current is recorded: what the coil does cannot be assessed apart from the damper"]
     low, high = current.percentiles[0], current.percentiles[-1]
     if high - low < DROP * most:
-        return [f"current stays at {low:.2g} to {high:.2g} A: coil, remanence and saturation cannot be judged"]
+        return [f"current stays at {low:.2g} to {high:.2g} A: coil, remanence and saturation cannot be assessed"]
     sentences = []
     if drop < DROP * most:
-        sentences.append(f"current never drops by more than {drop:.2g} A: remanence cannot be judged")
+        sentences.append(f"current never drops by more than {drop:.2g} A: remanence cannot be assessed")
     if high < FULL_CURRENT * most:
-        sentences.append(f"current never exceeds {high:.2g} A: magnetic saturation beyond that cannot be judged")
+        sentences.append(f"current never exceeds {high:.2g} A: magnetic saturation beyond that cannot be assessed")
     return sentences
 
 
@@ -217,5 +217,5 @@ def _missing_temperature(nominal: Scenario, temperature: VisitedRange | None) ->
         return "no temperature is recorded: thermal fade can only be seen as a weaker damper, not be told by its warmth"
     warmest = temperature.percentiles[-1]
     if warmest - stated < WARM:
-        return f"no run is warmer than {warmest:.0f} degC: thermal fade cannot be judged"
+        return f"no run is warmer than {warmest:.0f} degC: thermal fade cannot be assessed"
     return ""
