@@ -1,4 +1,4 @@
-"""What a damper is: a record of parameters with `force` and, where it has a state, `rates`.
+"""Definition of a damper: a record of parameters with `force` and, where it has a state, `rates`.
 
     def force(self, x, v, i, scaling, z):   force in N, positive when it opposes extension
     def rates(self, x, v, i, scaling, z):   time derivative of the state z (a tuple of floats)
@@ -28,7 +28,7 @@ CONFIDENCE: dict[Confidence, str] = {
     "reading": "a sound physical reading, because the original's equation could not be had",
     "derived": "composed here",
 }
-"""How far a model's equation is that of its source; a docstring tells what else is of whom, parameters above all."""
+"""How closely a model's equation follows its source; the docstring states the origin of parameters and changes."""
 
 
 class Damper(DamperModel, Record, Protocol):
@@ -36,10 +36,10 @@ class Damper(DamperModel, Record, Protocol):
 
 
 class DamperSpecification(NamedTuple):
-    """What is stated of a damper model.
+    """Specification of a damper model.
 
-    initial: state at rest. current_order: degree (1 or 2) of the polynomial in the current that `force` is at
-    fixed motion and state, 0 where it is none; it decides whether the inverse has a closed form. centred: the
+    initial: state at rest. current_order: degree (1 or 2) of `force` as a polynomial in the current at fixed
+    motion and state, 0 where it is none; it decides whether the inverse has a closed form. centred: the
     model branches on sgn(x) or sgn(dv/dt), so that it is wrong where the motion is not centred about x = 0.
     The ranges of speed [m/s], current [A] and temperature [degC] are those of the data behind it. complete: the
     model is a form without a parameter set of its own; a scenario states all of its parameters.

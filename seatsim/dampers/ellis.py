@@ -25,7 +25,7 @@ ACCURACY = 1e-10
 
 @jit
 def beyond(y: float, half: float) -> float:
-    """Return by how much y in m lies beyond the play +-half; its corners are parabolas."""
+    """Return how far y in m lies beyond the play +-half; the corners are rounded by parabolas."""
     size, soft = abs(y) - half, CORNER * half
     if size <= -soft:
         return 0.0

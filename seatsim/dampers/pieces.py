@@ -28,7 +28,7 @@ UTFSM = (
     "defaults fitted by us to measured sine tests of the damper of UTFSM (Chile, repository"
     " DanielMaurelE/vRTHS_AMBC_MRdamper, MIT)"
 )
-"""Where defaults come from that are of no published set.
+"""Origin of defaults that are not from a published set.
 
 Where a model does not say otherwise they are derived by us from one steady cycle each of 2 mm 5 Hz, 5 mm 3 and 4 Hz,
 10 mm 1 and 2 Hz, 25 mm 0.1, 0.25 and 0.5 Hz at 0, 0.25, 0.5, 0.75, 1 A, offset removed; every test counts alike.

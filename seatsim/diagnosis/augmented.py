@@ -34,12 +34,12 @@ def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[s
 
 
 def _as_plain(values: Mapping[str, object]) -> dict[str, object]:
-    """Return the numbers of an effect's record as floats of Python, which a YAML file can hold; words stay."""
+    """Return the numbers of an effect's record as Python floats, which a YAML file can hold; strings stay strings."""
     return {name: float(value) if isinstance(value, int | float) else value for name, value in values.items()}
 
 
 def _copy_plain(value: object) -> object:
-    """Return plain lists and mappings of what a YAML file holds, without the places that its reader keeps."""
+    """Return the content of a YAML file as plain lists and mappings, without the line numbers that its reader keeps."""
     if isinstance(value, dict):
         return {str(key): _copy_plain(part) for key, part in value.items()}
     if isinstance(value, list):

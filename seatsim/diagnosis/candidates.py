@@ -15,7 +15,7 @@ from seatsim.schema.registry import Record
 
 Array = NDArray[np.float64]
 Fixed = Mapping[str, float | str]
-"""Parameters that are no part of a fit: numbers, and the channel that an effect acts on."""
+"""Parameters that no fit changes."""
 
 
 class Candidate(NamedTuple):
@@ -51,7 +51,7 @@ class Candidate(NamedTuple):
 
     @property
     def structure(self) -> Hashable:
-        """What candidates share that differ in their start alone."""
+        """The key that is equal for candidates that differ only in where their fit starts."""
         return self.effect, self.free, tuple(self.fixed.items())
 
     @property
@@ -61,7 +61,7 @@ class Candidate(NamedTuple):
 
 
 def list_candidates(problem: DiagnosisProblem, without: Sequence[str] = ()) -> list[Candidate]:
-    """List what could be missing in the nominal scenario of a recording, but for the effects named in `without`."""
+    """List the effects that the nominal scenario of a recording could lack, except those named in `without`."""
     settings = problem.settings.selection
     present = {type(effect) for effect in problem.scenario.effects}
     found = []
@@ -76,7 +76,7 @@ def list_candidates(problem: DiagnosisProblem, without: Sequence[str] = ()) -> l
 
 
 def _starts(candidate: Candidate, limit_starts: Sequence[float]) -> list[Candidate]:
-    """Return the candidate from every start: a limit must be near where it acts for a fit to feel it."""
+    """Return the candidate from every start; the cost depends on a limit only where the motion reaches it."""
     starts = list(zip(candidate.start, candidate.limits, strict=True))
     factors = limit_starts if candidate.is_limit else (1.0,)
     return [candidate._replace(start=tuple(f * x if limit else x for x, limit in starts)) for f in factors]
@@ -88,14 +88,14 @@ def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
         return False
     recorded = problem.recording.channels
     commanded = "current_command" in recorded or "command_voltage" in recorded
-    # Where only the current is recorded it drives the damper, so that nothing of the coil shows.
+    # Where only the current is recorded, it drives the damper in the simulation, so that no fault of the coil shows.
     if acts_on(cls, ("coil",)) and not commanded:
         return False
     return EFFECTS.specification_of(cls).suits(problem.scenario.damper.record)
 
 
 def _places(cls: type[Record], problem: DiagnosisProblem) -> list[Fixed]:
-    """Return the channels that an effect may act on, or one empty place for an effect that acts on none."""
+    """Return the channels that an effect may act on, or one empty name for an effect that acts on no channel."""
     if not EFFECTS.specification_of(cls).by_channel:
         return [{}]
     known = choices(cls, "channel")
@@ -104,7 +104,7 @@ def _places(cls: type[Record], problem: DiagnosisProblem) -> list[Fixed]:
 
 
 def _candidate(name: str, cls: type[Record], form: Form, place: Fixed, reach: float) -> Candidate:
-    """Return the candidate of one structure in one place; what the structure does not name stays off."""
+    """Return the candidate of one structure on one channel; parameters that the structure does not name stay off."""
     off = {field: 0.0 for field in field_names(cls) if field not in place} | dict(EFFECTS.specification_of(cls).off)
     fixed = {field: value for field, value in off.items() if field not in form.free} | dict(form.fixed) | dict(place)
     # The first parameter is the effect's size, which may be anything; the others are its shape.

@@ -1,8 +1,9 @@
-"""Which effects runs left out of the fit support, where no set explains the gap.
+"""Cross-validation: which effects reduce the gap of runs left out of the fit, where no set explains the gap.
 
-Where the nominal's own form is wrong everywhere, as with a real rig, what noise leaves is no measure of what a right
-model leaves: weights by noise rank effects by how they mend the faintest frequencies. The gap itself is the measure
-then: all frequencies weigh the same, and an effect counts by what it takes off the gap of runs left out of its fit.
+Where the structure of the nominal model is wrong at all frequencies, as with a real rig, even the best model leaves far
+more than noise. Weights by noise then rank effects by what they improve at the frequencies with the weakest signals.
+The gap is used instead: all frequencies weigh the same, and an effect is valued by how much it reduces the gap of runs
+left out of its fit.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ Array = NDArray[np.float64]
 
 
 def select_by_cross_validation(objective: Objective, selection: Selection) -> tuple[Evaluation, list[Evaluation]]:
-    """Return the smallest set of effects that no larger one betters on runs left out, and sets that help as much."""
+    """Return the smallest set of effects that no larger one improves on left-out runs, and sets that help as much."""
     settings, problem = objective.settings.cross_validation, objective.problem
     chosen, equivalent = selection.calibrated, list[Evaluation]()
     before = cross_validate(objective, chosen)
@@ -31,7 +32,7 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> tu
         if max(gains, default=0.0) < settings.least_gain:
             break
         best = [each for each, gain in zip(tried, gains, strict=True) if gain > max(gains) - settings.equivalent]
-        # Where a wrong sensor and a change of the rig help as much, the rig is the better guess to act on.
+        # Where a wrong sensor and a change of the rig help equally, the change of the rig is the more useful answer.
         best.sort(key=lambda each: sum(term.block == "sensor" for term in each[0].parameters.terms))
         (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
     return chosen, equivalent

@@ -58,7 +58,7 @@ def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Seq
 def decide_beside_unknown(
     settings: DecisionSettings, decision: Decision, chosen: Evaluation, equivalent: Sequence[Evaluation] = ()
 ) -> Decision:
-    """Return the decision that something is unexplained with another set of effects beside it."""
+    """Return the decision `unknown` with another set of effects stated jointly with the unknown cause."""
     groups = group_equivalent(chosen, equivalent)
     unknown = min(decision.unknown, 1.0 - settings.beside_unknown)
     probabilities = _assign_probabilities(settings, chosen, groups, list(decision.probabilities), unknown)
@@ -66,7 +66,7 @@ def decide_beside_unknown(
 
 
 def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
-    """Whether the calibrated rig leaves nothing to explain, or nothing material that a single effect explains."""
+    """Whether the calibrated rig leaves no gap, or no single effect that reduces the gap is material."""
     calibrated = selection.calibrated
     if calibrated.excess < problem.settings.selection.nothing_left:
         return True
@@ -100,7 +100,7 @@ def _choose_set(problem: DiagnosisProblem, selection: Selection) -> Evaluation:
         if better is None or not _enlarges(problem, chosen, better):
             if chosen.parameters.terms or better is None:
                 break
-            # Two effects may explain together what neither does alone: a first that helps a little is kept for now.
+            # Two effects may explain together what neither does alone, so a first one that helps only a little is kept.
             if better.excess > settings.decision.first_effect_helps * chosen.excess:
                 continue
         chosen = better
@@ -110,9 +110,9 @@ def _choose_set(problem: DiagnosisProblem, selection: Selection) -> Evaluation:
 
 
 def _enlarges(problem: DiagnosisProblem, chosen: Evaluation, better: Evaluation) -> bool:
-    """Whether a larger set leaves so much less, in all or in a channel with a material gap, that its effects are real.
+    """Whether a larger set leaves clearly less, overall or in one channel with a material gap, so that it is accepted.
 
-    What a structure of an effect leaves in one channel must not hide another effect that acts on the others.
+    A model error of the first effect in one channel must not hide a second effect that acts on the other channels.
     """
     enlarge = problem.settings.selection.enlarge
     if better.excess <= enlarge * chosen.excess:
@@ -138,7 +138,7 @@ def _assign_probabilities(
     settings: DecisionSettings, chosen: Evaluation, groups: Sequence[Sequence[str]], effects: Sequence[str],
     unknown: float,
 ) -> dict[str, float]:  # fmt: skip
-    """Return the probability of every effect of being at work; members of a group share that of the chosen one."""
+    """Return each effect's probability of being present; members of a group share the probability of the chosen one."""
     probabilities = dict.fromkeys(effects, settings.effect_if_not_chosen)
     for term in chosen.parameters.terms:
         probabilities[term.effect] = 1.0 - unknown

@@ -46,9 +46,9 @@ def diagnose_problem(
     problem: DiagnosisProblem, notes: Sequence[str] = (), without: Sequence[str] = (),
     progress: Callable[[str], object] = lambda _: None, method: Method | None = None,
 ) -> Diagnosis:  # fmt: skip
-    """Return the diagnosis of a problem that is posed; `notes` are sentences on the quality of its data.
+    """Return the diagnosis of a problem; `notes` are sentences on the quality of its data.
 
-    Simulations of several runs and rigs share the processors, so that libraries of linear algebra get one thread each.
+    Simulations of several runs and rigs run in parallel, so linear algebra libraries are limited to one thread.
     """
     with threadpool_limits(1):
         return state_diagnosis(solve(problem, without, progress, method or Method()), notes, progress)

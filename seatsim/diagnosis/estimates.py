@@ -1,4 +1,4 @@
-"""What a diagnosis rests on: every effect's own shrink and parameters, and the signals behind the pictures."""
+"""Evidence of a diagnosis: every effect's own shrink and parameters, and the signals that the report draws."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from seatsim.schema.fields import describe
 Array = NDArray[np.float64]
 
 QUOTED = ("driver_acceleration", "frame_acceleration", "suspension_displacement")
-"""Channels whose RMS a seat engineer asks for."""
+"""Channels whose RMS the report states."""
 SMOOTHED_ROWS = 5
 """Rows over which a displacement is averaged before its slope is drawn."""
 
@@ -45,8 +45,8 @@ def estimate_causes(
     problem = objective.problem
     base = measure_gap(make_scenario(problem, nominal, calibrated.parameters), problem.recording, [run]).overall
     singles = {each.parameters.terms[0].effect: each for each in selection.sets[1]} if len(selection.sets) > 1 else {}
-    # Single effects share one linearisation of the nuisances, about the calibrated rig: one for each would take longer
-    # than the fits. The chosen ones, whose figures are acted on, have one of their own.
+    # Single effects share one linearisation of the nuisances, about the calibrated rig: one each would take longer than
+    # the fits. The chosen effects, whose figures the user acts on, have their own.
     about_calibrated = objective.linearise_nuisances(selection.calibrated)
     chosen = _estimate_chosen(objective.on_runs(list(augmented.whitened)), augmented)
     causes = []
@@ -126,7 +126,7 @@ def trace_motion(problem: DiagnosisProblem, run: str) -> dict[str, Array]:
 
 
 def compare_comfort(traces: Sequence[Trace]) -> list[ComfortFigure]:
-    """Return the RMS of the channels that are quoted: measured, of the nominal and of the augmented rig."""
+    """Return the RMS of the channels in `QUOTED`: measured, of the nominal and of the augmented rig."""
     return [
         ComfortFigure("RMS " + name.replace("_", " "), t.unit, rms(t.measured), rms(t.nominal), rms(t.after))
         for name in QUOTED for t in traces if t.channel == name

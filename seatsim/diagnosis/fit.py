@@ -1,7 +1,7 @@
 """Fits of effects together with the nuisance parameters, by Gauss-Newton steps under bounds.
 
-The sensitivities of the nuisance parameters hardly change as effects are added, and cost most of a linearisation: a fit
-takes those that its caller hands in, and takes anew those of the effects at every step.
+The sensitivities of the nuisance parameters hardly change as effects are added, but cost most of a linearisation. A fit
+therefore uses those that its caller passes in, and recomputes those of the effects at every step.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 
 def fit(objective: Objective, start: Evaluation, nuisances: Linearisation, steps: int | None = None) -> Evaluation:
-    """Return the evaluation at the end of a fit from `start`, with the sensitivities of the nuisances handed in."""
+    """Return the evaluation at the end of a fit from `start`, with the given sensitivities of the nuisances."""
     settings = objective.settings.fit
     evaluation = start
     for _ in range(settings.most_steps if steps is None else steps):
@@ -70,11 +70,11 @@ def solve_step(
     index = np.arange(count)
     matrix[index, index] += prior_std**-2
     right[:count] -= vector[:count] / prior_std**2
-    # Components of unlike sizes are scaled to unit diagonals; the small ridge keeps collinear ones solvable.
+    # Components differ in size, so they are scaled to a unit diagonal; a small ridge keeps collinear ones solvable.
     size = np.sqrt(np.maximum(np.diag(matrix), 1e-12))
     scaled = matrix / np.outer(size, size) + 1e-8 * np.eye(len(size))
     upper = cholesky(scaled)
     target = np.linalg.solve(upper.T, right / size)
-    # A component at its bound keeps a hair's breadth of room, since the solver wants bounds that differ.
+    # A component at its bound keeps a tiny interval, since the solver requires a lower bound below the upper one.
     room = np.maximum(high - vector, 0.0) * size + 1e-9, np.minimum(low - vector, 0.0) * size - 1e-9
     return np.asarray(lsq_linear(upper, target, (room[1], room[0]), method="bvls").x) / size

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 def measure_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list[Array]:
     """Return by how much each effect of a set moves each channel, in the channel's standard deviations.
 
-    An effect moves what the simulation changes by, RMS over all runs, once it alone is taken out.
+    The movement is the RMS change of the simulation over all runs when this effect alone is removed.
     """
     parameters = evaluation.parameters
     without = [parameters.remove(term.effect) for term in parameters.terms]
@@ -66,7 +66,7 @@ def group_equivalent(chosen: Evaluation, equivalent: Sequence[Evaluation]) -> li
     names = set(chosen.parameters.names)
     groups: dict[str, list[str]] = {}
     others = [set(evaluation.parameters.names) for evaluation in equivalent]
-    # Sets that differ least come first, so that what stands for what is known where sets differ in more.
+    # Sets that differ least come first: the substitutes found there are known when sets that differ more are compared.
     for other in sorted(others, key=lambda other: len(other - names)):
         stands_for = {member: name for name, group in groups.items() for member in group}
         missing, added = names - {stands_for.get(name, name) for name in other}, other - names - set(stands_for)

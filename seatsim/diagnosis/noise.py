@@ -1,10 +1,10 @@
-"""Weights by which residuals of all channels and frequencies become comparable, from what noise and model leave.
+"""Weights that make the residuals of all channels and frequencies comparable, from noise and model error.
 
     P(f) = noise^2 + input noise carried through the rig + (model_error * spectrum of the channel)^2
 
-is the power that a perfect model leaves: the stated noise; the noise of the recorded floor that drives the simulation,
-and of the coil current where no command is recorded, found by simulating it; and a small share of the signal for what
-no model of finite order gets right. It is never fitted to the residual under test, which would hide narrow gaps.
+is the power that a perfect model leaves: the stated noise, the noise of the recorded inputs (the floor, and the coil
+current where no command is recorded) carried through the simulation, and a small share of the signal that no model of
+finite order gets right. It is never fitted to the residual under test, which would hide narrow gaps.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def weigh_uniformly(problem: DiagnosisProblem, power: Mapping[str, Array]) -> No
 
 
 def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> NoiseWeights:
-    """Return weights that are the same at all frequencies, those of the gap that residuals are, over all runs."""
+    """Return weights that are the same at all frequencies, from the power of the given residuals over all runs."""
     errors = normalise_rms_errors(problem, residuals)
     level = problem.settings.cross_validation.noise_level * np.sqrt(np.mean(errors**2)) * problem.spread
     return weigh_uniformly(
@@ -91,7 +91,7 @@ def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> Nois
 def measure_broadband(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> dict[str, Array]:
     """Return by run the white power, shape (channels, 1), of residuals that exceed the stated noise above all compared.
 
-    A force that chatters between two values is sampled as white noise, which no model predicts.
+    A force that switches rapidly between two values is sampled as white noise, which no model predicts.
     """
     settings, found = problem.settings.noise, {}
     for run, values in residuals.items():
@@ -111,7 +111,7 @@ def _count_compared(problem: DiagnosisProblem, samples: int) -> int:
 
 
 def _carry_input_noise(problem: DiagnosisProblem, run: str, force: Array | None) -> Array:
-    """Return the power spectrum that the noise of the recorded inputs, and a random force, leave in the outputs."""
+    """Return the power spectrum that the noise of the recorded inputs, and a random force, cause in the outputs."""
     inputs = problem.inputs[run]
     if isinstance(inputs, BenchInputs):
         return np.zeros((len(problem.channels), 1))
@@ -129,7 +129,7 @@ def _carry_input_noise(problem: DiagnosisProblem, run: str, force: Array | None)
 
 
 def _add_sensor_noise(problem: DiagnosisProblem, floor: Floor, rng: np.random.Generator) -> Floor:
-    """Return the inputs of a run with the noise of their sensors once more."""
+    """Return the inputs of a run with newly drawn noise of their sensors added."""
     every, channels = np.arange(len(floor.acceleration)), problem.recording.channels
     rows = every[:: problem.parts]
 
@@ -152,9 +152,9 @@ def _draw_force(problem: DiagnosisProblem, floor: Floor, force: Array | None, rn
 
 
 def _measure_nonrepeatable(problem: DiagnosisProblem) -> tuple[Array, Array] | None:
-    """Return frequencies and the power per sample by which runs differ from those that they repeat, None without any.
+    """Return frequencies and the power per sample of the non-repeatable disturbance, None without repeated runs.
 
-    The difference of two repeats holds twice the power that does not repeat.
+    The difference of two repeats has twice the power of that disturbance.
     """
     found = []
     for run, entry in problem.recording.runs.items():

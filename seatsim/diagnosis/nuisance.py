@@ -1,4 +1,4 @@
-"""Nominal parameters that are known to within the recording's tolerance: they are refitted, and are no effect."""
+"""Nuisance parameters: nominal parameters known to within the recording's tolerance; refitting one is no effect."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def list_nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
 
 
 def vary(scenario: Scenario, parameters: Sequence[Nuisance], deviations: Array) -> Scenario:
-    """Return the scenario with every parameter off by tolerance times deviation, shape (parameters,), -1 to 1."""
+    """Return the scenario with each parameter changed by tolerance times deviation, shape (parameters,), -1 to 1."""
     changes: dict[str, dict[str, float]] = {"plant": {}, "damper": {}, "coil": {}}
     for parameter, deviation in zip(parameters, deviations, strict=True):
         changes[parameter.section][parameter.name] = parameter.nominal + parameter.tolerance * float(deviation)

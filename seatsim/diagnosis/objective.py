@@ -1,7 +1,7 @@
 """What a fit minimises, its evaluations, and its linearisation, as immutable values.
 
-The rig is driven by the measured floor and command alone, so that no measured motion enters a regressor: feeding
-measured signals into a closed loop would manufacture causes (endogeneity). Minimised is
+The rig is driven by the measured floor and command alone, so no measured motion enters a regressor: measured signals
+fed into a closed loop would produce spurious causes (endogeneity). The cost is
 
     sum |whitened residual|^2 + sum (deviation / prior_std)^2,   -1 <= deviation <= 1,
 
@@ -36,7 +36,7 @@ class Evaluation:
 
     @property
     def rows(self) -> int:
-        """How many whitened numbers are compared."""
+        """Number of whitened numbers that are compared."""
         return sum(values.size for values in self.whitened.values())
 
     @property

@@ -55,7 +55,7 @@ class Parameters:
         return range(len(self.deviations), len(self.deviations) + sum(len(term.free) for term in self.terms))
 
     def add(self, term: Candidate, values: Array) -> Parameters:
-        """Return the parameters with an effect more."""
+        """Return the parameters with one more effect."""
         return Parameters(self.deviations, (*self.terms, term), (*self.values, values))
 
     def remove(self, *names: str) -> Parameters:
@@ -64,7 +64,7 @@ class Parameters:
         return Parameters(self.deviations, tuple(self.terms[k] for k in kept), tuple(self.values[k] for k in kept))
 
     def move_to(self, vector: Array) -> Parameters:
-        """Return the parameters at another vector, cut off at the bounds."""
+        """Return the parameters at another vector, clipped to the bounds."""
         low, high = self.limits
         vector = np.clip(vector, low, high)
         values, start = [], len(self.deviations)
@@ -74,7 +74,7 @@ class Parameters:
         return Parameters(vector[: len(self.deviations)], self.terms, tuple(values))
 
     def shift(self, component: int, step: float) -> tuple[Parameters, float]:
-        """Return the parameters with one component moved by a difference step, downwards where no room is above."""
+        """Return the parameters with one component moved by a difference step, downwards near the upper bound."""
         vector, (_, high) = self.vector, self.limits
         signed = step if vector[component] + step <= high[component] else -step
         moved = vector.copy()

@@ -1,4 +1,4 @@
-"""The problem of a diagnosis: a recording beside its nominal scenario, ready to be simulated again and again."""
+"""The problem of a diagnosis: a recording and its nominal scenario, prepared for repeated simulation."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ from seatsim.simulation.respond import respond
 
 Array = NDArray[np.float64]
 COARSEST_STEP = 0.002
-"""s; longest step of the simulation: with its adaptive sub-steps a shorter one moves no figure of a diagnosis."""
+"""s; longest step of the simulation: its adaptive sub-steps make a shorter one change no figure of a diagnosis."""
 
 
 @dataclass(frozen=True)
 class DiagnosisProblem:
     """A recording, its nominal scenario, and what is compared: channels, in order, and runs.
 
-    `measured` holds the compared channels of each run without its first second, shape (channels, samples); `inputs`
-    what drove each; `parameters` what the owner's tolerance lets vary; simulations are shared out over `pool`.
+    `measured` holds the compared channels of each run without its first second, shape (channels, samples), `inputs` the
+    inputs of each run, `parameters` those that the stated tolerance lets vary; `pool` runs simulations in parallel.
     """
 
     recording: Recording
@@ -84,7 +84,7 @@ class DiagnosisProblem:
         return np.zeros(len(self.parameters))
 
     def on_runs(self, runs: Sequence[str]) -> DiagnosisProblem:
-        """Return the problem with some of its runs; the channels stay, their spreads are those of the runs kept."""
+        """Return the problem with some of its runs; channels stay the same, their spreads are taken over these runs."""
         return dataclasses.replace(self, runs=tuple(runs))
 
     def augmented(self, deviations: Array, effects: Sequence[Record]) -> Scenario:
@@ -100,7 +100,7 @@ class DiagnosisProblem:
         `inputs` drive the rig instead of the recorded ones.
         """
         driven_by = self.inputs[run] if inputs is None else inputs
-        # Thousands of candidates are simulated, so that they have to share one compiled loop.
+        # Thousands of candidates are simulated, so they have to share one compiled loop.
         outputs = respond(self.augmented(deviations, effects), driven_by, carry_all_effects=True)
         end = self.skip + self.measured[run].shape[1]
         return np.array([outputs[name][self.skip : end] for name in self.channels])
@@ -142,7 +142,7 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     if not loud:
         raise InputError(f"{recording.folder}: no recorded output stands above its noise; there is nothing to diagnose")
     skip = round(LEFT_OUT * recording.header.sample_rate)
-    # Spectra of a few rows less are many times faster where the number of rows has only small prime factors.
+    # Dropping a few rows leaves a length with small prime factors only, whose spectra are many times faster.
     ends = {run: skip + prev_fast_len(len(table[loud[0]]) - skip, real=True) for run, table in tables.items()}
     measured = {run: np.array([table[name][skip : ends[run]] for name in loud]) for run, table in tables.items()}
     inputs = {run: recorded_inputs(recording, table, solver.step) for run, table in tables.items()}

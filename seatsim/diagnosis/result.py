@@ -1,4 +1,4 @@
-"""What a diagnosis says: the values behind `diagnosis.json` and the pictures of its report."""
+"""The result of a diagnosis: the values behind `diagnosis.json` and the figures of its report."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Estimate(NamedTuple):
 
 
 class Cause(NamedTuple):
-    """An effect: probability of being at work, and what it alone takes off the calibrated gap on held-out runs."""
+    """An effect: its probability, and the share by which it alone reduces the calibrated gap on held-out runs."""
 
     effect: str
     probability: float
@@ -39,7 +39,7 @@ class Share(NamedTuple):
 
 
 class GapFigures(NamedTuple):
-    """A gap in standard deviations of what was measured, overall and by channel."""
+    """A gap in standard deviations of the measured signals, overall and by channel."""
 
     overall: float
     channels: dict[str, float]
@@ -93,7 +93,7 @@ class DiscrepancySignal(NamedTuple):
 class Collinearity(NamedTuple):
     """Effects, and how collinear their sensitivities are, shape (effects, effects), 0 to 1.
 
-    Sensitivities are taken in this recording, about the rig found, once the nuisance parameters have taken their part.
+    Sensitivities are taken in this recording, about the rig found, with the nuisance parameters projected out.
     """
 
     effects: list[str]
@@ -116,7 +116,7 @@ class Evidence:
 
     `traces`: held-out signals. `motion`: of the measured rig on the held-out run, `velocity` and `displacement` of the
     suspension, `coil_current` and `damper_temperature` where known, shape (N,) each. `discrepancy`: the unexplained
-    signal, where something is. `comfort`: such as the RMS acceleration of the driver.
+    signal, if any. `comfort`: figures such as the RMS acceleration of the driver.
     """
 
     traces: list[Trace]
@@ -128,7 +128,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class ProposedExperiment:
-    """What would tell equivalent effects apart, with the likeness of their worst pair now and then, 0 to 1.
+    """An experiment that distinguishes equivalent effects; likeness of their worst pair before and after it, 0 to 1.
 
     `scenario` is the content of a scenario that runs the excitation, where the rig is a seat.
     """
@@ -151,9 +151,9 @@ class ProposedExperiment:
 class Diagnosis:
     """Where the gap between a recording and its nominal simulation lies, which effect causes it, how far it shrinks.
 
-    `sentence` is the answer in one sentence, `notes` are sentences on the data, what the channels forbid, and what to
-    mind; `stochastic` is the selected effect whose signal is random, else empty; `augmented` is the content of
-    `augmented.yaml`.
+    `sentence` is the answer in one sentence. `notes` are sentences on the data, what the channels cannot distinguish,
+    and on cautions. `stochastic` is the selected effect whose signal is random, else empty. `augmented` is the content
+    of `augmented.yaml`.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Screening: what a linear model predicts of each candidate, from what it changes at its start."""
+"""Screening: the cost that a linear model predicts for each candidate, from its change of the outputs."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Prediction(NamedTuple):
 def measure_sensitivities(
     objective: Objective, calibrated: Evaluation, candidates: Sequence[Candidate]
 ) -> list[Sensitivity]:
-    """Return what each candidate, at its start, changes in the calibrated rig, but for those that leave all bounds."""
+    """Return the change of the calibrated rig by each candidate at its start; unstable ones are dropped."""
     starts = objective.evaluate([calibrated.parameters.add(c, np.array(c.start)) for c in candidates])
     return [
         Sensitivity(candidate, {run: base - start.whitened[run] for run, base in calibrated.whitened.items()})
@@ -71,7 +71,7 @@ def screen_candidates(
 def _predict(
     objective: Objective, base: Evaluation, sensitivity: Sensitivity, nuisances: Linearisation, own: Linearisation
 ) -> Prediction:
-    """Return what the best multiple of a candidate would cost, were the rig linear in all parameters."""
+    """Return the predicted cost of the best multiple of a candidate, for a rig that is linear in all parameters."""
     candidate, changes = sensitivity
     vector, (low, high) = base.parameters.vector, base.parameters.limits
     parts = [
@@ -90,10 +90,10 @@ def _predict(
 def _starts_around(
     objective: Objective, parameters: Parameters, candidate: Candidate, factor: float
 ) -> list[Parameters]:
-    """Return the parameters with a candidate at its start and where it changes the rig by about a factor more."""
+    """Return the parameters with a candidate at its start, and with its first parameter scaled as predicted."""
     settings = objective.settings.selection
     if candidate.is_limit:
-        # How much a limit acts is no multiple of its size: only the direction of the prediction is taken.
+        # The action of a limit is not proportional to its size, so only the direction of the prediction is used.
         less = settings.limit_factors
         factors: tuple[float, ...] = less if factor < 1.0 else tuple(1.0 / each for each in less)
     else:

@@ -1,4 +1,4 @@
-"""Subset selection: candidates are screened by linear models, fitted singly, then in sets as long as they gain."""
+"""Subset selection: candidates are screened by linear models, fitted singly, then in sets while the cost falls."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Selection:
 def select_effects(
     objective: Objective, candidates: Sequence[Candidate], progress: Callable[[str], object], largest: int | None = None
 ) -> Selection:
-    """Fit the nuisance parameters alone, then single effects, then larger sets as long as they gain.
+    """Fit the nuisance parameters alone, then single effects, then larger sets as long as the cost falls enough.
 
     Args:
         objective: what is minimised.
@@ -48,7 +48,7 @@ def select_effects(
             break
         if size > 1:
             larger = _best_of_each_set([*larger, *_swap_effects(objective, larger[0], sets[1], nuisances)])
-        # Sets are ranked under sensitivities of a smaller set; the best is fitted to its end under its own.
+        # Sets are ranked with the sensitivities of a smaller set; the best is then fitted to the end with its own.
         nuisances = objective.linearise_nuisances(larger[0])
         larger[0] = fit(objective, larger[0], nuisances)
         sets.append(larger)
@@ -69,7 +69,7 @@ def _calibrate(objective: Objective) -> tuple[Evaluation, Evaluation, Linearisat
 
 
 def _gains(objective: Objective, sets: Sequence[Sequence[Evaluation]]) -> bool:
-    """Whether the last enlargement gained enough, and left enough, for a further one."""
+    """Whether the last enlargement lowered the cost enough, and left enough to explain, for a further one."""
     settings = objective.settings.selection
     last, before = sets[-1][0].excess, sets[-2][0].excess
     return last > settings.nothing_left and last < settings.worthwhile * before
@@ -99,7 +99,7 @@ def _extend(
 def _swap_effects(
     objective: Objective, best: Evaluation, singles: Sequence[Evaluation], nuisances: Linearisation
 ) -> list[Evaluation]:
-    """Return fitted sets in which one effect of the best set gives way to one that did nearly as well alone."""
+    """Return fitted sets in which one effect of the best set is swapped for one that did nearly as well alone."""
     settings = objective.settings.selection
     alone = {evaluation.parameters.terms[0].effect: evaluation for evaluation in singles}
     starts = []
@@ -119,13 +119,13 @@ def _swap_effects(
 
 
 def _eliminate_backwards(objective: Objective, best: Evaluation, nuisances: Linearisation) -> list[Evaluation]:
-    """Return fits of a set without each of its effects but the last, which smaller sets have been tried without."""
+    """Return fits of a set without one effect (backward elimination); the set without its last one is known already."""
     starts = [best.parameters.remove(term.effect) for term in best.parameters.terms[:-1]]
     return [fit(objective, start, nuisances) for start in objective.evaluate(starts)]
 
 
 def _best_of_each_set(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
-    """Return the evaluations in the order of their cost, the best one of each set of effects."""
+    """Return the best evaluation of each set of effects, in the order of cost."""
     best: dict[frozenset[str], Evaluation] = {}
     for evaluation in sorted(evaluations, key=lambda evaluation: evaluation.cost):
         best.setdefault(evaluation.parameters.names, evaluation)

@@ -8,7 +8,7 @@ from seatsim.schema.text import join_names
 
 
 def write_answer(diagnosis: Diagnosis) -> str:
-    """Return what a diagnosis comes to, in one sentence."""
+    """Return the result of a diagnosis in one sentence."""
     gap = diagnosis.gap
     size = f"{gap.before.overall:.3f}"
     if diagnosis.verdict == "none":
@@ -33,7 +33,7 @@ def write_answer(diagnosis: Diagnosis) -> str:
 
 
 def _alike(diagnosis: Diagnosis) -> str:
-    """Return which effects could stand for those that were selected."""
+    """Return a clause on the effects that explain the recording as well as the selected ones."""
     what = "it" if len(diagnosis.selected) == 1 else "{}"
     said = [
         f"; these data cannot tell {what.format(group[0])} from {join_names(group[1:])}"
@@ -43,7 +43,7 @@ def _alike(diagnosis: Diagnosis) -> str:
 
 
 def _unexplained(diagnosis: Diagnosis) -> str:
-    """Return the block of what is unexplained, with the blocks that these channels cannot tell from it."""
+    """Return the block of the unexplained remainder, with the blocks that these channels cannot distinguish from it."""
     first = diagnosis.where[0].block
     together = next((group for group in diagnosis.isolable if first in group), [first])
     return " or the ".join([first, *(block for block in together if block != first)])

@@ -1,4 +1,4 @@
-"""The search for the causes of a gap: noise, selection, decision, localisation, again where noise was overlooked."""
+"""The search for the causes of a gap: noise, selection, decision, localisation; repeated where noise was missed."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Forces = Mapping[str, Array] | None
 
 
 class Method(NamedTuple):
-    """The stages of a diagnosis; a benchmark replaces one of them to measure what it is worth."""
+    """The stages of a diagnosis; a benchmark replaces one of them to measure its contribution."""
 
     weigh_noise: Callable[[DiagnosisProblem, Forces, Forces], NoiseWeights] = weigh_noise
     select_effects: Callable[[Objective, Sequence[Candidate], Progress, int | None], Selection] = select_effects
@@ -45,7 +45,7 @@ class Method(NamedTuple):
 
 
 class SearchTask(NamedTuple):
-    """What a search is given: the candidates, the names of all effects, whom to tell of progress, and the method."""
+    """Inputs of a search: the candidates, the names of all effects, the progress callback, and the method."""
 
     candidates: Sequence[Candidate]
     effects: Sequence[str]
@@ -54,9 +54,9 @@ class SearchTask(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """A selection with its decision, the blocks that the gap lies in, and the discrepancy, where something is left.
+    """A selection with its decision, the blocks that the gap lies in, and the discrepancy, if anything is unexplained.
 
-    `stochastic` is the effect at work, if any, whose signal is that discrepancy.
+    `stochastic` is the effect, if any, whose signal is that discrepancy.
     """
 
     objective: Objective
@@ -68,7 +68,7 @@ class Solution(NamedTuple):
 
 
 def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress, method: Method) -> Solution:
-    """Search for the causes; where what is left is a stochastic disturbance, count it as noise and search again.
+    """Search for the causes; where the remainder is a stochastic disturbance, add it to the noise and search again.
 
     Args:
         problem: a recording beside its nominal scenario.
@@ -102,7 +102,7 @@ def _search(task: SearchTask, objective: Objective) -> Solution:
 
 
 def _search_beyond_broadband(task: SearchTask, first: Solution, forces: Forces) -> Solution:
-    """Search again where most of what the best set leaves is broadband, and return what explains the gap beside it."""
+    """Search again with the broadband residual added to the noise, where most of the remainder is broadband."""
     problem, best = first.objective.problem, first.selection.sets[-1][0]
     errors, weights = measure_broadband(problem, best.residuals), first.objective.weights.weights
     broadband = sum(float(np.sum(power * weights[run] ** 2)) for run, power in errors.items())
@@ -114,11 +114,11 @@ def _search_beyond_broadband(task: SearchTask, first: Solution, forces: Forces) 
 
 
 def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
-    """Return what is unexplained, beside the effects that runs left out support where only the gap counts."""
+    """Return the unexplained remainder with the effects that cross-validation supports under uniform weights."""
     task.progress("weighing the gap alone")
     problem, settings = first.objective.problem, first.objective.settings
     objective = Objective(problem, weigh_gap(problem, first.selection.calibrated.residuals))
-    # Only the first start of each structure: the search is a second one, and its measure is coarse.
+    # Only the first start of each structure is used: this is a second search, and its measure is coarse.
     first_starts = {each.structure: each for each in reversed(task.candidates)}
     largest = settings.selection.largest_uniform_set
     selection = task.method.select_effects(objective, list(first_starts.values()), task.progress, largest)
@@ -128,7 +128,7 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
     localised = _localise(task, first._replace(decision=decision))
     if localised.decision is not decision:
         return localised
-    # The effects are stated as the gap's weights fitted them, since these are the ones that were cross-validated.
+    # The effects are stated as fitted under uniform weights, since those fits were cross-validated.
     return localised._replace(
         objective=objective, selection=selection, decision=dataclasses.replace(decision, chosen=chosen)
     )
@@ -143,7 +143,7 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
     if decision.verdict != "unknown":
         return solution._replace(where=share(objective, decision.chosen, None))
     if problem.bench:
-        # A bench has nothing but the damper between its motion and its load cell.
+        # On a bench only the damper lies between the prescribed motion and the load cell.
         return solution._replace(where=[Share("damper", 1.0)])
     task.progress("asking which block could hold the remainder")
     remainder, rig = localise_remainder(objective, solution.selection.calibrated, decision.chosen)
@@ -154,7 +154,7 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
 
 
 def _search_beside_stochastic(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
-    """Search again where the discrepancy may be a stochastic disturbance, counted as noise; keep what it explains."""
+    """Search again with the discrepancy added to the noise, where it may be a stochastic disturbance."""
     problem, found = first.objective.problem, first.discrepancy
     if first.decision.verdict in ("known", "ambiguous") and not problem.bench:
         found = find_bias_drift(problem, first.decision.chosen)

@@ -11,7 +11,7 @@ Spectra = NDArray[np.complex128]
 FEWEST_BINS = 4
 """Least half-width of the average in bins, so that the lowest frequencies are averaged at all."""
 TINY = 1e-30
-"""Least power, by which a silent channel may be divided."""
+"""Least power, so that nothing is divided by the zero of a silent channel."""
 
 
 def smooth_spectrum(power: Array, half_width: float) -> Array:
@@ -35,7 +35,7 @@ def measure_power(spectrum: Spectra, half_width: float) -> Array:
 
 
 def estimate_response(outputs: Spectra, cause: Spectra, half_width: float) -> Spectra:
-    """Return the best linear approximation of what turns the spectrum of a cause into those of outputs.
+    """Return the best linear approximation of the frequency response from a cause to outputs.
 
     `H = smoothed(Y X*) / smoothed(|X|^2)`, the H1 estimate; shape (channels, frequencies).
     """

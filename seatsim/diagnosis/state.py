@@ -1,4 +1,4 @@
-"""Statement of a solution: what it amounts to on a held-out run, with the evidence for it."""
+"""Statement of a solution: its gaps on a held-out run, with the evidence for it."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Validation:
 
 
 def validate_on_held_out(solution: Solution) -> Validation:
-    """Return what a solution amounts to on a held-out run; what fails there beside an unknown cause is given up."""
+    """Return a solution assessed on a held-out run; effects that fail there beside an unknown cause are dropped."""
     objective, decision, selection = solution.objective, solution.decision, solution.selection
     problem, chosen = objective.problem, decision.chosen
     shrink = shrink_by_run(problem, selection.nominal, chosen)
@@ -62,7 +62,7 @@ def validate_on_held_out(solution: Solution) -> Validation:
     nominal = single(problem.recording.nominal)
     rigs = Parameters(problem.nominal), calibrated.parameters, augmented.parameters
     first, second, third = (make_scenario(problem, nominal, rig) for rig in rigs)
-    # A single run has no spread, which would be NaN with one degree of freedom less.
+    # A single run has no spread: its standard deviation with n - 1 degrees of freedom would be NaN.
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
     gaps = measure_gaps(problem, (first, second, third), [run], spread)
     if decision.verdict == "unknown" and chosen.parameters.terms and gaps.shrink < 0.0:
@@ -72,7 +72,7 @@ def validate_on_held_out(solution: Solution) -> Validation:
 
 
 def state_diagnosis(solution: Solution, notes: Sequence[str], progress: Callable[[str], object]) -> Diagnosis:
-    """Return the diagnosis that a solution amounts to; `notes` are sentences on the quality of the data."""
+    """Return the diagnosis that states a solution; `notes` are sentences on the quality of the data."""
     progress("holding out a run")
     validation = validate_on_held_out(solution)
     solution = validation.solution
@@ -109,7 +109,7 @@ def _list_causes(validation: Validation) -> list[Cause]:
 
 
 def _propose_experiment(solution: Solution, nuisances: Linearisation) -> ProposedExperiment | None:
-    """Return the experiment that would separate the first group of equivalent effects, None where all is clear."""
+    """Return the experiment that separates the first group of equivalent effects, None where there is no group."""
     decision = solution.decision
     if decision.verdict != "ambiguous" or solution.objective.problem.bench:
         return None
@@ -117,7 +117,7 @@ def _propose_experiment(solution: Solution, nuisances: Linearisation) -> Propose
 
 
 def _collect_evidence(validation: Validation, nuisances: Linearisation, causes: Sequence[Cause]) -> Evidence:
-    """Return what the pictures of the report show, on the held-out run."""
+    """Return the content of the report's figures, on the held-out run."""
     solution, run = validation.solution, validation.run
     problem, settings = solution.objective.problem, solution.objective.settings.design
     traces = trace_run(problem, validation.rigs, run)

@@ -28,9 +28,9 @@ def shrink_by_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: Evalua
 
 
 def choose_held_out_run(problem: DiagnosisProblem, chosen: Evaluation, shrink: Array) -> str:
-    """Return the run to hold out: at a low quantile of shrink among those that the effects move, as they do others.
+    """Return the run to hold out: one that the effects move about as much as others, at a low quantile of shrink.
 
-    A run of another kind shrinks less than those that made an effect plain enough to be found.
+    The gap of a new excitation shrinks less than that of the runs in which the effect was found, hence a low quantile.
     """
     settings, runs = problem.settings.validation, problem.runs
     if not chosen.parameters.terms or len(runs) < 2:
@@ -85,7 +85,7 @@ def measure_gaps(
 def _bootstrap_shrink(
     problem: DiagnosisProblem, scenarios: tuple[Scenario, Scenario], runs: Sequence[str], shrink: float, spread: float
 ) -> tuple[float, float]:
-    """Return the block bootstrap interval of the shrink, widened by what other excitations make of it."""
+    """Return the block bootstrap interval of the shrink, widened by its spread between excitations."""
     settings = problem.settings.validation
     measured, first = pool_runs(scenarios[0], problem.recording, runs)
     second = pool_runs(scenarios[1], problem.recording, runs)[1]

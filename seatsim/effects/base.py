@@ -8,20 +8,20 @@ Before a run, in Python, on arrays of shape (N,):
     plant(self, plant)                      parameters of the seat
     coil(self, coil)                        parameters of the coil
     factors(self, factors)                  temperature factors of the damper
-    temperature(self, step, values)         temperature [degC] of the fluid out of that of the thermocouple
+    temperature(self, step, values)         temperature [degC] of the fluid from that of the thermocouple
     frame_force(self, time, seed)           force on the frame in N, added to that of other effects
-    reading(self, channel, step, values)    what a sensor says out of what is true
-    truth(self, channel, step, values)      what is true out of what a sensor says
+    reading(self, channel, step, values)    reading of a sensor from the true values
+    truth(self, channel, step, values)      true values from the reading of a sensor
 
 In the time loop, compiled by numba, with `z` the effect's own state. On the damper, whose end moves at v [m/s] under
 the current i [A] and whose piston moves at u [m/s]:
 
     part_scaling(self, scaling, v, z)       factors of the viscous, elastic and yield parts of the force
-    yield_current(self, i, z)               current that the yield part feels, in A
+    yield_current(self, i, z)               effective current of the yield part, in A
     yield_speed(self, v, z)                 speed whose yield part `yield_shape` gets as `late`, in m/s
     yield_shape(self, shape, target, late, z)   yield part over its full size, NaN where the damper's own law holds;
                                             `target` is the damper's own at v, `late` that at the yield speed
-    yield_force(self, force, z)             yield part in N, out of what it would be in both directions alike
+    yield_force(self, force, z)             yield part in N, from that of a damper symmetric in both directions
     transmitted_share(self, h, v, demanded, z)  share of speed and force that a gap transmits, 0 to 1, of a damper that
                                             would bear `demanded` newton without it
     mount_force(self, force, z)             force in N of an elastic mount in series, NaN where there is none
@@ -35,7 +35,7 @@ On the seat, with the plant, suspension x [m], v [m/s] and cushion xc, vc:
     suspension_force(self, plant, x, v, z)  force in N beside the spring's, positive against extension
     linkage_friction(self, z)               limit in N of a set-valued friction in the linkage
     cushion_force(self, force, plant, xc, vc, z)    force of the cushion in N, positive in tension
-    inner_mass(self, plant, z)              mass in kg that hangs within the driver's
+    inner_mass(self, plant, z)              part of the driver's mass that is sprung, in kg
     inner_force(self, plant, z)             force in N with which it pushes the driver's body upward
     rates(self, plant, motion, z)           time derivative of z; `motion` is a `seatsim.kernel.rig.SeatMotion`
 """
@@ -69,9 +69,9 @@ HOOKS = (*ONCE_A_RUN, *ON_DAMPER, *ON_SEAT, "rates")
 
 
 class Form(NamedTuple):
-    """Where a fit to a recording starts: the values of the parameters it frees, and of others that it fixes.
+    """Start of a fit to a recording: the values of the parameters that it varies, and of those that it fixes.
 
-    `within` bounds a free parameter more closely than its field does, where beyond it would be another effect.
+    `within` bounds a free parameter more closely than its field does, where values beyond would mean another effect.
     """
 
     free: Values
@@ -80,11 +80,11 @@ class Form(NamedTuple):
 
 
 class EffectSpecification(NamedTuple):
-    """What is stated of an effect.
+    """Specification of an effect.
 
     source: of the law. initial: its state at rest. off: parameters at which the rig is unchanged, where that is not
-    zero. forms: functional forms in which a recording may show it; what a form does not name stays off. suits: whether
-    it can be missing in a model with the given damper record. by_channel: it acts on one recorded channel, which its
+    zero. forms: model structures that a fit tries; parameters that a structure does not name stay off. suits: whether a
+    model with the given damper record can lack the effect. by_channel: it acts on one recorded channel, which its
     parameter `channel` names.
     """
 

@@ -45,7 +45,7 @@ class Hardening(NamedTuple):
     forms=({"limit": 250.0}, {"limit": 100.0, "held": 0.5}, {"limit": 150.0, "width": 100.0}),
 )
 class Separation(NamedTuple):
-    """A driver who partly lifts off: tension beyond `limit` is handed on only by the share `held`.
+    """A driver who partly lifts off: of tension beyond `limit` only the share `held` is transmitted.
 
     Foam that comes off little by little rounds the corner: with e = F - limit,
     `F - (1 - held) (e + width)^2 / (4 width)` for |e| <= width.

@@ -18,7 +18,7 @@ SHORTEST = 2e-5
 FASTEST = 1000.0
 """1/s; greatest rate at which a yield force builds up."""
 SWITCH = 0.01
-"""m/s; speed over which rebound turns into compression, unless stated otherwise."""
+"""m/s; width of the transition from compression to rebound, unless stated otherwise."""
 
 
 @effect(
@@ -51,8 +51,8 @@ class GasSpring(NamedTuple):
 class Asymmetry(NamedTuple):
     """Rebound stronger and compression weaker: both parts of the force times `1 + a (tanh(v / speed) + offset)`.
 
-    With an offset of 1 only rebound differs from the nominal damper, with -1 only compression. In a hysteretic damper
-    the side may also be that of the yield force Fy itself, which reverses after the speed: `Fy (1 + pulling (sgn Fy +
+    With an offset of 1 only rebound differs from the nominal damper, with -1 only compression. In a hysteretic damper,
+    whose yield force Fy reverses later than the speed, the sign of Fy may count instead: `Fy (1 + pulling (sgn Fy +
     offset))`.
     """
 
@@ -63,7 +63,7 @@ class Asymmetry(NamedTuple):
     pulling: Annotated[float, param("-", "a of the yield part, by its own sign", low=-0.9, high=0.9)] = 0.0
 
     def yield_force(self, force: float, z: State) -> float:
-        """Return the yield force in N, given what it would be in both directions alike."""
+        """Return the yield force in N, given that of a damper symmetric in both directions."""
         return force * (1.0 + self.pulling * self.offset) + self.pulling * abs(force)
 
     def part_scaling(self, scaling: TemperatureScaling, v: float, z: State) -> TemperatureScaling:
@@ -122,13 +122,13 @@ class SealFriction(NamedTuple):
 class FreePlay(NamedTuple):
     """Backlash at the mount or trapped air: after each reversal a travel `gap` without force.
 
-    With g the place in the gap, `g' = v - u` where u is the speed of the piston. Without stiffness the mount is rigid:
-    the damper hands on the share h of its force and `u = h v`; with s = 2 g sgn(F) / gap, h rises smoothly from 0 at
-    `s = 1 - 2 softness` to 1 at s = 1: what is reversed is the force. With `turning` it is the motion, and the damper
-    keeps its state where it hands on nothing: `h = (1 + w) h+ / 2 + (1 - w) h- / 2`, `w = tanh(v / turning)`, with h+
-    and h- for the two signs of s. A small `turning` makes the force chatter, unforeseeably, where the damper rests.
-    With stiffness the force is the mount's, `S = stiffness max(0, |g| - gap / 2) sgn g`, and u is the speed at which
-    the damper bears S.
+    With g the position in the gap, `g' = v - u` where u is the speed of the piston. Without stiffness the mount is
+    rigid: the damper transmits the share h of its force and `u = h v`. With s = 2 g sgn(F) / gap, h rises smoothly from
+    0 at `s = 1 - 2 softness` to 1 at s = 1, so a reversal of the force opens the gap. With `turning` a reversal of the
+    motion opens it, and the damper keeps its state while it transmits nothing: `h = (1 + w) h+ / 2 + (1 - w) h- / 2`,
+    `w = tanh(v / turning)`, with h+ and h- for the two signs of s. A small `turning` makes the force chatter in an
+    unpredictable way where the damper is at rest. With stiffness the force is that of the mount, `S = stiffness max(0,
+    |g| - gap / 2) sgn g`, and u is the speed at which the damper's force is S.
     """
 
     gap: Annotated[float, param("m", "travel without force after a reversal", low=0, high=0.05)]
@@ -137,7 +137,7 @@ class FreePlay(NamedTuple):
     turning: Annotated[float, param("m/s", "speed from which motion opens the gap; 0: force", low=0, high=1)] = 0.0
 
     def transmitted_share(self, h: float, v: float, demanded: float, z: State) -> float:
-        """Return the share h of speed and force that gets through; `demanded` [N] is the force without the gap."""
+        """Return the transmitted share h of speed and force; `demanded` [N] is the force without the gap."""
         if self.gap <= 0.0:
             return h
         if self.turning <= 0.0:
@@ -164,7 +164,7 @@ class FreePlay(NamedTuple):
 
 @jit
 def _transmitted_share(gap: float, softness: float, demanded: float, g: float) -> float:
-    """Return h, the share of speed and force that gets through the gap."""
+    """Return h, the share of speed and force that the gap transmits."""
     missing = 0.5 * gap - g * math.copysign(1.0, demanded)
     s = min(1.0, max(0.0, 1.0 - missing / max(softness * gap, SHORTEST)))
     return s * s * (3.0 - 2.0 * s)

@@ -46,7 +46,7 @@ class Biodynamics(NamedTuple):
         return self.share * plant.driver_mass
 
     def inner_force(self, plant: Plant, z: State) -> float:
-        """Return what the inner mass pushes the pelvis upward with, in N."""
+        """Return the upward force of the inner mass on the pelvis in N."""
         omega = 2.0 * math.pi * self.frequency
         return self.share * plant.driver_mass * omega * (omega * z[0] + 2.0 * self.damping * z[1])
 

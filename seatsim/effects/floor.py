@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 class UnmeasuredInput(NamedTuple):
     """A force on the frame that no channel records: random between two frequencies, and a tone.
 
-    Its spectrum is what a recording tells; the random part's course in time is drawn from the scenario's seed.
+    A recording determines its spectrum only; the random part is drawn from the scenario's seed.
     """
 
     rms: Annotated[float, param("N", "RMS of the random force", low=0, high=1e5)]

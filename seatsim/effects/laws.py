@@ -7,7 +7,7 @@ import math
 from seatsim.compilation.jit import jit
 
 REFERENCE_DEPTH = 0.01
-"""m; depth at which buffers of every exponent are equally strong."""
+"""m; depth at which the force of a buffer does not depend on its exponent."""
 
 FRICTIONS: tuple[dict[str, float], ...] = (
     {"force": 20.0, "presliding": 2e-4}, {"force": 20.0, "presliding": 1e-3, "lubrication": 20.0},
@@ -26,7 +26,7 @@ def dahl_rate(presliding: float, v: float, z: float) -> float:
 
 @jit
 def buffer(stiffness: float, damping: float, power: float, depth: float, speed: float) -> float:
-    """Return the push in N of a buffer compressed by `depth`, which never pulls."""
+    """Return the force in N of a buffer compressed by `depth`, which never pulls."""
     push = stiffness * depth * (1.0 + damping * speed)
     if power > 1.0:
         push *= (depth / REFERENCE_DEPTH) ** (power - 1.0)

@@ -1,4 +1,4 @@
-"""Effects of the damper on what its fluid feels of current and heat: saturation, remanence, thermal fade."""
+"""Effects of magnetism and heat on the damper's fluid: saturation, remanence, thermal fade."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from seatsim.schema.fields import param
 Array = NDArray[np.float64]
 
 FOLLOWING = 500.0
-"""1/s; rate at which a play's memory is renewed where the current drags it along."""
+"""1/s; rate at which a play follows the current that drags it along."""
 SMOOTHING = 2.0
 """s; time over which a thermocouple's reading is averaged before its slope is taken."""
 
@@ -60,11 +60,11 @@ class MagneticSaturation(NamedTuple):
 class Remanence(NamedTuple):
     """Yield force that remembers past current: it feels the mean of two plays of the current, and an after-effect.
 
-    The plays' half-widths are `width (1 +- spread)`; the current has to go further than that back before the
-    magnetisation follows; held back, it creeps towards the current at the rate `decay`. Of the play's two sides, `lift`
-    is how far it is raised: 0 lags a rising and a falling current alike, 1 leaves the rising one as it is, so that only
-    a current that fell is remembered. The after-effect adds `share (m - i)`, where m follows a rising current at once
-    and falls as `m' = decay (i - m)`.
+    The plays' half-widths are `width (1 +- spread)`: after a reversal the current has to move by more than that before
+    the magnetisation follows, and meanwhile the magnetisation creeps towards the current at the rate `decay`. `lift`
+    raises the play's output: at 0 it lags a rising and a falling current alike, at 1 it follows a rising current at
+    once, so that only a falling current is remembered. The after-effect adds `share (m - i)`, where m follows a rising
+    current at once and falls as `m' = decay (i - m)`.
     """
 
     width: Annotated[float, param("A", "current that stays remembered", low=0, high=2)]

@@ -20,16 +20,16 @@ ChannelName = Literal[
 ]  # fmt: skip
 ChannelField = Annotated[ChannelName, Field(description="the recorded channel that is wrong")]
 SCALES = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement": 0.01, "displacement": 0.01}
-"""A channel's scale in its unit, a tenth or so of what it reads on a shaken seat; 1 m/s^2 for an acceleration."""
+"""Scale of a channel in its unit, about a tenth of its range on a shaken seat; 1 m/s^2 for an acceleration."""
 LOGGED = ("current_command", "coil_current")
 """Channels of the controller's log."""
 SHORTEST_LAG = 1e-6
-"""s; a shorter lag is none: no row would tell, and its step would be stiff beyond rounding."""
+"""s; a shorter lag counts as none: the rows cannot show it, and its equation would be too stiff."""
 ROUNDING = 1e-6
 """Rows by which a delay may exceed a whole number of rows and still count as that many."""
 LATE = (0.001, 0.003, 0.006, 0.011, 0.018, 0.028, 0.042)
 EARLY = tuple(-shift for shift in LATE)
-"""Shifts in s that a fit starts from: with a current that steps it finds the truth from near it alone."""
+"""s; shifts from which a fit starts: with a stepped current it converges only from near the true shift."""
 
 
 @effect("sensor.gain", source="calibration", by_channel=True, off={"error": 0.0}, forms=({"error": 0.05},))
@@ -111,8 +111,8 @@ class SensorLag(NamedTuple):
 class ClockSkew(NamedTuple):
     """The controller's log is late by `shift + drift t` against the other channels: it says at t what was at t - shift.
 
-    The coil current, a continuous course, moves by as much. So does the command where `hold` is 0. A command that the
-    controller changes at the log's own rate, `hold` 1, moves in the log by whole rows only.
+    The coil current, a continuous signal, is delayed by exactly that. So is the command where `hold` is 0. A command
+    that the controller changes at the log's own rate, `hold` 1, is delayed by whole rows only.
     """
 
     shift: Annotated[float, param("s", "delay of the log; negative: it runs ahead", low=-1, high=1)]
@@ -120,14 +120,14 @@ class ClockSkew(NamedTuple):
     hold: Annotated[float, param("-", "1: commands change at the log's rows, 0: at any time", low=0, high=1)] = 0.0
 
     def reading(self, channel: str, step: float, values: Array) -> Array:
-        """Return what the log says, shape (N,)."""
+        """Return the logged values, shape (N,)."""
         if channel not in LOGGED:
             return values
         rows = np.arange(len(values)) * step
         return np.interp(rows - self.shift - self.drift * rows, rows, values)
 
     def truth(self, channel: str, step: float, values: Array) -> Array:
-        """Return what was commanded or flowed, shape (N,)."""
+        """Return the true command or current, shape (N,)."""
         if channel not in LOGGED:
             return values
         rows = np.arange(len(values)) * step

@@ -68,7 +68,7 @@ class ProgressiveSpring(NamedTuple):
     reach: Annotated[float, param("m", "travel over which it comes to bear", low=0, high=0.5)] = 0.0
 
     def suspension_force(self, plant: Plant, x: float, v: float, z: State) -> float:
-        """Return what the spring force has beyond `kf x`, in N."""
+        """Return the spring force beyond `kf x` in N."""
         helper = math.copysign(self.helper * (math.sqrt(x * x + self.reach * self.reach) - self.reach), x)
         return plant.suspension_stiffness * (x * x * (self.skew + self.rise * x) + helper)
 
@@ -98,7 +98,7 @@ class EndStop(NamedTuple):
     power: Annotated[float, param("-", "exponent of the buffer's law", low=1, high=3)] = 1.0
 
     def suspension_force(self, plant: Plant, x: float, v: float, z: State) -> float:
-        """Return the push of the buffers in N, positive against extension."""
+        """Return the force of the buffers in N, positive against extension."""
         if self.stiffness <= 0.0:
             return 0.0
         if x > self.high:

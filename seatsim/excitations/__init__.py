@@ -1,4 +1,4 @@
-"""What excites the floor: random roads, machine spectra, tones, bumps and measured tables."""
+"""Excitations of the floor: random roads, machine spectra, tones, bumps and measured tables."""
 
 from seatsim.excitations.base import Excitation, Floor, excitation
 from seatsim.excitations.bumps import Bumps

@@ -1,4 +1,4 @@
-"""What an excitation is: a record of keys that yields the motion of the floor."""
+"""Definition of an excitation: a record of keys that yields the motion of the floor."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Excitation(Record, Protocol):
 
 
 class ExcitationSpecification(NamedTuple):
-    """What is stated of an excitation: its source (standard and clause) where there is one."""
+    """Specification of an excitation: its source (standard and clause) where there is one."""
 
     source: str
 

@@ -4,9 +4,9 @@
     haversine: z(s) = height/2 * (1 - cos(2 pi s/length))
 
 for 0 <= s <= length. A tyre rests on a patch, so the road it follows is the mean over the patch length p,
-`z_p(s) = (Z(s + p/2) - Z(s - p/2))/p`, Z the integral of z. That makes the kink at the foot of a half-sine,
-in point contact an infinite acceleration, a pulse of `V^2 z'/p` over the time `p/V`: finite, and of the right
-area `V z'`.
+`z_p(s) = (Z(s + p/2) - Z(s - p/2))/p`, Z the integral of z. The kink at the foot of a half-sine, which would be
+an infinite acceleration in point contact, becomes a pulse of `V^2 z'/p` over the time `p/V`: finite, with the
+correct area `V z'`.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Bumps(NamedTuple):
     vehicle: Annotated[Vehicle, choice("the vehicle between road and floor")] = TRUCK
 
     def floor(self, step: float, seed: int) -> Floor:
-        """Return the motion of the floor; `seed` plays no part.
+        """Return the motion of the floor; `seed` has no influence.
 
         Raises:
             InputError: bumps overlap, the last one is not passed within the run, or `step` holds fewer than
@@ -71,7 +71,7 @@ class Bumps(NamedTuple):
             )
 
     def _road(self, step: float, count: int) -> Motion:
-        """Return the road under the patch; acceleration is a mean over two steps: areas are kept."""
+        """Return the road under the patch; its acceleration is averaged over two steps, which keeps its integral."""
         ahead = self.speed * (clock(count + 2, step) - step - self.first)
         behind = ahead - self.patch
         elevation = (self._area(ahead) - self._area(behind)) / self.patch
@@ -79,7 +79,7 @@ class Bumps(NamedTuple):
         return Motion(elevation[1:-1], velocity[1:-1], np.diff(elevation, 2) / step**2)
 
     def _cab(self, step: float, count: int) -> Motion:
-        # The transform repeats in time: let the vehicle come to rest before the run begins anew.
+        # The Fourier transform is periodic: the vehicle has to come to rest before the next period begins.
         size = count + round(ring_down(self.vehicle) / step)
         road = rfft(self._road(step, size).displacement, norm="forward")
         return motion_of(road * floor_response(lines(road, size * step), self.vehicle), step, size, count)

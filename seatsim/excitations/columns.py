@@ -1,4 +1,4 @@
-"""Reading two columns of a table and refusing what cannot be a steady record."""
+"""Reading of two columns of a table; a record that is not evenly sampled is refused."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from seatsim.excitations.base import Array
 from seatsim.schema.errors import InputError, nearest
 
 LEAST_ROWS = 16
-# Rounded times of a steady clock stay within this part of an interval; a lost row does not.
+# Rounded times of a steady clock deviate by less than this part of an interval; a lost row deviates by more.
 LARGEST_JITTER = 0.25
 
 
@@ -29,7 +29,7 @@ class EvenSeries(NamedTuple):
         return self.interval * (len(self.values) - 1)
 
     def after(self, start: float) -> EvenSeries:
-        """Return what is left from `start`, in s or m after the first value."""
+        """Return the record from `start` on, in s or m after the first value."""
         return self._replace(values=self.values[round(start / self.interval) :])
 
 

@@ -1,4 +1,4 @@
-"""Keys that several excitations share: stated once, read in the same way by YAML, docs and errors."""
+"""Keys that several excitations share, stated once for YAML files, documentation and error messages."""
 
 from __future__ import annotations
 

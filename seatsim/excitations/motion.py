@@ -1,4 +1,4 @@
-"""Motions as a value with its two time derivatives, so that products and fades stay consistent."""
+"""Motions with their first two time derivatives, so that products and fades stay consistent."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def product(a: Motion, b: Motion) -> Motion:
 
 
 def sine(phase: Motion) -> Motion:
-    """Return `sin(phase)`, of a phase in rad given with its derivatives."""
+    """Return `sin(phase)` for a phase in rad that is given with its derivatives."""
     s, c = np.sin(phase.displacement), np.cos(phase.displacement)
     return Motion(s, c * phase.velocity, c * phase.acceleration - s * phase.velocity**2)
 
@@ -84,9 +84,9 @@ def samples(duration: float, step: float) -> int:
 def check_step(kind: str, step: float, highest: float, per_period: int) -> None:
     """Refuse a `step` with fewer than `per_period` samples in a period of the `highest` frequency in Hz.
 
-    The simulation joins samples of acceleration by straight lines, which scales a tone of `p` samples a
-    period by `sinc(1/p)^2`: 0.97 at 10, asked of pure tones, and 0.87 at 5, asked of the thin upper end of a
-    broad band.
+    The simulation interpolates the acceleration linearly, which scales a tone of `p` samples a period by
+    `sinc(1/p)^2`: 0.97 at 10, required of pure tones, and 0.87 at 5, required of the upper end of a broad band,
+    which carries little power.
 
     Raises:
         InputError: the step is too coarse.

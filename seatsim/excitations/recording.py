@@ -1,4 +1,4 @@
-"""A recorded run as excitation: its floor, its command or current, its temperature."""
+"""A recorded run as excitation: its floor motion, its command or current, its temperature."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
 
 CORNER = 0.05
-"""Hz below which the floor velocity, an integral of a measured acceleration, is not trusted."""
+"""Hz; below it the floor velocity, an integral of a measured acceleration, is attenuated as unreliable."""
 
 
 @excitation("recording")
 class RecordedRun(NamedTuple):
-    """A run of a recording: floor acceleration linear between rows, command held from its row until the next.
+    """A run of a recording: floor acceleration linear between rows, command constant from its row until the next.
 
     Coil current and temperature are linear between rows. The floor's velocity and displacement are leaky integrals of
     its acceleration (corner 0.05 Hz). `path` is the recording's folder, `run` the run's name; both are filled in where
@@ -68,7 +68,7 @@ def interpolate_floor(table: Mapping[str, Array], parts: int, step: float) -> Fl
 
 
 def _linear(values: Array, parts: int) -> Array:
-    """Return the values with `parts - 1` more between each two, on the line between them."""
+    """Return the values with `parts - 1` linearly interpolated ones between each pair."""
     rows = np.arange(len(values))
     return np.interp(np.arange((len(values) - 1) * parts + 1) / parts, rows, values)
 

@@ -13,7 +13,7 @@ from seatsim.excitations.motion import samples
 
 @excitation("rest")
 class Rest(NamedTuple):
-    """A floor that does not move; the seat moves from where `start` puts it."""
+    """A floor that does not move; the seat is released from the position in `start`."""
 
     duration: Duration
 

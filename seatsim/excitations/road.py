@@ -28,7 +28,7 @@ from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response
 RoadClass = Literal["A", "B", "C", "D", "E", "F", "G", "H"]
 REFERENCE_WAVENUMBER = 0.1
 LONGEST, SHORTEST = 0.011, 2.83
-# Five of the longest waves, so that a short or slow run still meets lines down to the end of the band.
+# Five of the longest waves, so that a short or slow run still has spectral lines down to the end of the band.
 LEAST_PERIOD = 5 / LONGEST
 
 
@@ -55,7 +55,7 @@ class Road(NamedTuple):
         """
         check_step("road", step, SHORTEST * self.speed, per_period=5)
         count = samples(self.duration, step)
-        # In whole seconds, so that the period, and with it the road, is the same for every step.
+        # In whole seconds, so that the period, and thus the road, is the same for every step.
         size = max(count - 1, round(ceil(LEAST_PERIOD / self.speed) / step))
         spectrum = _road(self.road_class, size * step * self.speed, SHORTEST, seed)
         if self.through == "vehicle":

@@ -60,7 +60,7 @@ def motion_of(displacement: Spectrum, step: float, size: int, count: int) -> Mot
 
 
 def integrated_twice(acceleration: Spectrum, period: float) -> Spectrum:
-    """Return the coefficients of displacement that belong to those of an `acceleration` without a mean."""
+    """Return the coefficients of displacement from those of an `acceleration` without a mean."""
     omega = 2 * np.pi * lines(acceleration, period)
     omega[0] = np.inf
     return -acceleration / omega**2
@@ -78,8 +78,8 @@ def mirrored(values: Array) -> Spectrum:
 def limited(values: Array, interval: float, low: float, high: float) -> Array:
     """Return a record passed through `band`, shape of `values`, without mean and steady slope.
 
-    Beyond both ends the record is taken as continued by its point mirror image: the line through first and
-    last value is taken off, the rest repeated backwards with the opposite sign, so value and slope run on.
+    Beyond both ends the record is continued by its point mirror image: the line through first and last value is
+    removed and the remainder repeated backwards with the opposite sign, so value and slope are continuous.
     """
     rest = values - np.linspace(values[0], values[-1], len(values))
     spectrum = rfft(np.concatenate([rest, -rest[-2:0:-1]]), norm="forward")

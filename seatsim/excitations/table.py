@@ -18,7 +18,7 @@ from seatsim.schema.fields import param
 if TYPE_CHECKING:
     from seatsim.excitations.columns import EvenSeries
 
-# Part of a table's Nyquist frequency up to which its content is trusted.
+# Part of a table's Nyquist frequency up to which its content is used.
 USABLE = 0.8
 
 

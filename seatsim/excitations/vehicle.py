@@ -46,9 +46,8 @@ TRUCK = Vehicle()
 def floor_response(frequency: Array, vehicle: Vehicle = TRUCK) -> Spectrum:
     """Return the complex response `z0/zr` of the cab floor to the road, shape of `frequency`.
 
-    Built from the cab down: what stands on a spring is a mass `m` seen through its transmissibility
-    `T = (k + c s)/(m s^2 + k + c s)`, hence adds `m T` to the mass below it; `z0/zr` is the product of the
-    three T.
+    Built from the cab down: a mass `m` on a spring with the transmissibility `T = (k + c s)/(m s^2 + k + c s)`
+    adds `m T` to the mass below it; `z0/zr` is the product of the three T.
 
     Args:
         frequency: in Hz, any shape.

@@ -1,1 +1,1 @@
-"""The compiled time loop, and the damper bench: they know no model by name."""
+"""The compiled time loop and the damper bench; neither depends on any particular model."""

@@ -1,6 +1,6 @@
-"""Which damper model the inverse works with: the true one with its true state, or an assumed one that it follows.
+"""Which damper model the inverse uses: the true one with its true state, or an assumed one whose state it tracks.
 
-Both records answer to the same hooks, resolved at compile time.
+Both records have the same hooks, resolved at compile time.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 class TrueModel(NamedTuple):
     """The inverse knows the damper of the rig, its state and its temperature.
 
-    `order` is the degree of the polynomial in the current that the force is, 0 where it is none (see `invert`).
+    `order` is the degree of the force as a polynomial in the current, 0 where it is none (see `invert`).
     """
 
     damper: DamperModel
@@ -36,10 +36,10 @@ class TrueModel(NamedTuple):
 
 
 class AssumedModel(NamedTuple):
-    """The inverse assumes that the damper is `damper` and follows its state from measured motion and current.
+    """The inverse assumes that the damper is `damper` and tracks its state from measured motion and current.
 
-    `temperature` is what the inverse assumes it to be in degC; NaN where it reads the damper's. `order` as in
-    `TrueModel`.
+    `temperature` is the assumed temperature of the damper in degC; NaN where the inverse reads the measured one.
+    `order` as in `TrueModel`.
     """
 
     damper: DamperModel
@@ -61,7 +61,7 @@ InverseModel = TrueModel | AssumedModel
 
 @hook
 def model_state(model: InverseModel, true: State, followed: State) -> State:
-    """State with which the inverse evaluates its damper: the true one, or the one that it `followed`."""
+    """State with which the inverse evaluates its damper: the true one, or the tracked one, `followed`."""
     raise TypeError(f"{type(model).__name__} is no model for the inverse")
 
 
@@ -86,9 +86,9 @@ def follow_state(
     """Return an assumed damper's state `length` seconds after `z`, by the classical Runge-Kutta method.
 
     Displacement [m] and velocity [m/s] go linearly from `x`, `v` to `x_next`, `v_next`; the current `i` [A] and the
-    temperature factors stand. Nothing checks the error: a model whose rates exceed some 1 / length is not followed.
+    temperature factors are constant. The error is not checked: rates above about 1 / length are not tracked.
     """
-    # Two steps: halves of the motion between samples, so that a hysteresis as stiff as the rig itself is followed too.
+    # Two half steps between samples, so that a hysteresis as stiff as the rig itself is tracked too.
     h = 0.5 * length
     for part in range(2):
         xa, va = x + 0.5 * part * (x_next - x), v + 0.5 * part * (v_next - v)

@@ -1,11 +1,11 @@
 """A damper with effects: a damper record that the kernel treats like any other.
 
-    P   = F_damper(x, v, i) with the yield part at the current i_y that it feels, or of a shape of its own
+    P   = F_damper(x, v, i) with the yield part at its effective current i_y, or of a shape of its own
     F   = h P + added forces, u = h v          h: share that a free play transmits, u: speed of the piston
     F   = S + added forces, P(u) = S           behind an elastic mount with the force S
 
-P is the demanded force: what the damper would bear without play or mount. The yield part is what a damper loses when
-its temperature factor `yielding` is zero.
+P is the demanded force: the force of the damper without play or mount. The yield part is the part of the force that
+vanishes when the temperature factor `yielding` is zero.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ FAST = 10.0
 SETTLING = 5000.0
 """1/s; greatest rate at which a mount's force settles to the damper's.
 
-It keeps the rig explicit: a mount without damping on a piston without mass would settle at once. Motion of a seat is
-slower by a factor of about 50 at 16 Hz, so that the force is behind by some hundredths.
+It allows an explicit integration: an undamped mount on a massless piston would settle at once. Motion of a seat is
+slower by a factor of about 50 at 16 Hz, so the force lags by a few hundredths.
 """
 FORCE_TOLERANCE, TRIALS = 0.01, 40
-"""N, how exactly the forces of mount and damper agree, below any load cell's noise; and the most trials for it."""
+"""N; tolerance between the forces of mount and damper, below any load cell's noise; and the most iterations."""
 
 part_scaling = fold_hook("part_scaling")
 transmitted_share = fold_hook("transmitted_share")
@@ -75,10 +75,10 @@ class AugmentedDamper(NamedTuple):
         return rates(self.damper, x, u, i, scaling, inner) + theirs
 
     def friction_limit(self, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
-        """Return the limit of the set-valued friction in N: the yield force's, and what the effects add."""
+        """Return the limit of the set-valued friction in N: that of the yield force plus those of the effects."""
         effects, outer = self.effects, effect_state(self.effects, z)
         limit = stiction(effects, outer)
-        # A yield force that has a shape of its own is built up by the effect and is in `force` already.
+        # A yield force with a shape of its own is computed by the effect and is part of `force` already.
         if math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
             h = transmitted_share(effects, outer, 1.0, v, v)
             felt = part_scaling(effects, outer, scaling, v)
@@ -98,7 +98,7 @@ def _piston_speed(
     outer: State,
     demanded: float,
 ) -> float:
-    """Return the piston's speed u in m/s, where the damper's end goes at v, at which it would bear `demanded` newton.
+    """Return the piston's speed u in m/s, with the damper's end at speed v, at which its force is `demanded` in N.
 
     Behind an elastic mount u solves `P(u) + (u - v) stiffness / SETTLING = S`, by false position (Illinois).
     """
@@ -135,7 +135,7 @@ def _demanded_force(
     inner: State,
     outer: State,
 ) -> float:
-    """Return the damper's force in N before what is lost in a gap and added beside it."""
+    """Return the damper's force in N before the loss in a gap and without added forces."""
     felt = part_scaling(effects, outer, scaling, v)
     i_y = yield_current(effects, outer, i)
     rest = TemperatureScaling(felt.viscous, felt.stiffness, 0.0)
@@ -143,7 +143,7 @@ def _demanded_force(
     if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
         part = _shaped(damper, effects, x, v, i_y, felt, inner, outer)
     elif i_y == i:
-        # By far the commonest case: it spares one evaluation of the damper.
+        # By far the most common case: it saves one evaluation of the damper.
         part = force(damper, x, v, i, felt, inner) - base
     else:
         part = _yield(damper, x, v, i_y, felt, rest, inner)
@@ -190,12 +190,12 @@ def _split(damper: DamperModel, x: float, v: float, i: float, scaling: Temperatu
 def _yield(
     damper: DamperModel, x: float, v: float, i: float, scaling: TemperatureScaling, rest: TemperatureScaling, z: State
 ) -> float:
-    """Return the yield part in N: what the damper loses with the factors `rest`, which are without yield force."""
+    """Return the yield part in N: the force less that under the factors `rest`, which have no yield force."""
     return force(damper, x, v, i, scaling, z) - force(damper, x, v, i, rest, z)
 
 
 def classes_of(damper: DamperModel) -> list[type]:
-    """Return the classes that a loop with this damper is compiled of."""
+    """Return the classes that a loop with this damper is compiled for."""
     if isinstance(damper, AugmentedDamper):
         return [type(damper.damper), *map(type, damper.effects)]
     return [type(damper)]

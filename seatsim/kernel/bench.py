@@ -1,4 +1,4 @@
-"""A damper on a test bench: motion, current and temperature are prescribed, the force comes out.
+"""A damper on a test bench: motion, current and temperature are prescribed, and the force is computed.
 
 The classical Runge-Kutta method of order 4 on samples every half step, so that the middle of a step is a
 sample too. Steps in which the damper's state is stiff are divided; motion and current then follow the
@@ -23,13 +23,13 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-4
 """Error of the force that a step may add by default, relative to the force plus `FORCE_SCALE`."""
 FORCE_SCALE = 10.0
-"""N added to the force that the tolerance is relative to, so that a force near zero asks for no more than others."""
+"""N added to the force that the tolerance is relative to, so that a force near zero needs no finer steps."""
 MOST_PARTS = 4096
 """Most parts that a step is divided into; at 1 ms a part of 0.24 us, as short as any damper of the library needs."""
 MARGIN = 32.0
 """Half as many parts are tried once the error is this much below the tolerance; twice the 16 of a method of order 4."""
 DIVERGED = 1e8
-"""Relative error at which a state counts as lost; an error that is no number fails the same comparison."""
+"""Relative error at which a state has diverged; a NaN fails the same comparison."""
 
 
 def run_bench(
@@ -48,8 +48,8 @@ def run_bench(
     """Fill `out`, shape (n + 1,), with the force in N every `step`; return the samples reached.
 
     x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step;
-    temperature is held over a step. `initial_state` is the damper's at the first sample, `step` in s. The number
-    returned is n + 1 if all went well; the damper's state is lost at the last sample reached if not.
+    temperature is constant over a step. `initial_state` is the damper's at the first sample, `step` in s. The number
+    returned is n + 1 on success; otherwise the damper's state has diverged at the last sample reached.
     Set-valued friction acts as `coulomb sgn(v)`, zero at v = 0. A step is divided into at most `most_parts` parts, so
     that it adds an error of `tolerance` at most, relative to the force plus `FORCE_SCALE`. To be compiled by
     `compiled`.

@@ -1,6 +1,6 @@
-"""What several effects do together: one generic function per hook, unrolled over a tuple of effect records.
+"""Combined action of several effects: one generic function per hook, unrolled over a tuple of effect records.
 
-Each record answers to the hooks that it has methods for; the others cost nothing. `z` is the state of all records of
+Only the hooks that a record has methods for are called; the others cost nothing. `z` is the state of all records of
 the tuple, one after another; a method `f(self, ..., z)` gets its own part of it.
 """
 
@@ -23,24 +23,24 @@ Effects = tuple[EffectRecord, ...]
 
 
 class SummedHook(Protocol):
-    """Sum of what the records answer."""
+    """Sum of the values that the records' methods return."""
 
     def __call__(self, effects: Effects, z: State, /, *arguments: object) -> float:
-        """Return the sum, 0 where none answers."""
+        """Return the sum, 0 where no record has the method."""
 
 
 class FoldedHook(Protocol):
-    """A value that is handed from record to record."""
+    """A value that is passed from record to record."""
 
     def __call__(self, effects: Effects, z: State, value: T, /, *arguments: object) -> T:
-        """Return `value` as the records leave it, unchanged where none answers."""
+        """Return `value` after all records changed it; unchanged where no record has the method."""
 
 
 class JoinedHook(Protocol):
     """Tuples of the records, one after another."""
 
     def __call__(self, effects: Effects, z: State, /, *arguments: object) -> State:
-        """Return the joined tuple, empty where none answers."""
+        """Return the joined tuple, empty where no record has the method."""
 
 
 def state_at_rest(classes: Sequence[type]) -> State:
@@ -96,17 +96,17 @@ def _chain(name: str, first: str, line: str, last: str) -> Callable[..., object]
 
 
 def sum_hook(name: str) -> SummedHook:
-    """Make the sum of the records' answers to the hook `name`."""
+    """Make the function that sums the records' values for the hook `name`."""
     return cast(SummedHook, _chain(name, "r = 0.0", "r += {call}", "return r"))
 
 
 def fold_hook(name: str) -> FoldedHook:
-    """Make the function that hands its first argument from record to record, each of which may change it."""
+    """Make the function that passes its first argument from record to record, each of which may change it."""
     return cast(FoldedHook, _chain(name, "", "a0 = {call}", "return a0"))
 
 
 def join_hook(name: str) -> JoinedHook:
-    """Make the tuple of the records' tuples, one after another, as the states are."""
+    """Make the function that joins the records' tuples, one after another, in the order of the states."""
     return cast(JoinedHook, _chain(name, "r = ()", "r = r + {call}", "return r"))
 
 

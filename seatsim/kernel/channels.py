@@ -42,4 +42,4 @@ CHANNELS = (
     ENERGY_SUSPENSION,
     ENERGY_CUSHION,
 ) = range(len(CHANNELS))
-# Plain numbers: numba takes a number of a module as a constant, while a member of an enumeration is looked up.
+# Plain numbers: numba treats a module's number as a constant, while a member of an enumeration is looked up.

@@ -15,15 +15,15 @@ Array = NDArray[np.float64]
 def simulate_current(coil: Coil, command: Array, step: float, start: float) -> Array:
     """Return the current in A, shape (N,), that follows a held command of shape (N,) from `start` on.
 
-    command: in A, within the coil's limit, every `step` seconds, late by the coil's delay already. The solution is that
-    of `coil.relax`, exact from one value of the command to the next.
+    command: in A, within the coil's limit, every `step` seconds, with the coil's delay already applied. The solution is
+    that of `coil.relax`, exact from one value of the command to the next.
     """
     run = compiled(follow_command, (Coil,))
     return run(coil, np.asarray(command, dtype=float), float(step), float(start))
 
 
 def follow_command(coil: Coil, command: Array, step: float, start: float) -> Array:
-    """Return what `simulate_current` does, uncompiled; the last value of the command has no time to act."""
+    """Return the same as `simulate_current`, uncompiled; the last value of the command has no time to act."""
     out: Array = np.empty_like(command)
     out[0] = start
     for k in range(len(command) - 1):

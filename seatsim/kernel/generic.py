@@ -1,4 +1,4 @@
-"""Functions that the compiled loop calls on a damper, a law or sensors, whichever class these are of."""
+"""Functions that the compiled loop calls on a damper, a law or sensors of any class."""
 
 from __future__ import annotations
 
@@ -56,12 +56,12 @@ def advance_filters(sensors: Sensing, floor: float, x: float, rates: State, stat
 
 @hook
 def read(sensors: Sensing, true: Measurement, noise: Array, sample: int, state: State) -> tuple[Measurement, State]:
-    """Measurement that a law is given of what is true, and the state of the sensors after it."""
+    """Measurement of the true values that a law is given, and the state of the sensors after it."""
     return true, state
 
 
 def wants_force(law: CompiledLaw) -> bool:
-    """Whether the law answers with a force (through the inverse) rather than with a current."""
+    """Whether the law returns a force (for the inverse) rather than a current."""
     return isinstance(law, ForceLaw)
 
 
@@ -72,7 +72,7 @@ def _wants_force(law: types.Type) -> Callable[[CompiledLaw], bool]:
 
 
 def evaluate_law(law: CompiledLaw, y: Measurement, state: State) -> float:
-    """Return what the law wants: a force in N or a current in A, as `wants_force` says."""
+    """Return the law's output: a force in N or a current in A, according to `wants_force`."""
     return law.wanted_force(y, state) if isinstance(law, ForceLaw) else law.wanted_current(y, state)
 
 

@@ -20,7 +20,7 @@ R = TypeVar("R")
 
 
 def method_of(cls: type, name: str) -> Callable[..., object] | None:
-    """Return the method of a record class that answers to the hook `name`, or None where it has none."""
+    """Return the method of a record class for the hook `name`, or None where it has none."""
     method: Callable[..., object] | None = getattr(cls, name, None)
     return method
 

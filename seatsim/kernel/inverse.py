@@ -19,16 +19,16 @@ Array = NDArray[np.float64]
 CELLS = 16
 """Cells of the grid on which a non-polynomial force-current map is searched for its first crossing.
 
-Two crossings within one cell, a sixteenth of the permitted currents, are not seen.
+Two crossings within one cell, a sixteenth of the permitted range of current, are missed.
 """
 SERVED = 1e-6
-"""Difference of given and wanted force, over the wanted force plus 1 N, up to which it counts as served."""
+"""Difference of given and wanted force, over the wanted force plus 1 N, up to which it counts as reached."""
 STRAIGHT = 1e-10
-"""Curvature of a force-current map, over the size of its forces, below which it is rounding of a straight line."""
+"""Curvature of a force-current map, over the size of its forces, below which it is rounding error of a line."""
 CLOSE = 1e-6
 """N; difference from the wanted force at which a search ends."""
 TRIALS = 60
-"""Most trials of a search; the Illinois method needs about ten, bisection alone would be at rounding error by 60."""
+"""Most iterations of a search; the Illinois method needs about ten, bisection alone reaches rounding error by 60."""
 
 
 class InverseSolution(NamedTuple):
@@ -51,7 +51,7 @@ def invert(
     max_current: float,
     grid: Array,
 ) -> InverseSolution:
-    """Return the least current in `[0, max_current]` whose force comes closest to `wanted` clipped to what can be done.
+    """Return the least current in `[0, max_current]` whose force comes closest to `wanted`, clipped to the possible.
 
     x [m], v [m/s], `scaling` and z are motion, temperature factors and state with which the damper is evaluated, wanted
     [N] is positive when it opposes extension, max_current [A] is above zero. `grid`, shape (CELLS + 1,), is scratch.
@@ -132,8 +132,8 @@ def _search(
     top: float,
     grid: Array,
 ) -> float:
-    """Return the least current in `[0, top]` at which the grid tells that the target is met, or the closest one."""
-    # The whole grid first: without an early exit the compiler evaluates several currents at once.
+    """Return the least current in `[0, top]` at which the grid shows that the target is met, or the closest one."""
+    # The whole grid is evaluated first: without an early exit the compiler can evaluate several currents at once.
     for j in range(CELLS + 1):
         grid[j] = total_force(damper, x, v, top * j / CELLS, scaling, z) - target
     if grid[0] == 0.0:

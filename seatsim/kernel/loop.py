@@ -45,7 +45,7 @@ def run_loop(
 
     `rig_state` is that of damper and effects at rest, `followed` that of the inverse's damper, `law_state` the law's
     initial one. To be compiled by `compiled`, with the classes of every record in `setup`. Nothing is raised: a run
-    that leaves all bounds returns the sample at which it did, and rows from the next on are not written.
+    that diverges returns the sample at which it did, and later rows are not written.
     """
     rig, coil, law, model, timing = setup.rig, setup.coil, setup.law, setup.inverse_model, setup.timing
     step, samples = timing.step, len(out)
@@ -66,8 +66,8 @@ def run_loop(
 
     for k in range(samples):
         floor = inputs.floor_acceleration[k]
-        # The filters run at every step, the law only at its samples, and on what is true now: it is asked before the
-        # rig moves on, so that its command acts from this instant.
+        # The filters run at every step, the law only at its samples. The law is evaluated before the rig advances, so
+        # that its command acts from this instant.
         sensed = advance_filters(setup.sensors, floor, now.state[DISPLACEMENT], now.rates, sensed)
         if k % timing.sample_every == 0:
             true = _measure(rig, inputs, now, k, step, current, temperature)
@@ -94,7 +94,7 @@ def run_loop(
             model_scaling(model, factors, temperature),
             step,
         )
-        # Temperature stands over a step: it changes by far less than the factors could show within one.
+        # Temperature is constant over a step: its change within one is far too small to affect the factors.
         if timing.self_heating:
             work = now.state[DAMPER_WORK] - work
             temperature += _warming(setup.thermal, coil, temperature, work, current, next_current, step)
@@ -116,7 +116,7 @@ def _decide(
     law_state: State,
     grid: Array,
 ) -> tuple[float, float, float]:
-    """Return the command in A, the force in N that the law wants (NaN: it wants a current) and whether it is served."""
+    """Return the command in A, the force in N that the law wants (NaN: it wants a current), whether it is reached."""
     law, model, top = setup.law, setup.inverse_model, setup.max_command
     answer = evaluate_law(law, y, law_state)
     if not wants_force(law):
@@ -140,7 +140,7 @@ def _decide(
 def _measure(
     rig: Rig, inputs: LoopInputs, now: IntegratorState, k: int, step: float, current: float, temperature: float
 ) -> Measurement:
-    """Return what is true at sample `k`, in the form in which a law sees it."""
+    """Return the true values at sample `k`, in the form in which a law sees them."""
     floor = inputs.floor_acceleration[k]
     frame = now.rates[VELOCITY] + floor
     velocity = now.state[VELOCITY] + inputs.floor_velocity[k]

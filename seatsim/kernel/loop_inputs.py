@@ -1,4 +1,4 @@
-"""What a run of the compiled loop is given: its constant parts, and what drives it sample by sample."""
+"""Inputs of a run of the compiled loop: its constant parts, and what drives it sample by sample."""
 
 from __future__ import annotations
 
@@ -56,8 +56,8 @@ class Timing(NamedTuple):
 class LoopSetup(NamedTuple):
     """The constant parts of a run; `max_command` in A is the most that the controller asks for.
 
-    The law sees what `sensors` tell it: the true states, or what instruments make of them. Where it wants a force,
-    `inverse_model` is the damper that the inverse works with.
+    The law sees the output of `sensors`: the true states, or instruments' readings of them. Where it wants a force,
+    `inverse_model` is the damper that the inverse uses.
     """
 
     rig: Rig
@@ -88,7 +88,7 @@ def step_inputs(
     split: float,
     kept: tuple[float, float],
 ) -> StepInputs:
-    """Return what acts on the rig from sample `k` to the next.
+    """Return the inputs of the rig from sample `k` to the next.
 
     `out` holds the commands until sample k, which act `late` steps and `split` seconds later, no more than the coil's
     driver can give; before the first of them acts, the coil's `start_current` stands. `kept` as in `StepInputs`.

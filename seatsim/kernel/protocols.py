@@ -1,4 +1,4 @@
-"""What the compiled loop asks of the records that are plugged into it.
+"""Interfaces that the compiled loop requires of the records that are plugged into it.
 
 numba compiles a record's methods and never reads these; they are for readers and for the type checker. Every record is
 a `typing.NamedTuple` with ordinary methods; its arguments are passed by position.
@@ -12,11 +12,11 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 
 EffectRecord = tuple[object, ...]
-"""A `typing.NamedTuple` that answers to the hooks it has methods for (see `seatsim.kernel.hooks`)."""
+"""A `typing.NamedTuple` with a method for each hook that it uses (see `seatsim.kernel.hooks`)."""
 
 
 class DamperModel(Protocol):
-    """A damper model: the part that every one has.
+    """A damper model: the part that every model has.
 
     x [m] and v [m/s] are displacement and velocity of the damper, i [A] its coil current, `scaling` the factors of the
     temperature on its viscous, elastic and yield terms, z its state (empty where it has none).
@@ -34,7 +34,7 @@ class DamperWithState(DamperModel, Protocol):
 
 
 class DamperWithFriction(DamperModel, Protocol):
-    """A damper with a friction that is set-valued at rest, which the kernel keeps exact."""
+    """A damper with a friction that is set-valued at rest, which the kernel solves without regularisation."""
 
     def coulomb(self, i: float, scaling: TemperatureScaling, /) -> float:
         """Return the magnitude of the friction in N."""

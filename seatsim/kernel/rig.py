@@ -21,7 +21,7 @@ from seatsim.rig.state import (
 from seatsim.rig.temperature import TemperatureScaling
 
 STICKING = 2.0
-"""Value of `slip` for a suspension that the set-valued friction holds at rest; -1 and 1 are directions of sliding."""
+"""Value of `slip` for a suspension stuck by the set-valued friction; -1 and 1 are directions of sliding."""
 
 
 class SeatMotion(NamedTuple):
@@ -65,7 +65,7 @@ effect_rates = join_hook("rates")
 
 
 class RigForces(NamedTuple):
-    """What the derivative returns beside the rates: damper force, set-valued friction and its limit, all in N.
+    """Forces that the derivative returns with the rates: damper force, set-valued friction and its limit, all in N.
 
     The damper force is that of the load cell at the damper; friction and limit are those on the suspension, damper and
     linkage together.
@@ -86,11 +86,11 @@ def derivative(
         mb zc'' = -kc xc - cc vc + inner force + driver force,   mb = m - inner mass
 
     x = zs - z0, xc = zc - zs in m; r is the damper's stroke per suspension displacement, Fd its force. `current` [A] is
-    that of the coil. `slip` is the direction of sliding of the set-valued friction, -1 or 1, or STICKING, where the
-    friction is the reaction that holds the suspension, whatever its limit. At 0 the sign of v decides, and at v = 0
+    that of the coil. `slip` is the direction of sliding of the set-valued friction, -1 or 1. In STICKING the friction
+    is the reaction that keeps the suspension at rest, whatever its limit. At 0 the sign of v decides, and at v = 0
     whether the reaction is within the limit.
 
-    Source: Yu et al. 2019 (Front. Mater. 6:227), eqs 13 and 14, with what effects add. The works are the integrals of
+    Source: Yu et al. 2019 (Front. Mater. 6:227), eqs 13 and 14, with the effects' terms. The works are the integrals of
     the powers, so that supplied less dissipated work is the energy stored (see `seatsim.rig.state`).
     """
     plant, effects = rig.plant, rig.effects
@@ -109,7 +109,7 @@ def derivative(
     linkage = linkage_friction(effects, ze)
     limit = damper_limit + linkage
     friction, acceleration = _friction(free, v, slip, limit, plant.frame_mass)
-    # Held at rest the friction is below its limit; which part of it the load cell sees is not determined, so damper and
+    # While sticking, the friction is below its limit, and the load cell's part of it is not determined: damper and
     # linkage bear it in proportion to their limits.
     share = friction / limit if limit > 0.0 else 0.0
     damper_force = smooth + share * damper_limit / ratio
@@ -132,7 +132,7 @@ def derivative(
 
 @jit
 def _friction(free: float, v: float, slip: float, limit: float, mass: float) -> tuple[float, float]:
-    """Return the friction in N and the relative acceleration in m/s^2 under it, of a mass with `free` without it."""
+    """Return the friction in N and the relative acceleration in m/s^2 under it; `free` is that without friction."""
     if slip == STICKING:
         return mass * free, 0.0
     if limit <= 0.0:

@@ -2,7 +2,7 @@
 
 The derivative at the end of a step serves as the first stage of the next, and as the fifth stage of an embedded
 solution of order 3; their difference `h (k4 - k5) / 6` in the velocities is the error estimate. A smooth rig takes one
-sub-step a step at four evaluations; a stiff damper, a branch or an end stop takes as many as the tolerance needs.
+sub-step a step at four evaluations; a stiff damper, a branch or an end stop takes as many as the tolerance requires.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ SPEED_SCALE = 0.01
 SHORTEST = 2.0**-18
 """Shortest sub-step as a fraction of the step; at 1 ms some 4 ns, in which no rig of a seat moves."""
 EVENT_TOLERANCE = 1e-10
-"""Speed in m/s, and excess of the friction in N, to which the ends of sliding and of sticking are resolved."""
+"""m/s and N; tolerances on speed and friction with which the ends of sliding and of sticking are found."""
 MOST_SUBSTEPS = 1_000_000
 """Most sub-steps of a step: a run that needs more has failed. Four times what SHORTEST alone allows, for events."""
 MOST_TRIALS = 60
-"""Most sub-steps on the way to the end of a phase; bisection alone would be at rounding error by then."""
+"""Most iterations in finding the end of a phase; bisection alone would be at rounding error by then."""
 SAFETY, LEAST, GREATEST = 0.9, 0.2, 4.0
-"""Factors on a next sub-step: what is taken of the one that would meet the tolerance, and the range of the change."""
+"""Factors on a next sub-step: safety factor on the one that would meet the tolerance, and limits of the change."""
 REJECTED_LEAST = 0.1
 """Least factor on a sub-step whose error was too great: it may be shortened further than one that succeeded."""
 ERROR_EXPONENT = 0.25
 """The error of the embedded solution, of order 3, grows with the fourth power of the sub-step."""
 NEGLIGIBLE = 1e-3
-"""Error in units of the tolerance below which a sub-step grows by GREATEST, without a power being taken."""
+"""Error in units of the tolerance below which a sub-step grows by GREATEST, which saves computing a power."""
 DIVERGED = 1e12
-"""Error in units of the tolerance at which a solution counts as lost; a NaN fails the same comparison."""
+"""Error in units of the tolerance at which a solution has diverged; a NaN fails the same comparison."""
 REMAINDER = 1e-12
-"""Share of what remains of a step that a sub-step may lack and still be taken as the last, against rounding of time."""
+"""Share of the remaining step that the last sub-step may fall short by, as an allowance for rounding of time."""
 
 
 class StepInputs(NamedTuple):
@@ -48,7 +48,7 @@ class StepInputs(NamedTuple):
     Floor acceleration [m/s^2] runs linearly from `floor` by `floor_rise`, forces [N] on frame and driver from
     `frame_force` and `driver_force` by their rises. The coil relaxes from `current` [A] towards the command `before`
     for the first `split` seconds and towards `after` from then on; with a `prescribed` current it runs linearly to
-    `after`. `kept` is what half a step leaves of the distance to the command, of a rising and of a falling current.
+    `after`. `kept` is the share of the distance to the command after half a step, of a rising and a falling current.
     """
 
     length: float
@@ -67,9 +67,9 @@ class StepInputs(NamedTuple):
 
 
 class IntegratorState(NamedTuple):
-    """Where the integration stands: state of the rig, its rates and forces, phase of the friction, next sub-step in s.
+    """State of the integration: state of the rig, its rates and forces, phase of the friction, next sub-step in s.
 
-    `slip` is 0 where there is no set-valued friction, -1 or 1 where the suspension slides, STICKING where it is held.
+    `slip` is 0 without set-valued friction, -1 or 1 where the suspension slides, STICKING where it is stuck.
     """
 
     state: State
@@ -94,7 +94,7 @@ def current_at(coil: Coil, inputs: StepInputs, time: float) -> float:
 @jit
 def _currents(coil: Coil, inputs: StepInputs, time: float, h: float) -> tuple[float, float]:
     """Return the coil current in the middle and at the end of a sub-step of `h` from `time`."""
-    # A whole step with one command is by far the commonest: `kept` spares it two exponentials.
+    # A whole step with one command is by far the most common case: `kept` saves it two exponentials.
     if h < inputs.length or inputs.split > 0.0 or inputs.prescribed:
         return current_at(coil, inputs, time + 0.5 * h), current_at(coil, inputs, time + h)
     kept = inputs.kept[0] if inputs.after > inputs.current else inputs.kept[1]
@@ -117,7 +117,7 @@ def disturbance_at(inputs: StepInputs, time: float) -> Disturbance:
 def start(
     rig: Rig, state: State, disturbance: Disturbance, current: float, scaling: TemperatureScaling, substep: float
 ) -> IntegratorState:
-    """Return where the integration stands at the beginning, of a rig in `state` that slides or is at rest.
+    """Return the initial state of the integration, for a rig in `state` that slides or is at rest.
 
     `disturbance` and `current` [A] act at that instant; `substep` [s] is the first sub-step that is tried.
     """
@@ -127,7 +127,7 @@ def start(
 
 @jit
 def _phase(state: State, rates: State, forces: RigForces) -> float:
-    """Return whether the suspension is held or in which direction it slides, 0 where there is no friction."""
+    """Return STICKING or the direction in which the suspension slides, 0 where there is no friction."""
     if forces.friction_limit <= 0.0:
         return 0.0
     if state[VELOCITY] == 0.0 and rates[VELOCITY] == 0.0:
@@ -137,7 +137,7 @@ def _phase(state: State, rates: State, forces: RigForces) -> float:
 
 @jit
 def _margin(slip: float, state: State, forces: RigForces) -> float:
-    """Return how far the phase is from its end, below zero beyond it: friction left in N, or speed of sliding."""
+    """Return the margin of a phase to its end, negative beyond it: unused friction in N, or speed of sliding in m/s."""
     if slip == STICKING:
         return forces.friction_limit - abs(forces.friction)
     return slip * state[VELOCITY]
@@ -149,7 +149,7 @@ def _substep(
 ) -> tuple[State, State, RigForces, State, float]:
     """Return state, rates, forces after a sub-step of `h` from `time`, the fourth stage, and the current at the end.
 
-    The phase of the friction stands for the whole sub-step; the caller looks whether it ended within.
+    The phase of the friction is constant over the sub-step; the caller checks whether it ended within.
     """
     middle, end = disturbance_at(inputs, time + 0.5 * h), disturbance_at(inputs, time + h)
     i_middle, i_end = _currents(coil, inputs, time, h)
@@ -166,14 +166,14 @@ def _substep(
 def advance(
     rig: Rig, coil: Coil, inputs: StepInputs, scaling: TemperatureScaling, now: IntegratorState, tolerance: float
 ) -> tuple[IntegratorState, float, bool]:
-    """Return where the integration stands after one step, the current then in A, and whether the step succeeded.
+    """Return the state of the integration after one step, the current then in A, and whether the step succeeded.
 
-    A step fails where the error stays beyond `DIVERGED` even in the shortest sub-step, or is no number; what is
-    returned is then where it stood last. `tolerance` is the error in the velocities that a sub-step may add, relative
-    to their size plus `SPEED_SCALE`; above about 0.1 it bounds nothing.
+    A step fails where the error stays beyond `DIVERGED` even in the shortest sub-step, or is NaN; the last valid state
+    is then returned. `tolerance` is the error in the velocities that a sub-step may add, relative to their size plus
+    `SPEED_SCALE`; above about 0.1 it has no effect.
     """
     h = now.substep
-    # The common case, a rig without set-valued friction that needs one sub-step, stays free of the code for all others.
+    # The common case, a rig without set-valued friction that needs one sub-step, has a short path of its own.
     if h == inputs.length and now.forces.friction_limit <= 0.0:
         state, rates, forces, k4, i_end = _substep(rig, coil, inputs, scaling, now, 0.0, h)
         if forces.friction_limit <= 0.0 and _error(state, rates, k4, h, tolerance) <= 1.0:
@@ -204,20 +204,20 @@ def _advance_divided(
             h = remaining
         state, rates, forces, k4, i_end = _substep(rig, coil, inputs, scaling, now, time, h)
         error = _error(state, rates, k4, h, tolerance)
-        # Written so that an error that is no number is rejected.
+        # Written so that a NaN error is rejected.
         if not error <= 1.0 and h > SHORTEST * inputs.length:
             h *= max(REJECTED_LEAST, SAFETY / error**ERROR_EXPONENT) if error < DIVERGED else REJECTED_LEAST
             continue
         if not error < DIVERGED:
             return now, current, False
-        # The end of a phase shortens this sub-step, while the next one follows from what was tried.
+        # The end of a phase shortens this sub-step, while the next one follows from the length that was tried.
         tried, slip = h, now.slip
         if _margin(slip, state, forces) < 0.0:
             h, state, forces, i_end = _end_of_phase(rig, coil, inputs, scaling, now, time, h, state, forces)
             last = last and h == tried
-            # Found to EVENT_TOLERANCE only: at rest the velocity is zero exactly, which is what marks a phase.
+            # The event is found to EVENT_TOLERANCE only; the velocity is then set to zero exactly, which marks rest.
             state = state[:VELOCITY] + (0.0,) + state[CUSHION_DISPLACEMENT:]
-            # A suspension that breaks loose slides the way it was pushed; one that came to rest may stick or turn.
+            # A suspension that breaks loose slides in the force's direction; one that came to rest may stick or turn.
             slip = math.copysign(1.0, forces.friction) if slip == STICKING else 0.0
             rates, forces = derivative(rig, state, disturbance_at(inputs, time + h), i_end, scaling, slip)
         if slip == 0.0 or forces.friction_limit <= 0.0:

@@ -1,4 +1,4 @@
-"""What was measured: recordings of rigs and bench tables, how far a simulation is from them, and their quality.
+"""Measured data: recordings of rigs and bench tables, their quality, and the gap between them and a simulation.
 
 Nothing is fitted here.
 """

@@ -1,4 +1,4 @@
-"""Columns of bench tables: what they hold, told by their names, in SI units.
+"""Columns of bench tables: the quantity that each holds, recognised by its name, in SI units.
 
 A column is called by its quantity, followed by its unit where that is not the SI unit: `displacement_mm`, `force_kN`,
 `velocity_m_s`, also written `Displacement [mm]` or `velocity (m/s)`. A force may name its current, `force_0p4A_N`.
@@ -38,12 +38,12 @@ QUANTITIES: dict[str, tuple[tuple[str, ...], dict[str, float]]] = {
 }
 """Names of every quantity, and its units with their size; a bare name is in the first of them."""
 DRIVES = ("current", "command", "voltage")
-"""What drives the damper, in the order in which one is chosen."""
+"""Quantities that state the damper's input, in the order of preference."""
 NEEDED = ("time", "displacement", "force")
 KELVIN = 273.15
 FORCE_AT = re.compile(r"(?:damper_)?force_(\d+(?:[p.]\d+)?)a(?:_(k?n))?")
 MISSPELT = 0.9
-"""Likeness to a known name (of difflib) from which on an unknown column is taken for an error of spelling."""
+"""Similarity to a known name (by difflib) above which an unknown column is taken for a misspelling."""
 LISTED = 12
 """Most columns that an error lists."""
 RATES = ("sample_rate_Hz", "sample_rate")
@@ -69,7 +69,7 @@ def _known() -> dict[str, Meaning]:
 
 
 KNOWN = _known()
-"""Every name that a column may have, in small letters."""
+"""Every name that a column may have, in lower case."""
 
 
 class Columns(NamedTuple):

@@ -32,22 +32,22 @@ Table = dict[str, Array]
 
 SUFFIXES = (".csv", ".csv.gz", ".csv.bz2", ".csv.xz", ".csv.zip")
 GAP = 1.5
-"""Median intervals between rows that make a gap."""
+"""A pause of more median row intervals than this ends a record."""
 OFF = 1.0
-"""Median intervals by which a row may be off the even spacing of its record."""
+"""Largest deviation of a row from the even spacing of its record, in median intervals."""
 LEAST_ROWS = 20
 KEPT = 0.9
-"""Share of a table's rows that its records hold at least; the rest are scraps between gaps."""
+"""Least share of a table's rows that its records hold; the other rows lie in short pieces between pauses."""
 SLOPE_WINDOW = 0.02
-"""Seconds over which a velocity that was not recorded is derived from the displacement."""
+"""s; window over which the displacement is differentiated where no velocity was recorded."""
 
 
 class BenchRecord(NamedTuple):
     """One uninterrupted record of a damper on a bench; arrays of shape (N,) at `rate` Hz, SI units.
 
-    `current` is in A, zero where it was negative; where `commanded`, it is what was asked of the driver (a voltage
-    counts as so many A), which the coil follows with a lag. `temperature` is in degC, None where it was not recorded.
-    `unused` are the columns of its file that hold nothing known.
+    `current` is in A, zero where it was negative. Where `commanded`, it is the command to the driver (1 V counts as
+    1 A), which the coil follows with a lag. `temperature` is in degC, None where it was not recorded. `unused` are the
+    columns of its file that hold no known quantity.
     """
 
     name: str
@@ -112,7 +112,7 @@ def stem(file: str) -> str:
 
 
 def unused_columns(records: Sequence[BenchRecord]) -> list[str]:
-    """Return a sentence on the columns that hold nothing known, none where there are none."""
+    """Return a sentence on the columns that hold no known quantity, none where there are no such columns."""
     names = dict.fromkeys(name for record in records for name in record.unused)
     return [f"columns that are not used: {', '.join(names)}"] if names else []
 
@@ -152,7 +152,7 @@ def _frame(file: Path) -> pd.DataFrame:
 
 
 def _split(table: Table, file: Path, lines: NDArray[np.int64]) -> Iterator[BenchRecord]:
-    """Yield the uninterrupted records of a table, whose rows stand on these lines."""
+    """Yield the uninterrupted records of a table; `lines` are the line numbers of its rows in the file."""
     time = table["time"]
     interval = np.diff(time)
     normal = float(np.median(interval)) if len(interval) else 0.0
@@ -174,7 +174,7 @@ def _split(table: Table, file: Path, lines: NDArray[np.int64]) -> Iterator[Bench
 
 
 def _named(records: Sequence[BenchRecord]) -> Iterator[BenchRecord]:
-    """Yield the records of a file with names that tell them apart, by their current where that is constant."""
+    """Yield the records of a file under distinct names, by their current where that is constant."""
     titles = [f"{r.name}, {r.mean_current:g} A" if np.ptp(r.current) == 0.0 else r.name for r in records]
     for number, (record, title) in enumerate(zip(records, titles, strict=True), 1):
         yield record._replace(name=f"{title}, part {number}" if titles.count(title) > 1 else title)

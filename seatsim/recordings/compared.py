@@ -1,4 +1,4 @@
-"""What of a recording is compared with a simulation: which channels, from which row on, above which noise."""
+"""Which part of a recording is compared with a simulation: the channels, the first row, the least signal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from seatsim.simulation.respond import SEAT_OUTPUTS
 
 Array = NDArray[np.float64]
 LEFT_OUT = 1.0
-"""Seconds at the start of each run that no gap counts: the simulation settles, since it starts from rest."""
+"""s; start of each run that is left out of the gap, since the simulation starts from rest and has to settle."""
 COMPARED = {"seat": SEAT_OUTPUTS, "damper_bench": SEAT_OUTPUTS[-2:]}
 """Recorded outputs that are compared, by rig."""
 LEAST_ROWS = 6

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 class NoiseFloor(TypedDict):
-    """The gap that noise alone leaves, in standard deviations of what was measured."""
+    """The gap that noise alone leaves, in standard deviations of the measured signals."""
 
     overall: float
     channels: dict[str, float]
@@ -31,7 +31,7 @@ class NoiseFloor(TypedDict):
 
 @dataclass(frozen=True)
 class Gap:
-    """The gap of a simulation, in standard deviations of what was measured.
+    """The gap of a simulation, in standard deviations of the measured signals.
 
     `channels` holds `rms(measured - simulated) / std(measured)` by channel, `overall` is `sqrt(mean of its squares)`;
     `floor` holds the same two for the stated noise alone, `notes` a sentence for each warning about the recording.
@@ -64,7 +64,7 @@ def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs
 
 
 def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:
-    """Return the gap as `gap` does, of a recording that is known to be sound: it is not examined.
+    """Return the gap as `gap` does, without examining the recording, which is known to be sound.
 
     Raises:
         InputError: the scenario does not fit the rig, or the recording has nothing to compare.
@@ -78,7 +78,7 @@ def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recordi
 
 
 def _load(scenario: str | Path | Scenario, recording: str | Path | Recording) -> tuple[Scenario, Recording]:
-    """Return what is named by a path, read."""
+    """Return the object that a path names, read from its file."""
     read = recording if isinstance(recording, Recording) else load_recording(recording)
     return scenario if isinstance(scenario, Scenario) else single(scenario), read
 

@@ -1,4 +1,4 @@
-"""From a run of a recording to what drives the simulation of its rig."""
+"""Inputs of a simulation from a run of a recording."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
 
 Array = NDArray[np.float64]
 SAME_STEP = 1e-9
-"""Part of a step by which a row interval may exceed a whole number of steps, for the sake of rounding."""
+"""Part of a step by which a row interval may exceed a whole number of steps, as an allowance for rounding."""
 
 
 def recorded_inputs(recording: Recording, table: Mapping[str, Array], largest_step: float) -> RigInputs:
-    """Return what drove a rig in a run, from the `table` of the run.
+    """Return the inputs of a rig in a run, from the `table` of the run.
 
     On a seat the inputs are sampled at the largest step, at most `largest_step` in s, that divides the interval between
-    rows: floor acceleration, coil current and temperature are linear between rows, a command is held until the next
-    row. A bench is driven row by row, with a step of its own.
+    rows. Floor acceleration, coil current and temperature are linear between rows; a command is constant until the next
+    row. A bench has one step per row.
     """
     interval = 1.0 / recording.header.sample_rate
     if recording.header.rig == "damper_bench":

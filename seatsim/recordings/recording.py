@@ -46,7 +46,7 @@ KEYS = ("rig", "sample_rate", "parameter_tolerance", "nominal", "runs", "channel
 
 
 KEPT = 32
-"""Files that are kept in memory while they are unchanged: every simulation of a run asks for them again."""
+"""Number of files kept in memory while they are unchanged, since every simulation of a run reads them again."""
 Stamp = tuple[int, int, int] | None
 
 
@@ -83,7 +83,7 @@ class VoltageGain(NamedTuple):
 
 @dataclass(frozen=True)
 class Recording:
-    """What `recording.yaml` says; the tables are read run by run with `table`."""
+    """Content of `recording.yaml`; the tables are read run by run with `table`."""
 
     folder: Path
     header: Header
@@ -93,7 +93,7 @@ class Recording:
 
     @property
     def nominal(self) -> Path:
-        """Path of the scenario that the rig's owner believes in."""
+        """Path of the scenario that the rig's owner assumes."""
         return self.folder / self.header.nominal
 
     def table(self, run: str) -> dict[str, Array]:
@@ -112,7 +112,7 @@ class Recording:
 
 
 def _stamp(path: Path) -> Stamp:
-    """Return what changes with the content of a file, None where there is none."""
+    """Return a value that changes with the content of a file, None where there is no file."""
     try:
         status = path.stat()
     except OSError:

@@ -52,7 +52,7 @@ def save_recording(result: Result, folder: str | Path, channels: Sequence[str], 
 
 
 def _nominal(run: Run, recorded: set[str]) -> dict[str, object]:
-    """Return the content of the nominal scenario; a current that is not `recorded` must be a constant one."""
+    """Return the content of the nominal scenario; a current that is not `recorded` must be constant."""
     if run.scenario.source is None:
         raise InputError(f"{run.scenario.name}: only the result of a scenario file can become a recording")
     values = run.scenario.source.data

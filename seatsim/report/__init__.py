@@ -1,6 +1,6 @@
-"""The report of a diagnosis: one HTML file that needs no network, the answer first, then what it rests on.
+"""The report of a diagnosis: one HTML file that needs no network, with the answer first and then the evidence.
 
-Only the page stands here: its figures are drawn in `seatsim.plots.diagnosis`, its numbers come from the diagnosis.
+This package builds the page only. `seatsim.plots.diagnosis` draws its figures; its numbers come from the diagnosis.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ __all__ = ["write_report"]
 
 
 def write_report(diagnosis: Diagnosis, path: Path) -> Path:
-    """Write the report of a diagnosis as one self-contained HTML file, whole or not at all; return its path.
+    """Write the report of a diagnosis as one self-contained HTML file, complete or not at all; return its path.
 
     The same diagnosis gives the same bytes. Sections without content are left out.
 

@@ -36,7 +36,7 @@ def render_head(diagnosis: Diagnosis) -> Html:
 def render_gaps(diagnosis: Diagnosis) -> Html:
     """Return the table of the gaps on held-out runs and its picture."""
     channels = list(diagnosis.gap.before.channels)
-    # In the figure the noise floor lies at the back and comes first, in the table it is the last column.
+    # The noise floor comes first in the figure, where it lies behind the others, and last in the table.
     stages = select_stages(diagnosis)[1:]
     head = ["gap", *(stage.words for stage in stages), "noise floor", "shrinks by"]
     if diagnosis.verdict == "none":
@@ -55,7 +55,7 @@ def _make_row(diagnosis: Diagnosis, name: str, keys: Sequence[Key]) -> list[str]
     gap = diagnosis.gap
     found = [read_gap(gap, key, name) for key in keys] + [read_gap(gap, "floor", name)]
     before, after = read_gap(gap, "before", name), read_gap(gap, "after", name)
-    # The overall shrink of the diagnosis is over the refit, so that tolerance is not credited to an effect.
+    # The overall shrink is relative to the refitted rig, so that no effect is credited with the tolerance.
     change = 1 - after / before if after is not None and before else None
     if name == "overall" and math.isfinite(gap.shrink):
         change = gap.shrink

@@ -30,7 +30,7 @@ def render_causes(diagnosis: Diagnosis) -> Html:
 def render_confusions(diagnosis: Diagnosis) -> Html:
     """Return which effects this recording cannot tell apart, in sentences and as a heat map of collinearity."""
     sentences = [
-        f"This recording cannot tell {join_names(group)} apart: each explains the gap as well."
+        f"This recording cannot distinguish {join_names(group)}: each explains the gap equally well."
         for group in diagnosis.indistinguishable
         if len(group) > 1
     ]
@@ -45,7 +45,7 @@ def _render_experiment(diagnosis: Diagnosis) -> Html:
     if found is None:
         return Html("")
     now, then = format_value(found.likeness_now), format_value(found.likeness_then)
-    rows = [("kind", found.kind), ("alikeness now", now), ("alikeness then", then)]
+    rows = [("kind", found.kind), ("likeness now", now), ("likeness then", then)]
     parts = [
         tag("p", tag("strong", format_sentence(found.name.replace("_", " ")))),
         tag("p", format_sentence(found.reason)),

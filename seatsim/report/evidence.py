@@ -1,4 +1,4 @@
-"""What the answer rests on: signals, spectra, maps, the model discrepancy, comfort figures, notes."""
+"""Evidence for the answer: signals, spectra, maps, the model discrepancy, comfort figures, notes."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def render_discrepancy(diagnosis: Diagnosis) -> Html:
 
 
 def render_comfort(diagnosis: Diagnosis) -> Html:
-    """Return the table of comfort and travel on held-out runs, the figures by which seats are judged."""
+    """Return the table of comfort and travel on held-out runs, the figures by which seats are assessed."""
     if not diagnosis.evidence.comfort:
         return Html("")
     rows = [_make_comfort_row(*row) for row in diagnosis.evidence.comfort]
@@ -65,7 +65,7 @@ def render_notes(diagnosis: Diagnosis) -> Html:
     if groups:
         merged = [join_names(group, "or") for group in groups if len(group) > 1]
         text = (
-            f"These channels can tell these groups of blocks apart: {'; '.join(join_names(g, 'or') for g in groups)}."
+            f"These channels can distinguish these groups of blocks: {'; '.join(join_names(g, 'or') for g in groups)}."
         )
         mind = " Within a group only the form of an effect can." if merged else ""
         sentences.append(text + mind)

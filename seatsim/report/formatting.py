@@ -13,7 +13,7 @@ from seatsim.schema import registry
 from seatsim.schema.errors import InputError
 
 UNKNOWN = "–"
-"""What stands where a value is not known."""
+"""Printed in place of a value that is not known."""
 
 
 def format_percent(share: float | None) -> str:
@@ -32,7 +32,7 @@ def format_estimate(value: Estimate | str) -> str:
     if not math.isfinite(value.std) or value.std <= 0:
         return f"{value.value:.4g}{unit}"
     decimals = max(0, 1 - math.floor(math.log10(value.std)))
-    # Beyond seven decimals zeros hide the digits that count.
+    # With more than seven decimals, leading zeros would hide the significant digits.
     if decimals > 7:
         return f"{value.value:.4g} ± {value.std:.2g}{unit}"
     return f"{value.value:.{decimals}f} ± {value.std:.{decimals}f}{unit}"

@@ -24,13 +24,13 @@ SECTIONS = (
     PageSection("gaps", "How far: gaps on held-out runs", answer.render_gaps, short=True),
     PageSection("causes", "Where it lies and what causes it", causes.render_causes),
     PageSection("missing", "What is missing", evidence.render_discrepancy),
-    PageSection("confusions", "What could be taken for what", causes.render_confusions),
+    PageSection("confusions", "Which effects are collinear", causes.render_confusions),
     PageSection("signals", "Held-out signals before and after", evidence.render_signals),
     PageSection("maps", "Where in the operating range", evidence.render_maps),
     PageSection("spectra", "Residual spectra", evidence.render_spectra),
     PageSection("comfort", "Comfort and travel", evidence.render_comfort, short=True),
     PageSection("notes", "Notes on the data", evidence.render_notes, short=True),
-    PageSection("use", "Check the claim", evidence.render_use),
+    PageSection("use", "Check the result", evidence.render_use),
 )
 
 

@@ -1,4 +1,4 @@
-"""The parts of the rig that are not pluggable: plant, coil, sensors, temperature, and what a control law sees.
+"""The fixed parts of the rig: plant, coil, sensors, temperature, and the measurements of a control law.
 
-Records and their equations only; what a user may replace by a model of his own has a package of its own.
+Records and their equations only; parts that a user may replace by another model have packages of their own.
 """

@@ -1,13 +1,13 @@
-"""The contract that a control law fulfils.
+"""The interface of a control law.
 
 A law is a record (NamedTuple) of its keys. At every sampling instant it sees a `Measurement` and its own state, a tuple
-of floats, and answers with *one* of
+of floats, and returns *one* of
 
     def wanted_force(self, y, state):    wanted damper force in N, positive when it opposes extension   `ForceLaw`
     def wanted_current(self, y, state):  wanted coil current in A                                       `CurrentLaw`
 
 and, where it has a state, with `def update(self, y, state)`, the state for the next instant. Methods are compiled by
-numba: plain arithmetic and `math` only. A law that wants a force is served through the inverse damper of the scenario.
+numba: plain arithmetic and `math` only. The scenario's inverse damper turns a wanted force into a current.
 
 A law that is designed for its seat returns its compiled form, another such record, from *one* of
 
@@ -32,7 +32,7 @@ from seatsim.schema.registry import Record, Registry
 
 T = TypeVar("T", bound=type)
 State = tuple[float, ...]
-"""What a law remembers from one sampling instant to the next; empty where it has no memory."""
+"""State of a law between two sampling instants; empty where it has no memory."""
 
 
 class Measurement(NamedTuple):
@@ -74,7 +74,7 @@ class CurrentLaw(Protocol):
 
 @runtime_checkable
 class LawWithMemory(Protocol):
-    """A compiled form whose answer depends on what it saw before."""
+    """A compiled form whose output depends on earlier measurements."""
 
     def update(self, y: Measurement, state: State) -> State:
         """Return the state at the next sampling instant."""
@@ -82,14 +82,14 @@ class LawWithMemory(Protocol):
 
 @runtime_checkable
 class LawWithNotes(Protocol):
-    """A compiled form that has something to say after a run."""
+    """A compiled form that has notes after a run."""
 
     def notes(self) -> tuple[str, ...]:
-        """Return sentences for the user; asked once, after the run."""
+        """Return sentences for the user; called once, after the run."""
 
 
 CompiledLaw = ForceLaw | CurrentLaw
-"""What the compiled loop asks at every sampling instant."""
+"""A compiled form that the loop evaluates at every sampling instant."""
 
 
 @runtime_checkable
@@ -105,7 +105,7 @@ class SampledLaw(Protocol):
     """A law that is designed for the seat, the coil and the time between samples."""
 
     def sampled(self, plant: Plant, coil: Coil, sample_time: float) -> CompiledLaw:
-        """Return the compiled form for a nominal seat and coil, asked every `sample_time` seconds."""
+        """Return the compiled form for a nominal seat and coil, evaluated every `sample_time` seconds."""
 
 
 Law = CompiledLaw | PreparedLaw | SampledLaw
@@ -113,22 +113,22 @@ Law = CompiledLaw | PreparedLaw | SampledLaw
 
 
 def prepare_law(law: Law, plant: Plant, coil: Coil, sample_time: float) -> CompiledLaw:
-    """Return the compiled form of a law, designed for the nominal rig where the law asks for it.
+    """Return the compiled form of a law, designed for the nominal rig where the law has a design.
 
     Args:
         law: the record that a scenario names.
-        plant: the nominal seat, which effects do not change: a designer does not know of them.
+        plant: the nominal seat without effects, since a designer does not know them.
         coil: the nominal coil.
-        sample_time: in s between two answers.
+        sample_time: in s between two evaluations.
     """
-    # The more a law asks for, the more its design knows: `sampled` comes before `prepared`.
+    # `sampled` is preferred over `prepared`, since it designs with more information.
     if isinstance(law, SampledLaw):
         return law.sampled(plant, coil, sample_time)
     return law.prepared(plant) if isinstance(law, PreparedLaw) else law
 
 
 class LawSpecification(NamedTuple):
-    """What is stated of a law: initial value of its state, whether it replays a recording row by row, its source."""
+    """Specification of a law: initial value of its state, whether it replays a recording row by row, its source."""
 
     initial: State
     replays: bool

@@ -1,6 +1,6 @@
-"""What is asked of a control law's design by what reports and saves it.
+"""Interfaces of a control law's design, for code that reports and saves it.
 
-Interfaces only: the classes that fulfil them stand with the synthesis, which `seatsim` never imports.
+The classes that implement them stand with the synthesis, which `seatsim` never imports.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from seatsim.rig.plant import Plant
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], object]
-"""Is called with a line on what a long computation does."""
+"""Callback that gets a line on the progress of a long computation."""
 
 
 class NormProof(Protocol):
@@ -25,11 +25,11 @@ class NormProof(Protocol):
 
     @property
     def gamma(self) -> float:
-        """What the norm is proven to lie below."""
+        """Proven upper bound of the norm."""
 
 
 class DesignedLoop(Protocol):
-    """What is known of one plant under the designed gain."""
+    """Figures of one plant under the designed gain."""
 
     @property
     def gamma(self) -> float:
@@ -49,7 +49,7 @@ class DesignedLoop(Protocol):
 
 
 class SynthesisedDesign(Protocol):
-    """A static output feedback with the loops that it closes, one a plant; figures are those of the worst loop."""
+    """A static output feedback with the loops that it closes, one per plant; figures are those of the worst loop."""
 
     @property
     def gain(self) -> Array:
@@ -65,7 +65,7 @@ class SynthesisedDesign(Protocol):
 
     @property
     def lower_bound(self) -> float:
-        """What no linear controller of any order can go below."""
+        """Lower bound of the norm for linear controllers of any order."""
 
     @property
     def certificate(self) -> NormProof | None:
@@ -84,12 +84,12 @@ class SynthesisedDesign(Protocol):
         """Every plant under the gain."""
 
     def save(self, path: str | Path) -> None:
-        """Write the design to a file, which appears whole or not at all."""
+        """Write the design to a file; the file is complete or absent."""
 
 
 @runtime_checkable
 class SynthesisedLaw(Protocol):
-    """A law whose gain is synthesised from weights, and can be reported and saved."""
+    """A law whose gain is synthesised from weights and whose design can be reported and saved."""
 
     def synthesis(self, plant: Plant, progress: Progress) -> SynthesisedDesign:
         """Return the design for a seat."""
@@ -97,7 +97,7 @@ class SynthesisedLaw(Protocol):
 
 @runtime_checkable
 class CheckedLaw(Protocol):
-    """A law that can say how its loop stands with a gain: margins, stability as sampled."""
+    """A law that can assess its loop with a gain: margins, stability of the sampled loop."""
 
     def checks(self, plant: Plant, coil: Coil, sample_time: float, gain: Array) -> Mapping[str, str]:
         """Return, by heading, sentences on the loop that a gain closes with seat, coil and sampling."""

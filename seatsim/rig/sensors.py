@@ -1,4 +1,4 @@
-"""What a law's instruments tell: readings through anti-alias filters with noise, and velocities made out of them.
+"""Instruments of a law: readings through anti-alias filters with noise, and velocities derived from them.
 
 Every filter is a first-order lag `y' = rate (u - y)`, solved exactly for an input u that is linear between samples.
 """
@@ -21,9 +21,9 @@ Array = NDArray[np.float64]
 READINGS = 4
 """Suspension displacement, then the accelerations of frame, driver and floor."""
 STREAM = 1
-"""Key of the noise's random stream beside the seed, so that it is not the draw that made the floor."""
+"""Key of the noise's random stream beside the seed, so that the noise is independent of the floor's random draw."""
 
-# Order of the instruments' state: input and output of each anti-alias filter, then what the law's last sample left.
+# Order of the instruments' state: input and output of each anti-alias filter, then values at the law's last sample.
 X_TRUE, X_FILTERED, FRAME_TRUE, FRAME_FILTERED, DRIVER_TRUE, DRIVER_FILTERED, FLOOR_TRUE, FLOOR_FILTERED = range(8)
 X_READ, X_SLOW, FRAME_READ, FRAME_VELOCITY, DRIVER_READ, DRIVER_VELOCITY = range(8, 14)
 FILTERS, INSTRUMENTS = 8, 14
@@ -56,7 +56,7 @@ class Direct(NamedTuple):
 
 
 class Instruments(NamedTuple):
-    """Compiled form of `Sensors`: the steps of its filters, and what is added to the floor's reading (0 or NaN).
+    """Compiled form of `Sensors`: the steps of its filters, and an offset of the floor's reading (0, or NaN: absent).
 
     The state holds last input and output of the four anti-alias filters, then last reading and lag of the displacement
     and last reading and velocity of frame and driver.
@@ -99,19 +99,19 @@ class Instruments(NamedTuple):
 
 
 Sensing = Direct | Instruments
-"""What a law sees through."""
+"""Instruments of a law, or none."""
 
 
 class Sensors(NamedTuple):
-    """Instruments that a law runs on in place of the true states; G(s) acts on what is true, n is white noise.
+    """Instruments that a law uses in place of the true states; u is a true signal, n white noise.
 
         r  = wb / (s + wb) u + n        wb = 2 pi bandwidth: every reading, filtered in continuous time, then sampled
         v  = s wd / (s + wd) r_x        wd = 2 pi derivative_bandwidth: suspension velocity
         v' = 1 / (s + wc) r_a           wc = 2 pi corner: absolute velocity of frame and driver, a leaky integral
 
     The last two run at the law's samples, exact for readings linear between them. Noise is drawn at every sample of
-    the law, from the scenario's seed. The inverse works on the measured displacement and velocity. Damper force,
-    current and temperature are seen as they are; the floor's acceleration only with `floor_accelerometer`, else NaN.
+    the law, from the scenario's seed. The inverse uses the measured displacement and velocity. Damper force, current
+    and temperature are seen without error; the floor's acceleration only with `floor_accelerometer`, else NaN.
     """
 
     bandwidth: Annotated[float, param("Hz", "corner of the anti-alias low-pass", above=0, high=1e4)] = 80.0
@@ -140,7 +140,7 @@ class Sensors(NamedTuple):
 
 
 def at_rest(displacement: float) -> State:
-    """Return the instruments' state where everything stood still at a suspension displacement in m."""
+    """Return the instruments' state of a seat at rest at a suspension displacement in m."""
     state = [0.0] * INSTRUMENTS
     for index in (X_TRUE, X_FILTERED, X_READ, X_SLOW):
         state[index] = displacement

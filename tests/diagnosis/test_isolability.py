@@ -82,10 +82,10 @@ def test_the_temperature_changes_no_group():
 @pytest.mark.parametrize(
     ("absent", "sentence"),
     [
-        ("damper_force", "without damper_force, damper and suspension cannot be told apart: add a load cell"),
-        ("coil_current", "without coil_current, damper and coil cannot be told apart: log the current"),
-        ("current_command", "coil cannot be judged: log the commanded current"),
-        ("driver_acceleration", "suspension, cushion and driver cannot be told apart: add an accelerometer"),
+        ("damper_force", "without damper_force, damper and suspension cannot be distinguished: add a load cell"),
+        ("coil_current", "without coil_current, damper and coil cannot be distinguished: log the current"),
+        ("current_command", "coil cannot be assessed: log the commanded current"),
+        ("driver_acceleration", "suspension, cushion and driver cannot be distinguished: add an accelerometer"),
     ],
 )
 def test_a_missing_channel_and_its_remedy_are_one_sentence(absent, sentence):
@@ -94,7 +94,7 @@ def test_a_missing_channel_and_its_remedy_are_one_sentence(absent, sentence):
 
 def test_a_full_seat_lacks_nothing_but_the_floor_against_the_suspension():
     (sentence,) = describe_missing_sensors("seat", ALL)
-    assert sentence.startswith("suspension and floor cannot be told apart by any channel")
+    assert sentence.startswith("suspension and floor cannot be distinguished by any channel")
 
 
 def test_overdetermined_is_what_a_leftover_equation_reaches():

@@ -142,7 +142,7 @@ def known(channels=tuple(SEAT), bench=False, runs=("run-c",)):
         causes=ranked({"damper.remanence": 0.97}), probability_none=0.0, probability_unknown=0.02,
         selected=["damper.remanence"], stochastic="", indistinguishable=[], experiment=None, held_out=list(runs),
         isolable=[["damper"], ["coil"], ["suspension", "floor"], ["cushion"], ["driver", "sensor"]],
-        gap=gaps_of(found), notes=["no run is warmer than 35 degC: thermal fade cannot be judged"],
+        gap=gaps_of(found), notes=["no run is warmer than 35 degC: thermal fade cannot be assessed"],
         augmented={},
         evidence=Evidence(found, rig(bench=bench)[0], None, alike(), [] if bench else comfort),
     )  # fmt: skip
@@ -154,7 +154,7 @@ def ambiguous():
     return replace(
         known(("frame_acceleration", "driver_acceleration", "suspension_displacement")), verdict="ambiguous",
         sentence="friction of 45 N in the linkage or at the damper's seal explains 83 % of the gap; without a load"
-        " cell they cannot be told apart",
+        " cell they cannot be distinguished",
         where=[Share("suspension", 0.5), Share("damper", 0.5)], causes=ranked(first),
         selected=["suspension.friction"], indistinguishable=[list(first)],
         experiment=ProposedExperiment("intervention", "add_load_cell", reason, 0.9876, 0.3456),
@@ -332,7 +332,7 @@ def test_a_group_names_both_blocks_and_what_would_decide(pages):
     assert "The gap lies in the suspension or the damper" in outline.headings
     assert "suspension.friction 55 % or damper.seal_friction 45 %" in outline.headings
     assert "Add load cell." in outline.words and "0.3456" in outline.words
-    assert any("cannot tell suspension.friction and damper.seal_friction apart" in words for words in outline.words)
+    assert any("cannot distinguish suspension.friction and damper.seal_friction" in words for words in outline.words)
 
 
 def test_the_nominal_simulation_is_not_called_one_with_effects(pages):

@@ -1,4 +1,4 @@
-"""The composition of a set: what each case shall be, shuffled."""
+"""The composition of a set: the specification of each case, shuffled."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from seatsim.blind.truth.sensors import Readings
 from seatsim.schema.errors import RunError
 
 ATTEMPTS = 14
-"""Draws of rig and faults before others are taken: on some rigs an effect, such as play, can hardly be seen."""
+"""Attempts with the same faults before others are drawn: on some rigs an effect such as play can hardly be seen."""
 ROUNDS = 6
 """Of raising faults that are not material beside the others; each raises by 15 % or more."""
 LARGEST_COLLINEARITY = 0.9
@@ -41,7 +41,7 @@ OPTIONAL = {"damper_force": 0.5, "coil_current": 0.2, "damper_temperature": 0.3}
 
 @dataclass(frozen=True)
 class CaseSpecification:
-    """What a case shall be: its kind, and the effects (or the scenarios outside the library) it shall hold.
+    """Specification of a case: its kind, and its effects (or the scenarios outside the library).
 
     `missing` are the channels not recorded (None: drawn), `background` is a random force on the frame, N rms, and
     `scatter` the largest relative error of a nominal parameter.
@@ -106,7 +106,7 @@ class Case:
 
 
 def draw_case(specification: CaseSpecification, rng: Generator) -> Case:
-    """Draw a case to specification; what cannot be made material in these runs is drawn anew.
+    """Draw a case to specification; faults that cannot be made material in these runs are drawn anew.
 
     Effects that no draw makes material give way to others drawn at random.
 
@@ -213,7 +213,7 @@ def _measure(
 ) -> tuple[list[DrawnFault], float] | None:
     """Return the faults with their materiality beside the others, and their collinearity; None where one is no case.
 
-    That is where the rig is unstable, or where two faults can hardly be told apart.
+    That is where the rig is unstable, or where two faults can hardly be distinguished.
     """
     sized, responses = [], []
     for k, fault in enumerate(faults):

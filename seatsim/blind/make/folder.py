@@ -1,4 +1,4 @@
-"""Recording folders of drawn cases, in the contract's format, with nothing in them that tells the label."""
+"""Recording folders of drawn cases, in the contract's format, with nothing in them that reveals the label."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ UNITS = {
 DIGITS = {"suspension_displacement": 6, "damper_force": 1, "damper_temperature": 2}
 """After the point, a tenth of the noise or less; all others have four."""
 EPOCH = 1_600_000_000
-"""Time stamp of every file, s: when a file was written would tell how long its case took to draw."""
+"""Time stamp of every file, s: the true time would reveal how long its case took to draw."""
 
 
 def nominal_scenario(experiment: Experiment) -> dict[str, object]:
-    """Return the scenario as the owner believes it, under the contract's keys."""
+    """Return the nominal scenario, which the owner assumes, under the contract's keys."""
     n = experiment.nominal
     bingham = experiment.is_bingham
     letter = "fc" if bingham else "alpha"
@@ -120,7 +120,7 @@ def encode_recording(
 
 
 def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Write a folder whole: under another name first, then renamed; its times tell nothing of how long a draw took."""
+    """Write a folder under another name first, then rename it; its time stamps do not reveal how long a draw took."""
     part = folder.with_name(f".{folder.name}.part")
     part.mkdir(parents=True, exist_ok=True)
     for name, content in files.items():

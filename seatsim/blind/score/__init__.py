@@ -1,1 +1,1 @@
-"""Verdicts compared with sealed labels; it knows the labels' words, and neither how cases are made nor simulated."""
+"""Verdicts compared with sealed labels; uses the labels' words only, not how cases are made or simulated."""

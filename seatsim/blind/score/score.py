@@ -89,7 +89,7 @@ def score(
 ) -> Score:  # fmt: skip
     """Score DIR/case-*/DIAGNOSES/diagnosis.json against the sealed labels.
 
-    With `unseen`, the claimed shrink is compared with what `augmented.yaml` reaches on the run that was never given;
+    With `unseen`, the stated shrink is compared with that of `augmented.yaml` on the run that was never given;
     `progress` is called with the replays done and all.
 
     Raises:

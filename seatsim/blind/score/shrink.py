@@ -1,4 +1,4 @@
-"""By how much the gap really shrinks: the augmented scenario replayed on a run that the diagnosis was never given."""
+"""The true shrink of the gap: the augmented scenario replayed on a run that the diagnosis was never given."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from seatsim.schema.errors import SeatsimError
 FEWEST_FOR_PROCESSES = 8
 """Cases below which a new process costs more time, for its imports, than it saves."""
 CaseShrink = tuple[str, float, float, bool | None]
-"""Name, claimed shrink, true shrink (NaN: cannot be replayed), whether the interval holds (None: none is given)."""
+"""Name, stated shrink, true shrink (NaN: cannot be replayed), whether the interval holds (None: none is given)."""
 
 
 @dataclass(frozen=True)
 class ShrinkScore:
-    """Claimed against true shrink on the unseen runs: mean absolute and mean difference, coverage, and each case."""
+    """Stated against true shrink on the unseen runs: mean absolute and mean difference, coverage, and each case."""
 
     mean_difference: float
     bias: float
@@ -35,7 +35,7 @@ class ShrinkScore:
 def score_shrink(
     base: Path, opened: Sealed, verdicts: dict[str, Verdict], processes: int, progress: Progress | None
 ) -> ShrinkScore | None:
-    """Return claimed against true shrink of the cases below `base` that claim one; None where none does."""
+    """Return stated against true shrink of the cases below `base` that state one; None where none does."""
     claims = [name for name in opened.labels if _claims_shrink(verdicts[name])]
     if not claims:
         return None
@@ -50,7 +50,7 @@ def score_shrink(
 
 
 def _claims_shrink(verdict: Verdict) -> bool:
-    """Tell whether a verdict claims a shrink that can be checked; under `none` there is nothing to shrink."""
+    """Tell whether a verdict states a shrink that can be checked; under `none` there is nothing to shrink."""
     said = verdict.verdict in (*NAMING, "unknown")
     return said and verdict.shrink is not None and verdict.augmented is not None
 
@@ -71,7 +71,7 @@ def _compare(cases: Sequence[CaseShrink]) -> ShrinkScore:
 
 def true_shrink(nominal: Path, augmented: Path | None, unseen: Path) -> float | None:
     """Return `1 - after / before` of the overall gap on the unseen recording; None where it cannot be replayed."""
-    # here, since the gap brings the whole simulator with it, which only a score with unseen runs needs
+    # imported here, since the gap imports the whole simulator, which only a score with unseen runs needs
     from seatsim.recordings.gap import measure_gap
 
     try:

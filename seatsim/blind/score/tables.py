@@ -52,8 +52,8 @@ def _summary(score: Score) -> Table:
     table.add_row("mean group size", f"{score.group_size:.2f}", "", "")
     if score.shrink is not None:
         shrink = score.shrink
-        table.add_row("shrink: |claimed - true|", f"{shrink.mean_difference:.3f}", str(len(shrink.cases)), "")
-        table.add_row("shrink: claimed - true", f"{shrink.bias:+.3f}", "", "")
+        table.add_row("shrink: |stated - true|", f"{shrink.mean_difference:.3f}", str(len(shrink.cases)), "")
+        table.add_row("shrink: stated - true", f"{shrink.bias:+.3f}", "", "")
         table.add_row("shrink: interval covers", *_row(shrink.coverage))
     return table
 

@@ -1,4 +1,4 @@
-"""Coloured noise: what roads, forces on the frame and wandering sensors are made of."""
+"""Coloured noise, from which roads, forces on the frame and the bias drift of sensors are made."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Candidate experiments: what could be done next with a rig, cheapest first."""
+"""Candidate experiments that could be run next on a rig, cheapest first."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from seatsim.simulation.inputs import SeatInputs
 Keys = Mapping[str, str | float]
 
 SWITCHING = 0.25
-"""s; time after which a switched current changes: long beside a coil's lag, short beside the motion."""
+"""s; time between changes of a switched current: long compared with a coil's lag, short compared with the motion."""
 NEARLY_FULL = 0.9
 """Share of the largest current that is switched, so that no supply is at its limit."""
 WARM_UP = (20.0, 60.0)
 """degC at the start and at the end of a run in which the damper warms up."""
 ADDED_MASS = 20.0
-"""kg on the driver's place."""
+"""kg; mass added in the driver's seat."""
 
 
 class CandidateExperiment(NamedTuple):
@@ -50,11 +50,11 @@ EXCITATIONS: Mapping[str, tuple[str, Keys, Keys]] = {
     "very_slow_sine": ("move the floor at 0.05 Hz with 25 mm", STEADY, _tone(0.05, 0.025, 20.0)),
     "current_steps": ("switch the current about every 0.25 s on a tone of 1 Hz", SWITCHED, _tone(1.0, 0.03, 12.0)),
 }  # fmt: skip
-"""What is to be done, the control law and the excitation of a scenario; currents are shares of the largest one."""
+"""Description, control law and excitation of an experiment; currents are shares of the largest current."""
 
 
 def list_candidate_experiments(problem: DiagnosisProblem) -> Iterator[CandidateExperiment]:
-    """Yield what can be done, cheapest first: excitations with the rig as it is, then interventions."""
+    """Yield the experiments, cheapest first: excitations with the rig as it is, then changes of the rig."""
     for name in EXCITATIONS:
         if not (problem.bench and name == "bump"):
             yield _excite(problem, name)
@@ -78,7 +78,7 @@ def _excite(problem: DiagnosisProblem, name: str) -> CandidateExperiment:
 
 
 def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExperiment]:
-    """Yield what changes the rig, its sensors or its warmth, with the floor of a recorded run or with none."""
+    """Yield changes of the rig, its sensors or its temperature, with the floor motion of a recorded run or none."""
     rest, time = np.zeros(len(floor.acceleration)), floor.time
     steps = NEARLY_FULL * problem.scenario.coil.max_current * (np.floor(time / SWITCHING) % 2.0)
     still = Floor(floor.step, rest, rest, rest, steps)
@@ -100,7 +100,7 @@ def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExp
 
 
 def _recorded_floor(problem: DiagnosisProblem) -> Floor:
-    """Return what drove the first run; on a bench the motion of the damper stands for that of the floor."""
+    """Return the excitation of the first run: the floor's motion or, on a bench, the damper's."""
     inputs = problem.inputs[problem.runs[0]]
     if isinstance(inputs, SeatInputs):
         return inputs.floor

@@ -1,4 +1,4 @@
-"""How collinear the sensitivities of effects are in a recording, once the nuisance parameters have taken their part.
+"""How collinear the sensitivities of effects are in a recording, with the nuisance parameters projected out.
 
 The collinearity of two effects is |cos(p(a), p(b))| of their projected changes (see `projection`): 0 where they share
 nothing, 1 where one could stand for the other.
@@ -22,12 +22,12 @@ Array = NDArray[np.float64]
 
 
 def measure_collinearity(objective: Objective, nuisances: Linearisation, names: Sequence[str]) -> Collinearity:
-    """Return those effects that can act here, and how collinear they are.
+    """Return the effects that can act on this rig, and how collinear they are.
 
-    Each change is what the effect alone adds to the rig without any of them: as fitted where the rig has it, else in
-    the first structure of a candidate, made about as large as the largest that is fitted, because what friction or a
-    gap does depends on its size. An effect that may act on several channels is as collinear as the channel that is most
-    so.
+    Each change is that of the outputs when one effect is added to the rig without effects. A fitted effect has its
+    fitted size. Any other is taken in the first structure of its candidate and made about as large as the largest
+    fitted change, since the response to friction or play depends on its size. Where an effect may act on several
+    channels, the largest collinearity counts.
 
     Args:
         objective: over all runs.
@@ -52,7 +52,7 @@ def measure_collinearity(objective: Objective, nuisances: Linearisation, names: 
 
 
 def fit_member(objective: Objective, nuisances: Linearisation, name: str, group: Sequence[str]) -> Evaluation:
-    """Return a rig with one member of a group instead of the others, its term last, fitted to the recording.
+    """Return a rig with one member of a group in place of the chosen one, as its last term, fitted to the recording.
 
     `nuisances` is the rig with its member of the group, and its sensitivities to the nuisance parameters.
     """
@@ -66,19 +66,19 @@ def fit_member(objective: Objective, nuisances: Linearisation, name: str, group:
 
 
 def stack_whitened(objective: Objective, whitened: dict[str, Array]) -> Array:
-    """Return whitened numbers of all runs, shape (channels, rows) each, on end."""
+    """Return the whitened numbers of all runs, shape (channels, rows) each, as one vector."""
     return np.concatenate([whitened[run].ravel() for run in objective.problem.runs])
 
 
 def stack_jacobian(objective: Objective, linearisation: Linearisation) -> Array:
-    """Return the Jacobians of all runs, shape (components, channels x rows) each, beside each other."""
+    """Return the Jacobians of all runs, shape (components, channels x rows) each, joined along the rows."""
     return np.concatenate([linearisation.jacobian[run] for run in objective.problem.runs], axis=1)
 
 
 def _measure_changes(
     objective: Objective, base: Parameters, several: Sequence[Parameters], fitted: Sequence[bool]
 ) -> Array:
-    """Return the whitened changes from a base to rigs, shape (rigs, rows), those not `fitted` made as large."""
+    """Return the whitened changes from a base to rigs, shape (rigs, rows); those not `fitted` are scaled alike."""
     origin, *evaluations = objective.evaluate([base, *several])
     changes = _subtract(objective, origin, evaluations)
     sizes = np.linalg.norm(changes, axis=1)
@@ -100,7 +100,7 @@ def _subtract(objective: Objective, origin: Evaluation, evaluations: Sequence[Ev
 
 
 def _enlarge(parameters: Parameters, factor: float, stretch: float) -> Parameters:
-    """Return the rig with the first parameter of its last effect larger by a factor, within stretch and bounds."""
+    """Return the rig with the first parameter of its last effect scaled by a limited factor, within its bounds."""
     term, values = parameters.terms[-1], parameters.values[-1].copy()
     values[0] = np.clip(values[0] * np.clip(factor, 1.0 / stretch, stretch), term.low[0], term.high[0])
     return Parameters(parameters.deviations, parameters.terms, (*parameters.values[:-1], values))

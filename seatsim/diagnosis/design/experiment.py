@@ -1,8 +1,9 @@
-"""The next experiment: what would tell effects apart that explain a recording equally well.
+"""The next experiment: one that distinguishes effects that explain the recording equally well.
 
-Every member of the group is fitted to the recording, so that all look alike there. Each candidate experiment is then
-simulated with each member, with white noise sigma = hypot(stated noise, model_error * rms) on each channel, and judged
-by the separability of the nearest pair, in noise units, and by the likeness of the most alike pair.
+Every member of the group is fitted to the recording, so that all give nearly the same outputs there. Each candidate
+experiment is then simulated with each member, with white noise sigma = hypot(stated noise, model_error * rms) on each
+channel. It is assessed by the separability of the nearest pair, in noise units, and by the likeness of the most similar
+pair: 0 where their changes of the outputs share nothing, 1 where they are the same.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ NOT_REPEATED = ("start", "sweep", "variants", "published")
 
 
 class _Verdict(NamedTuple):
-    """What an experiment would do: separability of the nearest pair in noise units, likeness of the most alike pair."""
+    """Prediction of an experiment: separability of the nearest pair in noise units, likeness of the most alike pair."""
 
     separability: float
     likeness: float
@@ -46,10 +47,10 @@ class _Verdict(NamedTuple):
 
 
 def propose_experiment(objective: Objective, nuisances: Linearisation, group: Sequence[str]) -> ProposedExperiment:
-    """Return the cheapest experiment that tells the members of a group apart, or that none of the candidates does.
+    """Return the cheapest experiment that distinguishes the members of a group, or the statement that none does.
 
-    Sensors are told from the rest by calibrating them. Where no candidate makes all members unlike, the one that makes
-    them least alike is taken.
+    A faulty sensor is distinguished from other causes by calibrating it. Where several candidates separate all members
+    but none brings the likeness below its limit, the one with the least likeness is taken.
 
     Args:
         objective: over all runs.
@@ -72,7 +73,7 @@ def propose_experiment(objective: Objective, nuisances: Linearisation, group: Se
 
 
 def _choose(objective: Objective, seen: Sequence[_Verdict], first: str, now: float) -> ProposedExperiment:
-    """Return the best candidate: of those that separate all members, the one under which they are least alike."""
+    """Return the best candidate: of those that separate all members, the one with the least likeness."""
     separated = objective.settings.design.separated
     best = min(seen, key=lambda each: (each.separability <= separated, each.likeness))
     if best.separability <= separated:
@@ -91,7 +92,7 @@ def _choose(objective: Objective, seen: Sequence[_Verdict], first: str, now: flo
 def _assess_candidates(
     objective: Objective, nuisances: Linearisation, base: Evaluation, members: Sequence[Evaluation]
 ) -> list[_Verdict]:
-    """Return what each candidate would do, as far as the first that tells all members apart."""
+    """Return the predictions of the candidates, up to the first one that distinguishes all members."""
     settings, seen = objective.settings.design, []
     for candidate in list_candidate_experiments(objective.problem):
         seen.append(_assess(objective, nuisances, base, members, candidate))
@@ -114,19 +115,19 @@ def _write_scenario(problem: DiagnosisProblem, candidate: CandidateExperiment) -
 
 
 def _name_sensors(members: Sequence[Evaluation]) -> list[str]:
-    """Return the channels whose calibration tells members of a group from the others; none where two have the same."""
+    """Return the channels whose calibration distinguishes the group's members; none where two act on the same one."""
     terms = [member.parameters.terms[-1] for member in members]
     named = [str(t.fixed.get("channel", "the clock")).replace("_", " ") for t in terms if t.block == "sensor"]
     return named if len(set(named)) == len(named) else []
 
 
 def _likeness(objective: Objective, changes: Array, jacobian: Array) -> float:
-    """Return the likeness of the most alike pair of changes, once the nuisance parameters have taken their part."""
+    """Return the likeness of the most similar pair of changes, with the nuisance parameters projected out."""
     return measure_likeness(project(changes, jacobian, np.full(len(jacobian), objective.settings.fit.prior_std)))
 
 
 def _simulate(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Parameters) -> Array:
-    """Return what the sensors say in an experiment, shape (channels, rows), without its first second."""
+    """Return the sensor readings in an experiment, shape (channels, rows), without its first second."""
     scenario = problem.augmented(rig.deviations, rig.effects)
     if scenario.plant is not None:
         plant = scenario.plant._replace(driver_mass=scenario.plant.driver_mass + candidate.added_mass)
@@ -136,7 +137,7 @@ def _simulate(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Pa
 
 
 def _make_inputs(problem: DiagnosisProblem, floor: Floor) -> RigInputs:
-    """Return what drives the rig: the floor or, on a bench, the damper moved and fed as that says."""
+    """Return the inputs of the rig: the floor's motion or, on a bench, the damper's motion and its current."""
     interval = 1.0 / problem.rate
     if not problem.bench:
         return SeatInputs(floor, interval)
@@ -163,7 +164,7 @@ def _assess(
     objective: Objective, nuisances: Linearisation, base: Evaluation, members: Sequence[Evaluation],
     candidate: CandidateExperiment,
 ) -> _Verdict:  # fmt: skip
-    """Return what an experiment would do: all rigs and their difference steps are simulated under it at once."""
+    """Return the prediction of an experiment, from a joint simulation of all rigs and their difference steps."""
     problem, settings = objective.problem, objective.settings
     rig, step, number = nuisances.evaluation.parameters, settings.fit.difference_step, len(members)
     shifts = [[rig.shift(k, step) for k in rig.nuisance_components]]

@@ -2,15 +2,15 @@
 
 The rig is written as equations, each a set of unknowns, with the block whose fault enters it. An equation can be tested
 where it lies in the structurally overdetermined part M+ of the Dulmage-Mendelsohn decomposition: the part that is
-reached by alternating paths from the equations that a maximum matching leaves over. A fault in block i can be told from
-one in block j where the equation of i stays in M+ once that of j is taken away; as each fault enters one equation, not
-being told apart is an equivalence, and its classes are the groups. Derivatives may be used in both directions, and
-initial states are known (a replay starts at rest).
+reached by alternating paths from the equations that a maximum matching leaves unmatched. A fault in block i can be
+distinguished from one in block j where equation i stays in M+ after equation j is removed. As each fault enters one
+equation, being indistinguishable is an equivalence relation, whose classes are the groups. Derivatives may be used in
+both directions, and initial states are known (a replay starts at rest).
 
 Sources: Dulmage and Mendelsohn 1958 (decomposition); Krysander and Frisk 2008, "Sensor placement for fault diagnosis"
-(isolability from M+); equations of the seat as in section 1 of the recording's contract. Structural means in principle,
-for faults of any form: what is in one group here may still be told apart by the form of the effects (a friction is no
-viscous damper), and what is in two may be too small to be told apart on a given recording.
+(isolability from M+); equations of the seat as in section 1 of the recording's contract. Structural isolability holds
+for faults of any form. Blocks of one group may still be distinguished by the form of the effects (friction is no
+viscous damping), and faults of two groups may be too small to be distinguished on a given recording.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from seatsim.schema.text import join_names
 
 
 class Equation(NamedTuple):
-    """An equation of a rig: the unknowns in it, and whose fault enters it (None: it cannot be wrong)."""
+    """An equation of a rig: its unknowns, and the block whose fault enters it (None: it cannot be wrong)."""
 
     unknowns: frozenset[str]
     fault: str | None
@@ -60,7 +60,7 @@ SENSED = {
     "damper_force": "Fd",
     "coil_current": "i",
 }
-"""The unknown that each sensor measures; the command is an input that is known, and so is the temperature."""
+"""The unknown that each sensor measures; the command and the temperature are known inputs."""
 COMMANDS = ("current_command", "command_voltage")
 BLOCKS = {
     "seat": ("damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"),
@@ -83,11 +83,11 @@ FOR_RIG = {
 
 
 def find_isolable_groups(rig: str, channels: Collection[str]) -> list[list[str]]:
-    """Return the groups of blocks that these channels can tell apart, in the order of `BLOCKS`.
+    """Return the groups of blocks that these channels can distinguish, in the order of `BLOCKS`.
 
-    Blocks of one group cannot be told from each other by structure. A block in no group is in no test at all: its
-    faults leave no trace in these channels. `sensor` joins the first group that holds a block that one of the sensors
-    could be taken for.
+    Blocks of one group cannot be distinguished by structure. A block in no group enters no test: its faults leave no
+    trace in these channels. `sensor` joins the first group with a block that a fault of some sensor cannot be
+    distinguished from.
     """
     equations = _equations(rig, channels)
     tested = [k for k in sorted(find_overdetermined(equations)) if equations[k].fault is not None]
@@ -118,12 +118,12 @@ def find_overdetermined(equations: Collection[Equation]) -> set[int]:
 
 
 def describe_missing_sensors(rig: str, channels: Collection[str]) -> list[str]:
-    """Return a sentence for each thing that these channels cannot tell, with the channel that would tell it."""
+    """Return a sentence for each distinction that these channels do not allow, with the channel that would allow it."""
     groups = find_isolable_groups(rig, channels)
     sentences = [_loss(rig, channels, groups, name) for name in FOR_RIG[rig] if not _is_recorded(name, channels)]
     everything = {*channels, *(name for name in FOR_RIG[rig] if not _is_recorded(name, channels))}
     sentences += [
-        f"{join_names(group)} cannot be told apart by any channel:"
+        f"{join_names(group)} cannot be distinguished by any channel:"
         " only the form of an effect, or a repeat of a run, can"
         for group in find_isolable_groups(rig, everything)
         if len(group) > 1
@@ -144,13 +144,13 @@ def _is_recorded(name: str, channels: Collection[str]) -> bool:
 
 
 def _is_isolable(equations: list[Equation], first: int, second: int) -> bool:
-    """Say whether the fault in equation `first` stays in a test once equation `second` is taken away."""
+    """Say whether equation `first` can still be tested after equation `second` is removed."""
     others = equations[:second] + equations[second + 1 :]
     return first - (first > second) in find_overdetermined(others)
 
 
 def _matching(rows: list[Equation]) -> dict[int, str]:
-    """Return the unknown that a maximum matching gives to each equation that gets one."""
+    """Return the unknown that a maximum matching assigns to each matched equation."""
     unknowns = sorted({unknown for row in rows for unknown in row.unknowns})
     if not unknowns:
         return {}
@@ -164,7 +164,7 @@ def _block(fault: str | None) -> str:
 
 
 def _ordered(rig: str, classes: Iterable[set[str]]) -> list[list[str]]:
-    """Return the groups in the order of BLOCKS; `sensor` stands once, in the first group that holds another block."""
+    """Return the groups in the order of BLOCKS; `sensor` appears once, in the first group with another block."""
     order = BLOCKS[rig]
     groups = sorted((sorted(found, key=order.index) for found in classes), key=lambda group: order.index(group[0]))
     homes = [group for group in groups if "sensor" in group]
@@ -174,18 +174,18 @@ def _ordered(rig: str, classes: Iterable[set[str]]) -> list[list[str]]:
 
 
 def _loss(rig: str, channels: Collection[str], groups: list[list[str]], absent: str) -> str:
-    """Return what the absence of one channel costs, or nothing where it alone changes nothing."""
+    """Return a sentence on what the absence of one channel costs, empty where adding it alone would change nothing."""
     better = find_isolable_groups(rig, {*channels, absent})
     unseen = [block for block in itertools.chain(*better) if not any(block in group for group in groups)]
     parts = [[[b for b in group if b in new] for new in better] for group in groups]
     split = [[part for part in found if part] for found in parts]
     costs = [
-        f"{join_names([_named(part) for part in found])} cannot be told apart" for found in split if len(found) > 1
+        f"{join_names([_named(part) for part in found])} cannot be distinguished" for found in split if len(found) > 1
     ]
-    costs += [f"{join_names(unseen)} cannot be judged"] if unseen else []
+    costs += [f"{join_names(unseen)} cannot be assessed"] if unseen else []
     return f"without {absent}, {join_names(costs)}: {REMEDIES[absent]}" if costs else ""
 
 
 def _named(part: list[str]) -> str:
-    """Return the blocks of a part; `floor` goes without saying beside the suspension."""
+    """Return the names of some blocks; `floor` is not named beside the suspension."""
     return " or ".join(block for block in part if block != "floor" or "suspension" not in part)

@@ -1,11 +1,11 @@
-"""Sensitivities once the nuisance parameters have taken their part, and how collinear they are.
+"""Sensitivities with the nuisance parameters projected out, and how collinear they are.
 
 With whitened changes a of the outputs, sensitivities S of parameters u and their prior standard deviations d, all
 components without unit, each change is projected,
 
     p(a) = [a - S' u, -u / d],   u = (S S' + diag(d)^-2)^-1 S a,
 
-so that `|p(a)|^2` is the cost that is left of a once the parameters have taken what they can.
+so that `|p(a)|^2` is the cost of a that remains after the best refit of the parameters under their prior.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ def project(changes: Array, sensitivities: Array, deviations: Array) -> Array:
 
 
 def measure_cosines(vectors: Array, faint: float) -> Array:
-    """Return the cosine between each two rows, shape (rows, rows); 0 where one of them is shorter than `faint`."""
+    """Return the cosine between each pair of rows, shape (rows, rows); 0 where one of them is shorter than `faint`."""
     size = np.linalg.norm(vectors, axis=1)
     unit = vectors / np.where(size > faint, size, np.inf)[:, None]
     return np.clip(unit @ unit.T, -1.0, 1.0)
 
 
 def measure_likeness(projected: Array) -> float:
-    """Return `2 |p(a) p(b)| / (|p(a)|^2 + |p(b)|^2)` of the most alike pair: collinearity at the sizes that they have.
+    """Return the largest `2 |p(a) p(b)| / (|p(a)|^2 + |p(b)|^2)` over all pairs: a collinearity that sees sizes too.
 
-    Changes that are short beside the noise, whose power is 1, are alike.
+    Two changes that are both small compared with the noise, whose power is 1, count as the same.
     """
     power = projected @ projected.T
     own = np.diag(power)

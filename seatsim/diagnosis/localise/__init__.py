@@ -1,4 +1,4 @@
-"""Which block of the rig an unexplained remainder lies in, and what is known of it.
+"""Localisation: which block of the rig an unexplained remainder lies in, and what its signal depends on.
 
-What the library's effects explain is not asked here: that is the business of `select` and `decide`.
+What the library's effects explain is decided in `select` and `decide`.
 """

@@ -1,7 +1,7 @@
-"""The model discrepancy: the unexplained signal in a block, and what is said of it.
+"""The model discrepancy: the unexplained signal in a block, and the sentences on it.
 
-A force that nothing predicts on a run left out, and that is as strong in every run, comes from outside the rig: a
-rattle, too, is hard to predict, but its strength follows the motion.
+A force comes from outside the rig where nothing predicts it on a left-out run and it is equally strong in every run. A
+rattle is hard to predict too, but its strength follows the motion.
 """
 
 from __future__ import annotations
@@ -49,13 +49,13 @@ def describe_discrepancy(
 
 
 def is_from_outside(settings: LocalisationSettings, found: Discrepancy) -> bool:
-    """Whether a force is none that the rig makes: it is not predicted, and as strong in every run."""
+    """Whether a force comes from outside the rig: it is not predicted, and equally strong in every run."""
     strengths = [float(np.std(signal)) for signal in found.signals.values()]
     return found.shares["everything"] <= settings.predicted and max(strengths) <= settings.steady * min(strengths)
 
 
 def is_bias_drift(settings: LocalisationSettings, found: Discrepancy, rate: float) -> bool:
-    """Whether it is the error of a sensor whose zero drifts; `rate` is that of the signals in Hz."""
+    """Whether the discrepancy is the bias drift of a sensor; `rate` is the sample rate of the signals in Hz."""
     slow = power = 0.0
     for signal in found.signals.values():
         spectrum = np.abs(np.fft.rfft(signal)) ** 2

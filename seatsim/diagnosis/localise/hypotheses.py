@@ -1,8 +1,8 @@
-"""Fault hypotheses: which single block could hold what is left, each with its evidence.
+"""Fault hypotheses: which single block could hold the unexplained remainder, each with its evidence.
 
-An unknown input acts in each block in turn, or one sensor errs. With r the whitened residuals without the input, h what
-a unit of it makes of the channels about the signal found, p the power of that signal and S the sensitivities to the
-deviations u of the nuisance parameters, minus twice the log evidence is
+An unknown input acts in each block in turn, or one sensor errs. With r the whitened residuals without the input, h the
+frequency response of the channels to the input about the estimated signal, p the power of that signal, and S the
+sensitivities to the deviations u of the nuisance parameters, minus twice the log evidence is
 
     min over u of  sum over f  (r - S u)* (I + h h* p / 2)^-1 (r - S u) + 2 log(1 + |h|^2 p / 2)  + prior(u).
 
@@ -76,7 +76,7 @@ def evaluate_hypotheses(objective: Objective, nuisances: Linearisation) -> dict[
 
 
 def _as_sensor_error(motion: FaultHypothesis) -> FaultHypothesis:
-    """Return a motion of the floor that its accelerometer does not see as the error of that accelerometer."""
+    """Return an unseen motion of the floor as the equivalent error of the floor's accelerometer."""
     signals = {run: -values for run, values in motion.signals.items()}
     return motion._replace(signals=signals, quantity=f"error of {FLOOR}", unit="m/s^2", channel=FLOOR)
 
@@ -85,12 +85,12 @@ def _estimate_inputs(objective: Objective, evaluation: Evaluation, run: str) -> 
     """Return the estimate of an input in each block, and of an error of each channel's sensor."""
     channels = objective.problem.channels
     estimates = {name: estimate_error(objective, evaluation, run, k) for k, name in enumerate(channels)}
-    # Without a load cell a force of the damper and one of the linkage are the same to every channel.
+    # Without a load cell no channel distinguishes a force of the damper from one of the linkage.
     merged = "damper_force" not in channels
     for block, port in PORTS.items():
         same = merged and block == "suspension"
         estimates[block] = estimates["damper"] if same else estimate_input(objective, evaluation, run, port)
-    # Below this frequency no floor moves so much that it matters: such a motion is the drift of its accelerometer.
+    # Below this frequency floors hardly move: what looks like a motion there is the drift of the accelerometer.
     slow = objective.settings.localisation.slow_frequency
     estimates[FLOOR] = estimate_input(objective, evaluation, run, PORTS["floor"], slow)
     if "coil_current" in channels:

@@ -1,14 +1,14 @@
-"""Estimation of an unknown input of one block: the signal at its port that explains what a rig leaves.
+"""Estimation of an unknown input of one block: the signal at its port that explains the residuals of a rig.
 
 The input is free at every frequency: a force on the frame (suspension), on the driver (driver), between the two
 (cushion), of the damper, which the load cell sees, or a motion of the floor. With r the whitened residuals of the
-channels and h what a unit input makes of them, the simulation is driven by the input q and q corrected in turn, from
-zero, as long as it helps:
+channels and h their frequency response to the input, the simulation is driven by the input q and q is then corrected,
+in turn, starting from zero, as long as the residuals fall:
 
     q(f) += h* r / (|h|^2 + 2 / p(f)),      p(f) the plausible power of an input.
 
-A coil's is the current by which its log differs from the simulation: what a current does to a force follows the motion,
-so that there is no h to correct it by.
+The input of the coil is the difference between the logged and the simulated current. The force that a current causes
+depends on the motion, so there is no frequency response h to correct it by.
 """
 
 from __future__ import annotations
@@ -26,9 +26,10 @@ Array = NDArray[np.float64]
 
 
 class InputEstimate(NamedTuple):
-    """What a block's input has to explain in a run, whitened, what a unit of it explains, its power, and its signal.
+    """Estimate of a block's input in a run: whitened residuals, frequency response, power, and signal.
 
-    Where the simulation is driven, `residuals` is what that leaves, and what the signal explains by the last response.
+    Where the simulation is driven by the input, `residuals` is what the driven simulation leaves plus what the signal
+    explains by the last frequency response.
     """
 
     residuals: Array
@@ -38,7 +39,7 @@ class InputEstimate(NamedTuple):
 
 
 class _Attempt(NamedTuple):
-    """A signal with the channels that it gives and what it leaves of the measured ones, whitened."""
+    """A signal with the simulated channels under it and their whitened residuals."""
 
     signal: Array
     outputs: Array
@@ -54,8 +55,8 @@ def estimate_input(
 ) -> InputEstimate:
     """Return the estimate of an input, below a highest frequency in Hz, that matches the channels as well as it can.
 
-    What a small input makes of the channels is taken anew about each signal, with another random one each time: a
-    strong signal changes how the damper slips, and what one probe misleads the next may mend.
+    The frequency response is estimated anew about each signal, with another random probe each time: a strong signal
+    changes how the damper slips, and the next probe may correct what one probe got wrong.
     """
     rig = reconstruct(objective, evaluation.parameters, run, port)
     settings, bins = rig.settings, objective.weights.bins[run]
@@ -87,7 +88,7 @@ def _attempt(rig: Reconstruction, signal: Array) -> _Attempt:
 
 
 def _improve(rig: Reconstruction, best: _Attempt, step: Array) -> _Attempt:
-    """Return the first of several fractions of a step that leaves less than the best so far, else the best so far."""
+    """Return the first of several fractions of a step that lowers the residuals, else the best signal so far."""
     for fraction in rig.settings.backtracking:
         tried = _attempt(rig, best.signal + fraction * step)
         if tried.cost < best.cost:
@@ -96,7 +97,7 @@ def _improve(rig: Reconstruction, best: _Attempt, step: Array) -> _Attempt:
 
 
 def estimate_current(objective: Objective, evaluation: Evaluation, run: str) -> InputEstimate:
-    """Return the current that was logged, beyond the one that the simulated coil has, as the estimate of an input."""
+    """Return the logged current less the simulated one, as the estimate of an input."""
     k, samples = objective.problem.channels.index("coil_current"), objective.problem.measured[run].shape[1]
     weights, bins = objective.weights.weights[run], objective.weights.bins[run]
     smoothing = objective.settings.noise.smoothing
@@ -117,14 +118,14 @@ def estimate_error(objective: Objective, evaluation: Evaluation, run: str, k: in
 
 
 def respond_to_error(weights: Array, k: int) -> Spectra:
-    """Return what a unit error of channel `k` makes of the whitened channels, shape (channels, frequencies)."""
+    """Return the response of the whitened channels to a unit error of channel `k`, shape (channels, frequencies)."""
     return np.asarray(np.eye(len(weights))[:, k : k + 1] * weights, dtype=complex)
 
 
 def estimate_nonrepeatable_force(objective: Objective, evaluation: Evaluation) -> dict[str, Array] | None:
     """Return a random force on the frame by run, shape (samples,), by which repeated runs differ; None without repeats.
 
-    The difference of two repeats holds twice the power of what does not repeat.
+    The difference of two repeats has twice the power of the non-repeatable disturbance.
     """
     problem, settings = objective.problem, objective.settings
     for run, entry in problem.recording.runs.items():

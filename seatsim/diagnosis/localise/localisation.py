@@ -1,4 +1,4 @@
-"""Which block the gap lies in: from the causes found, or from what an unknown input in each block would explain."""
+"""Which block the gap lies in: from the causes found, or from the fault hypotheses on an unknown input."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from seatsim.diagnosis.result import Share
 ON_FRAME = ("damper", "suspension", "floor")
 """Blocks whose unknown input is a force on the frame."""
 LEAST_DIFFERENCE = 1e-6
-"""Least difference in evidence that counts as explained, where no block explains anything."""
+"""Least difference in evidence that is divided by, where no block explains anything."""
 
 
 class Remainder(NamedTuple):
@@ -53,9 +53,9 @@ def share_gap(objective: Objective, chosen: Evaluation, remainder: Remainder | N
 def localise_remainder(
     objective: Objective, calibrated: Evaluation, chosen: Evaluation
 ) -> tuple[Remainder, Evaluation]:
-    """Return what is unexplained, and the rig that it is missing from: the calibrated one where one block will do.
+    """Return what is unexplained, and the rig that lacks it: the calibrated one where a single block explains the gap.
 
-    Effects that were chosen and do not explain the gap are given up for one unknown input, unless that leaves more.
+    Effects that were chosen but do not explain the gap are dropped for one unknown input, unless that leaves more.
     """
     alone = _weigh_blocks(objective, calibrated)
     if not chosen.parameters.terms:
@@ -70,8 +70,8 @@ def localise_remainder(
 def _weigh_blocks(objective: Objective, evaluation: Evaluation) -> Remainder:
     """Return the blocks that could hold what a rig leaves.
 
-    A slow force on the driver is one on the frame, since the two move as one: where both explain nearly the same, it is
-    the frame's.
+    A slow force on the driver acts like one on the frame, since both move together. Where both explain nearly the same,
+    the force is assigned to the frame.
     """
     hypotheses = evaluate_hypotheses(objective, objective.linearise_nuisances(evaluation))
     before = evaluation.cost / evaluation.rows - 1.0

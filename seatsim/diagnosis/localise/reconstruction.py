@@ -1,4 +1,4 @@
-"""A run of a rig that an unknown input is added to: what the input makes of the channels, and how large it may be."""
+"""Input reconstruction: a run of a rig with an unknown input, the channels' response to it, and its power."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from seatsim.simulation.respond import respond
 Array = NDArray[np.float64]
 
 FAR_OFF = 1e6
-"""Standard deviations by which a rig that leaves all bounds misses the measured channels: no step is taken there."""
+"""Residual, in standard deviations, given to a rig that leaves all bounds, so that such a step is rejected."""
 
 
 class Port(NamedTuple):
@@ -63,14 +63,14 @@ class Reconstruction:
 
     @property
     def recorded(self) -> SeatInputs:
-        """What drove the run."""
+        """Inputs of the run."""
         inputs = self.problem.inputs[self.run]
         assert isinstance(inputs, SeatInputs)
         return inputs
 
     @property
     def samples(self) -> int:
-        """How many samples a signal has."""
+        """Number of samples of a signal."""
         return int(self.problem.measured[self.run].shape[1])
 
     def simulate_with(self, signal: Array) -> Array:
@@ -92,7 +92,7 @@ class Reconstruction:
         return outputs
 
     def whiten_residuals(self, outputs: Array) -> Array:
-        """Return what outputs leave of the measured channels, whitened."""
+        """Return the whitened difference of the measured channels and the outputs."""
         return self.weights(self.problem.measured[self.run] - outputs, self.run)
 
     def draw_probe(self, corner: float, seed: int) -> Array:
@@ -109,9 +109,9 @@ class Reconstruction:
         return self.settings.largest_input**2 * measure_power(probe, self.problem.settings.noise.smoothing)
 
     def measure_response(self, signal: Array, outputs: Array, seed: int = 1) -> Spectra:
-        """Return what a unit signal makes of the whitened channels, shape (channels, frequencies).
+        """Return the frequency response of the whitened channels to the signal, shape (channels, frequencies).
 
-        The response is taken about a signal and the outputs that it gives, by a small random signal added to it.
+        The response is taken about a signal and its outputs, by adding a small random signal.
         """
         probe = self.draw_probe(self.settings.probe_corner, seed)
         change = np.fft.rfft(self.simulate_with(signal + probe) - outputs)

@@ -1,7 +1,7 @@
-"""What an unexplained signal depends on: regression on what the simulated rig does, judged on runs left out.
+"""What an unexplained signal depends on: regression on the simulated rig's signals, assessed on runs left out.
 
-The regressors come from the simulation that the measured floor drives, not from measured motion, which the unexplained
-force itself has moved.
+The regressors come from the simulation driven by the measured floor. The measured motion is not used, since the
+unexplained force itself contributes to it.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def explain_signal(problem: DiagnosisProblem, parameters: Parameters, signals: M
 def predict_share(
     settings: LocalisationSettings, regressors: Mapping[str, Array], target: Mapping[str, Array]
 ) -> float:
-    """Return the share of the variance of runs that a ridge regression on the others predicts, at least 0.
+    """Return the share of the runs' variance that a ridge regression on the other runs predicts, at least 0.
 
     Args:
         settings: the ridge.
@@ -112,5 +112,5 @@ def _list_regressors(problem: DiagnosisProblem, parameters: Parameters, run: str
 
 
 def _lag(values: Array, lags: int) -> Array:
-    """Return values and their past ones, shape (lags, samples), the first value held before the start."""
+    """Return values and their past ones, shape (lags, samples); before the start the first value is repeated."""
     return np.array([np.concatenate([np.full(k, values[0]), values[: len(values) - k]]) for k in range(lags)])

@@ -1,6 +1,6 @@
-"""Effects whose signal is a stochastic disturbance: found in what no other effect explains, counted as noise.
+"""Effects that are a stochastic disturbance: found in what no other effect explains, and added to the noise.
 
-Their signal is never simulated: that of another run is another one.
+Their signal is never simulated, since it differs from run to run.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
 
 
 def find_bias_drift(problem: DiagnosisProblem, evaluation: Evaluation) -> Discrepancy | None:
-    """Return the error of the one channel, not the travel, that stays materially open by a slow signal, None without.
+    """Return the remainder of the one channel with a material gap as an error of its sensor, None without one.
 
-    A slow force on the rig would move the travel, and creep moves the travel alone.
+    The travel is excluded: a slow force on the rig would move it, and creep moves it alone.
     """
     settings = problem.settings
     gaps = measure_remainders(problem, evaluation)
@@ -49,7 +49,7 @@ def find_bias_drift(problem: DiagnosisProblem, evaluation: Evaluation) -> Discre
 def name_stochastic_effect(problem: DiagnosisProblem, found: Discrepancy) -> str:
     """Return the effect that an unexplained discrepancy may be; an empty word for none."""
     settings = problem.settings.localisation
-    # Without a load cell a force of the damper and one from outside are the same to every channel.
+    # Without a load cell no channel distinguishes a force of the damper from one from outside.
     merged = () if "damper_force" in problem.channels else ("damper",)
     if found.block in ("suspension", *merged) and is_from_outside(settings, found):
         return FORCE_FROM_OUTSIDE
@@ -57,7 +57,7 @@ def name_stochastic_effect(problem: DiagnosisProblem, found: Discrepancy) -> str
 
 
 def add_to_noise(problem: DiagnosisProblem, weights: NoiseWeights, effect: str, found: Discrepancy) -> NoiseWeights:
-    """Return weights in which the signal counts as noise, beside the noise of the recording; `weights` held before."""
+    """Return weights with the signal added to the noise of the recording; `weights` are those used before."""
     smoothing = problem.settings.noise.smoothing
     if effect == FORCE_FROM_OUTSIDE:
         return weigh_noise(problem, found.signals)
@@ -81,7 +81,7 @@ def _carry_floor_motion(objective: Objective, run: str, signal: Array) -> Array:
 def merge_effect(
     settings: DiagnosisSettings, decision: Decision, where: Sequence[Share], effect: str
 ) -> tuple[Decision, list[Share]]:
-    """Return decision and shares of what was found beside it, with the stochastic effect itself among them."""
+    """Return the decision and the shares of the other causes, with the stochastic effect added to both."""
     probability, none, unknown = settings.decision.stochastic
     decision = dataclasses.replace(
         decision, verdict="ambiguous" if decision.groups else "known",

@@ -1,5 +1,4 @@
-"""Every threshold of a diagnosis in one frozen value, each with unit, meaning, what it trades off, and its origin.
+"""Every threshold of a diagnosis in one immutable value, each with unit, meaning, what it trades off, and its origin.
 
-A threshold stands here and nowhere else; what is fixed by a definition (rows left out, channels compared) stands with
-that definition.
+Thresholds stand only here; what a definition fixes (rows left out, channels compared) stands with that definition.
 """

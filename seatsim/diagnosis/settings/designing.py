@@ -8,7 +8,7 @@ from seatsim.diagnosis.settings.threshold import CONVENTION, NUMERICAL, SIMULATE
 
 
 class DesignSettings(NamedTuple):
-    """What can be told apart, now and by a further experiment."""
+    """What can be distinguished, now and by a further experiment."""
 
     faint: Annotated[
         float,
@@ -49,7 +49,7 @@ class DesignSettings(NamedTuple):
         Threshold(
             "-",
             "likeness below which the cheapest experiment is taken",
-            "higher: experiments whose outcome a misfit of the model can turn",
+            "higher: experiments whose outcome a model error can reverse",
             SIMULATED_RIGS,
         ),
     ] = 0.9

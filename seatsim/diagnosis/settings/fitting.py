@@ -187,7 +187,7 @@ class SelectionSettings(NamedTuple):
         Threshold(
             "-",
             "share of what is left that a further effect must leave at most",
-            "higher: a second effect is claimed where the first has another form than its candidate",
+            "higher: a second effect is stated where the first has another form than its candidate",
             SIMULATED_RIGS,
         ),
     ] = 0.45

@@ -1,4 +1,4 @@
-"""Settings of the decision, of the cross-validation and of the hold-out validation."""
+"""Settings of the decision, the cross-validation and the hold-out validation."""
 
 from __future__ import annotations
 
@@ -190,7 +190,7 @@ class CrossValidationSettings(NamedTuple):
 
 
 class ValidationSettings(NamedTuple):
-    """Claim of the shrink on a run held out of the fit, with its interval."""
+    """The shrink stated on a run held out of the fit, with its interval."""
 
     block_length: Annotated[
         float,
@@ -235,7 +235,7 @@ class ValidationSettings(NamedTuple):
         Threshold(
             "-",
             "quantile of the shrink over the suitable runs at which the held-out run lies",
-            "higher: claims that another excitation does not keep",
-            "least biased claims on sealed rigs",
+            "higher: a stated shrink that other excitations do not reach",
+            "least bias of the stated shrink on sealed rigs",
         ),
     ] = 0.25

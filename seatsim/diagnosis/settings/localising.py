@@ -64,8 +64,8 @@ class LocalisationSettings(NamedTuple):
         float,
         Threshold(
             "-",
-            "share of what the best block explains by which another must fall short to be told from it",
-            "higher: shares of blocks are alike; lower: a confident wrong block",
+            "share of what the best block explains by which another must fall short to be distinguished from it",
+            "higher: shares of blocks are similar; lower: a confident wrong block",
             SIMULATED_RIGS,
         ),
     ] = 0.1

@@ -15,7 +15,7 @@ class NoiseSettings(NamedTuple):
         Threshold(
             "Hz",
             "content above it is not compared",
-            "higher: chatter and sensor noise dilute the evidence; lower: stops and clearances are seen less",
+            "higher: broadband noise dilutes the evidence; lower: stops and clearances are seen less",
             "above what a seat transmits, below what 500 rows per second resolve",
         ),
     ] = 100.0
@@ -60,7 +60,7 @@ class NoiseSettings(NamedTuple):
         Threshold(
             "-",
             "factor on the stated noise power above `highest_frequency` from which a residual is broadband",
-            "lower: understated sensor noise is taken for chatter",
+            "lower: understated sensor noise is taken for a broadband residual",
             SIMULATED_RIGS,
         ),
     ] = 2.0
@@ -69,7 +69,7 @@ class NoiseSettings(NamedTuple):
         Threshold(
             "-",
             "share of what the best set leaves from which a broadband residual is added to the noise",
-            "lower: real effects are counted as noise; higher: chatter makes a verdict unknown",
+            "lower: real effects are counted as noise; higher: a broadband residual makes a verdict unknown",
             SIMULATED_RIGS,
         ),
     ] = 0.5

@@ -20,7 +20,7 @@ MOST = 10
 ROW = 0.27
 """Height of a row of bars in inches."""
 CHOSEN, EQUIVALENT, OTHER, REST = COLOURS[0], COLOURS[4], "0.72", "0.45"
-"""Colours of selected effects, of those that explain the gap as well, of others, of no or an unknown cause."""
+"""Colours of selected effects, of effects that explain the gap equally well, of others, of no or an unknown cause."""
 TICKS = (1, 2, 5)
 Key = Literal["floor", "before", "calibrated", "after"]
 

@@ -1,4 +1,4 @@
-"""Which effects this recording could take for each other: collinearity of their sensitivities."""
+"""Which effects this recording can hardly distinguish: collinearity of their sensitivities."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ DARK_FROM = 0.55
 
 
 def plot_collinearity(diagnosis: Diagnosis) -> Picture | None:
-    """Return the heat map of the collinearity of the likeliest effects with each other and with those most like them.
+    """Return the heat map of the collinearity of the likeliest effects with each other and their most collinear ones.
 
     Collinearity is the cosine of the angle between the sensitivities of two effects, 0 to 1.
     """
@@ -66,7 +66,7 @@ def _select_effects(diagnosis: Diagnosis) -> list[int]:
 
 
 def _write_values(axes: Axes, part: Array, below: NDArray[np.bool_]) -> None:
-    """Write the number of each cell below the diagonal that is worth it."""
+    """Write the number of each cell below the diagonal that is large enough to be shown."""
     for row, column in np.argwhere(below & (part >= WORTH_WRITING)):
         value = float(part[row, column])
         colour = "white" if value > DARK_FROM else "0.15"

@@ -42,7 +42,7 @@ def plot_discrepancy(diagnosis: Diagnosis) -> list[Picture]:
 
 
 def _find_abscissas(motion: Mapping[str, Array], length: int) -> dict[str, Array]:
-    """Return those quantities that the discrepancy is drawn over: they vary and have its `length`."""
+    """Return the quantities that the discrepancy is drawn over: those that vary and have its `length`."""
     return {name: values for name, values in motion.items() if len(values) == length and varies(values)}
 
 
@@ -85,7 +85,7 @@ def _plot_over(x: Array, values: Array, axis: Quantity | None, name: str, shown:
 
 
 def _describe_shares(scaled: Array, values: Array, rising: NDArray[np.bool_], borders: Array) -> str:
-    """Return how much of the discrepancy the means over a quantity explain, without and with regard to direction."""
+    """Return the shares of the discrepancy that means over a quantity explain, without and with its direction."""
     alone = _explained_share([np.ones_like(rising)], scaled, values, borders)
     directed = _explained_share([rising, ~rising], scaled, values, borders)
     return f"a curve explains {100 * alone:.0f} %, a loop {100 * directed:.0f} %"

@@ -33,7 +33,7 @@ NOISE = Entry("noise", "0.55", ":", width=1.8)
 TICKS = (0.3, 1, 3, 10, 30, 100, 300, 1000, 3000)
 """Frequencies in Hz that an axis names."""
 FACTORS = {"m": (1e3, "mm")}
-"""Factor and unit of what is too small in SI units."""
+"""Factor and unit of quantities whose values are small in SI units."""
 
 
 class Picture(NamedTuple):

@@ -159,7 +159,7 @@ def _describe_peak(frequency: Array, before: Array, after: Array, look: Entry) -
     """Return words on the octave in which most of the nominal residual lies, and on what is left of it there."""
     energy = np.concatenate([[0.0], np.cumsum(np.where(frequency >= LOWEST, before, 0.0))])
     first, last = (np.searchsorted(frequency, frequency * side) for side in (2**-0.5, 2**0.5))
-    # Over its width, so that white noise does not draw the answer to the highest octave.
+    # Power per width of the octave, so that white noise does not favour the highest octave.
     octave = (energy[last] - energy[first]) / np.sqrt(frequency)
     centre = float(frequency[int(np.argmax(octave))])
     near = (frequency >= centre / np.sqrt(2)) & (frequency <= centre * np.sqrt(2))

@@ -20,9 +20,9 @@ CLOSE_UP = 6.0
 STRIDE = 0.1
 """Raster in s on which a close-up begins, the digits that its title has."""
 NEAR = 0.2
-"""Part of the way to a travel limit from which on it is drawn; before, it would only flatten the motion."""
+"""Share of a travel limit that the motion must reach for the limit to be drawn; else it would flatten the motion."""
 WIDEST = 1.0
-"""Travel limits in m from which on they are none: no seat travels so far, so that a scenario means no limit."""
+"""m; a larger travel limit counts as none, since no seat travels so far."""
 
 
 class ChannelPanel(NamedTuple):
@@ -114,7 +114,7 @@ def _draw_view(axes: Axes, run: Run, channel: ChannelPanel, view: Window) -> Non
 
 def _join_views(row: Sequence[Axes], window: Window) -> None:
     """Give the close-up the scale of the whole run, mark it there, and put one legend above the row."""
-    # An axes gives lines without a label one that begins with an underscore.
+    # matplotlib gives a line without a label one that begins with an underscore.
     for close in row[1:]:
         row[0].axvspan(*window, color="0.93", zorder=0)
         close.set_ylim(row[0].get_ylim())

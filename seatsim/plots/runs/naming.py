@@ -21,8 +21,8 @@ MOST = 8
 def select_shown(runs: Sequence[Run]) -> list[Run]:
     """Return the runs that lines are drawn of.
 
-    These are all of up to eight runs; of more those at the first swept values (one for each variant), or else
-    eight that are spread evenly over their order, first and last included.
+    Up to eight runs are all drawn. Of more runs, those at the first swept values (one for each variant) are drawn,
+    or else eight that are spread evenly over their order, first and last included.
     """
     if len(runs) <= MOST:
         return list(runs)

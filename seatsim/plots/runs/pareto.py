@@ -47,9 +47,9 @@ class Panel(NamedTuple):
 
 
 def plot_pareto(runs: Sequence[Run], brackets: Mapping[str, PerformanceBounds]) -> Figure:
-    """Return weighted acceleration over travel, a panel for each rig, with the brackets by `Scenario.rig`.
+    """Return weighted acceleration over travel, a panel for each rig, with the performance bounds by `Scenario.rig`.
 
-    Without brackets, rigs of one run share a panel. Points are named where there is room, else they are numbered.
+    Without bounds, rigs of one run share a panel. Points are named where there is room, else they are numbered.
     """
     found = _make_panels(runs, brackets) or [Panel("", [], None)]
     shown = found[:MOST_PANELS]
@@ -99,7 +99,7 @@ def _panel_size(grid: Grid, columns: int) -> tuple[float, float]:
 
 
 def _find_limits(panel: Panel) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the ranges of travel and comfort that hold points and bracket, with a margin."""
+    """Return the ranges of travel and comfort that hold points and performance bounds, with a margin."""
     travel, comfort = [point.travel for point in panel.points], [point.comfort for point in panel.points]
     if panel.bracket:
         travel += [1e3 * float(x) for x in panel.bracket.travel]

@@ -1,4 +1,4 @@
-"""What is wrong with a channel of a run, told by its values alone: their range, their shape."""
+"""Faults of a channel of a run that its own values show: their range and their shape."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.quality.run_under_test import MOTION, Array, RunUnderTest
 
 STUCK = 0.5
-"""Seconds without any change that a noisy channel does not have."""
+"""s; a noisy channel without any change for this long is stuck."""
 CLIPPED = 0.002
 """Share of rows at an extreme above which clipping is an error."""
 
 
 def check_ranges(run: RunUnderTest) -> Iterator[Issue]:
-    """Look at constant channels, currents and temperatures."""
+    """Report constant channels, and currents and temperatures out of range."""
     for channel in run.table:
         yield from _constant(run, channel)
     for channel in ("current_command", "coil_current"):
@@ -33,7 +33,7 @@ def _constant(run: RunUnderTest, channel: str) -> Iterator[Issue]:
         text = f"is {values[0]:g} throughout; the sensor is dead: repair it or remove the channel"
         yield run.issue("warning" if channel == "damper_temperature" else "error", "constant", text, channel)
     elif channel in MOTION and run.is_still(channel) and channel != run.driver:
-        text = f"shows hardly more than its noise of {noise:g}; it cannot be judged"
+        text = f"shows hardly more than its noise of {noise:g}; it cannot be assessed"
         yield run.issue("warning", "silent", text, channel)
 
 
@@ -60,7 +60,7 @@ def _temperature(run: RunUnderTest, channel: str) -> Iterator[Issue]:
 
 
 def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
-    """Look for flat tops, held values and stretches without change."""
+    """Report clipped tops, values repeated over several rows, and stretches without change."""
     for channel, values in run.table.items():
         if channel in ("current_command", "command_voltage", "damper_temperature") or np.ptp(values) == 0.0:
             continue

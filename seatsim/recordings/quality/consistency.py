@@ -1,7 +1,7 @@
-"""Data faults that are recognised by correcting them: the channels then contradict the nominal rig far less.
+"""Data faults that are recognised by correcting them: the channels then fit the nominal rig far better.
 
-A fault is named where its correction lowers the consistency residual (see `residual`) grossly, and where the corrected
-channel itself then fits. Correcting an input takes a new simulation.
+A fault is named where its correction lowers the consistency residual (see `residual`) by much, and where the corrected
+channel itself then fits. Correcting an input requires a new simulation.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from seatsim.recordings.quality.run_under_test import MOTION, RunUnderTest, Tabl
 INPUTS = ("floor_acceleration", "displacement", "velocity", "current_command", "command_voltage")
 """Channels that drive the simulation."""
 GROSS, DELAYED = 0.4, 0.2
-"""Fall of the residual from which a fault is named, and a delay. A flipped sign raises e^2 of a channel by up to 2, a
-wrong unit by 1; nominals whose mass, stiffness or damper are far off leave less than 0.4 to be gained by any fault."""
+"""Least fall of the residual for a fault to be named, and for a delay. A flipped sign raises e^2 of a channel by up to
+2, a wrong unit by 1. Where mass, stiffness or damper of the nominal are far off, no correction gains more than 0.4."""
 EXCHANGED, LEFT_BY_EXCHANGE = 0.002, 0.3
-"""Residual of the coil from which currents may be exchanged, and share of it that the exchange leaves at most. A coil
-follows its command so closely that the right way round leaves almost nothing."""
+"""Residual of the coil from which currents may be exchanged, and largest share of it that undoing the exchange leaves.
+A coil follows its command so closely that the right assignment leaves almost nothing."""
 FITS, FITS_DELAYED = 0.5, 0.1
-"""Mean residual up to which what a correction changed counts as fitting; a delay, which any lag resembles, has to fit
-well."""
+"""Largest mean residual of the channels that a correction changed for them to fit, and for a delay; the latter is
+smaller since any lag resembles a delay."""
 CHANGED = 0.05
-"""Change of a residual from which a correction is taken to have changed it."""
+"""Least change of a residual that counts as an influence of the correction."""
 AS_GOOD = 0.1
-"""Fall below the largest one within which another fault explains a run as well."""
+"""Difference to the largest fall of the residual within which another fault explains the run equally well."""
 
 
 def check_exchanged_currents(run: RunUnderTest) -> Iterator[Issue]:
-    """Say where the coil follows from the command much better once the two are exchanged."""
+    """Report a run in which the coil current follows the command much better once the two are exchanged."""
     fault = exchange_fault("current_command", "coil_current")
     if not set(fault.channels) <= set(run.table):
         return
@@ -48,7 +48,7 @@ def _coil_residual(run: RunUnderTest, table: Table) -> float:
 
 
 def check_consistency(run: RunUnderTest) -> Iterator[Issue]:
-    """Name the fault whose correction lowers the residual of a run most, and those that do it as well."""
+    """Name the fault whose correction lowers the residual of a run most, and those that lower it equally."""
     outputs = simulate_nominal(run, run.table)
     before = consistency_residuals(run, run.table, outputs)
     fall = {}
@@ -64,7 +64,7 @@ def check_consistency(run: RunUnderTest) -> Iterator[Issue]:
 
 
 def _possible(run: RunUnderTest, before: Mapping[str, float], outputs: Table | None) -> Iterator[DataFault]:
-    """Yield each fault that could explain such a residual; one on what drives the rig leaves few outputs alone."""
+    """Yield each fault that could explain such a residual; a fault of an input affects most outputs."""
     if sum(before.values()) < DELAYED:
         return
     is_driven_wrong = float(np.median([size for name, size in before.items() if name in MOTION])) > 0.5 * DELAYED
@@ -74,7 +74,7 @@ def _possible(run: RunUnderTest, before: Mapping[str, float], outputs: Table | N
 
 
 def _explains(fault: DataFault, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
-    """Say whether the correction of a fault lowers the residual grossly, and what it changed then fits."""
+    """Say whether the correction of a fault lowers the residual by much and makes the changed channels fit."""
     changed = [name for name in before if abs(before[name] - after[name]) > CHANGED]
     limit, left = (DELAYED, FITS_DELAYED) if fault.kind == "late" else (GROSS, FITS)
     fall = sum(before.values()) - sum(after.values())

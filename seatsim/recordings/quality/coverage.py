@@ -1,6 +1,6 @@
-"""What a recording visited: velocities, travels, currents, temperatures and frequencies, and what it left out.
+"""Operating range of a recording: velocities, travels, currents, temperatures and frequencies, and what is missing.
 
-An effect that acts where the rig has not been cannot be judged, however good the data are. The velocity is the slope of
+An effect outside the recorded range cannot be assessed, however good the data are. The velocity is the slope of
 the displacement below the frequency at which its spectrum meets its noise (a density of 2 noise^2 / sample_rate), or,
 where no displacement is recorded, the integral of frame acceleration - floor acceleration above 0.5 Hz.
 """
@@ -21,9 +21,9 @@ from seatsim.scenario.scenario import Scenario
 Array = NDArray[np.float64]
 PERCENTILES = (0.1, 5.0, 50.0, 95.0, 99.9)
 WARM = 5.0
-"""K above the temperature of the nominal scenario from which thermal fade can be seen."""
+"""K; least warming above the temperature of the nominal scenario at which thermal fade can be seen."""
 DROP, DROP_TIME = 0.1, 0.2
-"""Fall of the current, as a share of the largest, and the seconds within which it counts as one."""
+"""Least drop of the current, as a share of the largest, and the seconds within which it must happen."""
 FULL_CURRENT = 0.8
 """Share of the largest current that must be visited."""
 LARGE_TRAVEL, FAST, LIFT = 0.03, 0.3, 1.0
@@ -48,7 +48,7 @@ Visited = dict[str, VisitedRange]
 
 @dataclass(frozen=True)
 class Coverage:
-    """Seconds recorded, the quantities visited by name, the band of the excitation in Hz, and what is left out."""
+    """Seconds recorded, ranges by quantity, band of the excitation in Hz, and sentences on what is missing."""
 
     seconds: float
     visited: Visited
@@ -57,7 +57,7 @@ class Coverage:
 
 
 def measure_coverage(recording: Recording) -> Coverage:
-    """Return what the runs of a recording visited, and a sentence for each thing that they cannot judge.
+    """Return the operating range of the runs, and a sentence for each thing that they cannot show.
 
     Raises:
         InputError: a table or the nominal scenario cannot be read.
@@ -76,7 +76,7 @@ def measure_coverage(recording: Recording) -> Coverage:
 
 
 def _quantities(recording: Recording, table: dict[str, Array]) -> list[tuple[str, str, Array]]:
-    """Return name, unit and values of what one run visited."""
+    """Return name, unit and values of the quantities of one run."""
     found = []
     for channel in ("suspension_displacement", "displacement"):
         if channel in table:
@@ -101,7 +101,7 @@ def _quantities(recording: Recording, table: dict[str, Array]) -> list[tuple[str
 
 
 def _velocity(recording: Recording, table: dict[str, Array]) -> Array | None:
-    """Return the velocity across the damper in m/s, shape (N,); None where no channel tells it."""
+    """Return the velocity across the damper in m/s, shape (N,); None where no channel determines it."""
     from scipy.signal import butter, sosfiltfilt
 
     rate = recording.header.sample_rate
@@ -166,13 +166,13 @@ def _missing(
     drop: float,
     band: tuple[float, float] | None,
 ) -> list[str]:
-    """Return a sentence for each place where the rig has not been, with what cannot be judged for it."""
+    """Return a sentence for each part of the operating range that is missing, with what it leaves undecided."""
     sentences = [*_missing_motion(recording, visited), *_missing_current(nominal, visited, drop)]
     sentences += [_missing_temperature(nominal, visited.get("temperature"))]
     if recording.header.rig == "seat" and band is not None and not (band[0] < TRUNK[0] and band[1] > TRUNK[1]):
         place = f"the floor shakes between {band[0]:.2g} and {band[1]:.2g} Hz only"
         sentences.append(
-            f"{place}: a driver's inner resonance between {TRUNK[0]:g} and {TRUNK[1]:g} Hz is hard to judge"
+            f"{place}: a driver's inner resonance between {TRUNK[0]:g} and {TRUNK[1]:g} Hz is hard to assess"
         )
     return [sentence for sentence in sentences if sentence]
 
@@ -186,28 +186,28 @@ def _missing_motion(recording: Recording, visited: Visited) -> list[str]:
         )
     elif recording.header.rig == "seat" and max(-travel.low, travel.high) < LARGE_TRAVEL:
         place = f"travel stays within {1e3 * travel.low:.0f} to {1e3 * travel.high:.0f} mm"
-        sentences.append(f"{place}: end stops and progressive springs beyond that cannot be judged")
+        sentences.append(f"{place}: end stops and progressive springs beyond that cannot be assessed")
     if velocity is not None and max(-velocity.percentiles[0], velocity.percentiles[-1]) < FAST:
         reached = max(-velocity.percentiles[0], velocity.percentiles[-1])
-        sentences.append(f"velocity hardly exceeds {reached:.2g} m/s: the damper's force at speed cannot be judged")
+        sentences.append(f"velocity hardly exceeds {reached:.2g} m/s: the damper's force at speed cannot be assessed")
     if driver is not None and driver.low > -LIFT:
         place = f"the driver is never accelerated downwards by more than {max(0.0, -driver.low):.2g} m/s^2"
-        sentences.append(f"{place}: separation from the cushion cannot be judged")
+        sentences.append(f"{place}: separation from the cushion cannot be assessed")
     return sentences
 
 
 def _missing_current(nominal: Scenario, visited: Visited, drop: float) -> list[str]:
     current, most = visited.get("current"), nominal.coil.max_current
     if current is None:
-        return ["no current is recorded: what the coil does cannot be judged apart from the damper"]
+        return ["no current is recorded: what the coil does cannot be assessed apart from the damper"]
     low, high = current.percentiles[0], current.percentiles[-1]
     if high - low < DROP * most:
-        return [f"current stays at {low:.2g} to {high:.2g} A: coil, remanence and saturation cannot be judged"]
+        return [f"current stays at {low:.2g} to {high:.2g} A: coil, remanence and saturation cannot be assessed"]
     sentences = []
     if drop < DROP * most:
-        sentences.append(f"current never drops by more than {drop:.2g} A: remanence cannot be judged")
+        sentences.append(f"current never drops by more than {drop:.2g} A: remanence cannot be assessed")
     if high < FULL_CURRENT * most:
-        sentences.append(f"current never exceeds {high:.2g} A: magnetic saturation beyond that cannot be judged")
+        sentences.append(f"current never exceeds {high:.2g} A: magnetic saturation beyond that cannot be assessed")
     return sentences
 
 
@@ -217,5 +217,5 @@ def _missing_temperature(nominal: Scenario, temperature: VisitedRange | None) ->
         return "no temperature is recorded: thermal fade can only be seen as a weaker damper, not be told by its warmth"
     warmest = temperature.percentiles[-1]
     if warmest - stated < WARM:
-        return f"no run is warmer than {warmest:.0f} degC: thermal fade cannot be judged"
+        return f"no run is warmer than {warmest:.0f} degC: thermal fade cannot be assessed"
     return ""

@@ -1,8 +1,8 @@
-"""What is wrong with a recording, said before anything is fitted.
+"""Examination of a recording for faults, before anything is fitted.
 
-An `error` would lead to a wrong confident verdict, so that diagnosis and gap refuse; a `warning` is said and they
-go on; a `note` is worth knowing. Thresholds are gross, because the gap between a rig and its simulation is no fault
-of the data.
+An `error` would lead to a confident wrong verdict, so diagnosis and gap refuse the recording. A `warning` is stated and
+they continue. A `note` is for information. Thresholds are coarse, because a gap between a rig and its simulation is not
+a fault of the data.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ class Examination:
 
     @property
     def sentences(self) -> list[str]:
-        """What to tell the user, a sentence for each issue."""
+        """A sentence for the user on each issue."""
         return [issue.sentence for issue in self.issues]
 
 
 def examine(recording: Recording) -> Examination:
-    """Look at all runs of a recording and say what is wrong with them; a later check asks only where none found errors.
+    """Return the issues of all runs of a recording; later checks run only where the earlier ones found no error.
 
     Raises:
         InputError: the nominal scenario is wrong.
@@ -55,7 +55,7 @@ def examine(recording: Recording) -> Examination:
 
 
 def refuse(examination: Examination) -> None:
-    """Raise what forbids trusting a recording, in one sentence.
+    """Raise an error, in one sentence, where a recording cannot be trusted.
 
     Raises:
         InputError: there is an error among the issues.
@@ -67,7 +67,7 @@ def refuse(examination: Examination) -> None:
 
 
 def _read(recording: Recording) -> tuple[list[RunUnderTest], list[Issue]]:
-    """Return the runs that can be read, and what is wrong with their clocks or forbids reading them."""
+    """Return the runs that can be read, and the issues of their clocks and of the runs that cannot be read."""
     nominal = single(recording.nominal)
     runs, issues = [], []
     for name in recording.runs:
@@ -82,7 +82,7 @@ def _read(recording: Recording) -> tuple[list[RunUnderTest], list[Issue]]:
 
 
 def _each(run: RunUnderTest) -> list[Issue]:
-    """Return what is wrong with one run; a later check asks only where the earlier ones found no error."""
+    """Return the issues of one run; later checks run only where the earlier ones found no error."""
     issues: list[Issue] = []
     for check in (check_ranges, check_exchanged_currents, check_shapes, check_floor_sensor, check_consistency):
         issues += check(run)
@@ -92,7 +92,7 @@ def _each(run: RunUnderTest) -> list[Issue]:
 
 
 def _merged(issues: Sequence[Issue], runs: int) -> list[Issue]:
-    """Return the issues with those that all runs share said once."""
+    """Return the issues; one that all runs share is stated once."""
     groups: dict[tuple[str, str, str | None], list[Issue]] = {}
     for issue in issues:
         groups.setdefault((issue.severity, issue.kind, issue.channel), []).append(issue)

@@ -20,9 +20,9 @@ UNITS: dict[str, dict[str, float]] = {
 }
 """What a channel of motion or force reads in another unit, per SI unit, by the last word of its name."""
 LONGEST_DELAY = 0.5
-"""Seconds within which a delay is sought: half a period of the slowest motion that is looked at."""
+"""s; largest delay that is sought: half a period of the slowest motion considered."""
 ALIKE = 0.8
-"""Correlation from which a delayed channel is that of the simulation: less may be another motion."""
+"""Least correlation with the simulation for a channel to be its delayed copy: below it may be another motion."""
 
 
 class DataFault(NamedTuple):
@@ -35,7 +35,7 @@ class DataFault(NamedTuple):
 
 
 def list_faults(run: RunUnderTest, outputs: Table | None) -> Iterator[DataFault]:
-    """Yield every fault that a run may have; delays are those against simulated outputs."""
+    """Yield every fault that a run may have; delays are relative to simulated outputs."""
     for channel in run.table:
         yield from _scales(channel)
     for first, second in itertools.combinations(MOTION[:3], 2):
@@ -57,13 +57,13 @@ def _scaled(channel: str, factor: float) -> Callable[[Table], Table]:
 
 
 def exchange_fault(first: str, second: str) -> DataFault:
-    """Return the fault of two channels that stand for each other."""
+    """Return the fault of two channels that are exchanged."""
     says = "are exchanged for each other"
     return DataFault("exchange", (first, second), says, lambda t: {**t, first: t[second], second: t[first]})
 
 
 def _delays(run: RunUnderTest, outputs: Table) -> Iterator[DataFault]:
-    """Yield the delay of each output against the simulation, and that of the floor that would explain the most."""
+    """Yield each output's delay relative to the simulation, and the delay of the floor that explains the most."""
     skip = round(LEFT_OUT * run.rate)
     found = []
     for channel, values in outputs.items():
@@ -82,5 +82,5 @@ def _delay(channel: str, rows: int, rate: float) -> DataFault:
 
 
 def _moved(values: Array, rows: int) -> Array:
-    """Return values taken `rows` earlier, held at the end that runs out."""
+    """Return values shifted `rows` earlier; the end that becomes empty repeats the edge value."""
     return values[np.clip(np.arange(len(values)) + rows, 0, len(values) - 1)]

@@ -1,12 +1,12 @@
-"""Whether the accelerometer of the floor follows it, told by its record alone.
+"""Whether the accelerometer of the floor follows the floor, decided from its record alone.
 
-A smooth motion turns at any value, so that its slope is about as often within its noise as just beside it:
+A smooth motion turns at any value, so the time that its slope spends within its noise is about that just beside it:
 
     stillness = 2 T(|d| < 2 s) / T(2 s <= |d| < 6 s),      s = noise_rms sqrt(12 / rows),
 
-with d the fitted rise over the rows of a window and T a time, is near 1. A sensor that moves in steps or with play
-stands still where the floor does not; near zero the floor may rest as well, and extremes are looked at apart: a sensor
-at its limit shows one more often than what is beside.
+with d the fitted rise over the rows of a window and T the time, is near 1. A sensor that moves in steps or with play
+stands still where the floor does not. Near zero the floor may be at rest too, so values there are left out. Extremes
+are examined separately: a sensor at its limit shows that value more often than the values next to it.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from seatsim.recordings.quality.run_under_test import Array, RunUnderTest, is_at
 from seatsim.recordings.recording import Recording
 
 FLOOR = "floor_acceleration"
-"""Channel of the floor's accelerometer, whose error acts as a motion of the floor would."""
+"""Channel of the floor's accelerometer, whose error acts like a motion of the floor."""
 WINDOW, FEWEST = 0.032, 6
 """Seconds over which a slope is fitted, and least rows."""
 STILL = 3.0
-"""Stillness from which a sensor does not follow; faultless ones have 0.9 to 2."""
+"""Stillness above which a sensor does not follow the floor; faultless ones have 0.9 to 2."""
 FINE = 32
-"""Points between two rows at which slopes are taken, so that the phases of a sine are many."""
+"""Points between two rows at which slopes are taken, so that a sine is sampled at many phases."""
 NEAR = 0.1
 """Share of its standard deviation within which a record is near zero."""
 BIN, BESIDE = 7.0, 3
@@ -35,11 +35,11 @@ BIN, BESIDE = 7.0, 3
 LEAST = 1e-9
 """m/s^2 of noise that a record has at least."""
 PILED, FEW = 5.0, 12
-"""Ratio of rows at an extreme to those in a bin beside it from which it is a limit, and least rows of one."""
+"""Ratio of rows at an extreme to rows in a bin beside it above which it is a limit, and least rows at a limit."""
 
 
 def check_floor_sensor(run: RunUnderTest) -> Iterator[Issue]:
-    """Look for an accelerometer of the floor that stands still while the floor moves."""
+    """Report an accelerometer of the floor that stands still while the floor moves."""
     if FLOOR in run.table:
         for kind, text in _faults(run.table[FLOOR], run.noise(FLOOR), run.rate):
             yield run.issue("warning", kind, text, FLOOR)
@@ -52,7 +52,7 @@ def follows_floor(recording: Recording) -> bool:
 
 
 def _faults(values: Array, noise: float, rate: float) -> list[tuple[str, str]]:
-    """Return kind and text of what a record shows; nothing where the floor rests."""
+    """Return kind and text of the issues of a record; nothing where the floor is at rest."""
     noise = max(noise, LEAST)
     if is_at_rest(values, noise):
         return []

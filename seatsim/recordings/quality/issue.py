@@ -1,4 +1,4 @@
-"""What an examination finds."""
+"""Issues that an examination finds."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ Severity = Literal["error", "warning", "note"]
 
 
 class Issue(NamedTuple):
-    """One thing found; `kind` is a word for it, `channel` and `run` are None where it is about all of them.
+    """One issue; `kind` is a word for it, `channel` and `run` are None where it concerns all of them.
 
     `sentence` names the place and says what to do about it.
     """
@@ -28,5 +28,5 @@ def issue_in_all_runs(severity: Severity, kind: str, text: str, channel: str | N
 
 
 def select_errors(issues: Sequence[Issue]) -> list[Issue]:
-    """Return the issues that forbid trusting a recording."""
+    """Return the issues because of which a recording cannot be trusted."""
     return [issue for issue in issues if issue.severity == "error"]

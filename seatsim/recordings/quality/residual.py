@@ -1,4 +1,4 @@
-"""How badly the channels of a run fit a simulation, and each other.
+"""The consistency residual: how badly the channels of a run fit a simulation, and each other.
 
 With `e(a, b) = rms(a - b) / sqrt(rms(a)^2 + rms(b)^2)` (0 alike, 1 unrelated or of another size, 1.41 opposite) between
 0.5 and 8 Hz, the consistency residual of a run is the sum of e^2 over
@@ -7,8 +7,8 @@ With `e(a, b) = rms(a - b) / sqrt(rms(a)^2 + rms(b)^2)` (0 alike, 1 unrelated or
     x'' against frame acceleration - floor acceleration (a bench: x' against velocity),
     Fd against -(ms zs'' + m zc'' + kf x + cf x'),
 
-where the channels are there. The band holds what a seat and its nominal simulation agree on even where the nominal is
-rough: below it drift and bias reign, above it noise, friction and the cushion.
+where the channels are recorded. In this band a seat and its nominal simulation agree even where the nominal is rough.
+Below it drift and bias dominate, above it noise, friction and the cushion.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def _filter(rate: float, on_seat: bool) -> Array:
 
 
 def find_delay(first: Array, second: Array, most: int) -> tuple[int, float]:
-    """Return by how many rows the first is late against the second, and their correlation then."""
+    """Return the delay of the first relative to the second in rows, and their correlation at that delay."""
     from scipy.signal import correlate
 
     product = correlate(first, second, mode="full", method="fft")[len(second) - 1 - most : len(second) + most]

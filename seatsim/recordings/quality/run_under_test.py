@@ -1,4 +1,4 @@
-"""A run under examination: its table, and what its recording says about it."""
+"""A run under examination: its table, and the statements of its recording about it."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ MOTION = (
 )  # fmt: skip
 """Channels of motion and force, which swing about zero and are never at rest for long."""
 LATE = 0.05
-"""Seconds by which no channel of a healthy recording is late, and that its rows may lack; a slow coil twice that.
+"""s; least delay of a channel that is a fault of the data, and largest loss of rows; a slow coil may be twice as late.
 
-A sensor or logger that is late by less is a cause of a gap (sensor.lag, sensor.clock_skew) for the diagnosis to find.
+A smaller delay of a sensor or logger is a cause of a gap (sensor.lag, sensor.clock_skew) for the diagnosis to find.
 """
 AT_REST = 3.0
 """Standard deviation, over the stated noise, up to which a channel is taken to be at rest: noise is stated roughly."""
@@ -35,7 +35,7 @@ def is_at_rest(values: Array, noise: float) -> bool:
 
 
 class RunUnderTest(NamedTuple):
-    """One run under examination: its table, and what the recording says about it."""
+    """One run under examination: its table, and the statements of the recording about it."""
 
     name: str
     table: Table

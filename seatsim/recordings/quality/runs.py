@@ -1,4 +1,4 @@
-"""What is wrong with whole runs: their clock, their length, what they share, the noise and units stated for all."""
+"""Faults of whole runs: their clock, their length, repetitions, and the noise and units stated for all."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from seatsim.recordings.quality.run_under_test import LATE, MOTION, Array, RunUn
 from seatsim.rig.temperature import Thermal
 
 SHORTEST, SHORT = 4.0, 10.0
-"""Seconds compared in all runs together below which nothing can be diagnosed, or not well."""
+"""s; compared time of all runs together below which nothing can be diagnosed, or not well."""
 NOISE_OFF = 3.0
 """Factor by which the noise may differ from what is stated."""
 
@@ -44,7 +44,7 @@ def check_clock(run: RunUnderTest) -> Iterator[Issue]:
 
 
 def check_all_runs(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
-    """Look at all runs together."""
+    """Report faults that need all runs together."""
     for check in (_length, _duplicates, _repeats, _at_rest, _noise, _fahrenheit):
         yield from check(runs)
 
@@ -81,7 +81,7 @@ def _repeats(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
 
 
 def _is_repeat(run: RunUnderTest, other: RunUnderTest) -> bool:
-    """Say whether two runs have one excitation, up to a shift of a second."""
+    """Say whether two runs have the same excitation, up to a shift of a second."""
     first, second = (filter_band(r, r.table[r.driver]) for r in (run, other))
     rows = min(len(first), len(second))
     return find_delay(first[:rows], second[:rows], round(run.rate))[1] > 0.8
@@ -112,7 +112,7 @@ def _noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
 
 
 def _white(values: Array, rate: float) -> tuple[float, float]:
-    """Return the noise in third and in fourth differences of the quietest fifth of the half seconds; white: alike."""
+    """Return the noise from third and from fourth differences in the quietest fifth of half seconds; equal if white."""
     rows = max(round(0.5 * rate), 50)
     windows = len(values) // rows
     if windows < 4:
@@ -127,7 +127,7 @@ def _white(values: Array, rate: float) -> tuple[float, float]:
 
 
 def _fahrenheit(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
-    """Say where the lowest temperature, taken as degF, is the one that the nominal scenario states."""
+    """Report a lowest temperature that, read as degF, is the one that the nominal scenario states."""
     channel, nominal = "damper_temperature", runs[0].nominal.temperature
     stated = nominal.start if isinstance(nominal, Thermal) else nominal
     low = min((float(np.min(run.table[channel])) for run in runs if channel in run.table), default=stated)

@@ -125,7 +125,7 @@ def test_what_no_experiment_parts_is_said_so(folder):
     nuisances = linearise(objective, (offer("x.slow", "slow"), 0.8))
     found = propose_experiment(objective, nuisances, GROUP)
     assert (found.kind, found.name, found.scenario) == ("none", "none on the menu", None)
-    assert found.reason.startswith("none on the menu separates them: the best, ")
+    assert found.reason.startswith("no candidate experiment separates them: the best, ")
     assert found.reason.endswith(" does so by 0.0 times the noise only")
     assert found.likeness_now > 0.999 and found.likeness_then > 0.999
 
@@ -156,7 +156,7 @@ def test_of_those_that_separate_the_one_under_which_members_are_least_alike_is_c
     seen = [verdict(31.0, 0.95, "a"), verdict(90.0, 0.92, "b"), verdict(1000.0, 0.97, "c"), verdict(29.0, 0.1, "d")]
     found = experiment._choose(objective, seen, "first; ", 0.98764)
     assert (found.kind, found.name) == ("intervention", "b")
-    assert found.reason == "first; do it: they then differ by 90 times the noise, alikeness 0.92 instead of 0.99"
+    assert found.reason == "first; do it: they then differ by 90 times the noise, likeness 0.92 instead of 0.99"
     assert (found.likeness_now, found.likeness_then) == (0.9876, 0.92)
 
 
@@ -164,7 +164,7 @@ def test_where_none_separates_the_best_is_named_but_not_proposed(equivalent):
     seen = [verdict(3.0, 0.2, "a"), verdict(30.0, 0.9, "b", {"excitation": {}}), verdict(5.0, 0.1, "c")]
     found = experiment._choose(equivalent[0], seen, "", 1.0)
     assert (found.kind, found.name, found.scenario) == ("none", "none on the menu", None)
-    assert found.reason == "none on the menu separates them: the best, b, does so by 30.0 times the noise only"
+    assert found.reason == "no candidate experiment separates them: the best, b, does so by 30.0 times the noise only"
     assert found.likeness_then == 0.9
 
 

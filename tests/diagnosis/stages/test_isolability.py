@@ -99,7 +99,7 @@ def test_the_sensor_stands_once_with_the_first_block_that_it_could_be_taken_for(
     assert groups == [["damper", "sensor"], ["coil"]]
 
 
-NEVER = "damper and sensor cannot be told apart by any channel: only the form of an effect, or a repeat of a run, can"
+NEVER = "damper and sensor cannot be distinguished by any channel: only the form of an effect, or a repeat of a run, can"
 
 
 @pytest.mark.parametrize(
@@ -109,13 +109,13 @@ NEVER = "damper and sensor cannot be told apart by any channel: only the form of
         ({"displacement", "damper_force"}, [NEVER]),
         (
             {"displacement", "damper_force", "coil_current"},
-            ["without current_command, coil cannot be judged: log the commanded current", NEVER],
+            ["without current_command, coil cannot be assessed: log the commanded current", NEVER],
         ),
         # With a load cell the sensor of the current checks damper and coil, so that it is told from the coil.
         (
             {"displacement", "coil_current", "current_command"},
             [
-                "without damper_force, sensor and coil cannot be told apart and damper cannot be judged: add a load"
+                "without damper_force, sensor and coil cannot be distinguished and damper cannot be assessed: add a load"
                 " cell at the damper",
                 NEVER,
             ],
@@ -124,7 +124,7 @@ NEVER = "damper and sensor cannot be told apart by any channel: only the form of
         (
             {"displacement", "damper_force", "command_voltage"},
             [
-                "without coil_current, damper or sensor and coil cannot be told apart: log the current of the coil",
+                "without coil_current, damper or sensor and coil cannot be distinguished: log the current of the coil",
                 NEVER,
             ],
         ),
@@ -140,10 +140,10 @@ def test_a_seat_without_the_driver_lists_what_cannot_be_told_and_what_cannot_be_
         "coil_current", "current_command",
     }  # fmt: skip
     assert describe_missing_sensors("seat", full - {"driver_acceleration", "damper_force"}) == [
-        "without damper_force, damper and suspension or cushion or driver cannot be told apart: add a load cell at the"
+        "without damper_force, damper and suspension or cushion or driver cannot be distinguished: add a load cell at the"
         " damper",
-        "without driver_acceleration, damper or suspension, cushion and driver cannot be told apart: add an"
+        "without driver_acceleration, damper or suspension, cushion and driver cannot be distinguished: add an"
         " accelerometer at the driver",
-        "suspension and floor cannot be told apart by any channel: only the form of an effect, or a repeat of a run,"
+        "suspension and floor cannot be distinguished by any channel: only the form of an effect, or a repeat of a run,"
         " can",
     ]

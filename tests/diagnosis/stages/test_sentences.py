@@ -85,6 +85,6 @@ def test_of_several_effects_each_group_is_named():
 
 def test_a_random_signal_keeps_its_share_of_the_gap():
     sentence = write_answer(diagnosis("known", [PUSH.effect], stochastic=PUSH.effect))
-    assert sentence.endswith("0.052); its random course cannot be foretold, so that its share of the gap stays.")
+    assert sentence.endswith("0.052); its random signal cannot be predicted, so that its share of the gap stays.")
     assert sentence.startswith("floor.unmeasured_input (a force on the frame that no channel records): it takes 75%")
     assert not any(word in write_answer(diagnosis("known", ["driver.mass"])) for word in ("random", "foretold"))

@@ -223,7 +223,7 @@ def test_a_stochastic_effect_is_selected_with_the_strength_of_its_signal(objecti
     assert found.selected == [ONE.effect, "floor.unmeasured_input"] and found.stochastic == "floor.unmeasured_input"
     strong = {each.effect: each.parameters for each in found.causes}
     assert strong["floor.unmeasured_input"]["rms"].value == pytest.approx(5.0)
-    assert "rms" not in strong[ONE.effect] and "its random course" in found.sentence
+    assert "rms" not in strong[ONE.effect] and "its random signal" in found.sentence
     assert found.evidence.discrepancy.block == "suspension"
 
 

@@ -16,7 +16,7 @@ def test_coverage_says_what_was_visited_and_what_was_not(copy):
     assert set(seen.visited) == {"travel", "velocity", "current", "temperature", "driver"}
     table = load_recording(copy).table("run-1")
     assert seen.visited["travel"].high >= np.max(table["suspension_displacement"])
-    assert "no run is warmer than 20 degC: thermal fade cannot be judged" in seen.missing
+    assert "no run is warmer than 20 degC: thermal fade cannot be assessed" in seen.missing
     rewrite(copy, lambda f: f.assign(coil_current=0.4 + 0.01 * np.sin(f.time), damper_temperature=60.0))
     missing = " ".join(measure_coverage(load_recording(copy)).missing)
     assert "remanence" in missing

@@ -1,1 +1,1 @@
-"""Equations of the true rig and their integration; which parameters depart from nominal is none of its business."""
+"""Equations of the true rig and their integration; `faults` decides which parameters depart from nominal."""

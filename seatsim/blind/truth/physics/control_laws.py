@@ -11,7 +11,7 @@ from seatsim.blind.truth.physics.parameters import RigParameters
 
 SCHEDULE, SKYHOOK, FEEDBACK = 0.0, 1.0, 2.0
 """Kinds of law; numbers, because compiled code reads them from the vector."""
-# What the feedback believes of the damper when it turns a force into a current: friction, N; viscous damping, N s/m;
+# The feedback's assumed damper model, by which it turns a force into a current: friction, N; viscous damping, N s/m;
 # yield force, N/A; rise of the viscous damping with current, N s/(m A). Near the nominal damper and never exact, as in
 # a real controller.
 FRICTION, VISCOUS, YIELD_GAIN, VISCOUS_GAIN = 40.0, 250.0, 600.0, 350.0

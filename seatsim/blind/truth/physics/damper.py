@@ -99,7 +99,7 @@ def write_yield_rates(y: Array, rates: Array, v: float, p: RigParameters) -> Non
     """
     if p.is_bingham == 0.0:
         z = y[state.Z]
-        # the two common exponents without a power, which would be the dearest operation of the loop
+        # the two common exponents without a power, which would be the most expensive operation of the loop
         size = abs(z) if p.n == 1.0 else abs(z) ** (p.n - 1.0)
         if p.n == 2.0:
             size = abs(z)

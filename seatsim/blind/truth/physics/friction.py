@@ -9,7 +9,7 @@ from seatsim.blind.truth.physics.compiled import compiled
 FASTEST = 15000.0
 """Bound on the rate of a bristle, 1/s: 1.5 per step of 0.1 ms, inside the stability limit of Runge-Kutta 4 (2.78)."""
 MICRO_DAMPING = 0.001
-"""Damping of the bristles, s: what keeps stick from ringing; it acts below the Stribeck speed only."""
+"""Damping of the bristles, s: keeps a sticking friction from ringing; it acts below the Stribeck speed only."""
 
 
 @compiled
