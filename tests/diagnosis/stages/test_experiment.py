@@ -48,7 +48,7 @@ def test_the_cheapest_experiment_that_parts_the_members_is_proposed(equivalent):
     assert (found.kind, found.name) == ("excitation", "sweep")
     assert found.likeness_now > 0.99 and found.likeness_then < found.likeness_now
     assert found.reason.startswith("sweep the floor from 1 to 20 Hz at 1.5 m/s^2: they then differ by ")
-    assert found.reason.endswith(f", alikeness {found.likeness_then:.2f} instead of {found.likeness_now:.2f}")
+    assert found.reason.endswith(f", likeness {found.likeness_then:.2f} instead of {found.likeness_now:.2f}")
     assert found.scenario["name"] == "experiment-sweep"
 
 
