@@ -99,7 +99,9 @@ def test_the_sensor_stands_once_with_the_first_block_that_it_could_be_taken_for(
     assert groups == [["damper", "sensor"], ["coil"]]
 
 
-NEVER = "damper and sensor cannot be distinguished by any channel: only the form of an effect, or a repeat of a run, can"
+NEVER = (
+    "damper and sensor cannot be distinguished by any channel: only the form of an effect, or a repeat of a run, can"
+)
 
 
 @pytest.mark.parametrize(
@@ -115,8 +117,8 @@ NEVER = "damper and sensor cannot be distinguished by any channel: only the form
         (
             {"displacement", "coil_current", "current_command"},
             [
-                "without damper_force, sensor and coil cannot be distinguished and damper cannot be assessed: add a load"
-                " cell at the damper",
+                "without damper_force, sensor and coil cannot be distinguished and damper cannot be assessed: add a"
+                " load cell at the damper",
                 NEVER,
             ],
         ),
@@ -140,8 +142,8 @@ def test_a_seat_without_the_driver_lists_what_cannot_be_told_and_what_cannot_be_
         "coil_current", "current_command",
     }  # fmt: skip
     assert describe_missing_sensors("seat", full - {"driver_acceleration", "damper_force"}) == [
-        "without damper_force, damper and suspension or cushion or driver cannot be distinguished: add a load cell at the"
-        " damper",
+        "without damper_force, damper and suspension or cushion or driver cannot be distinguished: add a load cell at"
+        " the damper",
         "without driver_acceleration, damper or suspension, cushion and driver cannot be distinguished: add an"
         " accelerometer at the driver",
         "suspension and floor cannot be distinguished by any channel: only the form of an effect, or a repeat of a run,"
