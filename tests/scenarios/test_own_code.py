@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 import seatsim
+from seatsim.blind.processes import run_jobs
 from seatsim.cli.app import main
-from seatsim.cli.outputs import diagnosis
+from seatsim.scenario.describe import describe
 from seatsim.schema.modules import MissingModuleError, import_named, use, use_all, used_files
 from seatsim.schema.registry import find, names
 
@@ -240,15 +241,7 @@ def test_worker_processes_know_the_same_files(power_law):
     assert back == record and type(back) is type(record)
 
 
-def test_a_blind_set_is_diagnosed_with_the_files_in_use(power_law, tmp_path, monkeypatch):
+def test_worker_processes_have_the_files_in_use(power_law):
     use(power_law)
-    given = {}
-
-    class Pool(ProcessPoolExecutor):
-        def __init__(self, *args, **options):
-            given.update(options)
-            super().__init__(*args, **options)
-
-    monkeypatch.setattr(diagnosis, "ProcessPoolExecutor", Pool)
-    diagnosis.diagnose_all(tmp_path, lambda done, total: None)
-    assert (given["initializer"], given["initargs"]) == (use_all, ((power_law,),))
+    pages = run_jobs(describe, [("power_law",), ("power_law",)], 2)
+    assert pages[0] == pages[1] == describe("power_law")
