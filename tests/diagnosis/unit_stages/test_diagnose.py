@@ -85,7 +85,7 @@ def test_a_dead_sensor_is_such_an_error(tmp_path, monkeypatch):
     (tmp_path / "recording.yaml").write_text(HEADER)
     rows = [f"{k / 200.0},{value},0.0" for k, value in enumerate(floor)]
     (tmp_path / "first.csv").write_text("\n".join(["time,floor_acceleration,driver_acceleration", *rows]))
-    with pytest.raises(InputError, match=r"driver_acceleration is 0 throughout; the sensor is dead"):
+    with pytest.raises(InputError, match=r"first, driver_acceleration: is 0 throughout; the sensor is dead"):
         diagnose(tmp_path)
 
 
