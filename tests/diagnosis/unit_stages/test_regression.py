@@ -87,7 +87,7 @@ def problem(folder):
     """A seat whose current changes slowly, and whose noise is little."""
     runs = {"first": 600, "second": 600}
     commands = {
-        run: 0.5 + 0.4 * np.sin(np.arange(SKIP + rows) / 30.0 + k) for k, (run, rows) in enumerate(runs.items())
+        run: 0.5 + 0.4 * np.sin(np.arange(SKIP + rows) / 40.0 + k) for k, (run, rows) in enumerate(runs.items())
     }
     return pose(record(folder, runs=runs, channels=CHANNELS, commands=commands, noise=0.01))
 
