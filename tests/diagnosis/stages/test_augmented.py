@@ -68,7 +68,11 @@ def test_effects_are_appended_with_all_their_parameters(problem, tmp_path):
         {"effect": "sensor.bias", "parameters": {"channel": "damper_force", "share": 0.25, "drift": 0.0}},
         {"effect": "driver.biodynamics", "parameters": {"share": 0.3, "frequency": 4.5, "damping": 0.2}},
     ]
-    assert other.scenario.source.data["effects"] == [{"effect": "driver.mass", "parameters": {"change": 3}}]
+    # Neither the list nor what it holds is that of the file.
+    other.scenario.source.data["effects"][0]["parameters"]["change"] = 4
+    content = write_augmented(other, rig)
+    content["effects"][0]["parameters"]["change"] = 3
+    assert other.scenario.source.data["effects"] == [{"effect": "driver.mass", "parameters": {"change": 4}}]
 
 
 def test_a_section_that_the_file_lacks_is_made(problem):

@@ -19,8 +19,8 @@ EXCITED = ["bump", "sweep", "large_slow_sine", "very_slow_sine", "current_steps"
 @pytest.fixture(scope="module")
 def seat(folder):
     """A seat whose coil takes 2 A, with all channels but the current's and the load cell's."""
-    rows = np.full(440, 0.2)
-    problem = pose(record(folder, runs={"first": 240}, channels=CHANNELS[:3], commands={"first": rows}))
+    commands = {"first": np.full(440, 0.2), "second": np.full(500, 0.4)}
+    problem = pose(record(folder, runs={"first": 240, "second": 300}, channels=CHANNELS[:3], commands=commands))
     coil = problem.scenario.coil._replace(max_current=2.0)
     return dataclasses.replace(problem, scenario=dataclasses.replace(problem.scenario, coil=coil))
 

@@ -20,7 +20,7 @@ def make_objective(folder, nuisances=2, truth=(), **settings):
 
 
 def linearise(objective, *terms):
-    """Return the linearisation of the rig with terms (candidate, value), which need no fit here."""
+    """Return the linearisation of the rig with terms (candidate, values), which need no fit here."""
     rig = objective.evaluate([place(objective.problem, *terms)])[0]
     return objective.linearise_nuisances(rig)
 
@@ -92,6 +92,14 @@ def test_an_effect_that_the_rig_lacks_is_made_as_large_as_the_largest_fitted_one
     names, matrix = compare(objective, nuisances, "a", "driver.biodynamics", "b")
     assert names[1] == "driver.biodynamics"
     assert matrix[0, 1] == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_fitted_effect_keeps_its_size_beside_a_larger_one(folder):
+    objective = make_objective(folder)
+    bent = next(c for c in list_candidates(objective.problem) if c.effect == "driver.biodynamics")
+    nuisances = linearise(objective, (offer("a", "two"), 3.0), (bent, 0.3, 5.0, 0.3))
+    expected = cosine(leave(objective, whiten(objective, "two")), leave(objective, bend(objective, 0.3)))
+    assert compare(objective, nuisances, "a", bent.effect).matrix[0, 1] == pytest.approx(expected, abs=1e-6)
 
 
 def test_without_any_fitted_effect_candidates_keep_their_starts(folder):
@@ -204,3 +212,8 @@ def test_only_the_best_structures_are_fitted(rubbing):
     best, few = count_fits(objective, nuisances, 1)
     all_fitted, many = count_fits(objective, nuisances, 3)
     assert few < many and all_fitted.cost <= best.cost
+    starts = [(c, c.start[0]) for c in list_candidates(objective.problem) if c.effect == "sensor.gain"]
+    base = nuisances.evaluation.parameters.remove("x.one")
+    costs = {c.fixed["channel"]: each.cost for (c, _), each in zip(
+        starts, objective.evaluate([base.add(c, np.array(c.start)) for c, _ in starts]), strict=True)}  # fmt: skip
+    assert best.parameters.terms[-1].fixed["channel"] == min(costs, key=costs.get)

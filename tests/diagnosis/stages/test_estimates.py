@@ -192,6 +192,19 @@ def test_without_any_single_effect_nothing_is_estimated(found):
     assert [cause.effect for cause in causes] == ["a.one", "d.absent", "c.absent", "b.twice"]
 
 
+def test_an_effect_behind_one_with_several_parameters_has_its_own_deviation(folder):
+    objective = pose_one(folder)
+    problem, term = objective.problem, offer("c.three", "three", start=0.25)
+    chosen = objective.evaluate([place(problem, (TWICE, 0.5, 0.0), (term, 0.1))])[0]
+    calibrated = objective.evaluate([place(problem)])[0]
+    decision = Decision("known", chosen, [], {"b.twice": 0.9, "c.three": 0.8}, 0.0, 0.0)
+    selection, nominal = Selection(calibrated, ((calibrated,),)), single(folder / "nominal.yaml")
+    twice, third = estimate_causes(objective, selection, decision, calibrated, chosen, nominal, "first")
+    std = scatter(objective, ["one", "two", "three"], max(1.0, chosen.cost / chosen.rows))[2:]
+    stated = [twice.parameters["first"].std, twice.parameters["second"].std, third.parameters["amount"].std]
+    assert stated == pytest.approx(list(std), rel=1e-5)
+
+
 def test_traces_show_the_compared_channels_of_three_rigs(folder):
     problem = pose(record(folder, channels=CHANNELS[:3]))
     rigs = [place(problem), place(problem, deviations=[1.0, 0.0]), place(problem, (offer("a", "one"), 0.5))]

@@ -161,11 +161,12 @@ def test_of_those_that_separate_the_one_under_which_members_are_least_alike_is_c
 
 
 def test_where_none_separates_the_best_is_named_but_not_proposed(equivalent):
-    seen = [verdict(3.0, 0.2, "a"), verdict(30.0, 0.9, "b", {"excitation": {}}), verdict(5.0, 0.1, "c")]
+    seen = [verdict(3.0, 0.2, "a"), verdict(30.0, 0.6, "b", {"excitation": {}}), verdict(5.0, 0.9, "c")]
     found = experiment._choose(equivalent[0], seen, "", 1.0)
     assert (found.kind, found.name, found.scenario) == ("none", "none on the menu", None)
     assert found.reason == "no candidate experiment separates them: the best, b, does so by 30.0 times the noise only"
-    assert found.likeness_then == 0.9
+    assert found.likeness_then == 0.6
+    assert experiment._choose(equivalent[0], seen[1:2], "", 1.0).kind == "none"
 
 
 def test_an_excitation_has_a_scenario_without_what_is_not_repeated(equivalent):

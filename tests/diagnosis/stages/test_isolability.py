@@ -4,6 +4,9 @@ A test is a set of equations with one unknown less than equations; a block that 
 blocks are told apart where a test holds one of them and not the other.
 """
 
+import itertools
+
+import numpy as np
 import pytest
 
 from seatsim.diagnosis.design.isolability import (
@@ -87,6 +90,47 @@ def test_every_channel_more_is_an_equation_more():
     before = find_isolable_groups("seat", channels)
     # A sensor that measures no unknown of the rig, and a key that is none, change nothing.
     assert find_isolable_groups("seat", {*channels, "damper_temperature", "no_channel"}) == before
+
+
+LINES = [
+    ("floor", "frame_acc spring cushion_force damper"), ("suspension", "spring x v"), 
+    ("driver", "driver_acc cushion_force"),
+    ("cushion", "cushion_force xc vc"), ("damper", "damper x v i"), ("", "x v"), ("", "v frame_acc floor_acc"),
+    ("", "xc vc"), ("", "vc driver_acc frame_acc"),
+]  # fmt: skip
+"""The seat once more: force balance of frame and driver, laws of spring, cushion and damper, and derivatives."""
+MEASURED = {
+    "floor_acceleration": "floor_acc", "frame_acceleration": "frame_acc", "driver_acceleration": "driver_acc",
+    "suspension_displacement": "x", "damper_force": "damper", "coil_current": "i",
+}  # fmt: skip
+
+
+def group_by_rank(channels):
+    """Return the groups of blocks but sensors, by ranks of the equations with random coefficients.
+
+    An equation is in a test where the others have the rank of all, and apart from another where that holds without it.
+    """
+    lines = LINES + ([("coil", "i")] if "current_command" in channels or "coil_current" not in channels else [])
+    lines += [("sensor", MEASURED[name]) for name in channels if name in MEASURED]
+    unknowns = sorted({name for _, names in lines for name in names.split()})
+    matrix = np.array([[name in names.split() for name in unknowns] for _, names in lines], dtype=float)
+    matrix *= np.random.default_rng(1).uniform(1.0, 2.0, matrix.shape)
+
+    def is_tested(k, without=()):
+        left = [row for row in range(len(lines)) if row not in without]
+        return np.linalg.matrix_rank(matrix[[row for row in left if row != k]]) == np.linalg.matrix_rank(matrix[left])
+
+    blocks = {block: k for k, (block, _) in enumerate(lines) if block not in ("", "sensor")}
+    tested = [block for block, k in blocks.items() if is_tested(k)]
+    together = {a: frozenset(b for b in tested if not is_tested(blocks[a], (blocks[b],)) or a == b) for a in tested}
+    return set(together.values())
+
+
+@pytest.mark.parametrize("size", range(1, 8))
+def test_groups_are_those_of_ranks_of_the_seats_equations(size):
+    for channels in itertools.combinations([*MEASURED, "current_command"], size):
+        found = {frozenset(group) - {"sensor"} for group in find_isolable_groups("seat", channels)} - {frozenset()}
+        assert found == group_by_rank(channels), channels
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -210,11 +210,11 @@ def draw_residuals(monkeypatch, folder):
     """Return a function that draws residuals of two rigs, whose blocks differ in strength, and bootstraps them."""
     problem = pose(record(folder), validation={"excitation_std": 0.0, "block_length": LENGTH / RATE, "draws": 200})
 
-    def bootstrap(rng, shrink, correlation=0.0, spread=0.0):
+    def bootstrap(rng, shrink, correlation=0.0, spread=0.0, problem=problem):
         strength = np.repeat(rng.uniform(0.5, 1.5, BLOCKS), LENGTH)
         first, second = rng.standard_normal((2, 2, BLOCKS * LENGTH))
-        second = (1.0 - shrink) * (correlation * first + np.sqrt(1.0 - correlation**2) * second)
-        measured = dict(zip(("x", "y"), 10.0 * rng.standard_normal((2, BLOCKS * LENGTH)), strict=True))
+        second = (1.0 - np.reshape(shrink, (-1, 1))) * (correlation * first + np.sqrt(1.0 - correlation**2) * second)
+        measured = dict(zip(("x", "y"), [[30.0], [1.0]] * rng.standard_normal((2, BLOCKS * LENGTH)), strict=True))
         left = [strength * first, strength * second]
         # Both rigs miss what was measured by residuals that are small beside it.
         outputs = {
@@ -247,3 +247,17 @@ def test_an_interval_narrows_where_both_rigs_miss_alike(draw_residuals):
 def test_a_spread_from_run_to_run_widens_it(draw_residuals):
     (low, high), _ = draw_residuals(np.random.default_rng(3), 0.3, 1.0, spread=0.2)
     assert high - low == pytest.approx(2.0 * 1.645 * 0.2, rel=0.15)
+
+
+def test_channels_count_in_their_standard_deviations(draw_residuals):
+    # Half of the power goes to 0.04 of it, the other half stays.
+    (low, high), point = draw_residuals(np.random.default_rng(3), [0.8, 0.0], 1.0)
+    assert point == pytest.approx(1.0 - np.sqrt(0.52), abs=0.05) and low <= point <= high
+    assert high - low < 0.1
+
+
+@pytest.mark.parametrize("percentiles", [(95.0, 99.0), (1.0, 5.0)])
+def test_an_interval_that_misses_its_shrink_is_widened_to_it(draw_residuals, folder, percentiles):
+    changed = {"excitation_std": 0.0, "block_length": LENGTH / RATE, "percentiles": percentiles}
+    (low, high), point = draw_residuals(np.random.default_rng(3), 0.5, problem=pose(record(folder), validation=changed))
+    assert (low if percentiles[0] > 50.0 else high) == point and low < high
