@@ -56,7 +56,8 @@ def estimate_causes(
         if single is not None:
             with_it = make_scenario(problem, nominal, single.parameters)
             shrink = 1.0 - measure_gap(with_it, problem.recording, [run]).overall / base
-            estimates = _estimate_parameters(objective, single, about_calibrated)[effect]
+            if effect not in chosen:
+                estimates = _estimate_parameters(objective, single, about_calibrated)[effect]
         causes.append(Cause(effect, probability, shrink, chosen.get(effect, estimates)))
     return sorted(causes, key=lambda cause: (-cause.probability, -cause.shrink))
 
