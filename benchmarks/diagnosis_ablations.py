@@ -92,7 +92,7 @@ def select_fed(
         return select_effects(objective, candidates, progress, largest)
     fed = select_effects(feed_objective(objective), candidates, progress, largest)
     calibrated = objective.evaluate([fed.calibrated.parameters])[0]
-    return FedSelection(fed.nominal, ((calibrated,), *fed.sets[1:]), fed, objective)
+    return FedSelection(fed.nominal, ((calibrated,), *fed.sets[1:]), (), fed, objective)
 
 
 def decide_fed(problem: DiagnosisProblem, selection: Selection, effects: Sequence[str]) -> Decision:

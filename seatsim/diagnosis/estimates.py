@@ -47,8 +47,11 @@ def estimate_causes(
     singles = {each.parameters.terms[0].effect: each for each in selection.sets[1]} if len(selection.sets) > 1 else {}
     # Single effects share one linearisation of the nuisances, about the calibrated rig: one each would take longer than
     # the fits. The chosen effects, whose figures the user acts on, have their own.
-    about_calibrated = objective.linearise_nuisances(selection.calibrated)
-    chosen = _estimate_chosen(objective.on_runs(list(augmented.whitened)), augmented)
+    about_calibrated = selection.linearise_nuisances(objective, selection.calibrated)
+    chosen = dict[str, dict[str, Estimate | str]]()
+    if augmented.parameters.terms:
+        fitted = objective.on_runs(list(augmented.whitened))
+        chosen = _estimate_parameters(fitted, augmented, selection.linearise_nuisances(fitted, augmented))
     causes = []
     for effect, probability in decision.probabilities.items():
         shrink, estimates = 0.0, dict[str, Estimate | str]()
@@ -60,13 +63,6 @@ def estimate_causes(
                 estimates = _estimate_parameters(objective, single, about_calibrated)[effect]
         causes.append(Cause(effect, probability, shrink, chosen.get(effect, estimates)))
     return sorted(causes, key=lambda cause: (-cause.probability, -cause.shrink))
-
-
-def _estimate_chosen(objective: Objective, augmented: Evaluation) -> dict[str, dict[str, Estimate | str]]:
-    """Return the estimates of the effects chosen, with the nuisances linearised where they were fitted."""
-    if not augmented.parameters.terms:
-        return {}
-    return _estimate_parameters(objective, augmented, objective.linearise_nuisances(augmented))
 
 
 def _estimate_parameters(

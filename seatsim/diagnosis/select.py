@@ -14,15 +14,29 @@ from seatsim.diagnosis.screen import Sensitivity, measure_sensitivities, screen_
 
 @dataclass(frozen=True)
 class Selection:
-    """Fitted sets of effects by size, the best first; `sets[0]` holds the calibrated nominal scenario alone."""
+    """Fitted sets of effects by size, the best first; `sets[0]` holds the calibrated nominal scenario alone.
+
+    `linearisations` holds the sensitivities to the nuisance parameters about the best set of each size.
+    """
 
     nominal: Evaluation
     sets: tuple[tuple[Evaluation, ...], ...]
+    linearisations: tuple[Linearisation, ...]
 
     @property
     def calibrated(self) -> Evaluation:
         """The nominal scenario with its nuisance parameters refitted."""
         return self.sets[0][0]
+
+    def linearise_nuisances(self, objective: Objective, evaluation: Evaluation) -> Linearisation:
+        """Return the sensitivities to the nuisance parameters about a set, computed only where none are at hand.
+
+        Those at hand were taken before the last steps of the set's fit, during which they hardly change.
+        """
+        for taken in self.linearisations:
+            if taken.evaluation.parameters.terms == evaluation.parameters.terms:
+                return Linearisation(evaluation, taken.jacobian)
+        return objective.linearise_nuisances(evaluation)
 
 
 def select_effects(
@@ -41,6 +55,7 @@ def select_effects(
     nominal, calibrated, nuisances = _calibrate(objective)
     sensitivities = measure_sensitivities(objective, calibrated, candidates)
     sets: list[list[Evaluation]] = [[calibrated]]
+    linearisations = [nuisances]
     for size in range(1, largest + 1):
         progress(f"fitting sets of {size}")
         larger = _extend(objective, sets, sensitivities, nuisances)
@@ -50,6 +65,7 @@ def select_effects(
             larger = _best_of_each_set([*larger, *_swap_effects(objective, larger[0], sets[1], nuisances)])
         # Sets are ranked with the sensitivities of a smaller set; the best is then fitted to the end with its own.
         nuisances = objective.linearise_nuisances(larger[0])
+        linearisations.append(nuisances)
         larger[0] = fit(objective, larger[0], nuisances)
         sets.append(larger)
         if not _gains(objective, sets):
@@ -57,7 +73,7 @@ def select_effects(
     if len(sets) > settings.largest_set and sets[-1][0].excess < settings.enlarge * sets[-2][0].excess:
         progress("eliminating backwards")
         sets[-2] = _best_of_each_set([*sets[-2], *_eliminate_backwards(objective, sets[-1][0], nuisances)])
-    return Selection(nominal, tuple(tuple(each) for each in sets))
+    return Selection(nominal, tuple(tuple(each) for each in sets), tuple(linearisations))
 
 
 def _calibrate(objective: Objective) -> tuple[Evaluation, Evaluation, Linearisation]:

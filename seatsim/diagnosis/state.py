@@ -81,7 +81,7 @@ def state_diagnosis(solution: Solution, notes: Sequence[str], progress: Callable
     recording = problem.recording
     rig, channels = recording.header.rig, recording.channels
     causes = _list_causes(validation)
-    nuisances = objective.linearise_nuisances(decision.chosen)
+    nuisances = solution.selection.linearise_nuisances(objective, decision.chosen)
     at_work = {solution.stochastic, *decision.chosen.parameters.names}
     diagnosis = Diagnosis(
         name=recording.folder.name, verdict=decision.verdict, sentence="", where=list(solution.where), causes=causes,

@@ -100,7 +100,7 @@ def select(objective, *sets):
     tried = [[fitted(objective, *names) for names in size] for size in sets]
     calibrated = fitted(objective)
     chosen, equivalent = select_by_cross_validation(
-        objective, Selection(calibrated, ((calibrated,), *map(tuple, tried)))
+        objective, Selection(calibrated, ((calibrated,), *map(tuple, tried)), ())
     )
     return set(chosen.parameters.names), [set(each.parameters.names) for each in equivalent]
 
@@ -169,6 +169,6 @@ def test_an_immaterial_effect_is_not_chosen_however_it_helps():
         objective, problem=dataclasses.replace(objective.problem, settings=pose(least_gain=0.001).settings)
     )
     evaluation = fitted(loud, "rig.one")
-    selection = Selection(evaluation, ((fitted(loud),), (evaluation,)))
+    selection = Selection(evaluation, ((fitted(loud),), (evaluation,)), ())
     assert gain(loud, ["rig.one"]) > 0.001
     assert select_by_cross_validation(loud, selection)[0].parameters.terms == ()

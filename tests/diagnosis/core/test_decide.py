@@ -46,7 +46,8 @@ def both(one=1.0, two=1.0):
 def selected(objective, before, *sets):
     """Return a selection from the calibrated excess and, by size, lists of (effects, excess, ...)."""
     calibrated = before if not isinstance(before, float) else state(objective, {}, before)
-    return Selection(calibrated, ((calibrated,), *(tuple(state(objective, *each) for each in size) for size in sets)))
+    larger = (tuple(state(objective, *each) for each in size) for size in sets)
+    return Selection(calibrated, ((calibrated,), *larger), ())
 
 
 def decide(objective, before, *sets):

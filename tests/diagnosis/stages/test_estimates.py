@@ -134,7 +134,7 @@ def found(folder):
     rigs = {name: objective.evaluate([rig])[0] for name, rig in rigs.items()}
     without = objective.on_runs(["first"])
     held = {name: without.evaluate([rigs[name].parameters])[0] for name in ("calibrated", "augmented")}
-    selection = Selection(rigs["calibrated"], ((rigs["calibrated"],), (rigs["single"], rigs["twice"])))
+    selection = Selection(rigs["calibrated"], ((rigs["calibrated"],), (rigs["single"], rigs["twice"])), ())
     probabilities = {"c.absent": 0.1, "b.twice": 0.1, "a.one": 0.9, "d.absent": 0.2}
     decision = Decision("known", rigs["single"], [], probabilities, 0.0, 0.0)
     nominal = single(folder / "nominal.yaml")
@@ -186,7 +186,7 @@ def test_another_effect_has_those_of_its_own_fit_to_all_runs(found):
 
 def test_without_any_single_effect_nothing_is_estimated(found):
     objective, selection, decision, calibrated, _, nominal, run = found[4]
-    alone = Selection(selection.nominal, selection.sets[:1])
+    alone = Selection(selection.nominal, selection.sets[:1], ())
     causes = estimate_causes(objective, alone, decision, calibrated, calibrated, nominal, run)
     assert all(cause.shrink == 0.0 and cause.parameters == {} for cause in causes)
     assert [cause.effect for cause in causes] == ["a.one", "d.absent", "c.absent", "b.twice"]
@@ -198,7 +198,7 @@ def test_an_effect_behind_one_with_several_parameters_has_its_own_deviation(fold
     chosen = objective.evaluate([place(problem, (TWICE, 0.5, 0.0), (term, 0.1))])[0]
     calibrated = objective.evaluate([place(problem)])[0]
     decision = Decision("known", chosen, [], {"b.twice": 0.9, "c.three": 0.8}, 0.0, 0.0)
-    selection, nominal = Selection(calibrated, ((calibrated,),)), single(folder / "nominal.yaml")
+    selection, nominal = Selection(calibrated, ((calibrated,),), ()), single(folder / "nominal.yaml")
     twice, third = estimate_causes(objective, selection, decision, calibrated, chosen, nominal, "first")
     std = scatter(objective, ["one", "two", "three"], max(1.0, chosen.cost / chosen.rows))[2:]
     stated = [twice.parameters["first"].std, twice.parameters["second"].std, third.parameters["amount"].std]

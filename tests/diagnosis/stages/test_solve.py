@@ -48,7 +48,7 @@ class Script:
         if self.effects:
             terms = [(offer(f"toy.{cause}", cause), amount) for cause, amount in self.effects.items()]
             sets.append(tuple(objective.evaluate([place(objective.problem, *terms)])))
-        selection = Selection(calibrated, tuple(sets))
+        selection = Selection(calibrated, tuple(sets), ())
         self.selected.append((objective, candidates, largest, selection))
         return selection
 
