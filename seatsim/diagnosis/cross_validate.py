@@ -8,6 +8,8 @@ left out of its fit.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,14 +22,27 @@ from seatsim.diagnosis.select import Selection
 Array = NDArray[np.float64]
 
 
-def select_by_cross_validation(objective: Objective, selection: Selection) -> tuple[Evaluation, list[Evaluation]]:
+class Supported(NamedTuple):
+    """What runs left out support: a set, sets that help as much, and all sets tried, with the mean square they leave.
+
+    The mean square is relative to that of the rig without effects.
+    """
+
+    chosen: Evaluation
+    equivalent: list[Evaluation]
+    tried: list[tuple[Evaluation, float]]
+
+
+def select_by_cross_validation(objective: Objective, selection: Selection) -> Supported:
     """Return the smallest set of effects that no larger one improves on left-out runs, and sets that help as much."""
     settings, problem = objective.settings.cross_validation, objective.problem
     chosen, equivalent = selection.calibrated, list[Evaluation]()
-    before = cross_validate(objective, chosen)
+    alone = before = cross_validate(objective, chosen)
+    found = [(chosen, 1.0)]
     for sets in selection.sets[1:]:
         compared = sets[: settings.sets_compared]
         tried = [(each, cross_validate(objective, each)) for each in compared if is_material(problem, each)]
+        found += [(each, float(np.mean((after / alone) ** 2))) for each, after in tried]
         gains = [float(np.mean(1.0 - after / before)) for _, after in tried]
         if max(gains, default=0.0) < settings.least_gain:
             break
@@ -35,7 +50,7 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> tu
         # Where a wrong sensor and a change of the rig help equally, the change of the rig is the more useful answer.
         best.sort(key=lambda each: sum(term.block == "sensor" for term in each[0].parameters.terms))
         (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
-    return chosen, equivalent
+    return Supported(chosen, equivalent, found)
 
 
 def cross_validate(objective: Objective, evaluation: Evaluation) -> Array:

@@ -13,6 +13,7 @@ from typing import Literal
 
 from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders, measure_shares_left
 from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.probability import weigh_effects
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.settings.judging import DecisionSettings
@@ -51,18 +52,35 @@ def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Seq
     unknown = min(max(unknown, least), most) if explained else max(unknown, settings.unknown_if_unknown)
     groups = groups if explained else []
     verdict: Verdict = ("ambiguous" if groups else "known") if explained else "unknown"
-    probabilities = _assign_probabilities(settings, chosen, groups, effects, unknown)
+    probabilities = weigh_effects(settings, _list_compared(settings, selection, chosen), effects)
     return Decision(verdict, chosen, groups, probabilities, settings.none_if_gap, unknown)
 
 
+def call_unknown(settings: DecisionSettings, decision: Decision) -> Decision:
+    """Return a decision whose effects stay, but take too little of the gap to be its causes alone."""
+    return dataclasses.replace(decision, verdict="unknown", unknown=max(decision.unknown, settings.unknown_if_unknown))
+
+
 def decide_beside_unknown(
-    settings: DecisionSettings, decision: Decision, chosen: Evaluation, equivalent: Sequence[Evaluation] = ()
-) -> Decision:
-    """Return the decision `unknown` with another set of effects stated jointly with the unknown cause."""
-    groups = group_equivalent(chosen, equivalent)
-    unknown = min(decision.unknown, 1.0 - settings.beside_unknown)
-    probabilities = _assign_probabilities(settings, chosen, groups, list(decision.probabilities), unknown)
-    return dataclasses.replace(decision, chosen=chosen, groups=groups, probabilities=probabilities)
+    settings: DecisionSettings, decision: Decision, chosen: Evaluation, equivalent: Sequence[Evaluation] = (),
+    tried: Sequence[tuple[Evaluation, float]] = (),
+) -> Decision:  # fmt: skip
+    """Return the decision `unknown` with another set of effects stated beside the unknown cause.
+
+    Args:
+        settings: thresholds.
+        decision: the decision so far.
+        chosen: the set to be stated, possibly none.
+        equivalent: sets that do as well.
+        tried: sets with the mean square that each leaves on runs left out of its fit.
+    """
+    size = len(chosen.parameters.terms)
+    compared = [(each.parameters.names, left) for each, left in tried if len(each.parameters.terms) <= size]
+    probabilities = weigh_effects(settings, compared, list(decision.probabilities))
+    stated = dataclasses.replace(
+        decision, chosen=chosen, groups=group_equivalent(chosen, equivalent), probabilities=probabilities
+    )
+    return call_unknown(settings, stated)
 
 
 def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
@@ -134,19 +152,18 @@ def _list_equivalent(settings: DecisionSettings, selection: Selection, chosen: E
     return [evaluation for evaluation in others if evaluation.excess <= limit]
 
 
-def _assign_probabilities(
-    settings: DecisionSettings, chosen: Evaluation, groups: Sequence[Sequence[str]], effects: Sequence[str],
-    unknown: float,
-) -> dict[str, float]:  # fmt: skip
-    """Return each effect's probability of being present; members of a group share the probability of the chosen one."""
-    probabilities = dict.fromkeys(effects, settings.effect_if_not_chosen)
-    for term in chosen.parameters.terms:
-        probabilities[term.effect] = 1.0 - unknown
-    for group in groups:
-        weights = [settings.chosen_weight] + [1.0] * (len(group) - 1)
-        for name, weight in zip(group, weights, strict=True):
-            probabilities[name] = (1.0 - unknown) * weight / sum(weights)
-    return probabilities
+def _list_compared(
+    settings: DecisionSettings, selection: Selection, chosen: Evaluation
+) -> list[tuple[frozenset[str], float]]:
+    """Return the chosen set and all that are no larger and leave no less, by names, with what each leaves.
+
+    Sets that leave less were passed over, since an effect of theirs is immaterial.
+    """
+    size = len(chosen.parameters.terms)
+    others = [
+        each for sets in selection.sets[: size + 1] for each in sets if each.excess >= chosen.excess or each is chosen
+    ]
+    return [(each.parameters.names, each.excess + settings.excess_margin) for each in others]
 
 
 def _logistic(log_odds: float) -> float:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.objective import Evaluation
-from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 
 Array = NDArray[np.float64]
 
@@ -56,6 +56,30 @@ def measure_shares_left(problem: DiagnosisProblem, before: Evaluation, after: Ev
     settings = problem.settings
     channels = np.flatnonzero((gaps > settings.decision.material) & (excess > settings.selection.nothing_left))
     return [float(left[k] / excess[k]) for k in channels]
+
+
+def measure_gap_taken(objective: Objective, before: Evaluation, after: Evaluation) -> float:
+    """Return the share that a rig takes off the part of the gap that a right model would take off, over all runs.
+
+    `(before - after) / (before - left)`, gaps in standard deviations as the recording's contract states them, with
+    `left` the gap of what the noise weights expect of a right model; 1 where noise alone makes the gap.
+    """
+    problem = objective.problem
+    gaps = [np.sqrt(np.mean(normalise_rms_errors(problem, each.residuals) ** 2)) for each in (before, after)]
+    left = np.sqrt(np.mean([_expect_power(objective, run) / problem.spread**2 for run in problem.runs]))
+    removable = gaps[0] - left
+    return float((gaps[0] - gaps[1]) / removable) if removable > problem.settings.decision.least_removable else 1.0
+
+
+def _expect_power(objective: Objective, run: str) -> Array:
+    """Return the mean square that a right model leaves of each channel in a run, shape (channels,).
+
+    Above the frequencies that are compared the spectrum goes on as it ends there.
+    """
+    samples = objective.problem.measured[run].shape[1]
+    power = 2.0 / objective.weights.weights[run] ** 2
+    beyond = samples // 2 + 1 - power.shape[1]
+    return np.asarray((np.sum(power, axis=1) + beyond * power[:, -1]) * 2.0 / samples**2)
 
 
 def group_equivalent(chosen: Evaluation, equivalent: Sequence[Evaluation]) -> list[list[str]]:

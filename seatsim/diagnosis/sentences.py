@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from seatsim.diagnosis.result import Cause, Diagnosis, Estimate
+from seatsim.diagnosis.result import Cause, Diagnosis, Estimate, Gaps
 from seatsim.effects.base import EFFECTS
 from seatsim.schema.text import join_names
 
@@ -16,20 +16,29 @@ def write_answer(diagnosis: Diagnosis) -> str:
             f"There is no gap beyond noise and the stated tolerance of the parameters: {size} nominal,"
             f" {gap.calibrated.overall:.3f} refitted, noise {gap.floor.overall:.3f} (in standard deviations)."
         )
-    if diagnosis.verdict == "unknown":
-        if diagnosis.selected:
-            rest = f" beside {join_names(diagnosis.selected)}: {gap.after.overall:.3f} of {size} remain"
-        else:
-            rest = f": {size} nominal, noise {gap.floor.overall:.3f} (in standard deviations)"
+    if diagnosis.verdict == "unknown" and not diagnosis.selected:
         where = f"Something in the {_unexplained(diagnosis)} that no effect of the library explains makes the gap"
-        return where + rest + _alike(diagnosis) + "."
+        return f"{where}: {size} nominal, noise {gap.floor.overall:.3f} (in standard deviations)."
+    # What was found stands first, also where something stays unexplained: it is what the reader can act on.
     named = "; ".join(_cause(diagnosis, name) for name in diagnosis.selected)
-    credit = 1.0 - gap.after.overall / gap.calibrated.overall
-    sentence = f"{named}: it takes {credit:.0%} off the gap that refitted parameters leave ({size} to"
-    sentence += f" {gap.after.overall:.3f}, noise {gap.floor.overall:.3f})"
+    sentence = f"{named}: {_taken(gap)}"
     if diagnosis.stochastic:
         sentence += "; its random signal cannot be predicted, so that its share of the gap stays"
-    return sentence + _alike(diagnosis) + "."
+    sentence += _alike(diagnosis) + "."
+    if diagnosis.verdict == "unknown":
+        rest = f" What remains, {gap.after.overall:.3f}, no effect of the library explains; it lies in the"
+        sentence += f"{rest} {_unexplained(diagnosis)}."
+    return sentence
+
+
+def _taken(gap: Gaps) -> str:
+    """Return a clause on how much of the gap the effects and the refitted parameters take off."""
+    figures = f"{gap.before.overall:.3f} to {gap.after.overall:.3f}, noise {gap.floor.overall:.3f}"
+    removable = gap.before.overall - gap.floor.overall
+    if gap.after.overall >= gap.before.overall or removable <= 0.0:
+        return f"that takes nothing off the gap of the run held out ({figures})"
+    share = min((gap.before.overall - gap.after.overall) / removable, 1.0)
+    return f"that takes {share:.0%} of the gap that can be removed ({figures}, in standard deviations)"
 
 
 def _alike(diagnosis: Diagnosis) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.cross_validate import select_by_cross_validation
-from seatsim.diagnosis.decide import Decision, decide_beside_unknown, decide_verdict
+from seatsim.diagnosis.decide import Decision, call_unknown, decide_beside_unknown, decide_verdict
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
@@ -22,6 +22,7 @@ from seatsim.diagnosis.localise.stochastic import (
     merge_effect,
     name_stochastic_effect,
 )
+from seatsim.diagnosis.movement import measure_gap_taken
 from seatsim.diagnosis.noise import NoiseWeights, measure_broadband, weigh_gap, weigh_noise
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
@@ -86,8 +87,13 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
     first = _search(task, objective)
     if first.decision.verdict == "unknown":
         first = _search_beyond_broadband(task, first, forces)
-    first = _search_by_gap(task, first) if first.decision.verdict == "unknown" else _localise(task, first)
-    return _search_beside_stochastic(task, first, without)
+    if first.decision.verdict != "unknown":
+        found = _search_beside_stochastic(task, _localise(task, first), without)
+        # A random signal takes nothing off the gap, however right it is.
+        if found.decision.verdict == "none" or found.stochastic or _takes_enough(found):
+            return found
+        first = first._replace(decision=call_unknown(problem.settings.decision, first.decision))
+    return _search_beside_stochastic(task, _search_by_gap(task, first), without)
 
 
 def _estimate_nonrepeatable(objective: Objective) -> Forces:
@@ -98,7 +104,18 @@ def _estimate_nonrepeatable(objective: Objective) -> Forces:
 
 def _search(task: SearchTask, objective: Objective) -> Solution:
     selection = task.method.select_effects(objective, task.candidates, task.progress, None)
-    return Solution(objective, selection, task.method.decide_verdict(objective.problem, selection, task.effects))
+    decision = task.method.decide_verdict(objective.problem, selection, task.effects)
+    return Solution(objective, selection, decision)
+
+
+def _takes_enough(solution: Solution) -> bool:
+    """Whether the chosen set takes enough of the gap, nominal and calibrated, for its effects to be its causes.
+
+    Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap.
+    """
+    objective, selection, chosen = solution.objective, solution.selection, solution.decision.chosen
+    taken = [measure_gap_taken(objective, rig, chosen) for rig in (selection.nominal, selection.calibrated)]
+    return min(taken) >= objective.settings.decision.least_taken
 
 
 def _search_beyond_broadband(task: SearchTask, first: Solution, forces: Forces) -> Solution:
@@ -118,13 +135,11 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
     task.progress("weighing the gap alone")
     problem, settings = first.objective.problem, first.objective.settings
     objective = Objective(problem, weigh_gap(problem, first.selection.calibrated.residuals))
-    # Only the first start of each structure is used: this is a second search, and its measure is coarse.
-    first_starts = {each.structure: each for each in reversed(task.candidates)}
     largest = settings.selection.largest_uniform_set
-    selection = task.method.select_effects(objective, list(first_starts.values()), task.progress, largest)
-    chosen, equivalent = select_by_cross_validation(objective, selection)
+    selection = task.method.select_effects(objective, task.candidates, task.progress, largest)
+    chosen, equivalent, tried = select_by_cross_validation(objective, selection)
     refitted = refit(first.objective, chosen.parameters)
-    decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent)
+    decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
     localised = _localise(task, first._replace(decision=decision))
     if localised.decision is not decision:
         return localised

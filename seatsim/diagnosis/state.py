@@ -8,13 +8,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from seatsim.diagnosis.augmented import write_augmented
-from seatsim.diagnosis.decide import decide_beside_unknown
+from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown
 from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_run
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
+from seatsim.diagnosis.movement import measure_gap_taken
 from seatsim.diagnosis.objective import Evaluation, Linearisation
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.result import Cause, Diagnosis, Evidence, Gaps, ProposedExperiment
@@ -68,6 +69,11 @@ def validate_on_held_out(solution: Solution) -> Validation:
     if decision.verdict == "unknown" and chosen.parameters.terms and gaps.shrink < 0.0:
         alone = decide_beside_unknown(problem.settings.decision, decision, selection.calibrated)
         return validate_on_held_out(solution._replace(decision=alone))
+    if not solution.stochastic and decision.verdict in ("known", "ambiguous"):
+        held_out = objective.on_runs([run])
+        before, after = held_out.evaluate([rigs[0], rigs[2]])
+        if measure_gap_taken(held_out, before, after) < problem.settings.decision.least_taken:
+            solution = solution._replace(decision=call_unknown(problem.settings.decision, decision))
     return Validation(solution, nominal, run, calibrated, augmented, gaps)
 
 

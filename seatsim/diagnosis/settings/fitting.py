@@ -99,7 +99,7 @@ class SelectionSettings(NamedTuple):
         int,
         Threshold(
             "-",
-            "most effects of a set that is sought under uniform weights, from the first start of each structure",
+            "most effects of a set that is sought under uniform weights",
             "more: time",
             CONVENTION,
         ),

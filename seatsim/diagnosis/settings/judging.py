@@ -124,27 +124,60 @@ class DecisionSettings(NamedTuple):
     effect_if_none: Annotated[
         float, Threshold("-", "probability of every effect where there is no gap", "-", "calibrated on simulated rigs")
     ] = 0.004
-    effect_if_not_chosen: Annotated[
-        float, Threshold("-", "probability of an effect that was not chosen", "-", "calibrated on simulated rigs")
-    ] = 0.006
-    beside_unknown: Annotated[
+    prior: Annotated[
         float,
         Threshold(
             "-",
-            "probability of an effect that runs left out support beside an unknown cause",
+            "prior odds of one further effect in a set",
+            "higher: larger sets are likelier",
+            "a set must leave less than `enlarge` for a further effect to be likelier than not: enlarge^power",
+        ),
+    ] = 0.05
+    power: Annotated[
+        float,
+        Threshold(
+            "-",
+            "half the count of independent numbers that tempered evidences stand for",
+            "higher: surer of one of several sets that leave about as much",
+            "a set that leaves `equivalent` times as much has half the weight",
+        ),
+    ] = 4.0
+    excess_margin: Annotated[
+        float,
+        Threshold(
+            "-",
+            "excess added to that of each set before evidences are compared",
+            "lower: surer where sets leave almost nothing",
+            "`equivalent_floor` halves a weight",
+        ),
+    ] = 0.1
+    effect_bounds: Annotated[
+        tuple[float, float],
+        Threshold(
+            "-",
+            "least and greatest probability of an effect where there is a gap",
             "-",
             "calibrated on simulated rigs",
         ),
-    ] = 0.3
-    chosen_weight: Annotated[
+    ] = (0.006, 0.98)
+    least_taken: Annotated[
         float,
         Threshold(
             "-",
-            "weight of the chosen member of a group of equivalent effects beside each other member",
-            "-",
-            CONVENTION,
+            "share that a known set takes off the part of the gap that a right model would take off",
+            "lower: confident wrong verdicts",
+            "the recording's contract",
         ),
-    ] = 2.0
+    ] = 0.5
+    least_removable: Annotated[
+        float,
+        Threshold(
+            "-",
+            "removable gap, in standard deviations, below which its share is not asked for",
+            "lower: the share of a small number decides",
+            NUMERICAL,
+        ),
+    ] = 0.01
     stochastic: Annotated[
         tuple[float, float, float],
         Threshold(

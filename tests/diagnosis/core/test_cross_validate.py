@@ -99,7 +99,7 @@ def select(objective, *sets):
     """Return the names that runs left out support, and those of the sets that help as much."""
     tried = [[fitted(objective, *names) for names in size] for size in sets]
     calibrated = fitted(objective)
-    chosen, equivalent = select_by_cross_validation(
+    chosen, equivalent, _ = select_by_cross_validation(
         objective, Selection(calibrated, ((calibrated,), *map(tuple, tried)), ())
     )
     return set(chosen.parameters.names), [set(each.parameters.names) for each in equivalent]
@@ -156,6 +156,17 @@ def test_of_two_that_help_as_much_the_rig_is_chosen_before_the_sensor():
     assert select(pose(), [("sensor.alike",), ("rig.one",)]) == ({"rig.one"}, [{"sensor.alike"}])
     assert select(pose(), [("rig.alike",), ("rig.one",)]) == ({"rig.alike"}, [{"rig.one"}])
     assert select(pose(), [("sensor.alike",)]) == ({"sensor.alike"}, [])
+
+
+def test_every_set_tried_is_returned_with_the_mean_square_that_it_leaves():
+    objective = pose()
+    calibrated, one, two = (fitted(objective, *names) for names in ((), ("rig.one",), ("rig.two",)))
+    selection = Selection(calibrated, ((calibrated,), (one, two)), ())
+    tried = select_by_cross_validation(objective, selection).tried
+    assert [each for each, _ in tried] == [calibrated, one, two]
+    alone = left_out(objective, [], 3)
+    expected = [np.mean((left_out(objective, names, 3) / alone) ** 2) for names in ([], ["rig.one"], ["rig.two"])]
+    np.testing.assert_allclose([left for _, left in tried], expected)
 
 
 def test_only_the_first_sets_of_a_size_are_cross_validated():

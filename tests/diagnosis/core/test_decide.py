@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.decide import decide_beside_unknown, decide_verdict
+from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown, decide_verdict
 from seatsim.diagnosis.select import Selection
 
 from .toy import offer, place, pose_tones
@@ -58,6 +58,13 @@ def logistic(log_odds):
     return 1.0 / (1.0 + math.exp(-log_odds))
 
 
+def share_of(name, *sets):
+    """Return the probability of an effect, from the names and the excess of each set that counts."""
+    weights = [(names, 0.05 ** len(names) / (excess + 0.1) ** 4) for names, excess in sets]
+    share = sum(weight for names, weight in weights if name in names) / sum(weight for _, weight in weights)
+    return min(max(share, 0.006), 0.98)
+
+
 @pytest.mark.parametrize("excess, sure", [(0.0, logistic(5.0)), (0.1, logistic(3.0)), (0.149, logistic(2.02))])
 def test_where_noise_explains_all_there_is_no_gap(rig, excess, sure):
     found = decide(rig, excess, [(both(), 0.0)])
@@ -104,7 +111,7 @@ def test_a_set_that_leaves_little_is_known(rig, share, unknown):
     found = decide(rig, 10.0, [({"b.two": 0.5}, 10.0 * share)])
     assert (found.verdict, found.groups) == ("known", [])
     assert found.unknown == pytest.approx(unknown)
-    expected = dict.fromkeys(EFFECTS, 0.006) | {"b.two": 1.0 - unknown}
+    expected = dict.fromkeys(EFFECTS, 0.006) | {"b.two": share_of("b.two", ((), 10.0), (("b.two",), 10.0 * share))}
     assert found.probabilities == pytest.approx(expected) and list(found.probabilities) == EFFECTS
     assert found.none == 0.01
     assert found.chosen.parameters.names == {"b.two"}
@@ -115,7 +122,8 @@ def test_a_set_that_leaves_much_is_unknown(rig, share, unknown):
     found = decide(rig, 10.0, [({"b.two": 0.5}, 10.0 * share)])
     expected = logistic(math.log(share / 0.12) / 0.4) if unknown is None else unknown
     assert found.verdict == "unknown" and found.unknown == pytest.approx(expected)
-    assert found.probabilities["b.two"] == pytest.approx(1.0 - expected)
+    # How sure the effect is does not depend on what else stays unexplained.
+    assert found.probabilities["b.two"] == pytest.approx(share_of("b.two", ((), 10.0), (("b.two",), 10.0 * share)))
 
 
 def test_a_set_that_leaves_much_of_one_channel_is_unknown(rig):
@@ -132,7 +140,9 @@ def test_a_set_that_leaves_nothing_material_is_known_however_large_its_share(rig
     assert found.verdict == "known" and found.chosen.parameters.names == {"a.one", "b.two"}
     # Of the probability 0.91 that the share alone would give, 0.45 is the most beside a known set.
     assert found.unknown == 0.45
-    assert found.probabilities["a.one"] == found.probabilities["b.two"] == pytest.approx(0.55)
+    counted = ((), 10.0), (("b.two",), 8.0), (("a.one", "b.two"), 3.0)
+    assert found.probabilities["a.one"] == pytest.approx(share_of("a.one", *counted))
+    assert found.probabilities["b.two"] == pytest.approx(share_of("b.two", *counted))
 
 
 def test_the_probability_of_an_unknown_cause_grows_with_what_is_left(rig):
@@ -153,20 +163,22 @@ def test_an_effect_that_explains_as_well_makes_the_verdict_ambiguous(rig, other,
     unknown = logistic(math.log(0.05 / 0.12) / 0.4)
     if verdict == "ambiguous":
         assert found.groups == [["b.two", "d.four"]]
-        # The chosen one counts twice beside the other.
-        assert found.probabilities["b.two"] == pytest.approx((1.0 - unknown) * 2.0 / 3.0)
-        assert found.probabilities["d.four"] == pytest.approx((1.0 - unknown) / 3.0)
-        assert found.probabilities["e.five"] == 0.006
     else:
-        assert found.groups == [] and found.probabilities["d.four"] == 0.006
+        assert found.groups == []
+    counted = ((), 10.0), (("b.two",), 0.5), (("d.four",), other)
+    assert found.probabilities["b.two"] == pytest.approx(share_of("b.two", *counted))
+    assert found.probabilities["d.four"] == pytest.approx(share_of("d.four", *counted))
+    # An effect that leaves a fifth more has about half the weight.
+    assert 0.4 < found.probabilities["d.four"] / found.probabilities["b.two"] < 0.6
+    assert found.unknown == pytest.approx(unknown) and found.probabilities["e.five"] == 0.006
 
 
 def test_in_a_larger_set_each_group_shares_its_own_probability(rig):
     equivalent = ({"d.four": 1.0, "b.two": 1.0}, 0.15)
     found = decide(rig, 10.0, [({"a.one": 1.0}, 4.0)], [(both(), 0.16), equivalent])
     assert found.verdict == "ambiguous" and found.groups == [["a.one", "d.four"]]
-    assert found.probabilities["b.two"] == pytest.approx(1.0 - found.unknown)
-    assert found.probabilities["a.one"] == pytest.approx((1.0 - found.unknown) * 2.0 / 3.0)
+    # The equivalent set leaves less and was passed over, so that it does not count.
+    assert found.probabilities["b.two"] == 0.98 and found.probabilities["d.four"] == 0.006
 
 
 def test_a_long_group_under_a_small_remainder_explains_nothing(rig):
@@ -177,8 +189,9 @@ def test_a_long_group_under_a_small_remainder_explains_nothing(rig):
     long = decide(rig, 10.0, one, [(both(), 3.0), first, second])
     assert (long.verdict, long.groups) == ("unknown", [])
     assert long.unknown == pytest.approx(logistic(math.log(0.3 / 0.12) / 0.4))
-    assert long.probabilities["d.four"] == 0.006
-    assert long.probabilities["a.one"] == pytest.approx(1.0 - long.unknown)
+    counted = ((), 10.0), (("b.two",), 8.0), *((("b.two", name), 3.0) for name in ("a.one", "d.four", "e.five"))
+    for name in ("a.one", "b.two", "d.four"):
+        assert long.probabilities[name] == pytest.approx(share_of(name, *counted))
     # Where the excess is explained too, the group may be as long as it is.
     clear = [({"d.four": 1.0, "b.two": 1.0}, 0.3), ({"e.five": 1.0, "b.two": 1.0}, 0.3)]
     assert decide(rig, 10.0, one, [(both(), 0.3), *clear]).verdict == "ambiguous"
@@ -229,23 +242,32 @@ def test_sets_with_an_immaterial_effect_are_passed_over_among_the_first_three(ri
     assert skipped.chosen.parameters.terms == ()
 
 
-def test_beside_an_unknown_cause_an_effect_has_a_probability_of_at_least_3_in_10(rig):
+def test_beside_an_unknown_cause_effects_are_weighed_by_what_runs_left_out_support(rig):
     found = decide(rig, 10.0, [({"b.two": 0.5}, 4.0)])
     assert found.unknown > 0.9
-    chosen, other = state(rig, {"a.one": 1.0}, 4.0), state(rig, {"d.four": 1.0}, 4.0)
-    settings = rig.settings.decision
-    beside = decide_beside_unknown(settings, found, chosen)
-    assert (beside.verdict, beside.unknown, beside.none, beside.groups) == ("unknown", found.unknown, 0.01, [])
-    assert beside.chosen is chosen
-    assert beside.probabilities == pytest.approx(dict.fromkeys(EFFECTS, 0.006) | {"a.one": 0.3})
+    none, chosen, other = (state(rig, effects, 4.0) for effects in ({}, {"a.one": 1.0}, {"d.four": 1.0}))
+    larger = state(rig, {"a.one": 1.0, "d.four": 1.0}, 4.0)
+    tried = [(none, 1.0), (chosen, 0.3), (other, 0.35), (larger, 0.001)]
+    beside = decide_beside_unknown(rig.settings.decision, found, chosen, [other], tried)
+    assert (beside.verdict, beside.unknown, beside.none) == ("unknown", found.unknown, 0.01)
+    assert beside.chosen is chosen and beside.groups == [["a.one", "d.four"]]
     assert list(beside.probabilities) == EFFECTS
-    shared = decide_beside_unknown(settings, found, chosen, [other])
-    assert shared.groups == [["a.one", "d.four"]]
-    assert shared.probabilities["a.one"] == pytest.approx(0.2) and shared.probabilities["d.four"] == pytest.approx(0.1)
+    # Sets larger than the chosen one do not count; the margin is that of an excess, which a mean square does not need.
+    total = 1.0 + 0.05 / 0.3**4 + 0.05 / 0.35**4
+    expected = {"a.one": 0.05 / 0.3**4 / total, "d.four": 0.05 / 0.35**4 / total}
+    assert beside.probabilities == pytest.approx(dict.fromkeys(EFFECTS, 0.006) | expected)
 
 
-def test_beside_a_less_likely_unknown_cause_an_effect_is_likelier(rig):
+def test_without_an_effect_beside_it_no_effect_is_likely(rig):
     found = decide(rig, 10.0, [({"b.two": 0.5}, 1.21)])
     assert found.unknown == 0.55
-    beside = decide_beside_unknown(rig.settings.decision, found, state(rig, {"a.one": 1.0}, 4.0))
-    assert beside.probabilities["a.one"] == pytest.approx(0.45)
+    beside = decide_beside_unknown(rig.settings.decision, found, state(rig, {}, 10.0))
+    assert beside.probabilities == dict.fromkeys(EFFECTS, 0.006)
+
+
+def test_a_cause_that_takes_too_little_of_the_gap_is_called_unknown(rig):
+    known = decide(rig, 10.0, [({"b.two": 0.5}, 0.1)])
+    assert (known.verdict, known.unknown) == ("known", 0.02)
+    called = call_unknown(rig.settings.decision, known)
+    assert (called.verdict, called.unknown, called.chosen) == ("unknown", 0.55, known.chosen)
+    assert called.probabilities == known.probabilities

@@ -9,11 +9,13 @@ from seatsim.diagnosis.movement import (
     group_equivalent,
     is_material,
     measure_channel_excess,
+    measure_gap_taken,
     measure_movements,
     measure_remainders,
     measure_shares_left,
 )
-from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.noise import weigh_uniformly
+from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 
 from .toy import offer, place, pose_tones
@@ -181,3 +183,23 @@ def having(names):
 def test_effects_that_stand_for_each_other_are_grouped(chosen, equivalent, groups):
     found = group_equivalent(having(chosen), [having(names) for names in equivalent])
     assert [[group[0], *sorted(group[1:])] for group in found] == groups
+
+
+def test_the_gap_taken_is_a_share_of_what_a_right_model_would_take():
+    objective = pose()
+    # The weights expect the power 1 per run and frequency of the spectrum of N samples: 2 / N^2 for each frequency.
+    left = np.sqrt(np.mean([2.0 / samples**2 * (samples // 2 + 1) for samples in RUNS.values()]))
+    none, one, both = (
+        evaluated(objective, **amounts) for amounts in ({}, {"a_one": 1.0}, {"a_one": 1.0, "b_two": 1.0})
+    )
+    before, after = np.sqrt(np.mean([0.3**2 + 0.1**2, 0.5**2 + 0.02**2])), np.sqrt(np.mean([0.1**2, 0.5**2 + 0.02**2]))
+    assert measure_gap_taken(objective, none, one) == pytest.approx((before - after) / (before - left), rel=1e-6)
+    assert measure_gap_taken(objective, none, both) > 0.9 > measure_gap_taken(objective, none, one)
+    assert measure_gap_taken(objective, one, none) < 0.0 == measure_gap_taken(objective, one, one)
+
+
+def test_where_noise_alone_makes_the_gap_all_of_it_counts_as_taken():
+    objective = pose(sizes={"a.one": (0.01, 0.01)})
+    loud = Objective(objective.problem, weigh_uniformly(objective.problem, {run: np.full((2, 1), 0.1) for run in RUNS}))
+    none = evaluated(loud)
+    assert measure_gap_taken(loud, none, none) == 1.0

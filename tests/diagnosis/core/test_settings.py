@@ -26,7 +26,7 @@ OF_RECORD = {
     ),
     DecisionSettings: (
         0.04, 0.9, 0.12, 0.5, 1.2, 0.02, 0.9, 3, 2, 0.05, 2.0, 0.6, 0.4, 1e-4, (0.02, 0.45), 0.55, 0.02, 0.01, 0.004,
-        0.006, 0.3, 2.0, (0.9, 0.01, 0.1),
+        0.05, 4.0, 0.1, (0.006, 0.98), 0.5, 0.01, (0.9, 0.01, 0.1),
     ),
     CrossValidationSettings: (0.1, 0.1, 0.02, 5, 3),
     ValidationSettings: (1.0, 400, (5.0, 95.0), 0.1, 0.6, 0.05, 0.25),
@@ -113,5 +113,8 @@ def test_thresholds_that_belong_together_agree():
     least, most = decision.unknown_if_known
     assert least < most < 0.5 < decision.unknown_if_unknown < 1.0
     assert decision.none_least > 0.5 > decision.none_if_gap
-    assert decision.effect_if_none < decision.none_if_gap and decision.effect_if_not_chosen < 0.5
+    assert decision.effect_if_none < decision.none_if_gap and decision.effect_bounds[0] < 0.5
+    # A further effect is as likely as not where it leaves about the share that the selection asks for.
+    assert decision.prior * selection.enlarge**-decision.power == pytest.approx(1.0, abs=0.25)
+    assert decision.equivalent**decision.power == pytest.approx(2.0, abs=0.1)
     assert 0.06 < decision.explained < 0.15 < decision.left_in_channel

@@ -45,16 +45,18 @@ def test_something_unknown_beside_effects():
         "unknown", ["driver.mass", "sensor.gain"], indistinguishable=[["driver.mass", "cushion.hardening"]]
     )
     assert write_answer(found) == (
-        "Something in the cushion or the suspension or the driver that no effect of the library explains makes the gap"
-        " beside driver.mass and sensor.gain: 0.100 of 0.500 remain; these data cannot tell driver.mass from"
-        " cushion.hardening."
+        "driver.mass (an occupant heavier or lighter than the plant states; change 12.3 kg); sensor.gain (one channel"
+        " reads with a wrong scale; damper_force, error -0.0512): that takes 89% of the gap that can be removed (0.500"
+        " to 0.100, noise 0.052, in standard deviations); these data cannot tell driver.mass from cushion.hardening."
+        " What remains, 0.100, no effect of the library explains; it lies in the cushion or the suspension or the"
+        " driver."
     )
 
 
 def test_a_known_cause_with_its_parameters_and_what_it_takes_off():
     assert write_answer(diagnosis("known", ["driver.mass"])) == (
-        "driver.mass (an occupant heavier or lighter than the plant states; change 12.3 kg): it takes 75% off the gap"
-        " that refitted parameters leave (0.500 to 0.100, noise 0.052)."
+        "driver.mass (an occupant heavier or lighter than the plant states; change 12.3 kg): that takes 89% of the gap"
+        " that can be removed (0.500 to 0.100, noise 0.052, in standard deviations)."
     )
 
 
@@ -74,7 +76,7 @@ def test_several_causes_with_a_channel_and_a_number_without_unit():
 )
 def test_ambiguous_effects_are_said_last(groups, said):
     sentence = write_answer(diagnosis("ambiguous", ["driver.mass"], indistinguishable=groups))
-    assert sentence.endswith("noise 0.052)" + said)
+    assert sentence.endswith("noise 0.052, in standard deviations)" + said)
 
 
 def test_of_several_effects_each_group_is_named():
@@ -83,8 +85,17 @@ def test_of_several_effects_each_group_is_named():
     assert sentence.endswith("; these data cannot tell driver.mass from a; these data cannot tell sensor.gain from b.")
 
 
+def test_what_takes_nothing_off_the_gap_is_said_so():
+    worse = dataclasses.replace(GAPS, after=GapFigures(0.6, {}))
+    assert "; change 12.3 kg): that takes nothing off the gap of the run held out (0.500 to 0.600, noise 0.052)" in (
+        write_answer(diagnosis("unknown", ["driver.mass"], gap=worse))
+    )
+    noisy = dataclasses.replace(GAPS, floor=GapFigures(0.55, {}))
+    assert "takes nothing off" in write_answer(diagnosis("known", ["driver.mass"], gap=noisy))
+
+
 def test_a_random_signal_keeps_its_share_of_the_gap():
     sentence = write_answer(diagnosis("known", [PUSH.effect], stochastic=PUSH.effect))
-    assert sentence.endswith("0.052); its random signal cannot be predicted, so that its share of the gap stays.")
-    assert sentence.startswith("floor.unmeasured_input (a force on the frame that no channel records): it takes 75%")
+    assert sentence.endswith("deviations); its random signal cannot be predicted, so that its share of the gap stays.")
+    assert sentence.startswith("floor.unmeasured_input (a force on the frame that no channel records): that takes 89%")
     assert not any(word in write_answer(diagnosis("known", ["driver.mass"])) for word in ("random", "foretold"))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.candidates import list_candidates
+from seatsim.diagnosis.cross_validate import cross_validate
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.localise.localisation import share_gap
@@ -57,7 +58,8 @@ class Script:
         verdict = self.verdicts.pop(0)
         self.decided.append((verdict, effects))
         chosen = selection.calibrated if verdict in ("none", "unknown") else selection.sets[-1][0]
-        return Decision(verdict, chosen, self.groups, dict.fromkeys(effects, 0.1), 0.05, 0.6)
+        known = [*effects, *(f"toy.{cause}" for cause in self.effects or ())]
+        return Decision(verdict, chosen, self.groups, dict.fromkeys(known, 0.1), 0.05, 0.6)
 
     def share_gap(self, objective, chosen, remainder):
         self.calls.append("share")
@@ -242,12 +244,8 @@ def test_what_stays_unknown_is_searched_by_the_gap_alone(folder):
     first, second = script.selected
     expected = weigh_gap(problem, first[3].calibrated.residuals)
     assert all(np.array_equal(second[0].weights.weights[run], expected.weights[run]) for run in problem.runs)
-    # Sets are smaller, from the first start of each structure.
-    assert second[2] == 2 and len(second[1]) == len({each.structure for each in first[1]}) < len(first[1])
-    firsts = {}
-    for each in first[1]:
-        firsts.setdefault(each.structure, each)
-    assert {each.structure: each for each in second[1]} == firsts
+    # Sets are smaller.
+    assert second[2] == 2 and second[1] == first[1]
     # What is unknown is localised under the weights of the noise, and stated as the gap's weights have it.
     assert script.shared[0][0] is first[0] and found.objective is second[0] and found.selection is second[3]
     assert found.decision.chosen is second[3].calibrated
@@ -275,7 +273,11 @@ def test_an_effect_that_runs_left_out_support_stands_beside_the_unknown(folder):
     # The gap is that of the calibrated rig, not what the best set leaves.
     expected = weigh_gap(problem, script.selected[0][3].calibrated.residuals)
     assert np.array_equal(found.objective.weights.weights["first"], expected.weights["first"])
-    assert found.decision.probabilities["toy.one"] == pytest.approx(0.4)
+    # How likely the effect is follows from what it takes off runs left out, whatever else is unknown.
+    one = cross_validate(found.objective, chosen) / cross_validate(found.objective, script.selected[1][3].calibrated)
+    odds = 0.05 / np.mean(one**2) ** 4
+    assert found.decision.probabilities["toy.one"] == pytest.approx(odds / (1.0 + odds))
+    assert found.decision.unknown == 0.6 and odds > 1.0
     assert {share.block for share in found.where} >= {"cushion", "toy"}
 
 

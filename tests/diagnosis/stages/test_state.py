@@ -132,11 +132,19 @@ def test_effects_that_do_harm_on_the_held_out_run_are_given_up_beside_an_unknown
     assert found.augmented is solution.selection.nominal and found.gaps.shrink == 0.0
 
 
-def test_a_known_effect_is_never_given_up(objective):
+def test_a_known_effect_that_takes_too_little_off_the_held_out_run_stays_beside_an_unknown_cause(objective):
     solution = harmful(objective, "known")
     found = validate_on_held_out(solution)
-    assert found.gaps.shrink < 0.0 and found.solution is solution
-    assert found.augmented.parameters.names == {ONE.effect}
+    assert found.gaps.shrink < 0.0 and found.augmented.parameters.names == {ONE.effect}
+    decision = found.solution.decision
+    assert decision.verdict == "unknown" and decision.unknown == 0.55
+    assert decision.chosen is solution.decision.chosen
+    assert decision.probabilities == solution.decision.probabilities
+
+
+def test_a_known_effect_that_takes_most_of_the_held_out_gap_stays_known(objective):
+    solution = make_solution(objective, "known", ONE, TWO)
+    assert validate_on_held_out(solution).solution is solution
 
 
 def test_an_effect_that_helps_stays_beside_an_unknown_cause(objective):

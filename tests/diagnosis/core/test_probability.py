@@ -1,0 +1,37 @@
+"""Tempered evidences of sets, against weights worked out by hand."""
+
+import pytest
+
+from seatsim.diagnosis.probability import weigh_effects
+from seatsim.diagnosis.settings.judging import DecisionSettings
+
+SETTINGS = DecisionSettings()._replace(prior=0.1, power=2.0, effect_bounds=(0.01, 0.9))
+NAMES = ["a", "b", "c"]
+
+
+def weigh(*sets, settings=SETTINGS):
+    return weigh_effects(settings, [(frozenset(names), left) for names, left in sets], NAMES)
+
+
+def test_an_effect_has_the_share_of_the_weight_that_lies_in_sets_with_it():
+    found = weigh(("", 1.0), ("a", 0.2), ("b", 0.5), ("ab", 0.1))
+    total = 1.0 + 0.1 / 0.04 + 0.1 / 0.25 + 0.01 / 0.01
+    assert found["a"] == pytest.approx((2.5 + 1.0) / total)
+    assert found["b"] == pytest.approx((0.4 + 1.0) / total)
+    assert found["c"] == 0.01 and list(found) == NAMES
+
+
+def test_only_the_ratio_of_what_is_left_counts():
+    one, other = weigh(("", 1.0), ("a", 0.2)), weigh(("", 50.0), ("a", 10.0))
+    assert one == pytest.approx(other) and one["a"] == pytest.approx(2.5 / 3.5)
+
+
+def test_probabilities_stay_within_their_bounds():
+    assert weigh(("", 1.0), ("a", 1e-9)) == {"a": 0.9, "b": 0.01, "c": 0.01}
+    # Without any set nothing is known of any effect.
+    assert weigh() == dict.fromkeys(NAMES, 0.01)
+
+
+def test_very_different_sets_are_weighed_without_overflow():
+    strong = SETTINGS._replace(power=500.0)
+    assert weigh(("", 1e-6), ("a", 1e-5), settings=strong)["a"] == 0.01
