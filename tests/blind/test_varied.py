@@ -25,9 +25,14 @@ from seatsim.blind.truth.noise import NoiseColour, colour_noise
 from seatsim.blind.truth.physics.rig import EXCITATION_RATE, INTEGRATION_STEP
 
 
-def drawn(seed: int, bingham: bool = False, **changes: object) -> Experiment:
-    experiment = draw_varied.draw_varied_experiment(np.random.default_rng(seed), bingham, CHANNELS, False)
-    return dataclasses.replace(experiment, **changes)
+def drawn(seed: int, bingham: bool = False) -> Experiment:
+    return draw_varied.draw_varied_experiment(np.random.default_rng(seed), bingham, CHANNELS, False)
+
+
+@pytest.fixture
+def quiet(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No background force, whose size takes simulations."""
+    monkeypatch.setattr(draw_varied, "BACKGROUND_SHARE", 0.0)
 
 
 def test_every_rig_is_another_and_inside_what_is_built() -> None:
@@ -50,35 +55,47 @@ def test_every_rig_is_another_and_inside_what_is_built() -> None:
     )
 
 
-@pytest.mark.usefixtures("short")
-def test_parameters_lie_inside_the_stated_tolerance_and_backgrounds_are_not_material() -> None:
+@pytest.mark.usefixtures("short", "quiet")
+def test_parameters_lie_inside_the_stated_tolerance() -> None:
     experiments = [drawn(seed) for seed in range(30)]
     assert {experiment.sample_rate for experiment in experiments} == set(draw_varied.SAMPLE_RATES)
     for experiment in experiments:
         assert 0.01 <= experiment.tolerance <= 0.05
         off = [experiment.true[name] / value - 1.0 for name, value in experiment.nominal.items() if value]
-        assert 0.5 * experiment.tolerance < np.max(np.abs(off)) <= experiment.tolerance
+        assert 0.5 * experiment.tolerance < np.max(np.abs(off)) <= 1.001 * experiment.tolerance
         assert experiment.true["damper_ratio"] == experiment.nominal["damper_ratio"]
-        assert bool(experiment.background) == any(run.repeat_of == "run-a" for run in experiment.runs)
-    pushed = [experiment for experiment in experiments if experiment.background]
-    assert 4 <= len(pushed) <= 16
-    quiet = dataclasses.replace(pushed[0], background=())
-    commands = [simulate_run(quiet, Changes(), k).command for k in range(4)]
-    size, _ = CommandedRuns(quiet, commands).materiality(Changes(frame_forces=pushed[0].background), Changes())
-    assert 0.01 < size < 1.05 * draw_varied.LARGEST_BACKGROUND
+        assert not experiment.background and [run.name for run in experiment.runs] == [
+            "run-a",
+            "run-b",
+            "run-c",
+            "run-u",
+        ]
 
 
 @pytest.mark.usefixtures("short")
+def test_a_background_is_shown_by_a_repeat_and_is_not_material(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(draw_varied, "BACKGROUND_SHARE", 1.0)
+    experiment = drawn(0)
+    assert [run.repeat_of for run in experiment.runs] == [None, None, None, "run-a", None]
+    still = dataclasses.replace(experiment, background=())
+    motions = [simulate_run(still, Changes(), k) for k in range(4)]
+    true = experiment.true
+    carried = np.std(true["ms"] * motions[0].frame + true["m"] * motions[0].driver)
+    assert experiment.background[0].rms < 1.01 * draw_varied.BACKGROUND[1] * carried
+    runs = CommandedRuns(still, [motion.command for motion in motions])
+    size, _ = runs.materiality(Changes(frame_forces=experiment.background), Changes())
+    assert 0.01 < size < 1.05 * draw_varied.LARGEST_BACKGROUND
+
+
+@pytest.mark.usefixtures("short", "quiet")
 @pytest.mark.parametrize(("rate", "bingham", "n"), [(256.0, False, 1.0), (512.0, False, 2.0), (800.0, True, 0.0)])
 def test_a_faultless_rig_of_any_kind_replays_to_within_its_noise(
-    rate: float, bingham: bool, n: float, tmp_path: Path
+    rate: float, bingham: bool, n: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    experiment = next(
-        some
-        for some in (drawn(seed, bingham) for seed in range(200))
-        if some.sample_rate == rate and some.nominal.get("n", 0.0) == n and some.nominal["damper_ratio"] < 0.9
-    )
-    experiment = dataclasses.replace(experiment, true=dict(experiment.nominal), background=())
+    monkeypatch.setattr(draw_varied, "SAMPLE_RATES", (rate,))
+    experiments = (drawn(seed, bingham) for seed in range(100))
+    experiment = next(some for some in experiments if some.nominal.get("n", 0.0) == n)
+    experiment = dataclasses.replace(experiment, true=dict(experiment.nominal))
     shown = [read_channels(experiment, Changes(), k, simulate_run(experiment, Changes(), k)) for k in range(3)]
     write_folder(tmp_path / "case", encode_recording(experiment, shown, np.random.default_rng(0), range(3)))
     gap = seatsim.gap(tmp_path / "case" / "nominal.yaml", tmp_path / "case")
@@ -86,18 +103,21 @@ def test_a_faultless_rig_of_any_kind_replays_to_within_its_noise(
     assert gap.overall < 1.5 * gap.floor["overall"] + 0.005
 
 
-@pytest.mark.usefixtures("short")
-def test_a_row_is_a_whole_number_of_steps_at_every_rate() -> None:
-    for rate in draw_varied.SAMPLE_RATES:
-        experiment = next(some for some in (drawn(seed) for seed in range(60)) if some.sample_rate == rate)
-        motion = simulate_run(experiment, Changes(), 0)
-        per_row = motion.fine_current.size / motion.frame.size
-        assert per_row == int(per_row) and 1.0 / (rate * per_row) <= INTEGRATION_STEP * (1.0 + 1e-6)
-        shown = read_channels(experiment, Changes(), 0, motion)
-        files = encode_recording(experiment, [shown], np.random.default_rng(0), [0])
-        last = gzip.decompress(files["run-a.csv.gz"]).decode().splitlines()[-1]
-        assert float(last.split(",")[0]) == pytest.approx((motion.frame.size - 1) / rate, abs=1e-9)
-        assert recording_header(experiment, experiment.runs)["sample_rate"] == rate
+@pytest.mark.usefixtures("short", "quiet")
+@pytest.mark.parametrize("rate", draw_varied.SAMPLE_RATES)
+def test_a_row_is_a_whole_number_of_steps(rate: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(draw_varied, "SAMPLE_RATES", (rate,))
+    experiment = drawn(1)
+    motion = simulate_run(experiment, Changes(), 0)
+    per_row = motion.fine_current.size / motion.frame.size
+    assert per_row == int(per_row) and 1.0 / (rate * per_row) <= INTEGRATION_STEP * (1.0 + 1e-6)
+    files = encode_recording(
+        experiment, [read_channels(experiment, Changes(), 0, motion)], np.random.default_rng(0), [0]
+    )
+    last = gzip.decompress(files["run-a.csv.gz"]).decode().splitlines()[-1]
+    assert float(last.split(",")[0]) == pytest.approx((motion.frame.size - 1) / rate, abs=1e-9)
+    header = recording_header(experiment, experiment.runs)
+    assert (header["sample_rate"], header["parameter_tolerance"]) == (rate, experiment.tolerance)
 
 
 def test_the_colour_of_a_noise() -> None:
@@ -113,7 +133,7 @@ def test_the_colour_of_a_noise() -> None:
     np.testing.assert_allclose(plain, white, atol=1e-9)
 
 
-@pytest.mark.usefixtures("short")
+@pytest.mark.usefixtures("short", "quiet")
 def test_recorded_noise_has_the_stated_rms_and_is_coloured() -> None:
     experiment = drawn(3)
     zero = {name: np.zeros(60_000) for name in CHANNELS}
@@ -143,7 +163,7 @@ def test_bumps_and_holes_return_to_the_road() -> None:
     assert 0.008 < np.max(np.abs(height)) < 0.08 and abs(height[-1]) < 1e-4
 
 
-@pytest.mark.usefixtures("short")
+@pytest.mark.usefixtures("short", "quiet")
 def test_a_varied_set_has_the_mix_of_kinds_and_is_scored_as_any_other(tmp_path: Path) -> None:
     orders = compose(100, "varied", np.random.default_rng(0))
     assert [sum(order.kind == kind for order in orders) for kind in ("none", "one", "two", "outside")] == [
