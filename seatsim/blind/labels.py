@@ -28,6 +28,7 @@ class Specification(TypedDict):
     missing: list[str] | None
     background: float
     scatter: float
+    varied: bool
 
 
 class Label(TypedDict, total=False):
@@ -57,4 +58,10 @@ class Label(TypedDict, total=False):
     """Of the damper at the start of each run, degC."""
     background: float
     """Random force on the frame, N rms."""
+    sample_rate: float
+    """Hz."""
+    tolerance: float
+    """Relative error of nominal parameters that the owner states."""
+    rig: dict[str, float]
+    """Nominal parameters of seat, damper and coil."""
     order: Specification

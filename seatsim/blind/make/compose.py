@@ -13,7 +13,7 @@ from seatsim.blind.truth.experiment import COMPARED
 from seatsim.blind.truth.faults.catalogue import scenarios_of
 from seatsim.schema.errors import InputError, nearest
 
-PRESETS = ("mixed", "null", "background")
+PRESETS = ("mixed", "varied", "null", "background")
 BACKGROUND = 6.0
 """Random force on the frame of the preset `background`, N rms: half of that which counts as an effect of severity 1."""
 
@@ -22,8 +22,9 @@ def compose(cases: int, kinds: str | Sequence[str] | None, rng: Generator) -> li
     """Return the specifications of a set, shuffled.
 
     `mixed` (or None): a fifth none, a fifth two effects, a fifth outside, the rest one effect, the 24 effects equally
-    often. `null`: faultless over every subset of channels. `background`: faultless, a random force on the frame, and a
-    repeated run that shows it. A list of kinds is gone through in turn.
+    often. `varied`: the same mix, every case on another rig. `null`: faultless over every subset of channels.
+    `background`: faultless, a random force on the frame, and a repeated run that shows it. A list of kinds is gone
+    through in turn.
 
     Raises:
         InputError: there is no such preset or kind.
@@ -34,7 +35,7 @@ def compose(cases: int, kinds: str | Sequence[str] | None, rng: Generator) -> li
     elif kinds == "background":
         specifications = [CaseSpecification("none", background=BACKGROUND) for _ in range(cases)]
     else:
-        specifications = _specify(_kinds(cases, kinds), rng)
+        specifications = _specify(_kinds(cases, kinds), rng, kinds == "varied")
     return [specifications[k] for k in rng.permutation(cases)]
 
 
@@ -55,7 +56,7 @@ def _leaves_enough(missing: tuple[str, ...]) -> bool:
 
 def _kinds(cases: int, kinds: str | Sequence[str] | None) -> list[Kind]:
     """Return the kind of each case, before shuffling."""
-    if kinds is None or kinds == "mixed":
+    if kinds in (None, "mixed", "varied"):
         fifth = round(cases / 5)
         parts: list[tuple[Kind, int]] = [
             ("none", fifth), ("two", fifth), ("outside", fifth), ("one", max(cases - 3 * fifth, 0)),
@@ -75,7 +76,7 @@ def _known_kind(name: str, known: Sequence[str]) -> Kind:
     raise InputError(f"kinds: {name!r} is not one of {', '.join(known)}{nearest(name, known)}")
 
 
-def _specify(kinds: list[Kind], rng: Generator) -> list[CaseSpecification]:
+def _specify(kinds: list[Kind], rng: Generator, varied: bool) -> list[CaseSpecification]:
     """Return a specification for each kind; effects and scenarios are dealt so that each comes equally often."""
     singles, pairs = _Dealer(EFFECTS, rng), _Dealer(EFFECTS, rng)
     outside = _Dealer([scenario.name for scenario in scenarios_of("outside")], rng)
@@ -91,7 +92,7 @@ def _specify(kinds: list[Kind], rng: Generator) -> list[CaseSpecification]:
                 names = (outside.take(),)
             case "none":
                 names = ()
-        specifications.append(CaseSpecification(kind, names))
+        specifications.append(CaseSpecification(kind, names, varied=varied))
     return specifications
 
 

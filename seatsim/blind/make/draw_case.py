@@ -10,6 +10,7 @@ from numpy.random import Generator
 
 from seatsim.blind.labels import EFFECTS, Kind, Label, Specification
 from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment
+from seatsim.blind.make.draw_varied import draw_varied_experiment
 from seatsim.blind.make.materiality import COARSE_STEP, CommandedRuns, collinearity
 from seatsim.blind.make.severity import find_severity
 from seatsim.blind.make.tolerance import ToleranceRefit
@@ -44,7 +45,7 @@ class CaseSpecification:
     """Specification of a case: its kind, and its effects (or the scenarios outside the library).
 
     `missing` are the channels not recorded (None: drawn), `background` is a random force on the frame, N rms, and
-    `scatter` the largest relative error of a nominal parameter.
+    `scatter` the largest relative error of a nominal parameter. `varied`: the rig is drawn too, and these two with it.
     """
 
     kind: Kind
@@ -52,13 +53,14 @@ class CaseSpecification:
     missing: tuple[str, ...] | None = None
     background: float = 0.0
     scatter: float = SCATTER
+    varied: bool = False
 
     def as_dict(self) -> Specification:
         """Return it as it stands in a label."""
         missing = None if self.missing is None else list(self.missing)
         return {
             "kind": self.kind, "names": list(self.names), "missing": missing, "background": self.background,
-            "scatter": self.scatter,
+            "scatter": self.scatter, "varied": self.varied,
         }  # fmt: skip
 
 
@@ -100,7 +102,10 @@ class Case:
             "nominal": "bingham" if self.experiment.is_bingham else "bouc_wen",
             "missing": [name for name in CHANNELS if name not in self.experiment.channels],
             "temperatures": [run.temperature for run in self.experiment.runs],
-            "background": self.specification.background,
+            "background": sum(force.rms for force in self.experiment.background),
+            "sample_rate": self.experiment.sample_rate,
+            "tolerance": self.experiment.tolerance,
+            "rig": dict(self.experiment.nominal),
             "order": self.specification.as_dict(),
         }
 
@@ -146,6 +151,8 @@ def _draw_rig(specification: CaseSpecification, scenarios: Sequence[FaultScenari
     channels = tuple(name for name in CHANNELS if name not in missing or name in needed)
     bingham = rng.random() < BINGHAM_SHARE or any(scenario.bingham for scenario in scenarios)
     warm = any(scenario.warm for scenario in scenarios)
+    if specification.varied:
+        return draw_varied_experiment(rng, bingham, channels, warm)
     return draw_experiment(rng, bingham, channels, warm, specification.scatter, specification.background)
 
 

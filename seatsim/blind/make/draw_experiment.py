@@ -36,10 +36,13 @@ BOUC_WEN = {
     "A": 2000.0, "beta": 1000.0, "gamma": 1000.0, "n": 2.0,
 }  # fmt: skip
 BINGHAM = {"is_bingham": 1.0, "c_a": 250.0, "c_b": 350.0, "y_a": 45.0, "y_b": 620.0, "f0": 0.0, "v_ref": 0.004}
-EXACT = ("is_bingham", "n", "i_max")
+EXACT = ("is_bingham", "n", "i_max", "damper_ratio")
 """Parameters that are choices, not measurements, and are never off."""
-ZERO_SCALE = {"k0": PLANT["kf"], "x0": 0.01, "f0": 100.0}
-"""What a relative error refers to where the nominal value is zero."""
+
+
+def zero_scales(nominal: Mapping[str, float]) -> dict[str, float]:
+    """Return what a relative error refers to where the nominal value is zero (contract, section 3)."""
+    return {"k0": nominal["kf"], "x0": 0.01, "f0": 100.0}
 
 
 def scatter_parameters(nominal: Mapping[str, float], rng: Generator, width: float = SCATTER) -> dict[str, float]:
@@ -47,11 +50,11 @@ def scatter_parameters(nominal: Mapping[str, float], rng: Generator, width: floa
 
     Every parameter takes one number of the generator, also those that stay exact.
     """
-    true = dict(nominal)
+    true, scales = dict(nominal), zero_scales(nominal)
     for name, value in nominal.items():
         off = width * rng.uniform(-1.0, 1.0)
         if name not in EXACT:
-            true[name] = value * (1.0 + off) if value else off * ZERO_SCALE.get(name, 0.0)
+            true[name] = value * (1.0 + off) if value else off * scales.get(name, 0.0)
     return true
 
 
@@ -73,7 +76,8 @@ def draw_experiment(
     return Experiment(nominal, true, channels, noise, _draw_runs(rng, warm, bool(background)), forces)
 
 
-def _draw_temperatures(rng: Generator, warm: bool, count: int) -> list[float]:
+def draw_temperatures(rng: Generator, warm: bool, count: int) -> list[float]:
+    """Draw the temperature of the damper at the start of each run, degC; the last run is the unseen one."""
     if not warm and rng.random() < COLD:
         return [20.0] * count
     levels = rng.choice([30.0, 45.0, 60.0], count) + rng.uniform(-2.0, 2.0)
@@ -83,7 +87,7 @@ def _draw_temperatures(rng: Generator, warm: bool, count: int) -> list[float]:
     return [float(level) for level in levels]
 
 
-def _draw_laws(rng: Generator) -> tuple[Array, Array]:
+def draw_laws(rng: Generator) -> tuple[Array, Array]:
     """Draw a skyhook and an output feedback: level A, dead band m/s; gains N/m and N s/m."""
     skyhook = [control_laws.SKYHOOK, round(rng.uniform(0.7, 1.0), 2), rng.uniform(0.002, 0.02), 0.0, 0.0, 0.0]
     stiffness, relative = -rng.uniform(0.0, 1500.0), rng.uniform(0.0, 200.0)
@@ -98,10 +102,10 @@ def _draw_runs(rng: Generator, warm: bool, repeat: bool) -> tuple[RunPlan, ...]:
     """
     rows, unseen = round(SECONDS * SAMPLE_RATE), round(UNSEEN_SECONDS * SAMPLE_RATE)
     rms = rng.uniform(1.15, 1.7)
-    hot = _draw_temperatures(rng, warm, 4)
+    hot = draw_temperatures(rng, warm, 4)
     no_current = np.zeros(rows)
     schedule = np.array([control_laws.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
-    skyhook, feedback = _draw_laws(rng)
+    skyhook, feedback = draw_laws(rng)
     top = rng.uniform(0.8, 1.0)
     first = RunPlan("run-a", draw_road(rng, SECONDS, rms), schedule, draw_current_steps(rng, rows, top), hot[0])
     laws = [(skyhook, no_current), (feedback, no_current)]

@@ -12,9 +12,8 @@ import numpy as np
 from numpy.random import Generator
 from ruamel.yaml import YAML
 
-from seatsim.blind.make.tolerance import TOLERANCE
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, RunPlan
-from seatsim.blind.truth.physics.rig import SAMPLE_RATE
+from seatsim.blind.truth.noise import colour_noise
 from seatsim.blind.truth.sensors import Readings
 
 UNITS = {
@@ -40,11 +39,12 @@ def nominal_scenario(experiment: Experiment) -> dict[str, object]:
     parameters |= {name: n[name] for name in names}
     if not bingham:
         parameters["n"] = int(n["n"])
+    ratio = {"damper_ratio": n["damper_ratio"]} if "damper_ratio" in n else {}
     return {
         "plant": {
             "frame_mass": n["ms"], "driver_mass": n["m"], "suspension_stiffness": n["kf"],
             "suspension_damping": n["cf"], "cushion_stiffness": n["kc"], "cushion_damping": n["cc"],
-        },
+        } | ratio,
         "damper": {"model": "bingham" if bingham else "bouc_wen", "parameters": parameters},
         "actuator": {"rate": n["rate"], "max_current": n["i_max"]},
         "temperature": 20.0,
@@ -61,8 +61,8 @@ def recording_header(experiment: Experiment, runs: Sequence[RunPlan]) -> dict[st
         for run in runs
     ]
     return {
-        "rig": "seat", "sample_rate": SAMPLE_RATE, "parameter_tolerance": TOLERANCE, "nominal": "nominal.yaml",
-        "runs": entries, "channels": channels,
+        "rig": "seat", "sample_rate": experiment.sample_rate, "parameter_tolerance": experiment.tolerance,
+        "nominal": "nominal.yaml", "runs": entries, "channels": channels,
     }  # fmt: skip
 
 
@@ -72,7 +72,7 @@ def _channel_header(experiment: Experiment, name: str) -> dict[str, str | float]
 
 
 def add_noise(experiment: Experiment, readings: Readings, rng: Generator) -> Readings:
-    """Return the recorded channels with white noise of the stated rms.
+    """Return the recorded channels with noise of the stated rms, white or of the channel's colour.
 
     Channels that are not recorded take their numbers of the generator too, so that the others' noise is the same.
     """
@@ -80,14 +80,17 @@ def add_noise(experiment: Experiment, readings: Readings, rng: Generator) -> Rea
     for name in CHANNELS:
         noise = rng.standard_normal(readings[name].size)
         if name in experiment.channels:
-            noisy[name] = readings[name] + experiment.noise.get(name, 0.0) * noise
+            colour = experiment.colours.get(name)
+            unit = noise if colour is None else colour_noise(noise, colour, experiment.sample_rate)
+            noisy[name] = readings[name] + experiment.noise.get(name, 0.0) * unit
     return noisy
 
 
-def encode_table(channels: Readings) -> bytes:
+def encode_table(channels: Readings, rate: float) -> bytes:
     """Return a run as a gzipped CSV whose bytes depend on nothing but the numbers."""
     rows = next(iter(channels.values())).size
-    columns = [np.char.mod("%.3f", np.arange(rows) / SAMPLE_RATE)]
+    whole_milliseconds = 1000.0 % rate == 0.0
+    columns = [np.char.mod("%.3f" if whole_milliseconds else "%.9f", np.arange(rows) / rate)]
     columns += [np.char.mod(f"%.{DIGITS.get(name, 4)}f", values) for name, values in channels.items()]
     lines = [",".join(("time", *channels))] + [",".join(row) for row in zip(*columns, strict=True)]
     packed = io.BytesIO()
@@ -115,7 +118,7 @@ def encode_recording(
         "nominal.yaml": encode_yaml(nominal_scenario(experiment)),
     }
     for k, plan in zip(runs, plans, strict=True):
-        files[f"{plan.name}.csv.gz"] = encode_table(add_noise(experiment, readings[k], rng))
+        files[f"{plan.name}.csv.gz"] = encode_table(add_noise(experiment, readings[k], rng), experiment.sample_rate)
     return files
 
 

@@ -34,9 +34,9 @@ def make(
 ) -> str:  # fmt: skip
     """Write DIR/case-0001/... and the sealed file; return the key, which is stored nowhere.
 
-    Without `seed` one is drawn and sealed. `kinds` is a preset (`mixed`, `null`, `background`) or a list of kinds
-    (none, one, two, outside) that is gone through in turn. A call broken off goes on where it stopped. `progress` is
-    called with the cases done and all cases.
+    Without `seed` one is drawn and sealed. `kinds` is a preset (`mixed`, `varied`, `null`, `background`) or a list of
+    kinds (none, one, two, outside) that is gone through in turn. A call broken off goes on where it stopped. `progress`
+    is called with the cases done and all cases.
 
     Raises:
         InputError: fewer than one case, an unknown preset, a folder or file that is another set's.

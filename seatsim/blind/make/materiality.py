@@ -15,7 +15,7 @@ import numpy as np
 from seatsim.blind.truth.experiment import Experiment, read_channels, simulate_run
 from seatsim.blind.truth.faults.scenario import Changes
 from seatsim.blind.truth.physics.compiled import Array
-from seatsim.blind.truth.physics.rig import SAMPLE_RATE, RigMotion
+from seatsim.blind.truth.physics.rig import RigMotion
 from seatsim.blind.truth.sensors import Readings
 
 MATERIAL_SHARE = 0.05
@@ -47,6 +47,11 @@ class CommandedRuns:
     def runs(self) -> range:
         """Recorded runs."""
         return range(len(self.commands))
+
+    @property
+    def left_out(self) -> int:
+        """Rows at the start of each run that no gap counts."""
+        return round(LEFT_OUT * self.experiment.sample_rate)
 
     def simulate(self, changes: Changes) -> list[RigMotion]:
         """Return the motion of each run; sensor faults do not change it, so one simulation serves all of those."""
@@ -84,11 +89,11 @@ class CommandedRuns:
         response: dict[str, Array] = {}
         limits: dict[str, float] = {}
         for name in self.experiment.compared:
-            with_it = _pooled(both, name)
+            with_it = self._pooled(both, name)
             spread, noise = float(np.std(with_it)), self.experiment.noise[name]
             if spread < NOISE_FACTOR * noise:
                 continue
-            response[name] = with_it - _pooled(rest, name)
+            response[name] = with_it - self._pooled(rest, name)
             if replayed is not None:
                 response[name] -= replayed[name]
             limits[name] = max(MATERIAL_SHARE * spread, noise)
@@ -100,21 +105,18 @@ class CommandedRuns:
         base = self.simulate(clean)
         on_floor = any(f.channel == "floor_acceleration" for f in fault.sensor_faults)
         parts: dict[str, list[Array]] = {name: [] for name in self.experiment.compared}
-        skip = round(LEFT_OUT * SAMPLE_RATE)
         for k in self.runs:
             floor = shown[k]["floor_acceleration"] if on_floor else None
             motion = simulate_run(self.experiment, clean, k, shown[k]["current_command"], floor, COARSE_STEP)
             new = read_channels(self.experiment, clean, k, motion)
             old = read_channels(self.experiment, clean, k, base[k])
             for name, moved in parts.items():
-                moved.append(new[name][skip:] - old[name][skip:])
+                moved.append(new[name][self.left_out :] - old[name][self.left_out :])
         return {name: np.concatenate(moved) for name, moved in parts.items()}
 
-
-def _pooled(runs: list[Readings], name: str) -> Array:
-    """Return a channel over all runs, without the seconds that no gap counts."""
-    skip = round(LEFT_OUT * SAMPLE_RATE)
-    return np.concatenate([run[name][skip:] for run in runs])
+    def _pooled(self, runs: list[Readings], name: str) -> Array:
+        """Return a channel over all runs, without the rows that no gap counts."""
+        return np.concatenate([run[name][self.left_out :] for run in runs])
 
 
 def rms(values: Array) -> float:

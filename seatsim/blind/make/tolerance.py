@@ -9,15 +9,12 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from seatsim.blind.make.draw_experiment import EXACT, ZERO_SCALE
+from seatsim.blind.make.draw_experiment import EXACT, zero_scales
 from seatsim.blind.make.materiality import CommandedRuns, rms
 from seatsim.blind.truth.experiment import Experiment
 from seatsim.blind.truth.faults.scenario import Changes
 from seatsim.blind.truth.physics.compiled import Array
-from seatsim.blind.truth.physics.rig import SAMPLE_RATE
 
-TOLERANCE = 0.02
-"""Relative, as the recording states it."""
 SECONDS = 12.0
 """Of each run that are looked at: half of it, as every parameter costs a simulation."""
 NEGLIGIBLE = 0.2
@@ -28,10 +25,12 @@ class ToleranceRefit:
     """Sensitivities of the compared channels to each parameter of an experiment, one tolerance up."""
 
     def __init__(self, experiment: Experiment, commands: list[Array]) -> None:
-        self.runs = CommandedRuns(experiment, [command[: round(SECONDS * SAMPLE_RATE)] for command in commands])
+        rows = round(SECONDS * experiment.sample_rate)
+        self.runs = CommandedRuns(experiment, [command[:rows] for command in commands])
+        scales = zero_scales(experiment.nominal)
         self.sensitivities: list[dict[str, Array]] = []
         for name, value in experiment.nominal.items():
-            step = TOLERANCE * (value or ZERO_SCALE.get(name, 0.0))
+            step = experiment.tolerance * (value or scales.get(name, 0.0))
             if name not in EXACT and step:
                 sensitivity, _ = self.runs.response(Changes({name: experiment.true[name] + step}), Changes())
                 self.sensitivities.append(sensitivity)

@@ -61,12 +61,12 @@ def draw_sweep(rng: Generator, seconds: float, rms: float) -> Array:
     return np.asarray(size * np.sin(phase) + 0.6 * rms * _noise(rng, time.size, 0.8, 10.0, -0.3))
 
 
-def draw_current_steps(rng: Generator, rows: int, top: float) -> Array:
+def draw_current_steps(rng: Generator, rows: int, top: float, rate: float = SAMPLE_RATE) -> Array:
     """Return a schedule of current steps, A, shape (rows,): random levels, zero now and then, held 0.3-2.5 s."""
     out = np.zeros(rows)
     at = 0
     while at < rows:
-        hold = round(rng.uniform(0.3, 2.5) * SAMPLE_RATE)
+        hold = round(rng.uniform(0.3, 2.5) * rate)
         level = 0.0 if rng.random() < OFF_SHARE else float(round(rng.uniform(0.05, top), 3))
         out[at : at + hold] = level
         at += hold

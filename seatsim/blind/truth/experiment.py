@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from seatsim.blind.truth.faults.scenario import Changes, Context, FrameForce
 from seatsim.blind.truth.frame_forces import frame_force
+from seatsim.blind.truth.noise import NoiseColour
 from seatsim.blind.truth.physics.compiled import Array
 from seatsim.blind.truth.physics.parameters import parameter_record
 from seatsim.blind.truth.physics.rig import (
@@ -23,6 +24,8 @@ from seatsim.blind.truth.sensors import Readings, read_sensors
 
 COMPARED = ("frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 """Outputs that a gap compares, where they are recorded."""
+TOLERANCE = 0.02
+"""Relative error of nominal parameters that the owner states, unless an experiment has its own."""
 CHANNELS = (
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force",
     "current_command", "coil_current", "damper_temperature",
@@ -50,7 +53,9 @@ class RunPlan:
 class Experiment:
     """A rig and its protocol before any effect; the last run is the unseen one.
 
-    `nominal` are the parameters that the owner assumes, `true` those that the rig has; `noise` is the rms by channel.
+    `nominal` are the parameters that the owner assumes, known to within the relative `tolerance` that he states, `true`
+    those that the rig has; `noise` is the rms by channel, white but where the channel has a colour; `sample_rate` is
+    that of the rows, Hz.
     """
 
     nominal: Mapping[str, float]
@@ -59,6 +64,9 @@ class Experiment:
     noise: Mapping[str, float]
     runs: tuple[RunPlan, ...]
     background: tuple[FrameForce, ...] = ()
+    sample_rate: float = SAMPLE_RATE
+    tolerance: float = TOLERANCE
+    colours: Mapping[str, NoiseColour] = field(default_factory=dict)
 
     @property
     def compared(self) -> tuple[str, ...]:
@@ -82,9 +90,9 @@ def simulate_run(
     plan = experiment.runs[run]
     record = parameter_record(_run_parameters(experiment, changes, run))
     law, schedule = (plan.law, plan.schedule) if command is None else (np.zeros(6), command)
-    base, rate = (plan.floor, EXCITATION_RATE) if floor is None else (floor, SAMPLE_RATE)
-    force = frame_force((*experiment.background, *changes.frame_forces), run, plan.rows / SAMPLE_RATE)
-    return simulate(record, Inputs(base, rate, force, law, schedule), step)
+    base, rate = (plan.floor, EXCITATION_RATE) if floor is None else (floor, experiment.sample_rate)
+    force = frame_force((*experiment.background, *changes.frame_forces), run, plan.rows / experiment.sample_rate)
+    return simulate(record, Inputs(base, rate, force, law, schedule, experiment.sample_rate), step)
 
 
 def _run_parameters(experiment: Experiment, changes: Changes, run: int) -> dict[str, float]:

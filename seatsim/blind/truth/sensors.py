@@ -23,9 +23,9 @@ EVEN_RUN_DRIFT = 0.6
 
 def read_sensors(motion: RigMotion, floor: Array, faults: Iterable[SensorFault], run: int) -> Readings:
     """Return what each channel reads, without noise; `floor` is the run's acceleration at 2 kHz, m/s^2."""
-    rows = motion.frame.size
+    time = np.arange(motion.frame.size) / motion.sample_rate
     true = {
-        "floor_acceleration": floor[:: round(EXCITATION_RATE / SAMPLE_RATE)][:rows].copy(),
+        "floor_acceleration": np.interp(time * EXCITATION_RATE, np.arange(floor.size), floor),
         "frame_acceleration": motion.frame,
         "driver_acceleration": motion.driver,
         "suspension_displacement": motion.displacement,
@@ -39,7 +39,8 @@ def read_sensors(motion: RigMotion, floor: Array, faults: Iterable[SensorFault],
         if fault.kind == "skew":
             read["current_command"], read["coil_current"] = read_late_log(motion, fault, run)
         else:
-            read[fault.channel] = apply_fault(read[fault.channel], true[NEIGHBOUR[fault.channel]], fault, run)
+            other = true[NEIGHBOUR[fault.channel]]
+            read[fault.channel] = apply_fault(read[fault.channel], other, fault, run, motion.sample_rate)
     return read
 
 
@@ -48,22 +49,24 @@ def read_late_log(motion: RigMotion, fault: SensorFault, run: int) -> tuple[Arra
 
     The command is held between rows; the current is read between the steps of the integration.
     """
-    time = np.arange(motion.frame.size) / SAMPLE_RATE
+    time = np.arange(motion.frame.size) / motion.sample_rate
     late = fault.size * (1.0 - fault.detail * time / time[-1] * (1.0 if run % 2 else EVEN_RUN_DRIFT))
     at = np.clip(time - late, 0.0, time[-1])
-    rows = np.floor(at * SAMPLE_RATE + ROUNDING).astype(int)
-    fine = np.arange(motion.fine_current.size) * (motion.command.size / (SAMPLE_RATE * motion.fine_current.size))
+    rows = np.floor(at * motion.sample_rate + ROUNDING).astype(int)
+    fine = np.arange(motion.fine_current.size) * (motion.command.size / (motion.sample_rate * motion.fine_current.size))
     return motion.command[rows], np.interp(at, fine, motion.fine_current)
 
 
-def apply_fault(u: Array, other: Array, fault: SensorFault, run: int) -> Array:  # noqa: PLR0911 - one return per fault
+def apply_fault(  # noqa: PLR0911 - one return per fault
+    u: Array, other: Array, fault: SensorFault, run: int, rate: float = SAMPLE_RATE
+) -> Array:
     """Return a channel `u` read through a fault; `other` is what couples into it.
 
     gain `(1 + g) u`; gain_bent `(1 + g) u` whose g fades with size; bias: offset plus drift; wander: offset plus slow
     noise; lag_second: a second-order low-pass; lag_average: mean over a window; quantise, clip, backlash, crosstalk.
     """
     size = fault.size
-    time = np.arange(u.size) / SAMPLE_RATE
+    time = np.arange(u.size) / rate
     if size == 0.0:
         return u
     match fault.kind:
@@ -75,12 +78,12 @@ def apply_fault(u: Array, other: Array, fault: SensorFault, run: int) -> Array: 
             return np.asarray(u + size * (1.0 + (fault.detail - 0.4) * time / time[-1]))
         case "wander":
             rng = np.random.default_rng([fault.seed, run])
-            noise = coloured_noise(rng, u.size, 0.02, 0.1 + 0.1 * fault.detail, -1.0, SAMPLE_RATE)
+            noise = coloured_noise(rng, u.size, 0.02, 0.1 + 0.1 * fault.detail, -1.0, rate)
             return u + size * (0.6 + noise)
         case "lag_second":
-            return low_pass(u, size)
+            return low_pass(u, size, rate)
         case "lag_average":
-            return moving_average(u, size)
+            return moving_average(u, size, rate)
         case "quantise":
             return np.asarray(np.round(u / size) * size)
         case "clip":
@@ -92,20 +95,20 @@ def apply_fault(u: Array, other: Array, fault: SensorFault, run: int) -> Array: 
     raise ValueError(fault.kind)
 
 
-def low_pass(u: Array, delay: float) -> Array:
+def low_pass(u: Array, delay: float, rate: float) -> Array:
     """Return u through `w^2 / (s^2 + 1.6 w s + w^2)`, whose delay at low frequency is `1.6 / w = delay`, s.
 
     The corner stays below 0.9 of the Nyquist frequency, where the bilinear transform is still of use.
     """
-    w = min(1.6 / delay, 0.9 * np.pi * SAMPLE_RATE)
-    b, a = bilinear([w * w], [1.0, 1.6 * w, w * w], SAMPLE_RATE)
+    w = min(1.6 / delay, 0.9 * np.pi * rate)
+    b, a = bilinear([w * w], [1.0, 1.6 * w, w * w], rate)
     out, _ = lfilter(b, a, u, zi=lfilter_zi(b, a) * u[0])
     return np.asarray(out)
 
 
-def moving_average(u: Array, delay: float) -> Array:
+def moving_average(u: Array, delay: float, rate: float) -> Array:
     """Return the mean over the last `2 delay` seconds, the edge of the window between rows included in part."""
-    width = 2.0 * delay * SAMPLE_RATE + 1.0
+    width = 2.0 * delay * rate + 1.0
     whole = int(width)
     taps = np.append(np.ones(whole), width - whole) / width
     padded = np.concatenate([np.full(taps.size - 1, u[0]), u])

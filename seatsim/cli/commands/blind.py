@@ -20,7 +20,7 @@ def blind_make(
     sealed: Annotated[Path, typer.Option("--sealed", help="File for the encrypted labels.")],
     seed: Annotated[int | None, typer.Option("--seed", help="Seed of the draw; drawn and sealed where absent.")] = None,
     kinds: Annotated[
-        str, typer.Option("--kinds", help="mixed, none, one, two, outside, null or background.")
+        str, typer.Option("--kinds", help="mixed, varied, none, one, two, outside, null or background.")
     ] = "mixed",
 ) -> None:
     """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""

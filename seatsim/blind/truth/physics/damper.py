@@ -100,9 +100,11 @@ def write_yield_rates(y: Array, rates: Array, v: float, p: RigParameters) -> Non
     if p.is_bingham == 0.0:
         z = y[state.Z]
         # the two common exponents without a power, which would be the most expensive operation of the loop
-        size = abs(z) if p.n == 1.0 else abs(z) ** (p.n - 1.0)
+        size = 1.0
         if p.n == 2.0:
             size = abs(z)
+        elif p.n != 1.0:
+            size = abs(z) ** (p.n - 1.0)
         rates[state.Z] = p.A * v - p.beta * v * size * abs(z) - p.gamma * abs(v) * z * size
     elif p.preyield_share != 0.0 and p.preyield_time == 0.0:
         # a tenth of v_ref^2 keeps the state moving at rest; without it z would stay where the motion stopped

@@ -39,6 +39,7 @@ class RigParameters:
     gamma: float = 0.0  # 1/m, Bouc-Wen
     n: float = 0.0  # -, exponent of Bouc-Wen
     v_ref: float = 0.0  # m/s, Bingham: speed at which 76 % of the yield force is reached
+    damper_ratio: float = 1.0  # -, stroke of the damper per suspension displacement
     # nominal coil
     rate: float = 0.0  # 1/s
     i_max: float = 0.0  # A

@@ -7,13 +7,14 @@ The floor enters only as an acceleration; all motion is relative (`x = zs - z0`,
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple, cast
 
 import numpy as np
 
 from seatsim.blind.truth.physics import state
-from seatsim.blind.truth.physics.coil import held_command, target_current, write_coil_rates
+from seatsim.blind.truth.physics.coil import ROUNDING, held_command, target_current, write_coil_rates
 from seatsim.blind.truth.physics.compiled import Array, compiled
 from seatsim.blind.truth.physics.control_laws import command_of
 from seatsim.blind.truth.physics.cushion import cushion_force
@@ -25,11 +26,12 @@ from seatsim.blind.truth.physics.parameters import RigParameters
 from seatsim.blind.truth.physics.suspension import suspension_force
 
 SAMPLE_RATE = 500.0
-"""Rows per second."""
+"""Rows per second, unless an experiment states another rate."""
 EXCITATION_RATE = 2000.0
 """Samples per second of the floor and of forces on the frame; linear between them."""
 INTEGRATION_STEP = 1e-4
-"""Step of the integration, s; a quarter of it changes no channel by more than 0.1 % of its spread (see the tests)."""
+"""Longest step of the integration, s, a whole number of them in a row; a quarter of it changes no channel by more than
+0.1 % of its spread (see the tests)."""
 FORGETTING = 0.8
 """1/s, at which a controller's integral of an acceleration forgets, so that no offset runs away."""
 
@@ -46,6 +48,7 @@ class RigMotion:
     current: Array  # A
     temperature: Array  # degC, of the thermometer
     fine_current: Array  # A, shape (steps,)
+    sample_rate: float = SAMPLE_RATE  # Hz, of the rows
 
 
 class Inputs(NamedTuple):
@@ -56,6 +59,7 @@ class Inputs(NamedTuple):
     frame_force: Array  # N, at EXCITATION_RATE; a single sample means none
     law: Array  # see `control_laws`
     schedule: Array  # A, one per row: the command where the law is a schedule
+    sample_rate: float = SAMPLE_RATE  # Hz, of the rows
 
 
 class _Stages(NamedTuple):
@@ -70,12 +74,16 @@ class _Stages(NamedTuple):
 
 
 def simulate(record: np.void, inputs: Inputs, step: float = INTEGRATION_STEP) -> RigMotion:
-    """Run the rig from rest for as many rows as the schedule has; `record` is that of `parameter_record`."""
+    """Run the rig from rest for as many rows as the schedule has, in steps no longer than `step`, s.
+
+    `record` is that of `parameter_record`.
+    """
     rows = inputs.schedule.size
+    per_row = math.ceil(1.0 / (inputs.sample_rate * step) - ROUNDING)
     out: Array = np.zeros((7, rows))
-    fine = np.zeros(rows * round(1.0 / (SAMPLE_RATE * step)))
-    _run(cast(RigParameters, record), inputs, step, out, fine)
-    return RigMotion(out[0], out[1], out[2], out[3], out[4], out[5], out[6], fine)
+    fine = np.zeros(rows * per_row)
+    _run(cast(RigParameters, record), inputs, per_row, out, fine)
+    return RigMotion(out[0], out[1], out[2], out[3], out[4], out[5], out[6], fine, inputs.sample_rate)
 
 
 @compiled
@@ -109,8 +117,8 @@ def _write_rates(
     force and travel by its ratio.
     """
     write_coil_rates(y, rates, target, y[state.V], p)
-    ratio = 1.0 + p.lever_slope * y[state.X]
-    fd = damper_force(y, rates, memory, y[state.X], y[state.V] * ratio, p)
+    ratio = p.damper_ratio + p.lever_slope * y[state.X]
+    fd = damper_force(y, rates, memory, p.damper_ratio * y[state.X], y[state.V] * ratio, p)
     fs = suspension_force(y, rates, p)
     fc = cushion_force(y, rates, p)
     base = _base_acceleration(y, rates, floor, fs + ratio * fd, p)
@@ -160,17 +168,18 @@ def _update_memory(
     memory[state.V_FRAME] += h * (frame - FORGETTING * memory[state.V_FRAME])
     memory[state.V_DRIVER] += h * (driver - FORGETTING * memory[state.V_DRIVER])
     if p.cavitation_force > 0.0:
-        update_cavity(y, memory, y[state.X], y[state.V] * (1.0 + p.lever_slope * y[state.X]), h, p)
+        ratio = p.damper_ratio + p.lever_slope * y[state.X]
+        update_cavity(y, memory, p.damper_ratio * y[state.X], y[state.V] * ratio, h, p)
     if p.relay_share != 0.0:
         update_relays(y, memory, relays, p)
 
 
 @compiled
-def _run(p: RigParameters, inputs: Inputs, h: float, out: Array, fine: Array) -> None:
-    floor, floor_rate, frame_forces, law, schedule = inputs
+def _run(p: RigParameters, inputs: Inputs, per_row: int, out: Array, fine: Array) -> None:
+    floor, floor_rate, frame_forces, law, schedule, sample_rate = inputs
     rows = out.shape[1]
-    interval = 1.0 / SAMPLE_RATE
-    per_row = round(interval / h)
+    interval = 1.0 / sample_rate
+    h = interval / per_row
     y = np.zeros(state.STATES)
     y[state.T_FLUID] = y[state.T_HOUSING] = y[state.T_THERMOMETER] = p.t_start
     memory = np.zeros(state.MEMORIES)

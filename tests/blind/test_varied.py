@@ -1,0 +1,181 @@
+"""Rigs of the preset `varied`: their ranges, their noise and floors, and that a faultless one replays."""
+
+from __future__ import annotations
+
+import dataclasses
+import gzip
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.signal import welch
+
+import seatsim
+from seatsim.blind.make import draw_varied
+from seatsim.blind.make.compose import compose
+from seatsim.blind.make.folder import add_noise, encode_recording, recording_header, write_folder
+from seatsim.blind.make.make import make
+from seatsim.blind.make.materiality import CommandedRuns
+from seatsim.blind.sealed import unseal
+from seatsim.blind.truth import vehicle_floor
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, read_channels, simulate_run
+from seatsim.blind.truth.faults.scenario import Changes
+from seatsim.blind.truth.noise import NoiseColour, colour_noise
+from seatsim.blind.truth.physics.rig import EXCITATION_RATE, INTEGRATION_STEP
+
+
+def drawn(seed: int, bingham: bool = False) -> Experiment:
+    return draw_varied.draw_varied_experiment(np.random.default_rng(seed), bingham, CHANNELS, False)
+
+
+@pytest.fixture
+def quiet(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No background force, whose size takes simulations."""
+    monkeypatch.setattr(draw_varied, "BACKGROUND_SHARE", 0.0)
+
+
+def test_every_rig_is_another_and_inside_what_is_built() -> None:
+    rng = np.random.default_rng(0)
+    rigs = [draw_varied.draw_nominal(rng, k % 2 == 0) for k in range(300)]
+    assert len({tuple(sorted(rig.items())) for rig in rigs}) == 300
+    for rig in rigs:
+        mass, ratio = rig["ms"] + rig["m"], rig["damper_ratio"]
+        assert 0.99 < math.sqrt(rig["kf"] / mass) / (2.0 * math.pi) < 2.21
+        assert 50.0 <= rig["m"] <= 110.0 and 0.4 <= ratio <= 1.0 and rig["c_a"] >= draw_varied.LEAST_VISCOUS
+        if rig["is_bingham"]:
+            rate = ratio**2 * (rig["y_a"] + rig["y_b"]) / rig["v_ref"] / rig["ms"]
+            assert rate < 1.02 * draw_varied.STEEPEST
+        else:
+            assert rig["A"] == pytest.approx(rig["beta"] + rig["gamma"], rel=0.01) and rig["n"] in (1.0, 2.0)
+    scissors = [rig for rig in rigs if rig["damper_ratio"] < 0.8]
+    assert 0.25 < len(scissors) / 300 < 0.4 and all(rig["ms"] >= 28.0 for rig in scissors)
+    assert np.mean([rig["y_b"] for rig in scissors]) > 1.3 * np.mean(
+        [rig["y_b"] for rig in rigs if rig not in scissors]
+    )
+
+
+@pytest.mark.usefixtures("short", "quiet")
+def test_parameters_lie_inside_the_stated_tolerance() -> None:
+    experiments = [drawn(seed) for seed in range(30)]
+    assert {experiment.sample_rate for experiment in experiments} == set(draw_varied.SAMPLE_RATES)
+    for experiment in experiments:
+        assert 0.01 <= experiment.tolerance <= 0.05
+        off = [experiment.true[name] / value - 1.0 for name, value in experiment.nominal.items() if value]
+        assert 0.5 * experiment.tolerance < np.max(np.abs(off)) <= 1.001 * experiment.tolerance
+        assert experiment.true["damper_ratio"] == experiment.nominal["damper_ratio"]
+        assert not experiment.background and [run.name for run in experiment.runs] == [
+            "run-a",
+            "run-b",
+            "run-c",
+            "run-u",
+        ]
+
+
+@pytest.mark.usefixtures("short")
+def test_a_background_is_shown_by_a_repeat_and_is_not_material(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(draw_varied, "BACKGROUND_SHARE", 1.0)
+    experiment = drawn(0)
+    assert [run.repeat_of for run in experiment.runs] == [None, None, None, "run-a", None]
+    still = dataclasses.replace(experiment, background=())
+    motions = [simulate_run(still, Changes(), k) for k in range(4)]
+    true = experiment.true
+    carried = np.std(true["ms"] * motions[0].frame + true["m"] * motions[0].driver)
+    assert experiment.background[0].rms < 1.01 * draw_varied.BACKGROUND[1] * carried
+    runs = CommandedRuns(still, [motion.command for motion in motions])
+    size, _ = runs.materiality(Changes(frame_forces=experiment.background), Changes())
+    assert 0.01 < size < 1.05 * draw_varied.LARGEST_BACKGROUND
+
+
+@pytest.mark.usefixtures("short", "quiet")
+@pytest.mark.parametrize(("rate", "bingham", "n"), [(256.0, False, 1.0), (512.0, False, 2.0), (800.0, True, 0.0)])
+def test_a_faultless_rig_of_any_kind_replays_to_within_its_noise(
+    rate: float, bingham: bool, n: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(draw_varied, "SAMPLE_RATES", (rate,))
+    experiments = (drawn(seed, bingham) for seed in range(100))
+    experiment = next(some for some in experiments if some.nominal.get("n", 0.0) == n)
+    experiment = dataclasses.replace(experiment, true=dict(experiment.nominal))
+    shown = [read_channels(experiment, Changes(), k, simulate_run(experiment, Changes(), k)) for k in range(3)]
+    write_folder(tmp_path / "case", encode_recording(experiment, shown, np.random.default_rng(0), range(3)))
+    gap = seatsim.gap(tmp_path / "case" / "nominal.yaml", tmp_path / "case")
+    # what is left beside noise is the floor's, between its rows and through its own accelerometer
+    assert gap.overall < 1.5 * gap.floor["overall"] + 0.005
+
+
+@pytest.mark.usefixtures("short", "quiet")
+@pytest.mark.parametrize("rate", draw_varied.SAMPLE_RATES)
+def test_a_row_is_a_whole_number_of_steps(rate: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(draw_varied, "SAMPLE_RATES", (rate,))
+    experiment = drawn(1)
+    motion = simulate_run(experiment, Changes(), 0)
+    per_row = motion.fine_current.size / motion.frame.size
+    assert per_row == int(per_row) and 1.0 / (rate * per_row) <= INTEGRATION_STEP * (1.0 + 1e-6)
+    files = encode_recording(
+        experiment, [read_channels(experiment, Changes(), 0, motion)], np.random.default_rng(0), [0]
+    )
+    last = gzip.decompress(files["run-a.csv.gz"]).decode().splitlines()[-1]
+    assert float(last.split(",")[0]) == pytest.approx((motion.frame.size - 1) / rate, abs=1e-9)
+    header = recording_header(experiment, experiment.runs)
+    assert (header["sample_rate"], header["parameter_tolerance"]) == (rate, experiment.tolerance)
+
+
+def test_the_colour_of_a_noise() -> None:
+    white = np.random.default_rng(0).standard_normal(400_000)
+    colour = NoiseColour(flicker=0.2, corner=2.0, slow=0.4, bandwidth=20.0)
+    noise = colour_noise(white, colour, 500.0)
+    assert np.std(noise) == pytest.approx(1.0, rel=0.05)
+    f, power = welch(noise, 500.0, nperseg=20_000)
+    at = {hertz: np.mean(power[(f > 0.8 * hertz) & (f < 1.25 * hertz)]) for hertz in (0.1, 0.4, 8.0, 230.0)}
+    assert at[230.0] == pytest.approx(0.4 / 250.0, rel=0.1)
+    assert at[0.1] > 2.5 * at[0.4] > 5.0 * at[8.0] > 10.0 * at[230.0]
+    plain = colour_noise(white, NoiseColour(0.0, 1.0, 0.0, 1.0), 500.0)
+    np.testing.assert_allclose(plain, white, atol=1e-9)
+
+
+@pytest.mark.usefixtures("short", "quiet")
+def test_recorded_noise_has_the_stated_rms_and_is_coloured() -> None:
+    experiment = drawn(3)
+    zero = {name: np.zeros(60_000) for name in CHANNELS}
+    noisy = add_noise(experiment, zero, np.random.default_rng(0))
+    for name, level in experiment.noise.items():
+        assert np.std(noisy[name]) == pytest.approx(level, rel=0.1)
+        assert np.corrcoef(noisy[name][1:], noisy[name][:-1])[0, 1] > 0.02
+
+
+def test_floors_of_vehicles_are_broad_and_not_stationary() -> None:
+    rng = np.random.default_rng(4)
+    for _ in range(6):
+        floor = vehicle_floor.draw_vehicle_floor(rng, vehicle_floor.draw_vehicle(rng), 24.0, 0.3)
+        seconds = np.std(floor[: 24 * 2000].reshape(24, -1), axis=1)
+        assert 0.39 < np.std(floor) < 2.3 and np.max(seconds) > 1.8 * np.min(seconds)
+        f, power = welch(floor, EXCITATION_RATE, nperseg=8000)
+        share = {low: np.sum(power[(f >= low) & (f < high)]) for low, high in ((0, 0.4), (1, 6), (6, 90), (120, 999))}
+        total = np.sum(power)
+        assert share[1] > 0.02 * total and share[6] > 0.05 * total
+        assert share[0] < 0.05 * total and share[120] < 0.02 * total
+
+
+def test_bumps_and_holes_return_to_the_road() -> None:
+    speed = np.full(40_000, 10.0)
+    velocity = vehicle_floor.draw_bump_velocity(np.random.default_rng(1), speed, 0.5)
+    height = np.cumsum(velocity) / EXCITATION_RATE
+    assert 0.008 < np.max(np.abs(height)) < 0.08 and abs(height[-1]) < 1e-4
+
+
+@pytest.mark.usefixtures("short", "quiet")
+def test_a_varied_set_has_the_mix_of_kinds_and_is_scored_as_any_other(tmp_path: Path) -> None:
+    orders = compose(100, "varied", np.random.default_rng(0))
+    assert [sum(order.kind == kind for order in orders) for kind in ("none", "one", "two", "outside")] == [
+        20,
+        40,
+        20,
+        20,
+    ]
+    assert all(order.varied for order in orders)
+    key = make(1, 2, tmp_path / "set", tmp_path / "sealed", kinds="varied", processes=1)
+    opened = unseal(tmp_path / "sealed", key, tmp_path / "set")
+    label = opened.labels["case-0001"]
+    recording = seatsim.load_recording(tmp_path / "set" / "case-0001")
+    assert recording.header.sample_rate == label["sample_rate"]
+    assert label["rig"]["damper_ratio"] <= 1.0 and label["order"]["varied"]
