@@ -8,7 +8,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
+from seatsim.diagnosis.problem import DiagnosisProblem, check_nominal, pose_problem
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solve import Method, solve
@@ -31,7 +31,7 @@ def diagnose(
 
     Raises:
         InputError: the recording is damaged in a way that would lead to a wrong verdict.
-        RunError: a simulation could not be carried to its end.
+        RunError: the nominal rig cannot be simulated in a run.
     """
     if not isinstance(recording, Recording):
         recording = load_recording(recording)
@@ -49,6 +49,10 @@ def diagnose_problem(
     """Return the diagnosis of a problem; `notes` are sentences on the quality of its data.
 
     Simulations of several runs and rigs run in parallel, so linear algebra libraries are limited to one thread.
+
+    Raises:
+        RunError: the nominal rig cannot be simulated in a run.
     """
     with threadpool_limits(1):
+        check_nominal(problem)
         return state_diagnosis(solve(problem, without, progress, method or Method()), notes, progress)

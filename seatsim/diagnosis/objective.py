@@ -100,12 +100,18 @@ class Objective:
         return Evaluation(parameters, residuals, whitened, cost + prior)
 
     def linearise(self, evaluation: Evaluation, components: Sequence[int]) -> Linearisation:
-        """Return the sensitivities of the whitened outputs to some components of the vector, by finite differences."""
+        """Return the sensitivities of the whitened outputs to some components of the vector, by finite differences.
+
+        A rig that cannot be simulated a difference step away has a sensitivity of 0: the fit leaves that component.
+        """
         shifts = [evaluation.parameters.shift(k, self.settings.fit.difference_step) for k in components]
         moved = self.evaluate([parameters for parameters, _ in shifts])
         jacobian = {
             run: np.array(
-                [(base - m.whitened[run]).ravel() / step for m, (_, step) in zip(moved, shifts, strict=True)]
+                [
+                    (base - m.whitened[run]).ravel() / step if np.isfinite(m.cost) else np.zeros(base.size)
+                    for m, (_, step) in zip(moved, shifts, strict=True)
+                ]
             ).reshape(len(shifts), base.size)
             for run, base in evaluation.whitened.items()
         }

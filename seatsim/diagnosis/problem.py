@@ -153,6 +153,24 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     )  # fmt: skip
 
 
+def check_nominal(problem: DiagnosisProblem) -> None:
+    """Simulate the nominal rig in every run.
+
+    Raises:
+        RunError: it cannot be simulated in a run, so that nothing can be compared with it.
+    """
+    rig = problem.nominal, ()
+    for run, values in problem.residuals([rig])[0].items():
+        if not np.all(np.isfinite(values)):
+            try:
+                problem.simulated(run, *rig)
+                happened = "its outputs are not finite"
+            except RunError as error:
+                happened = str(error)
+            place = f"{problem.recording.folder}, run {run}: the nominal scenario {problem.recording.header.nominal}"
+            raise RunError(f"{place} cannot be simulated: {happened}; check the values and signs of its parameters")
+
+
 def normalise_rms_errors(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> Array:
     """Return the RMS error of each run in standard deviations of the channels, shape (runs,)."""
     powers = [np.mean((residuals[run] / problem.spread[:, None]) ** 2) for run in problem.runs]

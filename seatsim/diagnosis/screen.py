@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Hashable, Sequence
 from itertools import islice
 from typing import NamedTuple
@@ -40,6 +41,16 @@ def measure_sensitivities(
         Sensitivity(candidate, {run: base - start.whitened[run] for run, base in calibrated.whitened.items()})
         for candidate, start in zip(candidates, starts, strict=True) if np.isfinite(start.cost)
     ]  # fmt: skip
+
+
+def name_unstable(candidates: Sequence[Candidate], kept: Sequence[Sensitivity]) -> tuple[str, ...]:
+    """Return a sentence on each effect of which starts were dropped, since the rig cannot be simulated with them."""
+    offered = Counter(candidate.effect for candidate in candidates)
+    left = offered - Counter(each.candidate.effect for each in kept)
+    return tuple(
+        f"{effect} could not be simulated from {count} of {offered[effect]} starts, which were dropped"
+        for effect, count in left.items()
+    )
 
 
 def screen_candidates(

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.screen import Sensitivity, measure_sensitivities, screen_candidates
+from seatsim.diagnosis.screen import Sensitivity, measure_sensitivities, name_unstable, screen_candidates
 
 
 @dataclass(frozen=True)
 class Selection:
     """Fitted sets of effects by size, the best first; `sets[0]` holds the calibrated nominal scenario alone.
 
-    `linearisations` holds the sensitivities to the nuisance parameters about the best set of each size.
+    `linearisations` holds the sensitivities to the nuisance parameters about the best set of each size, `notes` a
+    sentence on each effect that could not be simulated from some start.
     """
 
     nominal: Evaluation
     sets: tuple[tuple[Evaluation, ...], ...]
     linearisations: tuple[Linearisation, ...]
+    notes: tuple[str, ...] = field(default=(), kw_only=True)
 
     @property
     def calibrated(self) -> Evaluation:
@@ -73,7 +75,8 @@ def select_effects(
     if len(sets) > settings.largest_set and sets[-1][0].excess < settings.enlarge * sets[-2][0].excess:
         progress("eliminating backwards")
         sets[-2] = _best_of_each_set([*sets[-2], *_eliminate_backwards(objective, sets[-1][0], nuisances)])
-    return Selection(nominal, tuple(tuple(each) for each in sets), tuple(linearisations))
+    notes = name_unstable(candidates, sensitivities)
+    return Selection(nominal, tuple(tuple(each) for each in sets), tuple(linearisations), notes=notes)
 
 
 def _calibrate(objective: Objective) -> tuple[Evaluation, Evaluation, Linearisation]:

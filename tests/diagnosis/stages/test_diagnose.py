@@ -34,6 +34,7 @@ def stages(monkeypatch):
     stage("load_recording", "loaded")
     stage("examine", Examination([Issue("warning", "kind", "mind the clock")]))
     stage("pose_problem", "problem")
+    stage("check_nominal", None)
     stage("solve", "solution")
     stage("state_diagnosis", "diagnosis")
     return seen
@@ -46,6 +47,7 @@ def test_a_recording_is_examined_posed_solved_and_stated(folder, stages):
     assert stages["examine"] == (recording,)
     posed, pool, given = stages["pose_problem"]
     assert posed is recording and given is settings and isinstance(pool, ThreadPoolExecutor)
+    assert stages["check_nominal"] == ("problem",)
     assert stages["solve"] == ("problem", ["driver.mass"], said.append, Method())
     assert stages["state_diagnosis"] == ("solution", ["mind the clock"], said.append)
 
