@@ -56,6 +56,12 @@ def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: b
     return read_sensors(effects, interval, {"damper_force": force, "coil_current": current[::2]})
 
 
+def smooth_motion(inputs: BenchInputs) -> Array:
+    """Return the displacement in m that a simulation follows, at the rows of its inputs, shape (N,)."""
+    rows = inputs.interval * np.arange(len(inputs.displacement), dtype=np.float64)
+    return np.asarray(_smooth(inputs.interval, inputs.displacement.tobytes(), inputs.displacement_noise)(rows))
+
+
 def _check_effects(scenario: Scenario) -> None:
     """Raise InputError at the first effect that acts on seat, plant or frame."""
     for effect in scenario.effects:
