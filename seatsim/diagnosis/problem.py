@@ -17,6 +17,7 @@ from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
 from seatsim.recordings.inputs import recorded_inputs
+from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
@@ -123,11 +124,12 @@ class DiagnosisProblem:
 
 
 def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettings | None = None) -> DiagnosisProblem:
-    """Read a recording and its nominal scenario.
+    """Read a recording, without the gravity in its accelerometers, and its nominal scenario.
 
     Raises:
         InputError: the recording or its scenario is not right, or no output stands above its noise.
     """
+    recording = without_gravity(recording)
     scenario = single(recording.nominal)
     interval = 1.0 / recording.header.sample_rate
     parts = max(1, math.ceil(interval / COARSEST_STEP - 1e-9))

@@ -29,11 +29,12 @@ REPEATS = 0.67
 
 
 class Level(NamedTuple):
-    """RMS of the noise of a channel from third and fourth differences, and its growth from calm to lively windows."""
+    """RMS of a channel's noise from third and fourth differences, and from fourth ones in calm and lively windows."""
 
     third: float
     fourth: float
-    growth: float = 1.0
+    calm: float
+    lively: float
 
 
 def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
@@ -71,7 +72,7 @@ def _all_of(repeated: Sequence[Array]) -> float:
 
 def _not_of_the_sensor(seen: Level, repeated: Sequence[Array], rate: float) -> str:
     """Return why what is seen is not the sensor's noise, an empty string where it may be."""
-    if seen.growth > GROWS:
+    if seen.lively > GROWS * seen.calm:
         return "grows with the motion"
     if any(_measure_level(values, rate).fourth < REPEATS * seen.fourth for values in repeated):
         return "comes again when the excitation is repeated"
@@ -83,7 +84,7 @@ def _measure_level(values: Array, rate: float) -> Level:
     rows = max(round(WINDOW * rate), FEWEST)
     windows = len(values) // rows
     if windows < LEAST_WINDOWS:
-        return Level(np.inf, np.inf)
+        return Level(np.inf, np.inf, np.inf, np.inf)
     pieces = values[: windows * rows].reshape(windows, rows)
     third, fourth = (
         np.median(np.abs(np.diff(pieces, n, axis=1)), axis=1) / (0.6745 * norm)
@@ -91,5 +92,4 @@ def _measure_level(values: Array, rate: float) -> Level:
     )
     quiet, spread = fourth <= np.quantile(fourth, 0.2), np.std(pieces, axis=1)
     calm, lively = spread <= np.quantile(spread, 0.2), spread >= np.quantile(spread, 0.8)
-    growth = float(np.mean(fourth[lively])) / max(float(np.mean(fourth[calm])), np.finfo(float).tiny)
-    return Level(float(np.mean(third[quiet])), float(np.mean(fourth[quiet])), growth)
+    return Level(*(float(np.mean(each)) for each in (third[quiet], fourth[quiet], fourth[calm], fourth[lively])))

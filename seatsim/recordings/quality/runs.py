@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from seatsim.recordings.compared import LEAST_ROWS, LEFT_OUT
+from seatsim.recordings.quality.gravity import check_constants
 from seatsim.recordings.quality.issue import Issue, Severity, issue_in_all_runs
 from seatsim.recordings.quality.noise_level import check_noise
 from seatsim.recordings.quality.residual import filter_band, find_delay
@@ -44,7 +45,7 @@ def check_clock(run: RunUnderTest) -> Iterator[Issue]:
 
 def check_all_runs(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Report faults that need all runs together."""
-    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, _fahrenheit):
+    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, check_constants, _fahrenheit):
         yield from check(runs)
 
 
