@@ -6,13 +6,14 @@ import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import prev_fast_len
 
+from seatsim.diagnosis.deadline import NEVER, Deadline
 from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
@@ -37,6 +38,7 @@ class DiagnosisProblem:
 
     `measured` holds the compared channels of each run without its first second, shape (channels, samples), `inputs` the
     inputs of each run, `parameters` those that the stated tolerance lets vary; `pool` runs simulations in parallel.
+    Fits end at the `deadline`.
     """
 
     recording: Recording
@@ -48,6 +50,7 @@ class DiagnosisProblem:
     parameters: tuple[Nuisance, ...]
     settings: DiagnosisSettings
     pool: Executor
+    deadline: Deadline = field(default=NEVER, kw_only=True)
 
     @property
     def bench(self) -> bool:
@@ -87,6 +90,10 @@ class DiagnosisProblem:
     def on_runs(self, runs: Sequence[str]) -> DiagnosisProblem:
         """Return the problem with some of its runs; channels stay the same, their spreads are taken over these runs."""
         return dataclasses.replace(self, runs=tuple(runs))
+
+    def until(self, deadline: Deadline) -> DiagnosisProblem:
+        """Return the problem with another deadline of its fits."""
+        return dataclasses.replace(self, deadline=deadline)
 
     def augmented(self, deviations: Array, effects: Sequence[Record]) -> Scenario:
         """Return the nominal scenario with other parameters and with effects."""
