@@ -196,6 +196,9 @@ WARNINGS = {
     "floor in steps": (blurred(stepped), "floor_acceleration", "steps or play"),
     "floor with play": (blurred(with_play), "floor_acceleration", "steps or play"),
     "floor at its limit": (blurred(limited), "floor_acceleration", "it is clipped"),
+    "gravity in the floor's accelerometer": (shifted("floor_acceleration", 9.79), "floor_acceleration", "is gravity"),
+    "gravity upside down": (shifted("driver_acceleration", -9.7), "driver_acceleration", "is gravity"),
+    "an offset of the frame's accelerometer": (shifted("frame_acceleration", 2.0), "frame_acceleration", "an offset"),
     "late current": (late(0.15, "coil_current"), "coil_current", "s late"),
 }
 """Faults that are said while diagnosis and gap go on."""

@@ -36,10 +36,11 @@ def beyond(y: float, half: float) -> float:
 def ellis_force(v: float, damping: float, height: float, exponent: float) -> float:
     """Return the force q in N at which `q / damping + V (|q| / height)^(1/exponent) sgn(q) = v`.
 
-    Newton's method from above, where the left side is convex, so that it cannot overshoot.
+    Newton's method from above, where the left side is convex, so that it cannot overshoot. A fluid of no height flows
+    freely: the force is 0.
     """
     speed, power_of = abs(v), 1.0 / exponent
-    if speed == 0.0:
+    if speed == 0.0 or height == 0.0:
         return 0.0
     q = min(speed * damping, height * (speed / V_REF) ** exponent)
     for _ in range(MOST_STEPS):

@@ -23,6 +23,10 @@ def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[s
             assert isinstance(inner, dict)
             section = inner
         section[parameter.name] = parameter.nominal + parameter.tolerance * float(deviation)
+    controller = content.get("controller")
+    if isinstance(controller, dict) and isinstance(controller.get("design"), str):
+        # A saved design is named from the folder of the nominal scenario, while this file goes to another one.
+        controller["design"] = str((source.path.parent / controller["design"]).resolve())
     present = content.get("effects", [])
     assert isinstance(present, list)
     added = [

@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
+from seatsim.diagnosis.deadline import Deadline
+from seatsim.diagnosis.problem import DiagnosisProblem, check_nominal, pose_problem
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solve import Method, solve
 from seatsim.diagnosis.state import state_diagnosis
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
+from seatsim.schema.errors import InputError
+
+BUDGET = 120.0
+"""s; time that a diagnosis may take unless another is asked for."""
+CUT = "the budget of {budget:g} s was spent, so that the answer is the best so far; cut short"
+"""Beginning of the note that names the stages cut short."""
 
 
 def diagnose(
     recording: str | Path | Recording, without: Sequence[str] = (), progress: Callable[[str], object] = lambda _: None,
-    settings: DiagnosisSettings | None = None,
+    settings: DiagnosisSettings | None = None, budget: float = BUDGET,
 ) -> Diagnosis:  # fmt: skip
     """Say where the gap between a recording and its nominal scenario lies, what causes it, and how far it shrinks.
 
@@ -28,27 +37,52 @@ def diagnose(
         without: names of effects that are withheld from the library.
         progress: called with what is being done.
         settings: thresholds, those of `DiagnosisSettings` where absent.
+        budget: seconds that the diagnosis may take once the nominal rig was simulated, which may have to be compiled
+            first. Where they are spent the answer is the best so far, and a note says which stages were cut short.
 
     Raises:
-        InputError: the recording is damaged in a way that would lead to a wrong verdict.
-        RunError: a simulation could not be carried to its end.
+        InputError: the budget is not positive, or the recording is damaged so that the verdict would be wrong.
+        RunError: the nominal rig cannot be simulated in a run.
     """
+    if not budget > 0.0:
+        raise InputError(f"a budget of {budget:g} s is not permitted; it must be above 0")
     if not isinstance(recording, Recording):
         recording = load_recording(recording)
     progress("looking at the data")
     examination = examine(recording)
     refuse(examination)
     with ThreadPoolExecutor() as pool:
-        return diagnose_problem(pose_problem(recording, pool, settings), examination.sentences, without, progress)
+        problem = pose_problem(recording, pool, settings)
+        return diagnose_problem(problem, examination.sentences, without, progress, budget=budget)
 
 
 def diagnose_problem(
     problem: DiagnosisProblem, notes: Sequence[str] = (), without: Sequence[str] = (),
-    progress: Callable[[str], object] = lambda _: None, method: Method | None = None,
+    progress: Callable[[str], object] = lambda _: None, method: Method | None = None, budget: float = math.inf,
 ) -> Diagnosis:  # fmt: skip
-    """Return the diagnosis of a problem; `notes` are sentences on the quality of its data.
+    """Return the diagnosis of a problem; `notes` are sentences on the quality of its data, `budget` is as above.
 
     Simulations of several runs and rigs run in parallel, so linear algebra libraries are limited to one thread.
+
+    Raises:
+        RunError: the nominal rig cannot be simulated in a run.
     """
+    stages: list[tuple[str, float]] = []
+
+    def tell(stage: str) -> None:
+        stages.append((stage, time.monotonic()))
+        progress(stage)
+
     with threadpool_limits(1):
-        return state_diagnosis(solve(problem, without, progress, method or Method()), notes, progress)
+        check_nominal(problem)
+        deadline = Deadline.after(problem.settings.fit.search_share * budget)
+        solution = solve(problem.until(deadline), without, tell, method or Method())
+        cut = _list_cut(stages, deadline.end) if deadline.is_past else []
+        said = [*notes, *([f"{CUT.format(budget=budget)}: {', '.join(cut)}"] if cut else [])]
+        return state_diagnosis(solution._replace(objective=solution.objective.unhurried), said, progress)
+
+
+def _list_cut(stages: Sequence[tuple[str, float]], end: float) -> list[str]:
+    """Return the stages that were under way or begun when the time was spent, each once."""
+    began = [at for _, at in stages[1:]] + [math.inf]
+    return list(dict.fromkeys(stage for (stage, _), until in zip(stages, began, strict=True) if until > end))

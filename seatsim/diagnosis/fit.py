@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cholesky
 from scipy.optimize import lsq_linear
 
+from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
 
@@ -18,21 +19,30 @@ Array = NDArray[np.float64]
 
 
 def fit(objective: Objective, start: Evaluation, nuisances: Linearisation, steps: int | None = None) -> Evaluation:
-    """Return the evaluation at the end of a fit from `start`, with the given sensitivities of the nuisances."""
-    settings = objective.settings.fit
+    """Return the evaluation at the end of a fit from `start`, with the given sensitivities of the nuisances.
+
+    At the deadline it is the best so far.
+    """
     evaluation = start
-    for _ in range(settings.most_steps if steps is None else steps):
-        step = _gauss_newton_step(objective, evaluation, nuisances)
+    for _ in range(objective.settings.fit.most_steps if steps is None else steps):
         before = evaluation.cost
-        for fraction in settings.backtracking:
-            tried = objective.evaluate([evaluation.parameters.move_to(evaluation.parameters.vector + fraction * step)])[
-                0
-            ]
-            if tried.cost < evaluation.cost:
-                evaluation = tried
-                break
-        if evaluation.cost > (1.0 - settings.settled) * before:
+        try:
+            evaluation = _step_down(objective, evaluation, nuisances)
+        except OutOfTimeError:
             break
+        if evaluation.cost > (1.0 - objective.settings.fit.settled) * before:
+            break
+    return evaluation
+
+
+def _step_down(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Evaluation:
+    """Return the evaluation after one step, the whole or a fraction of it; the one given where none lowers the cost."""
+    step = _gauss_newton_step(objective, evaluation, nuisances)
+    for fraction in objective.settings.fit.backtracking:
+        moved = evaluation.parameters.move_to(evaluation.parameters.vector + fraction * step)
+        tried = objective.evaluate([moved])[0]
+        if tried.cost < evaluation.cost:
+            return tried
     return evaluation
 
 

@@ -2,9 +2,10 @@
 
     P(f) = noise^2 + input noise carried through the rig + (model_error * spectrum of the channel)^2
 
-is the power that a perfect model leaves: the stated noise, the noise of the recorded inputs (the floor, and the coil
-current where no command is recorded) carried through the simulation, and a small share of the signal that no model of
-finite order gets right. It is never fitted to the residual under test, which would hide narrow gaps.
+is the power that a perfect model leaves: the stated noise, the noise of the recorded inputs (the floor or the motion of
+a bench, and the coil current where no command is recorded) carried through the simulation, and a small share of the
+signal that no model of finite order gets right. It is never fitted to the residual under test, which would hide narrow
+gaps.
 """
 
 from __future__ import annotations
@@ -16,10 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import rfft
 
+from seatsim.diagnosis.input_noise import carry_input_noise
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
-from seatsim.diagnosis.spectra import randomise_phases, smooth_spectrum
-from seatsim.excitations.base import Floor
-from seatsim.simulation.inputs import BenchInputs, Forces
+from seatsim.diagnosis.spectra import smooth_spectrum
 
 Array = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ def weigh_noise(
         samples = measured.shape[1]
         frequency = np.fft.rfftfreq(samples, 1.0 / problem.rate)
         bins[run] = _count_compared(problem, samples)
-        power = problem.noise[:, None] ** 2 * samples + _carry_input_noise(problem, run, (forces or {}).get(run))
+        power = problem.noise[:, None] ** 2 * samples + carry_input_noise(problem, run, (forces or {}).get(run))
         if errors is not None:
             power = power + errors[run]
         if repeated is not None:
@@ -108,47 +108,6 @@ def _count_compared(problem: DiagnosisProblem, samples: int) -> int:
     """Return how many frequencies of a run are compared: those below the highest one and below half the rate."""
     frequency = np.fft.rfftfreq(samples, 1.0 / problem.rate)
     return int(np.searchsorted(frequency, min(problem.settings.noise.highest_frequency, 0.5 * problem.rate)))
-
-
-def _carry_input_noise(problem: DiagnosisProblem, run: str, force: Array | None) -> Array:
-    """Return the power spectrum that the noise of the recorded inputs, and a random force, cause in the outputs."""
-    inputs = problem.inputs[run]
-    if isinstance(inputs, BenchInputs):
-        return np.zeros((len(problem.channels), 1))
-    # The same draws for every recording: equal input gives equal output.
-    rng = np.random.default_rng(0)
-    floor = inputs.floor
-    drawn = [
-        inputs._replace(floor=_add_sensor_noise(problem, floor, rng), forces=_draw_force(problem, floor, force, rng))
-        for _ in range(problem.settings.noise.replicates)
-    ]
-    clean = problem.simulated(run, problem.nominal, ())
-    replicates = problem.pool.map(lambda noisy: problem.simulated(run, problem.nominal, (), noisy), drawn)
-    power = np.mean([np.abs(np.fft.rfft(noisy - clean, axis=1)) ** 2 for noisy in replicates], axis=0)
-    return smooth_spectrum(power, problem.settings.noise.smoothing)
-
-
-def _add_sensor_noise(problem: DiagnosisProblem, floor: Floor, rng: np.random.Generator) -> Floor:
-    """Return the inputs of a run with newly drawn noise of their sensors added."""
-    every, channels = np.arange(len(floor.acceleration)), problem.recording.channels
-    rows = every[:: problem.parts]
-
-    def noise(channel: str) -> Array:
-        return np.interp(every, rows, channels[channel].noise_rms * rng.standard_normal(len(rows)))
-
-    noisy = floor._replace(acceleration=floor.acceleration + noise("floor_acceleration"))
-    if floor.command is None and floor.coil_current is not None:
-        noisy = noisy._replace(coil_current=floor.coil_current + noise("coil_current"))
-    return noisy
-
-
-def _draw_force(problem: DiagnosisProblem, floor: Floor, force: Array | None, rng: np.random.Generator) -> Forces:
-    """Return a random force on the frame with the spectrum of the one given, on the simulation's steps."""
-    if force is None:
-        return Forces()
-    every = np.arange(len(floor.acceleration))
-    rows = every[:: problem.parts]
-    return Forces(np.interp(every, rows[: len(force)], randomise_phases(force, rng), right=0.0))
 
 
 def _measure_nonrepeatable(problem: DiagnosisProblem) -> tuple[Array, Array] | None:

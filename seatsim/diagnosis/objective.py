@@ -17,12 +17,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.diagnosis.deadline import NEVER
 from seatsim.diagnosis.noise import NoiseWeights
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 
 Array = NDArray[np.float64]
+AT_ONCE = 16
+"""Rigs that are simulated between two looks at the clock: enough for all cores, few enough for a budget of seconds."""
 
 
 @dataclass(frozen=True)
@@ -83,10 +86,24 @@ class Objective:
         """Return the objective over some of the runs, under the same weights."""
         return Objective(self.problem.on_runs(runs), self.weights)
 
+    @property
+    def unhurried(self) -> Objective:
+        """The objective without a deadline, for what has to be stated whatever the time."""
+        return self if self.problem.deadline == NEVER else Objective(self.problem.until(NEVER), self.weights)
+
     def evaluate(self, several: Sequence[Parameters]) -> list[Evaluation]:
-        """Simulate and weigh several rigs at once."""
-        residuals = self.problem.residuals([(each.deviations, each.effects) for each in several])
-        return list(self.problem.pool.map(self._weigh, several, residuals))
+        """Simulate and weigh several rigs at once.
+
+        Raises:
+            OutOfTimeError: the deadline of the problem is past; it is asked before every `AT_ONCE` rigs.
+        """
+        evaluations: list[Evaluation] = []
+        for first in range(0, len(several), AT_ONCE):
+            self.problem.deadline.check()
+            part = several[first : first + AT_ONCE]
+            residuals = self.problem.residuals([(each.deviations, each.effects) for each in part])
+            evaluations += self.problem.pool.map(self._weigh, part, residuals)
+        return evaluations
 
     def _weigh(self, parameters: Parameters, residuals: dict[str, Array]) -> Evaluation:
         finite = all(np.all(np.isfinite(values)) for values in residuals.values())
@@ -100,12 +117,18 @@ class Objective:
         return Evaluation(parameters, residuals, whitened, cost + prior)
 
     def linearise(self, evaluation: Evaluation, components: Sequence[int]) -> Linearisation:
-        """Return the sensitivities of the whitened outputs to some components of the vector, by finite differences."""
+        """Return the sensitivities of the whitened outputs to some components of the vector, by finite differences.
+
+        A rig that cannot be simulated a difference step away has a sensitivity of 0: the fit leaves that component.
+        """
         shifts = [evaluation.parameters.shift(k, self.settings.fit.difference_step) for k in components]
         moved = self.evaluate([parameters for parameters, _ in shifts])
         jacobian = {
             run: np.array(
-                [(base - m.whitened[run]).ravel() / step for m, (_, step) in zip(moved, shifts, strict=True)]
+                [
+                    (base - m.whitened[run]).ravel() / step if np.isfinite(m.cost) else np.zeros(base.size)
+                    for m, (_, step) in zip(moved, shifts, strict=True)
+                ]
             ).reshape(len(shifts), base.size)
             for run, base in evaluation.whitened.items()
         }

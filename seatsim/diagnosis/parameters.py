@@ -64,12 +64,12 @@ class Parameters:
         return Parameters(self.deviations, tuple(self.terms[k] for k in kept), tuple(self.values[k] for k in kept))
 
     def move_to(self, vector: Array) -> Parameters:
-        """Return the parameters at another vector, clipped to the bounds."""
+        """Return the parameters at another vector, clipped to the bounds, which no rounding exceeds."""
         low, high = self.limits
         vector = np.clip(vector, low, high)
         values, start = [], len(self.deviations)
         for term in self.terms:
-            values.append(vector[start : start + len(term.free)] * term.scale)
+            values.append(np.clip(vector[start : start + len(term.free)] * term.scale, term.low, term.high))
             start += len(term.free)
         return Parameters(vector[: len(self.deviations)], self.terms, tuple(values))
 

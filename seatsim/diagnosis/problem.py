@@ -6,17 +6,19 @@ import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import prev_fast_len
 
+from seatsim.diagnosis.deadline import NEVER, Deadline
 from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
 from seatsim.recordings.inputs import recorded_inputs
+from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
@@ -36,6 +38,7 @@ class DiagnosisProblem:
 
     `measured` holds the compared channels of each run without its first second, shape (channels, samples), `inputs` the
     inputs of each run, `parameters` those that the stated tolerance lets vary; `pool` runs simulations in parallel.
+    Fits end at the `deadline`.
     """
 
     recording: Recording
@@ -47,6 +50,7 @@ class DiagnosisProblem:
     parameters: tuple[Nuisance, ...]
     settings: DiagnosisSettings
     pool: Executor
+    deadline: Deadline = field(default=NEVER, kw_only=True)
 
     @property
     def bench(self) -> bool:
@@ -87,6 +91,10 @@ class DiagnosisProblem:
         """Return the problem with some of its runs; channels stay the same, their spreads are taken over these runs."""
         return dataclasses.replace(self, runs=tuple(runs))
 
+    def until(self, deadline: Deadline) -> DiagnosisProblem:
+        """Return the problem with another deadline of its fits."""
+        return dataclasses.replace(self, deadline=deadline)
+
     def augmented(self, deviations: Array, effects: Sequence[Record]) -> Scenario:
         """Return the nominal scenario with other parameters and with effects."""
         varied = vary(self.scenario, self.parameters, deviations)
@@ -123,11 +131,12 @@ class DiagnosisProblem:
 
 
 def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettings | None = None) -> DiagnosisProblem:
-    """Read a recording and its nominal scenario.
+    """Read a recording, without the gravity in its accelerometers, and its nominal scenario.
 
     Raises:
         InputError: the recording or its scenario is not right, or no output stands above its noise.
     """
+    recording = without_gravity(recording)
     scenario = single(recording.nominal)
     interval = 1.0 / recording.header.sample_rate
     parts = max(1, math.ceil(interval / COARSEST_STEP - 1e-9))
@@ -151,6 +160,24 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
         recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings or DiagnosisSettings(),
         pool,
     )  # fmt: skip
+
+
+def check_nominal(problem: DiagnosisProblem) -> None:
+    """Simulate the nominal rig in every run.
+
+    Raises:
+        RunError: it cannot be simulated in a run, so that nothing can be compared with it.
+    """
+    rig = problem.nominal, ()
+    for run, values in problem.residuals([rig])[0].items():
+        if not np.all(np.isfinite(values)):
+            try:
+                problem.simulated(run, *rig)
+                happened = "its outputs are not finite"
+            except RunError as error:
+                happened = str(error)
+            place = f"{problem.recording.folder}, run {run}: the nominal scenario {problem.recording.header.nominal}"
+            raise RunError(f"{place} cannot be simulated: {happened}; check the values and signs of its parameters")
 
 
 def normalise_rms_errors(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> Array:

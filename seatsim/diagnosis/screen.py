@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Hashable, Sequence
+from contextlib import suppress
 from itertools import islice
 from typing import NamedTuple
 
@@ -10,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import Candidate
+from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import solve_step
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
+from seatsim.diagnosis.objective import AT_ONCE, Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
 
 Array = NDArray[np.float64]
@@ -34,12 +37,29 @@ class Prediction(NamedTuple):
 def measure_sensitivities(
     objective: Objective, calibrated: Evaluation, candidates: Sequence[Candidate]
 ) -> list[Sensitivity]:
-    """Return the change of the calibrated rig by each candidate at its start; unstable ones are dropped."""
-    starts = objective.evaluate([calibrated.parameters.add(c, np.array(c.start)) for c in candidates])
+    """Return the change of the calibrated rig by each candidate at its start; unstable ones are dropped.
+
+    At the deadline they are those of the candidates so far.
+    """
+    starts: list[Evaluation] = []
+    with suppress(OutOfTimeError):
+        for first in range(0, len(candidates), AT_ONCE):
+            part = candidates[first : first + AT_ONCE]
+            starts += objective.evaluate([calibrated.parameters.add(each, np.array(each.start)) for each in part])
     return [
         Sensitivity(candidate, {run: base - start.whitened[run] for run, base in calibrated.whitened.items()})
-        for candidate, start in zip(candidates, starts, strict=True) if np.isfinite(start.cost)
+        for candidate, start in zip(candidates, starts, strict=False) if np.isfinite(start.cost)
     ]  # fmt: skip
+
+
+def name_unstable(candidates: Sequence[Candidate], kept: Sequence[Sensitivity]) -> tuple[str, ...]:
+    """Return a sentence on each effect of which starts were dropped, since the rig cannot be simulated with them."""
+    offered = Counter(candidate.effect for candidate in candidates)
+    left = offered - Counter(each.candidate.effect for each in kept)
+    return tuple(
+        f"{effect} could not be simulated from {count} of {offered[effect]} starts, which were dropped"
+        for effect, count in left.items()
+    )
 
 
 def screen_candidates(

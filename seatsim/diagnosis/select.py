@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, field
 
 from seatsim.diagnosis.candidates import Candidate
+from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.screen import Sensitivity, measure_sensitivities, screen_candidates
+from seatsim.diagnosis.screen import Sensitivity, measure_sensitivities, name_unstable, screen_candidates
 
 
 @dataclass(frozen=True)
 class Selection:
     """Fitted sets of effects by size, the best first; `sets[0]` holds the calibrated nominal scenario alone.
 
-    `linearisations` holds the sensitivities to the nuisance parameters about the best set of each size.
+    `linearisations` holds the sensitivities to the nuisance parameters about the best set of each size, `notes` a
+    sentence on each effect that could not be simulated from some start.
     """
 
     nominal: Evaluation
     sets: tuple[tuple[Evaluation, ...], ...]
     linearisations: tuple[Linearisation, ...]
+    notes: tuple[str, ...] = field(default=(), kw_only=True)
 
     @property
     def calibrated(self) -> Evaluation:
@@ -56,28 +60,35 @@ def select_effects(
     sensitivities = measure_sensitivities(objective, calibrated, candidates)
     sets: list[list[Evaluation]] = [[calibrated]]
     linearisations = [nuisances]
-    for size in range(1, largest + 1):
-        progress(f"fitting sets of {size}")
-        larger = _extend(objective, sets, sensitivities, nuisances)
-        if not larger:
-            break
-        if size > 1:
-            larger = _best_of_each_set([*larger, *_swap_effects(objective, larger[0], sets[1], nuisances)])
-        # Sets are ranked with the sensitivities of a smaller set; the best is then fitted to the end with its own.
-        nuisances = objective.linearise_nuisances(larger[0])
-        linearisations.append(nuisances)
-        larger[0] = fit(objective, larger[0], nuisances)
-        sets.append(larger)
-        if not _gains(objective, sets):
-            break
-    if len(sets) > settings.largest_set and sets[-1][0].excess < settings.enlarge * sets[-2][0].excess:
-        progress("eliminating backwards")
-        sets[-2] = _best_of_each_set([*sets[-2], *_eliminate_backwards(objective, sets[-1][0], nuisances)])
-    return Selection(nominal, tuple(tuple(each) for each in sets), tuple(linearisations))
+    notes = () if objective.problem.deadline.is_past else name_unstable(candidates, sensitivities)
+    # At the deadline the sets so far are the answer.
+    with suppress(OutOfTimeError):
+        for size in range(1, largest + 1):
+            progress(f"fitting sets of {size}")
+            larger = _extend(objective, sets, sensitivities, nuisances)
+            if not larger:
+                break
+            sets.append(larger)
+            if size > 1:
+                larger[:] = _best_of_each_set([*larger, *_swap_effects(objective, larger[0], sets[1], nuisances)])
+            # Sets are ranked with the sensitivities of a smaller set; the best is then fitted to the end with its own.
+            nuisances = objective.linearise_nuisances(larger[0])
+            linearisations.append(nuisances)
+            larger[0] = fit(objective, larger[0], nuisances)
+            if not _gains(objective, sets):
+                break
+        if len(sets) > settings.largest_set and sets[-1][0].excess < settings.enlarge * sets[-2][0].excess:
+            progress("eliminating backwards")
+            sets[-2] = _best_of_each_set([*sets[-2], *_eliminate_backwards(objective, sets[-1][0], nuisances)])
+    return Selection(nominal, tuple(tuple(each) for each in sets), tuple(linearisations), notes=notes)
 
 
 def _calibrate(objective: Objective) -> tuple[Evaluation, Evaluation, Linearisation]:
-    """Return the nominal rig, the one with refitted nuisance parameters, and the linearisation of that last fit."""
+    """Return the nominal rig, the one with refitted nuisance parameters, and the linearisation of that last fit.
+
+    They are what every answer starts from, so that no deadline ends them.
+    """
+    objective = objective.unhurried
     nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
     calibrated = fit(objective, nominal, objective.linearise_nuisances(nominal))
     nuisances = objective.linearise_nuisances(calibrated)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, ParamSpec
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.cross_validate import select_by_cross_validation
+from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.decide import Decision, call_unknown, decide_beside_unknown, decide_verdict
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy
@@ -32,6 +33,7 @@ from seatsim.diagnosis.select import Selection, select_effects
 from seatsim.effects.base import EFFECTS
 
 Array = NDArray[np.float64]
+P = ParamSpec("P")
 Progress = Callable[[str], object]
 Forces = Mapping[str, Array] | None
 
@@ -86,19 +88,29 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
         objective = Objective(problem, method.weigh_noise(problem, forces, None))
     first = _search(task, objective)
     if first.decision.verdict == "unknown":
-        first = _search_beyond_broadband(task, first, forces)
+        first = _in_time(_search_beyond_broadband, task, first, forces) or first
     if first.decision.verdict != "unknown":
-        found = _search_beside_stochastic(task, _localise(task, first), without)
+        localised = _localise(task, first)
+        found = _in_time(_search_beside_stochastic, task, localised, without) or localised
         # A random signal takes nothing off the gap, however right it is.
         if found.decision.verdict == "none" or found.stochastic or _takes_enough(found):
             return found
         first = first._replace(decision=call_unknown(problem.settings.decision, first.decision))
-    return _search_beside_stochastic(task, _search_by_gap(task, first), without)
+    first = _in_time(_search_by_gap, task, first) or _localise(task, first)
+    return _in_time(_search_beside_stochastic, task, first, without) or first
+
+
+def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs) -> Solution | None:
+    """Return what a stage finds, None where the deadline ends it: what was found before it then stands."""
+    try:
+        return stage(*arguments, **named)
+    except OutOfTimeError:
+        return None
 
 
 def _estimate_nonrepeatable(objective: Objective) -> Forces:
     """Return the force on the frame by which repeated runs of the nominal rig differ, None without repeats."""
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    nominal = objective.unhurried.evaluate([Parameters(objective.problem.nominal)])[0]
     return estimate_nonrepeatable_force(objective, nominal)
 
 
@@ -150,8 +162,11 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
 
 
 def _localise(task: SearchTask, solution: Solution) -> Solution:
-    """Return the solution with the blocks that the gap lies in, and the signal of what is unexplained."""
-    objective, decision = solution.objective, solution.decision
+    """Return the solution with the blocks that the gap lies in, and the signal of what is unexplained.
+
+    Every answer needs them, so that no deadline ends this stage.
+    """
+    objective, decision = solution.objective.unhurried, solution.decision
     problem, share = objective.problem, task.method.share_gap
     if decision.verdict == "none":
         return solution

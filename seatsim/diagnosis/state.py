@@ -95,7 +95,10 @@ def state_diagnosis(solution: Solution, notes: Sequence[str], progress: Callable
         selected=[name for name in decision.probabilities if name in at_work], stochastic=solution.stochastic,
         indistinguishable=decision.groups, experiment=_propose_experiment(solution, nuisances),
         held_out=[validation.run], isolable=find_isolable_groups(rig, channels), gap=validation.gaps,
-        notes=[*notes, *describe_missing_sensors(rig, channels), *measure_coverage(recording).missing],
+        notes=[
+            *notes, *solution.selection.notes, *describe_missing_sensors(rig, channels),
+            *measure_coverage(recording).missing,
+        ],
         augmented=write_augmented(problem, validation.augmented.parameters),
         evidence=_collect_evidence(validation, nuisances, causes),
     )  # fmt: skip

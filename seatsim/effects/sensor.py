@@ -21,8 +21,9 @@ ChannelName = Literal[
 ChannelField = Annotated[ChannelName, Field(description="the recorded channel that is wrong")]
 SCALES = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement": 0.01, "displacement": 0.01}
 """Scale of a channel in its unit, about a tenth of its range on a shaken seat; 1 m/s^2 for an acceleration."""
-LOGGED = ("current_command", "coil_current")
-"""Channels of the controller's log."""
+COMMANDS = ("current_command", "command_voltage")
+LOGGED = (*COMMANDS, "coil_current")
+"""Channels of the controller's log, and those of them that command the coil."""
 SHORTEST_LAG = 1e-6
 """s; a shorter lag counts as none: the rows cannot show it, and its equation would be too stiff."""
 ROUNDING = 1e-6
@@ -127,12 +128,12 @@ class ClockSkew(NamedTuple):
         return np.interp(rows - self.shift - self.drift * rows, rows, values)
 
     def truth(self, channel: str, step: float, values: Array) -> Array:
-        """Return the true command or current, shape (N,)."""
+        """Return the true command, voltage or current, shape (N,)."""
         if channel not in LOGGED:
             return values
         rows = np.arange(len(values)) * step
         late = self.shift + self.drift * rows
-        if channel == "current_command" and self.hold > 0.0:
+        if channel in COMMANDS and self.hold > 0.0:
             index = np.arange(len(values)) + np.ceil(late / step - ROUNDING).astype(int)
             held: Array = values[np.clip(index, 0, len(values) - 1)]
             return held

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from seatsim.metrics.motion import rms
 from seatsim.recordings.compared import COMPARED, stands_out
 from seatsim.recordings.quality.examination import examine, refuse
+from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import replay
 from seatsim.scenario.loading import single
@@ -50,7 +51,8 @@ class Gap:
 def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:
     """Replay a scenario against the runs of a recording (all of them where none are named) and return their gap.
 
-    The recording is examined first, as for a diagnosis: a gap to faulty data says nothing about the scenario.
+    The recording is examined first, as for a diagnosis: a gap to faulty data says nothing about the scenario. Gravity
+    that an accelerometer reads is taken out, which a note says.
 
     Raises:
         InputError: the scenario holds several runs, does not fit the rig, or the recording has a fault or nothing to
@@ -60,7 +62,7 @@ def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs
     scenario, recording = _load(scenario, recording)
     examination = examine(recording)
     refuse(examination)
-    return replace(measure_gap(scenario, recording, runs), notes=tuple(examination.sentences))
+    return replace(measure_gap(scenario, without_gravity(recording), runs), notes=tuple(examination.sentences))
 
 
 def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:

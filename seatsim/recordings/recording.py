@@ -6,7 +6,7 @@ import lzma
 import zipfile
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
@@ -83,13 +83,17 @@ class VoltageGain(NamedTuple):
 
 @dataclass(frozen=True)
 class Recording:
-    """Content of `recording.yaml`; the tables are read run by run with `table`."""
+    """Content of `recording.yaml`; the tables are read run by run with `table`.
+
+    `removed` holds constants by channel that the tables are without, in the channel's unit.
+    """
 
     folder: Path
     header: Header
     runs: dict[str, RunEntry]
     channels: dict[str, ChannelEntry]
     voltage_gain: float | None
+    removed: Mapping[str, float] = field(default_factory=dict, kw_only=True)
 
     @property
     def nominal(self) -> Path:
@@ -108,7 +112,8 @@ class Recording:
                 f"{self.folder}: no run is called '{run}'{nearest(run, self.runs)}; permitted: {permitted}"
             )
         path = self.folder / self.runs[run].file
-        return dict(_read_table(path, tuple(self.channels), _stamp(path)))
+        table = dict(_read_table(path, tuple(self.channels), _stamp(path)))
+        return table | {name: table[name] - constant for name, constant in self.removed.items()}
 
 
 def _stamp(path: Path) -> Stamp:

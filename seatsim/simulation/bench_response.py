@@ -28,8 +28,6 @@ from seatsim.simulation.damper_bench import bench_force
 from seatsim.simulation.inputs import BenchInputs
 
 Array = NDArray[np.float64]
-EARLY = 1e-9
-"""Part of a row by which a command may be early, so that rounding of the half rows puts none off to the next."""
 
 
 def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: bool = False) -> dict[str, Array]:
@@ -57,6 +55,12 @@ def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: b
     factors = augment_factors(effects, scenario.damper.factors)
     force = bench_force(damper, position, velocity, current, temperature, interval, factors, state)
     return read_sensors(effects, interval, {"damper_force": force, "coil_current": current[::2]})
+
+
+def smooth_motion(inputs: BenchInputs) -> Array:
+    """Return the displacement in m that a simulation follows, at the rows of its inputs, shape (N,)."""
+    rows = inputs.interval * np.arange(len(inputs.displacement), dtype=np.float64)
+    return np.asarray(_smooth(inputs.interval, inputs.displacement.tobytes(), inputs.displacement_noise)(rows))
 
 
 def _check_effects(scenario: Scenario) -> None:
@@ -102,10 +106,9 @@ def _coil_current(coil: Coil, true: BenchInputs, rows: Array, fine: Array) -> Ar
         command = true.voltage_gain * true.command_voltage
     if command is None:
         return np.zeros(len(fine)) if true.coil_current is None else np.interp(fine, rows, true.coil_current)
-    held = np.searchsorted(rows, fine - coil.delay + EARLY * rows[1], side="right") - 1
     start = 0.0 if true.coil_current is None else true.coil_current[0]
-    wanted = np.where(held < 0, start, np.clip(command, 0.0, coil.max_current)[np.maximum(held, 0)])
-    return np.asarray(simulate_current(coil, wanted, fine[1], start))
+    held = np.repeat(np.clip(command, 0.0, coil.max_current), 2)[:-1]
+    return np.asarray(simulate_current(coil, held, fine[1], start))
 
 
 def _temperature(scenario: Scenario, true: BenchInputs, rows: Array, fine: Array) -> Array:

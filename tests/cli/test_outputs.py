@@ -7,10 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from ruamel.yaml import YAML
 
 from seatsim.cli.outputs import characterisation as output
+from seatsim.cli.outputs import diagnosis
 from seatsim.cli.outputs import runs as outputs
 from seatsim.metrics import Metric
+from seatsim.schema.errors import InputError
 from seatsim.schema.files import plain
 
 
@@ -81,3 +84,16 @@ def test_names_of_a_table_are_short():
     assert output._shorten("a name of a long record") == "a name …g record"
     assert output._list_names(["a", "b", "c"]) == "a, b, c"
     assert output._list_names(list("abcd")) == "a and 3 more"
+
+
+@pytest.mark.parametrize("wrong", ["augmented", "experiment"])
+def test_a_scenario_that_cannot_be_loaded_again_is_not_written(tmp_path, kept_seat_file, wrong):
+    good, bad = (YAML(typ="safe").load(kept_seat_file.read_text()) for _ in range(2))
+    bad["plant"]["driver_mass"] = -4.8
+    contents = {"augmented": good, "experiment": good} | {wrong: bad}
+    found = SimpleNamespace(
+        augmented=contents["augmented"], experiment=SimpleNamespace(scenario=contents["experiment"])
+    )
+    with pytest.raises(InputError, match=r"driver_mass: -4\.8 is not permitted"):
+        diagnosis.write_diagnosis(found, tmp_path / "out")
+    assert not (tmp_path / "out").exists()

@@ -112,10 +112,11 @@ def test_a_skewed_log_says_late_what_was(shift):
     assert skew.reading("damper_force", STEP, WAVE) is WAVE
 
 
-def test_a_held_command_moves_by_whole_rows():
+@pytest.mark.parametrize("channel", ["current_command", "command_voltage"])
+def test_a_held_command_moves_by_whole_rows(channel):
     command = np.repeat([0.0, 1.0, 0.3, 0.8], 50)
     skew = record("sensor.clock_skew", shift=0.003, hold=1.0)
-    progress = skew.truth("current_command", STEP, command)
+    progress = skew.truth(channel, STEP, command)
     assert progress[:-3] == pytest.approx(command[3:])
     assert set(progress) <= set(command)
 

@@ -212,3 +212,69 @@ def test_a_recorded_temperature_scales_the_damper(bench):
     warm = replace(bench, damper=replace(bench.damper, factors=factors))
     by_row = respond(warm, MOVED._replace(damper_temperature=np.full(1500, 40.0)))["damper_force"]
     assert by_row[5:-5] == pytest.approx(np.exp(-0.2) * respond(bench, MOVED)["damper_force"][5:-5], abs=1e-2)
+
+
+BENCH = """\
+damper: {model: bingham, parameters: {c_a: 500.0, c_b: 300.0, fc_a: 0.0, fc_b: 0.0, f0: 0.0, v_ref: 0.004}}
+actuator: {rate: 130.0, max_current: 1.0}
+temperature: 20.0
+"""
+ROW = 0.004
+
+
+@pytest.fixture(scope="module")
+def press(tmp_path_factory):
+    path = tmp_path_factory.mktemp("respond") / "bench.yaml"
+    path.write_text(BENCH)
+    return single(path)
+
+
+@pytest.fixture(params=["current_command", "command_voltage"])
+def driven(request):
+    """A bench whose command is stepped, in A or by a voltage of 2 V/A."""
+    time = ROW * np.arange(500)
+    wanted = np.random.default_rng(4).uniform(0.1, 0.9, 20)[np.arange(500) // 25]
+    inputs = BenchInputs(ROW, 0.01 * np.sin(9.0 * time), voltage_gain=0.5)
+    return inputs._replace(**{request.param: wanted if request.param == "current_command" else 2.0 * wanted})
+
+
+def force(scenario, inputs, *effects):
+    return respond(replace(scenario, effects=effects), inputs)["damper_force"]
+
+
+@pytest.mark.parametrize(
+    ("name", "field", "at"), [("coil.delay", "time", 0.013), ("sensor.clock_skew", "shift", -0.0101)]
+)
+def test_a_bench_feels_the_smallest_change_of_a_delay(press, driven, name, field, at):
+    cls = find("effect", name)
+    base, near, far = (force(press, driven, off(cls)._replace(**{field: at + h})) for h in (0.0, 1e-6, 1e-4))
+    slope = (near - base) / 1e-6
+    assert np.sqrt(np.mean(slope**2)) > 100.0
+    assert np.sqrt(np.mean(((far - base) / 1e-4 - slope) ** 2)) < 0.05 * np.sqrt(np.mean(slope**2))
+
+
+@pytest.mark.parametrize("late", [0.0093, 0.02])
+def test_a_late_command_and_a_log_that_runs_ahead_delay_the_force_of_a_bench_by_just_that(press, driven, late):
+    """The truth is sampled finely enough to hold the delay in whole rows."""
+    fine = 40
+    parts = {name: getattr(driven, name) for name in ("current_command", "command_voltage")}
+    held = {name: np.repeat(values, fine) for name, values in parts.items() if values is not None}
+    delayed = {name: np.append(np.zeros(round(late / ROW * fine)), values) for name, values in held.items()}
+    moving = 0.01 * np.sin(9.0 * ROW / fine * np.arange(len(next(iter(delayed.values())))))
+    expected = force(press, driven._replace(interval=ROW / fine, displacement=moving, **delayed))[::fine][:500]
+    inner = slice(20, -10)
+    exact = force(press, driven, off(find("effect", "coil.delay"))._replace(time=late))
+    assert exact[inner] == pytest.approx(expected[inner], abs=1e-3)
+    # A log that runs ahead has the rows of another clock: the mean of a row is right, its course is not known.
+    ahead = force(press, driven, off(find("effect", "sensor.clock_skew"))._replace(shift=-late))
+    assert np.sqrt(np.mean((ahead - expected)[inner] ** 2)) < 0.02 * np.std(expected)
+
+
+@pytest.mark.parametrize(
+    ("name", "field", "at"), [("coil.delay", "time", 0.0133), ("sensor.clock_skew", "shift", -0.0101)]
+)
+def test_a_seat_feels_the_smallest_change_of_a_delay(seat, inputs, name, field, at):
+    cls = find("effect", name)
+    felt = replace(seat, damper=replace(seat.damper, record=seat.damper.record._replace(c_b=300.0)))
+    base, near = (force(felt, inputs, off(cls)._replace(**{field: at + h})) for h in (0.0, 1e-6))
+    assert np.max(np.abs(near - base)) > 1e-4

@@ -29,6 +29,9 @@ def diagnose(
     without: Annotated[
         list[str] | None, typer.Option("--without", metavar="EFFECT", help="Withhold an effect from the library.")
     ] = None,
+    budget: Annotated[
+        float, typer.Option(metavar="SECONDS", help="Time that it may take; then the best answer so far is given.")
+    ] = 120.0,
     own_code: OwnCode = None,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
@@ -41,7 +44,7 @@ def diagnose(
         # A misspelt name is an error at once, not after minutes of a diagnosis that withheld nothing.
         EFFECTS.find(name)
     with show_progress() as progress:
-        diagnosis = find_cause(recording, withheld, progress)
+        diagnosis = find_cause(recording, withheld, progress, budget=budget)
     for table in make_tables(diagnosis):
         out.print(table)
     warn(diagnosis.notes)

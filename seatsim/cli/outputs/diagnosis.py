@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from rich.table import Table
 from ruamel.yaml import YAML
@@ -13,6 +14,7 @@ from seatsim.blind.processes import run_jobs
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.report import write_report
+from seatsim.scenario.loading import single
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import plain, write_json, write_whole
 
@@ -23,11 +25,20 @@ LISTED = 6
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
-    """Write `diagnosis.json`, `augmented.yaml`, `report.html`, and `experiment.yaml` where one is proposed."""
-    dump = YAML(typ="safe").dump
-    paths = [write_whole(folder / "augmented.yaml", partial(dump, diagnosis.augmented))]
+    """Write `diagnosis.json`, `augmented.yaml`, `report.html`, and `experiment.yaml` where one is proposed.
+
+    Raises:
+        InputError: a scenario that was found could not be loaded again, or the folder cannot be written.
+    """
+    scenarios = {"augmented.yaml": dict(diagnosis.augmented)}
     if diagnosis.experiment is not None and diagnosis.experiment.scenario is not None:
-        paths.append(write_whole(folder / "experiment.yaml", partial(dump, dict(diagnosis.experiment.scenario))))
+        scenarios["experiment.yaml"] = dict(diagnosis.experiment.scenario)
+    dump = YAML(typ="safe").dump
+    with TemporaryDirectory() as drafts:
+        for name, content in scenarios.items():
+            dump(content, Path(drafts) / name)
+            single(Path(drafts) / name)
+    paths = [write_whole(folder / name, partial(dump, content)) for name, content in scenarios.items()]
     paths.append(write_report(diagnosis, folder / "report.html"))
     paths.append(write_json(folder / "diagnosis.json", encode_diagnosis(diagnosis)))
     return paths

@@ -50,6 +50,15 @@ class FitSettings(NamedTuple):
         tuple[float, ...],
         Threshold("-", "fractions of a step that are tried in turn", "more of them: slower, safer descents", NUMERICAL),
     ] = (1.0, 0.4, 0.12)
+    search_share: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the time budget after which the search ends",
+            "higher: more is tried where time is short; lower: more of it is left to validate and state the answer",
+            "on simulated rigs, where the statement takes a fifth of the time",
+        ),
+    ] = 0.7
 
 
 class SelectionSettings(NamedTuple):

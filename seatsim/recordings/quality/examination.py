@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from seatsim.recordings.quality.channels import check_ranges, check_shapes
 from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
 from seatsim.recordings.quality.floor_sensor import check_floor_sensor
+from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.quality.issue import Issue, select_errors
 from seatsim.recordings.quality.run_under_test import RunUnderTest
 from seatsim.recordings.quality.runs import check_all_runs, check_clock
@@ -43,10 +44,12 @@ class Examination:
 def examine(recording: Recording) -> Examination:
     """Return the issues of all runs of a recording; later checks run only where the earlier ones found no error.
 
+    Gravity in its accelerometers is taken out before anything else is looked at.
+
     Raises:
         InputError: the nominal scenario is wrong.
     """
-    runs, issues = _read(recording)
+    runs, issues = _read(without_gravity(recording))
     if not select_errors(issues):
         issues += check_all_runs(runs)
     if not select_errors(issues):

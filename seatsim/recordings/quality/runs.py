@@ -8,15 +8,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from seatsim.recordings.compared import LEAST_ROWS, LEFT_OUT
+from seatsim.recordings.quality.gravity import check_constants
 from seatsim.recordings.quality.issue import Issue, Severity, issue_in_all_runs
+from seatsim.recordings.quality.noise_level import check_noise
 from seatsim.recordings.quality.residual import filter_band, find_delay
-from seatsim.recordings.quality.run_under_test import LATE, MOTION, Array, RunUnderTest
+from seatsim.recordings.quality.run_under_test import LATE, MOTION, RunUnderTest
 from seatsim.rig.temperature import Thermal
 
 SHORTEST, SHORT = 4.0, 10.0
 """s; compared time of all runs together below which nothing can be diagnosed, or not well."""
-NOISE_OFF = 3.0
-"""Factor by which the noise may differ from what is stated."""
 
 
 def check_clock(run: RunUnderTest) -> Iterator[Issue]:
@@ -45,7 +45,7 @@ def check_clock(run: RunUnderTest) -> Iterator[Issue]:
 
 def check_all_runs(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Report faults that need all runs together."""
-    for check in (_length, _duplicates, _repeats, _at_rest, _noise, _fahrenheit):
+    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, check_constants, _fahrenheit):
         yield from check(runs)
 
 
@@ -97,33 +97,6 @@ def _at_rest(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
             yield run.issue("error", "still", text, run.driver)
         else:
             yield run.issue(resting, "still", "nothing moves; remove the run")
-
-
-def _noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
-    """Compare the stated noise with the least white noise seen in any run."""
-    for channel, entry in runs[0].recording.channels.items():
-        stated = entry.noise_rms
-        third, fourth = min((_white(run.table[channel], run.rate) for run in runs), key=lambda pair: pair[1])
-        if channel == "current_command" or stated == 0.0 or not 0.0 < fourth < np.inf:
-            continue
-        if fourth < stated / NOISE_OFF or (third > NOISE_OFF * stated and fourth > 0.9 * third):
-            text = f"noise_rms is stated as {stated:g}, but about {fourth:.2g} is seen"
-            yield issue_in_all_runs("warning", "noise", f"{text}; correct it, all thresholds hang on it", channel)
-
-
-def _white(values: Array, rate: float) -> tuple[float, float]:
-    """Return the noise from third and from fourth differences in the quietest fifth of half seconds; equal if white."""
-    rows = max(round(0.5 * rate), 50)
-    windows = len(values) // rows
-    if windows < 4:
-        return np.inf, np.inf
-    pieces = values[: windows * rows].reshape(windows, rows)
-    third, fourth = (
-        np.median(np.abs(np.diff(pieces, n, axis=1)), axis=1) / (0.6745 * norm)
-        for n, norm in ((3, 20**0.5), (4, 70**0.5))
-    )
-    quiet = fourth <= np.quantile(fourth, 0.2)
-    return float(np.mean(third[quiet])), float(np.mean(fourth[quiet]))
 
 
 def _fahrenheit(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:

@@ -7,7 +7,6 @@ import pytest
 
 from seatsim.diagnosis.noise import NoiseWeights, weigh_noise
 from seatsim.recordings.recording import ChannelEntry
-from seatsim.simulation.inputs import BenchInputs
 
 from .noisy import RUNS, draw, mean_squares, pose
 from .toy import NOISE, RATE
@@ -168,14 +167,6 @@ def test_a_sensors_noise_is_drawn_row_by_row_and_linear_between_rows():
     rows = seen[0][::2]
     assert np.std(rows) == pytest.approx(0.25, rel=0.05)
     np.testing.assert_allclose(seen[0][1:-1:2], 0.5 * (rows[:-1] + rows[1:]), atol=1e-12)
-
-
-def test_the_inputs_of_a_bench_carry_no_noise():
-    problem = pose({"model_error": 0.0})
-    bench = BenchInputs(1.0 / RATE, np.zeros(2700))
-    weights = weigh_noise(dataclasses.replace(problem, inputs=dict.fromkeys(RUNS, bench)))
-    np.testing.assert_allclose(2.0 / weights.weights["first"] ** 2, NOISE[:, None] ** 2 * 1800 * np.ones(900))
-    assert problem.calls == []
 
 
 def test_what_repeats_differ_by_counts_where_it_is_more_than_the_noise():

@@ -8,7 +8,7 @@ import pytest
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.parameters import Parameters
 
-from .toy import Cubed, Wild, add_up, draw_signals, make_problem, offer, offer_two, place, weigh_stated, whiten
+from .toy import Cubed, Edge, Wild, add_up, draw_signals, make_problem, offer, offer_two, place, weigh_stated, whiten
 
 NAMES = ["nominal", "nuisance 0", "nuisance 1", "a.one", "a.one beside", "b.two"]
 PAIR = offer_two("a.one", (-2.0, 0.5), (-9.0, -9.0), (9.0, 9.0))
@@ -188,3 +188,11 @@ def test_values_cannot_be_changed(objective, evaluation):
     ):
         with pytest.raises(dataclasses.FrozenInstanceError):
             setattr(value, name, None)
+
+
+def test_a_rig_that_cannot_be_simulated_a_step_away_has_no_sensitivity(objective):
+    edge = place(objective.problem, (offer("b.two", cls=Edge), 1.0))
+    evaluation = objective.evaluate([edge])[0]
+    assert np.isfinite(evaluation.cost)
+    for jacobian in objective.linearise_effects(evaluation).jacobian.values():
+        np.testing.assert_array_equal(jacobian, 0.0)

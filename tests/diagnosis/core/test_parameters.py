@@ -87,3 +87,11 @@ def test_a_shift_goes_down_where_no_room_is_above(rig, component):
 def test_a_shift_goes_up_to_the_bound_itself():
     moved, step = Parameters(np.array([0.75])).shift(0, 0.25)
     assert step == 0.25 and moved.deviations[0] == 1.0
+
+
+def test_a_value_at_its_bound_is_not_beyond_it_by_rounding():
+    start = 0.1
+    for high in np.arange(0.1, 3.0, 0.1):
+        rig = Parameters(np.zeros(0)).add(offer("coil.two", start=start, low=-high, high=high), np.array([start]))
+        assert rig.move_to(np.array([1e3])).values[0][0] <= high
+        assert rig.move_to(np.array([-1e3])).values[0][0] >= -high

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis import problem as module
-from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors, pose_problem
+from seatsim.diagnosis.problem import DiagnosisProblem, check_nominal, normalise_rms_errors, pose_problem
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.recordings.recording import load_recording
 from seatsim.scenario.scenario import Start
@@ -150,6 +150,25 @@ def test_a_rig_that_leaves_all_bounds_is_infinitely_far_off(linear):
     with_it, without = bursting.residuals([(linear.nominal, [Added("a", 1.0)]), (linear.nominal, [])])
     assert np.all(np.isinf(with_it["second"])) and with_it["second"].shape == linear.measured["second"].shape
     assert np.all(np.isfinite(with_it["first"])) and np.all(np.isfinite(without["second"]))
+
+
+def test_a_nominal_rig_that_cannot_be_simulated_is_an_error_that_names_the_run(linear):
+    class Runaway(type(linear)):
+        def simulated(self, run, deviations, effects, inputs=None):
+            if run == "second":
+                raise RunError("no solution beyond 0.3 s")
+            return super().simulated(run, deviations, effects, inputs)
+
+    check_nominal(linear)
+    fields = {each.name: getattr(linear, each.name) for each in dataclasses.fields(linear)}
+    with pytest.raises(
+        RunError, match=r"toy, run second: the nominal .*nominal.yaml cannot .*: no solution beyond 0.3 s"
+    ):
+        check_nominal(Runaway(**fields))
+    third = fields["signals"]["third"] | {"nominal": np.full((2, 200), np.nan)}
+    endless = fields["signals"] | {"third": third}
+    with pytest.raises(RunError, match=r"run third: .* its outputs are not finite"):
+        check_nominal(type(linear)(**fields | {"signals": endless}))
 
 
 def test_the_spread_is_that_of_all_runs_together(linear):

@@ -84,6 +84,17 @@ class Wild(NamedTuple):
         return np.full_like(signals["nominal"], np.inf)
 
 
+@toy_effect("toy.edge")
+class Edge(NamedTuple):
+    """Adds a signal up to an amount of 1, beyond which the rig leaves all bounds."""
+
+    signal: str
+    amount: float = 0.0
+
+    def outputs(self, signals):
+        return self.amount * signals[self.signal] if self.amount <= 1.0 else np.full_like(signals["nominal"], np.inf)
+
+
 class SerialExecutor(Executor):
     """Does everything at once, in the caller's thread."""
 

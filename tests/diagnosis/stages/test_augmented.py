@@ -75,6 +75,16 @@ def test_effects_are_appended_with_all_their_parameters(problem, tmp_path):
     assert other.scenario.source.data["effects"] == [{"effect": "driver.mass", "parameters": {"change": 4}}]
 
 
+def test_a_saved_design_is_named_so_that_it_is_found_from_another_folder(problem, tmp_path):
+    law = "controller: {law: static_output_feedback, design: saved/design.yaml}\n"
+    text = "\n".join(line for line in NOMINAL.splitlines() if not line.startswith("controller")) + "\n" + law
+    (tmp_path / "saved").mkdir()
+    (tmp_path / "saved" / "design.yaml").write_text("gain: [2.0, 2147.6]\n")
+    other = loaded(problem, text, tmp_path)
+    content = write_augmented(other, place(problem))
+    assert content["controller"]["design"] == str(tmp_path / "saved" / "design.yaml")
+
+
 def test_a_section_that_the_file_lacks_is_made(problem):
     data = {"damper": {"model": "bouc_wen"}}
     scenario = dataclasses.replace(problem.scenario, source=SimpleNamespace(data=data))

@@ -1,7 +1,10 @@
 """From a recording to its diagnosis: what is refused, what is passed on, and the whole way on a linear seat."""
 
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -19,6 +22,24 @@ from seatsim.schema.errors import InputError
 from .toy import CHANNELS, NOMINAL, SKIP, pose, record
 
 
+class Posed(SimpleNamespace):
+    """What stands for a problem; it notes the deadline that its fits are given."""
+
+    settings = DiagnosisSettings()
+
+    def until(self, deadline):
+        return Posed(deadline=deadline)
+
+
+class Solved(NamedTuple):
+    """What stands for a solution."""
+
+    objective: SimpleNamespace
+
+
+SOLUTION, STATED = Solved(SimpleNamespace(unhurried="unhurried")), Solved("unhurried")
+
+
 @pytest.fixture
 def stages(monkeypatch):
     """Write down what each stage is given; each returns a word."""
@@ -33,8 +54,9 @@ def stages(monkeypatch):
 
     stage("load_recording", "loaded")
     stage("examine", Examination([Issue("warning", "kind", "mind the clock")]))
-    stage("pose_problem", "problem")
-    stage("solve", "solution")
+    stage("pose_problem", Posed())
+    stage("check_nominal", None)
+    stage("solve", SOLUTION)
     stage("state_diagnosis", "diagnosis")
     return seen
 
@@ -42,12 +64,18 @@ def stages(monkeypatch):
 def test_a_recording_is_examined_posed_solved_and_stated(folder, stages):
     said, recording, settings = [], record(folder), DiagnosisSettings()
     assert diagnose(recording, ["driver.mass"], said.append, settings) == "diagnosis"
-    assert said == ["looking at the data"] and "load_recording" not in stages
+    assert "load_recording" not in stages
     assert stages["examine"] == (recording,)
     posed, pool, given = stages["pose_problem"]
     assert posed is recording and given is settings and isinstance(pool, ThreadPoolExecutor)
-    assert stages["solve"] == ("problem", ["driver.mass"], said.append, Method())
-    assert stages["state_diagnosis"] == ("solution", ["mind the clock"], said.append)
+    assert stages["check_nominal"] == (Posed(),)
+    problem, without, tell, method = stages["solve"]
+    assert without == ["driver.mass"] and method == Method()
+    # The search ends after 0.7 of the budget of 120 s.
+    assert 80.0 < problem.deadline.end - time.monotonic() <= 84.0
+    tell("searching")
+    assert said == ["looking at the data", "searching"]
+    assert stages["state_diagnosis"] == (STATED, ["mind the clock"], said.append)
 
 
 @pytest.mark.parametrize("given", ["somewhere", Path("somewhere")])
@@ -56,6 +84,29 @@ def test_a_recording_may_be_named_by_its_folder(stages, given):
     assert stages["load_recording"] == (given,) and stages["examine"] == ("loaded",)
     assert stages["pose_problem"][0] == "loaded" and stages["pose_problem"][2] is None
     assert stages["solve"][1] == () and stages["solve"][2]("any word") is None
+
+
+@pytest.mark.parametrize("budget", [0.0, -1.0, float("nan")])
+def test_a_budget_that_is_none_is_refused(budget):
+    with pytest.raises(InputError, match=r"a budget of .* is not permitted; it must be above 0"):
+        diagnose("somewhere", budget=budget)
+
+
+def test_stages_that_the_budget_cut_short_are_named(stages, monkeypatch):
+    def solve(problem, without, tell, method):
+        tell("weighing the channels")
+        tell("fitting sets of 1")
+        while not problem.deadline.is_past:
+            time.sleep(1e-3)
+        tell("fitting sets of 2")
+        return SOLUTION
+
+    monkeypatch.setattr(module, "solve", solve)
+    diagnose_problem(Posed(), ["a note"], budget=0.03)
+    noted = stages["state_diagnosis"][1]
+    assert noted[0] == "a note" and len(noted) == 2
+    assert noted[1].startswith("the budget of 0.03 s was spent, so that the answer is the best so far")
+    assert noted[1].endswith("cut short: fitting sets of 1, fitting sets of 2")
 
 
 def test_a_recording_with_an_error_is_refused_before_anything_is_fitted(folder, stages, monkeypatch):
@@ -95,12 +146,13 @@ def test_a_method_and_notes_are_passed_on_and_algebra_keeps_to_one_thread(stages
     def solve(*given):
         threads.extend(each["num_threads"] for each in threadpool_info())
         stages["solve"] = given
-        return "solution"
+        return SOLUTION
 
     monkeypatch.setattr(module, "solve", solve)
-    assert diagnose_problem("problem", ["a note"], ["x"], print, other) == "diagnosis"
-    assert stages["solve"] == ("problem", ["x"], print, other)
-    assert stages["state_diagnosis"] == ("solution", ["a note"], print)
+    assert diagnose_problem(Posed(), ["a note"], ["x"], print, other) == "diagnosis"
+    assert stages["solve"][1] == ["x"] and stages["solve"][3] is other
+    assert not stages["solve"][0].deadline.is_past and stages["solve"][0].deadline.end == np.inf
+    assert stages["state_diagnosis"] == (STATED, ["a note"], print)
     assert threads and set(threads) == {1}
 
 
@@ -124,6 +176,18 @@ def test_a_heavier_driver_is_found(heavier):
     assert found.gap.shrink_interval[0] > 0.6 and found.notes[0] == "a note"
     assert said[:3] == ["weighing the channels", "fitting sets of 1", "holding out a run"]
     assert found.probability_unknown < 0.1 and found.probability_none < 0.1
+
+
+@pytest.mark.parametrize("budget", [1e-6, 0.05, 0.3])
+def test_however_short_the_time_there_is_an_answer_that_says_what_was_cut(heavier, budget):
+    found = diagnose_problem(heavier, budget=budget)
+    assert any(note.startswith(f"the budget of {budget:g} s was spent") for note in found.notes)
+    assert found.verdict in ("known", "ambiguous", "unknown") and found.augmented["plant"]
+
+
+def test_a_search_without_time_knows_the_calibrated_rig_alone(heavier):
+    found = diagnose_problem(heavier, budget=1e-6)
+    assert (found.verdict, found.selected) == ("unknown", [])
 
 
 def test_what_is_withheld_is_not_found(heavier):

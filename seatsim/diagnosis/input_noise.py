@@ -1,0 +1,84 @@
+"""Noise of the recorded inputs, carried through the nominal rig to the compared channels by simulation.
+
+A replicate is a run whose inputs have newly drawn noise of their sensors' stated size; its power is that of the
+difference in the outputs. The motion of a bench follows a spline that is smoothed to within its noise (see
+`seatsim.simulation.bench_response`). A replicate draws its noise about that path and is smoothed as the record was, so
+that what is carried is the noise of the smoothed path, not that of the sensor.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.spectra import randomise_phases, smooth_spectrum
+from seatsim.simulation.bench_response import smooth_motion
+from seatsim.simulation.inputs import BenchInputs, Forces, RigInputs, SeatInputs
+
+Array = NDArray[np.float64]
+
+
+def carry_input_noise(problem: DiagnosisProblem, run: str, force: Array | None = None) -> Array:
+    """Return the power spectrum that noise of the inputs causes in the outputs, shape (channels, frequencies).
+
+    Args:
+        problem: the recording beside its nominal scenario.
+        run: name of the run.
+        force: signal of a random force on a seat's frame in N, shape (samples,), which counts as noise.
+    """
+    inputs = problem.inputs[run]
+    # The same draws for every recording: equal input gives equal output.
+    rng = np.random.default_rng(0)
+    drawn = [_draw_inputs(problem, inputs, force, rng) for _ in range(problem.settings.noise.replicates)]
+    clean = problem.simulated(run, problem.nominal, ())
+    replicates = problem.pool.map(lambda noisy: problem.simulated(run, problem.nominal, (), noisy), drawn)
+    power = np.mean([np.abs(np.fft.rfft(noisy - clean, axis=1)) ** 2 for noisy in replicates], axis=0)
+    return smooth_spectrum(power, problem.settings.noise.smoothing)
+
+
+def _draw_inputs(
+    problem: DiagnosisProblem, inputs: RigInputs, force: Array | None, rng: np.random.Generator
+) -> RigInputs:
+    """Return the inputs of a run with newly drawn noise of their sensors, and a random force on the frame."""
+    if isinstance(inputs, BenchInputs):
+        return _draw_bench(problem, inputs, rng)
+    return _draw_floor(problem, inputs, rng)._replace(forces=_draw_force(problem, inputs, force, rng))
+
+
+def _draw_bench(problem: DiagnosisProblem, inputs: BenchInputs, rng: np.random.Generator) -> BenchInputs:
+    """Return the inputs of a bench with newly drawn noise of its motion, and of a current that drives the damper."""
+
+    def noise(channel: str) -> Array:
+        return problem.recording.channels[channel].noise_rms * rng.standard_normal(len(inputs.displacement))
+
+    noisy = inputs._replace(displacement=smooth_motion(inputs) + noise("displacement"))
+    if inputs.velocity is not None:
+        noisy = noisy._replace(velocity=inputs.velocity + noise("velocity"))
+    if inputs.coil_current is not None and inputs.current_command is None and inputs.command_voltage is None:
+        noisy = noisy._replace(coil_current=inputs.coil_current + noise("coil_current"))
+    return noisy
+
+
+def _draw_floor(problem: DiagnosisProblem, inputs: SeatInputs, rng: np.random.Generator) -> SeatInputs:
+    """Return the inputs of a seat with newly drawn noise of its floor, and of a current that drives the damper."""
+    floor, channels = inputs.floor, problem.recording.channels
+    every = np.arange(len(floor.acceleration))
+    rows = every[:: problem.parts]
+
+    def noise(channel: str) -> Array:
+        return np.interp(every, rows, channels[channel].noise_rms * rng.standard_normal(len(rows)))
+
+    noisy = floor._replace(acceleration=floor.acceleration + noise("floor_acceleration"))
+    if floor.command is None and floor.coil_current is not None:
+        noisy = noisy._replace(coil_current=floor.coil_current + noise("coil_current"))
+    return inputs._replace(floor=noisy)
+
+
+def _draw_force(problem: DiagnosisProblem, inputs: SeatInputs, force: Array | None, rng: np.random.Generator) -> Forces:
+    """Return a random force on the frame with the spectrum of the one given, on the simulation's steps."""
+    if force is None:
+        return Forces()
+    every = np.arange(len(inputs.floor.acceleration))
+    rows = every[:: problem.parts]
+    return Forces(np.interp(every, rows[: len(force)], randomise_phases(force, rng), right=0.0))
