@@ -19,7 +19,7 @@ from seatsim.recordings.recording import Recording, load_recording
 
 def diagnose(
     recording: str | Path | Recording, without: Sequence[str] = (), progress: Callable[[str], object] = lambda _: None,
-    settings: DiagnosisSettings | None = None,
+    settings: DiagnosisSettings | None = None, damper_forms: bool = False,
 ) -> Diagnosis:  # fmt: skip
     """Say where the gap between a recording and its nominal scenario lies, what causes it, and how far it shrinks.
 
@@ -28,6 +28,7 @@ def diagnose(
         without: names of effects that are withheld from the library.
         progress: called with what is being done.
         settings: thresholds, those of `DiagnosisSettings` where absent.
+        damper_forms: try other forms of the damper whatever the verdict, not only where much of its force stays open.
 
     Raises:
         InputError: the recording is damaged in a way that would lead to a wrong verdict.
@@ -39,16 +40,18 @@ def diagnose(
     examination = examine(recording)
     refuse(examination)
     with ThreadPoolExecutor() as pool:
-        return diagnose_problem(pose_problem(recording, pool, settings), examination.sentences, without, progress)
+        problem, notes = pose_problem(recording, pool, settings), examination.sentences
+        return diagnose_problem(problem, notes, without, progress, damper_forms=damper_forms)
 
 
 def diagnose_problem(
     problem: DiagnosisProblem, notes: Sequence[str] = (), without: Sequence[str] = (),
     progress: Callable[[str], object] = lambda _: None, method: Method | None = None,
+    damper_forms: bool = False,
 ) -> Diagnosis:  # fmt: skip
     """Return the diagnosis of a problem; `notes` are sentences on the quality of its data.
 
     Simulations of several runs and rigs run in parallel, so linear algebra libraries are limited to one thread.
     """
     with threadpool_limits(1):
-        return state_diagnosis(solve(problem, without, progress, method or Method()), notes, progress)
+        return state_diagnosis(solve(problem, without, progress, method or Method()), notes, progress, damper_forms)

@@ -48,7 +48,7 @@ def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: b
     true = _undo_readings(effects, inputs)
     rows = interval * np.arange(len(true.displacement), dtype=np.float64)
     fine = np.arange(2 * len(rows) - 1, dtype=np.float64) * 0.5 * interval
-    position = _smooth(interval, true.displacement.tobytes(), true.displacement_noise)
+    position = smooth_motion(interval, true.displacement.tobytes(), true.displacement_noise)
     velocity = position.derivative()(fine) if true.velocity is None else CubicSpline(rows, true.velocity)(fine)
     current = _coil_current(augment_coil(effects, scenario.coil), true, rows, fine)
     damper, state = augment_damper(scenario.damper.record, select_in_loop(effects, carry_all_effects)[0])
@@ -83,8 +83,11 @@ def _undo_readings(effects: tuple[object, ...], inputs: BenchInputs) -> BenchInp
 
 
 @lru_cache(maxsize=64)
-def _smooth(interval: float, content: bytes, noise: float) -> UnivariateSpline:
-    """Return the spline through a channel, whose `content` is kept so that no run is smoothed twice."""
+def smooth_motion(interval: float, content: bytes, noise: float) -> UnivariateSpline:
+    """Return the quintic spline over time in s that passes a displacement within its noise, both in m.
+
+    It is asked for by the bytes (`content`) of the array, which are kept, so that no run is smoothed twice.
+    """
     values = np.frombuffer(content)
     return UnivariateSpline(np.arange(len(values)) * interval, values, k=5, s=len(values) * noise**2)
 

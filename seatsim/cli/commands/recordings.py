@@ -29,6 +29,9 @@ def diagnose(
     without: Annotated[
         list[str] | None, typer.Option("--without", metavar="EFFECT", help="Withhold an effect from the library.")
     ] = None,
+    damper_forms: Annotated[
+        bool, typer.Option("--damper-forms", help="Try other forms of the damper whatever the verdict.")
+    ] = False,
     own_code: OwnCode = None,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
@@ -41,7 +44,7 @@ def diagnose(
         # A misspelt name is an error at once, not after minutes of a diagnosis that withheld nothing.
         EFFECTS.find(name)
     with show_progress() as progress:
-        diagnosis = find_cause(recording, withheld, progress)
+        diagnosis = find_cause(recording, withheld, progress, damper_forms=damper_forms)
     for table in make_tables(diagnosis):
         out.print(table)
     warn(diagnosis.notes)
