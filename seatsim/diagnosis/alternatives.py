@@ -20,9 +20,9 @@ from typing import NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.dampers.base import Damper
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import DamperForm, Gaps
-from seatsim.dampers.base import Damper
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.identification.damper_record import DamperRecord, FieldValue, find_model
 from seatsim.identification.problem_statement import state_problem
@@ -87,6 +87,8 @@ def compare_damper_forms(
         run: left out of all fits.
     """
     before = measure_gap(calibrated, problem.recording, [run]).overall
+    if before == 0.0:
+        return []
     rigs = [calibrated, augmented] if augmented.effects != calibrated.effects else [calibrated]
     found = [form for rig in rigs for form in _compare_about(problem, rig, len(calibrated.effects), run, before)]
     return sorted(found, key=lambda form: -form.shrink)
@@ -98,7 +100,7 @@ def describe_forms(forms: Sequence[DamperForm], gaps: Gaps, better: float) -> st
     Shares are of what remains of the calibrated gap: beside the effects found where there are any, else of all of it.
     `better`: least share that a model takes beyond the nominal's own to be named.
     """
-    if not forms:
+    if not forms or gaps.after.overall == 0.0:
         return ""
     credit = 1.0 - gaps.after.overall / gaps.calibrated.overall
     best = next(form for form in forms if form.beside == max(each.beside for each in forms))
@@ -112,7 +114,8 @@ def describe_forms(forms: Sequence[DamperForm], gaps: Gaps, better: float) -> st
         said = f"`{best.replaces}` with parameters outside their tolerance takes {own:.0%} of what remains"
     instead = next((form for form in forms if not form.beside and best.beside), None)
     if instead is not None and instead.shrink >= credit:
-        said += f"{'; ' * bool(said)}`{instead.model}` without {join_names(best.beside)} takes {instead.shrink:.0%}"
+        said += f"{'; ' * bool(said)}the form `{instead.model}` alone explains as much as {join_names(best.beside)}"
+        said += f" ({instead.shrink:.0%} of the gap against {credit:.0%})"
     return said and f"{said[0].upper()}{said[1:]}."
 
 

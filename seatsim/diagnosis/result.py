@@ -169,8 +169,8 @@ class Diagnosis:
     """Where the gap between a recording and its nominal simulation lies, which effect causes it, how far it shrinks.
 
     `sentence` is the answer in one sentence. `notes` are sentences on the data, what the channels cannot distinguish,
-    and on cautions. `alternatives` are other models of the damper, the best first. `stochastic` is the selected effect whose signal is random, else empty. `augmented` is the content
-    of `augmented.yaml`.
+    and on cautions. `stochastic` is the selected effect whose signal is random, else empty. `augmented` is the content
+    of `augmented.yaml`. `alternatives` are other models of the damper, the best first.
     """
 
     name: str

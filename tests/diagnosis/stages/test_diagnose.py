@@ -47,7 +47,7 @@ def test_a_recording_is_examined_posed_solved_and_stated(folder, stages):
     posed, pool, given = stages["pose_problem"]
     assert posed is recording and given is settings and isinstance(pool, ThreadPoolExecutor)
     assert stages["solve"] == ("problem", ["driver.mass"], said.append, Method())
-    assert stages["state_diagnosis"] == ("solution", ["mind the clock"], said.append)
+    assert stages["state_diagnosis"] == ("solution", ["mind the clock"], said.append, False)
 
 
 @pytest.mark.parametrize("given", ["somewhere", Path("somewhere")])
@@ -100,7 +100,7 @@ def test_a_method_and_notes_are_passed_on_and_algebra_keeps_to_one_thread(stages
     monkeypatch.setattr(module, "solve", solve)
     assert diagnose_problem("problem", ["a note"], ["x"], print, other) == "diagnosis"
     assert stages["solve"] == ("problem", ["x"], print, other)
-    assert stages["state_diagnosis"] == ("solution", ["a note"], print)
+    assert stages["state_diagnosis"] == ("solution", ["a note"], print, False)
     assert threads and set(threads) == {1}
 
 
