@@ -78,7 +78,8 @@ def compare_damper_forms(
     """Return other models of the damper instead of all effects, and beside those found, the best on a run first.
 
     On a bench every model is driven through the run left out; on a seat, where each has to be compiled into a time loop
-    of its own, the one that fits the force best. A model that leaves all bounds is not among them.
+    of its own, only the one that fits the force best, if it does so better than the nominal's own. A model that leaves
+    all bounds is not among them.
 
     Args:
         problem: a recording with damper force and motion, and at least two runs.
@@ -113,9 +114,9 @@ def describe_forms(forms: Sequence[DamperForm], gaps: Gaps, better: float) -> st
     elif own >= better:
         said = f"`{best.replaces}` with parameters outside their tolerance takes {own:.0%} of what remains"
     instead = next((form for form in forms if not form.beside and best.beside), None)
-    if instead is not None and instead.shrink >= credit:
-        said += f"{'; ' * bool(said)}the form `{instead.model}` alone explains as much as {join_names(best.beside)}"
-        said += f" ({instead.shrink:.0%} of the gap against {credit:.0%})"
+    if instead is not None and instead.shrink >= max(credit, instead.refitted + better):
+        said += f"{'; ' * bool(said)}the form `{instead.model}` in the place of {join_names(best.beside)} takes"
+        said += f" {instead.shrink:.0%} of the gap against {credit:.0%}"
     return said and f"{said[0].upper()}{said[1:]}."
 
 
@@ -130,13 +131,19 @@ def _compare_about(
     def shrink(fit: FormFit | None) -> float:
         return -math.inf if fit is None else 1.0 - _measure_gap(problem, fit.scenario, run) / before
 
-    refitted = max(0.0, shrink(_fit_form(problem, rig, own, records)))
+    as_free = _fit_form(problem, rig, own, records)
+    refitted = max(0.0, shrink(as_free))
     models = [name for name in problem.settings.damper_forms.models if name != own]
     fits = [fit for name in models if (fit := _fit_form(problem, rig, name, records)) is not None]
-    driven = fits if problem.bench else sorted(fits, key=lambda fit: fit.cost)[:1]
-    for fit in driven:
+    for fit in fits if problem.bench else _screen_fits(problem, fits, as_free):
         if math.isfinite(gain := shrink(fit)):
             yield DamperForm(fit.model, own, beside, gain, refitted, fit.parameters)
+
+
+def _screen_fits(problem: DiagnosisProblem, fits: Sequence[FormFit], as_free: FormFit | None) -> list[FormFit]:
+    """Return the fit that leaves least of the force where that is less than the nominal's own leaves, else none."""
+    highest = math.inf if as_free is None else as_free.cost * (1.0 - problem.settings.damper_forms.better) ** 2
+    return [fit for fit in sorted(fits, key=lambda fit: fit.cost)[:1] if fit.cost < highest]
 
 
 def _measure_gap(problem: DiagnosisProblem, rig: Scenario, run: str) -> float:

@@ -42,12 +42,12 @@ class DamperFormSettings(NamedTuple):
         Threshold(
             "-", "most evaluations of least squares from each start, and from the better one", "more: time", NUMERICAL
         ),
-    ] = (5, 12)
+    ] = (4, 8)
     better: Annotated[
         float,
         Threshold(
             "-",
-            "least share of the calibrated gap that another model takes beyond the nominal's own to be put into words",
+            "least share that another model takes beyond the nominal's own, of the gap to be named, of the force to be driven",
             "lower: a form is named that only has more parameters",
             CONVENTION,
         ),
