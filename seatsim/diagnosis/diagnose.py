@@ -28,7 +28,7 @@ CUT = "the budget of {budget:g} s was spent, so that the answer is the best so f
 
 def diagnose(
     recording: str | Path | Recording, without: Sequence[str] = (), progress: Callable[[str], object] = lambda _: None,
-    settings: DiagnosisSettings | None = None, budget: float = BUDGET,
+    settings: DiagnosisSettings | None = None, budget: float = BUDGET, damper_forms: bool = False,
 ) -> Diagnosis:  # fmt: skip
     """Say where the gap between a recording and its nominal scenario lies, what causes it, and how far it shrinks.
 
@@ -39,6 +39,7 @@ def diagnose(
         settings: thresholds, those of `DiagnosisSettings` where absent.
         budget: seconds that the diagnosis may take once the nominal rig was simulated, which may have to be compiled
             first. Where they are spent the answer is the best so far, and a note says which stages were cut short.
+        damper_forms: try other forms of the damper whatever the verdict, not only where much of its force stays open.
 
     Raises:
         InputError: the budget is not positive, or the recording is damaged so that the verdict would be wrong.
@@ -52,13 +53,14 @@ def diagnose(
     examination = examine(recording)
     refuse(examination)
     with ThreadPoolExecutor() as pool:
-        problem = pose_problem(recording, pool, settings)
-        return diagnose_problem(problem, examination.sentences, without, progress, budget=budget)
+        problem, notes = pose_problem(recording, pool, settings), examination.sentences
+        return diagnose_problem(problem, notes, without, progress, budget=budget, damper_forms=damper_forms)
 
 
 def diagnose_problem(
     problem: DiagnosisProblem, notes: Sequence[str] = (), without: Sequence[str] = (),
     progress: Callable[[str], object] = lambda _: None, method: Method | None = None, budget: float = math.inf,
+    damper_forms: bool = False,
 ) -> Diagnosis:  # fmt: skip
     """Return the diagnosis of a problem; `notes` are sentences on the quality of its data, `budget` is as above.
 
@@ -79,7 +81,8 @@ def diagnose_problem(
         solution = solve(problem.until(deadline), without, tell, method or Method())
         cut = _list_cut(stages, deadline.end) if deadline.is_past else []
         said = [*notes, *([f"{CUT.format(budget=budget)}: {', '.join(cut)}"] if cut else [])]
-        return state_diagnosis(solution._replace(objective=solution.objective.unhurried), said, progress)
+        solution = solution._replace(objective=solution.objective.unhurried)
+        return state_diagnosis(solution, said, progress, damper_forms)
 
 
 def _list_cut(stages: Sequence[tuple[str, float]], end: float) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -147,13 +147,30 @@ class ProposedExperiment:
         return {"kind": self.kind, "name": self.name, "reason": self.reason, **likeness, **file}
 
 
+class DamperForm(NamedTuple):
+    """Another model of the damper in the place of the nominal's, free of its tolerance, fitted without held-out runs.
+
+    model: its registered name; `replaces`: that of the nominal scenario. beside: effects that it stands beside, none
+    where it stands instead of any. shrink: of the overall gap on held-out runs, from the calibrated rig to the rig with
+    this damper and these effects. refitted: the same for the nominal's own model, fitted as freely. parameters: of the
+    model, by name; a law in the current by its coefficients.
+    """
+
+    model: str
+    replaces: str
+    beside: tuple[str, ...]
+    shrink: float
+    refitted: float
+    parameters: dict[str, float | str | tuple[float, ...]]
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """Where the gap between a recording and its nominal simulation lies, which effect causes it, how far it shrinks.
 
     `sentence` is the answer in one sentence. `notes` are sentences on the data, what the channels cannot distinguish,
     and on cautions. `stochastic` is the selected effect whose signal is random, else empty. `augmented` is the content
-    of `augmented.yaml`.
+    of `augmented.yaml`. `alternatives` are other models of the damper, the best first.
     """
 
     name: str
@@ -173,3 +190,4 @@ class Diagnosis:
     notes: list[str]
     augmented: Content
     evidence: Evidence
+    alternatives: Sequence[DamperForm] = ()

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
 from seatsim.diagnosis.augmented import write_augmented
 from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown
 from seatsim.diagnosis.design.collinearity import measure_collinearity
@@ -18,7 +19,7 @@ from seatsim.diagnosis.localise.stochastic import add_strength
 from seatsim.diagnosis.movement import measure_gap_taken
 from seatsim.diagnosis.objective import Evaluation, Linearisation
 from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.result import Cause, Diagnosis, Evidence, Gaps, ProposedExperiment
+from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment
 from seatsim.diagnosis.sentences import write_answer
 from seatsim.diagnosis.solve import Solution
 from seatsim.diagnosis.validate import (
@@ -77,8 +78,13 @@ def validate_on_held_out(solution: Solution) -> Validation:
     return Validation(solution, nominal, run, calibrated, augmented, gaps)
 
 
-def state_diagnosis(solution: Solution, notes: Sequence[str], progress: Callable[[str], object]) -> Diagnosis:
-    """Return the diagnosis that states a solution; `notes` are sentences on the quality of the data."""
+def state_diagnosis(
+    solution: Solution, notes: Sequence[str], progress: Callable[[str], object], damper_forms: bool = False
+) -> Diagnosis:
+    """Return the diagnosis that states a solution; `notes` are sentences on the quality of the data.
+
+    Other models of the damper are tried where the damper force stays open, with `damper_forms` in every case.
+    """
     progress("holding out a run")
     validation = validate_on_held_out(solution)
     solution = validation.solution
@@ -88,6 +94,7 @@ def state_diagnosis(solution: Solution, notes: Sequence[str], progress: Callable
     rig, channels = recording.header.rig, recording.channels
     causes = _list_causes(validation)
     nuisances = solution.selection.linearise_nuisances(objective, decision.chosen)
+    obstacle = describe_obstacle(problem) if damper_forms else ""
     at_work = {solution.stochastic, *decision.chosen.parameters.names}
     diagnosis = Diagnosis(
         name=recording.folder.name, verdict=decision.verdict, sentence="", where=list(solution.where), causes=causes,
@@ -97,12 +104,14 @@ def state_diagnosis(solution: Solution, notes: Sequence[str], progress: Callable
         held_out=[validation.run], isolable=find_isolable_groups(rig, channels), gap=validation.gaps,
         notes=[
             *notes, *solution.selection.notes, *describe_missing_sensors(rig, channels),
-            *measure_coverage(recording).missing,
+            *([obstacle] if obstacle else []), *measure_coverage(recording).missing,
         ],
         augmented=write_augmented(problem, validation.augmented.parameters),
         evidence=_collect_evidence(validation, nuisances, causes),
+        alternatives=_list_alternatives(validation, damper_forms, progress),
     )  # fmt: skip
-    return dataclasses.replace(diagnosis, sentence=write_answer(diagnosis))
+    forms = describe_forms(diagnosis.alternatives, diagnosis.gap, problem.settings.damper_forms.better)
+    return dataclasses.replace(diagnosis, sentence=" ".join(filter(None, (write_answer(diagnosis), forms))))
 
 
 def _list_causes(validation: Validation) -> list[Cause]:
@@ -115,6 +124,17 @@ def _list_causes(validation: Validation) -> list[Cause]:
     if found is None:
         return causes
     return [add_strength(cause, found) if cause.effect == solution.stochastic else cause for cause in causes]
+
+
+def _list_alternatives(validation: Validation, asked: bool, progress: Callable[[str], object]) -> list[DamperForm]:
+    """Return other models of the damper, none where they are neither asked for nor due, or cannot be judged."""
+    problem, verdict = validation.solution.objective.problem, validation.solution.decision.verdict
+    due = not describe_obstacle(problem) if asked else are_forms_due(problem, validation.gaps, verdict)
+    if not due:
+        return []
+    progress("trying other forms of the damper")
+    _, calibrated, augmented = (make_scenario(problem, validation.nominal, rig) for rig in validation.rigs)
+    return compare_damper_forms(problem, calibrated, augmented, validation.run)
 
 
 def _propose_experiment(solution: Solution, nuisances: Linearisation) -> ProposedExperiment | None:

@@ -44,8 +44,8 @@ class IdentificationProblem(NamedTuple):
     """What is fitted: `coordinates` of the damper, then the coil's rates, then what temperature does.
 
     inputs, weights: of each record, and the factor of its residuals. fits_coil: whether the coil's rates are free.
-    reference: temperature in degC at which the factors are 1, None where it is no input. tolerance: that of the
-    simulation.
+    reference: temperature in degC at which the factors are 1, None where they are not fitted but `factors`.
+    tolerance: that of the simulation.
     """
 
     coordinates: Coordinates
@@ -54,6 +54,7 @@ class IdentificationProblem(NamedTuple):
     fits_coil: bool
     reference: float | None
     tolerance: float = TOLERANCE
+    factors: TemperatureFactors = TemperatureFactors()
 
     @property
     def labels(self) -> list[str]:
@@ -94,7 +95,7 @@ class IdentificationProblem(NamedTuple):
         damper, beside = self.coordinates.to_record(vector[:count]), [float(number) for number in vector[count:]]
         rise, fall = (COIL_RATE * math.exp(number) for number in (beside[:2] if self.fits_coil else (0.0, 0.0)))
         if self.reference is None:
-            return BenchModel(damper, TemperatureFactors(), rise, fall)
+            return BenchModel(damper, self.factors, rise, fall)
         viscous, stiffness, yielding = (PER_KELVIN * number for number in beside[-4:-1])
         factors = TemperatureFactors(viscous, stiffness, yielding, self.reference)
         return BenchModel(damper, factors, rise, fall, OFFSET_PER_KELVIN * beside[-1])

@@ -36,15 +36,21 @@ def find_origin(records: Sequence[BenchRecord]) -> float:
 
 
 def state_problem(
-    records: Sequence[BenchRecord], cls: type[DamperRecord], origin: float, settings: IdentificationSettings
+    records: Sequence[BenchRecord],
+    cls: type[DamperRecord],
+    origin: float,
+    settings: IdentificationSettings,
+    known: DamperRecord | None = None,
 ) -> tuple[IdentificationProblem, IdentificationProblem]:
     """Return the problem of fitting a class to whole records, and to the liveliest stretch of each.
+
+    The fit starts from `known`, a record of the class, or from the defaults of the class where there is none.
 
     Raises:
         InputError: nothing moves, the class has a number without default, or what is fixed is none of its numbers or
             all of them.
     """
-    coordinates = _choose_coordinates(records, cls, settings)
+    coordinates = _choose_coordinates(records, cls, settings, known)
     reference = None if settings.ignore_temperature else _reference_temperature(records)
     fits_coil = any(record.commanded for record in records)
     inputs = [prepare_inputs(record, origin, False) for record in records]
@@ -57,14 +63,14 @@ def state_problem(
 
 
 def _choose_coordinates(
-    records: Sequence[BenchRecord], cls: type[DamperRecord], settings: IdentificationSettings
+    records: Sequence[BenchRecord],
+    cls: type[DamperRecord],
+    settings: IdentificationSettings,
+    known: DamperRecord | None,
 ) -> Coordinates:
-    """Return the free parameters, from the defaults with their laws stretched to the largest current of the data."""
-    blank = [specification.name for specification in describe(cls) if specification.required]
-    if blank:
-        raise InputError(f"{cls.__name__}: a fit starts from defaults; give {', '.join(blank)} one")
+    """Return the free parameters, from defaults with their laws stretched to the largest current of the data."""
     scales = _measure_scales(records)
-    start = fix_parameters(rescale_damper(cls(), 1.0, scales.current or 1.0), settings.fix)
+    start = fix_parameters(known or _default_record(cls, scales.current or 1.0), settings.fix)
     fixed = (*find_specification(cls).fixed, *settings.fix)
     coordinates = Coordinates(start, scales, fixed, _count_levels(records))
     if not coordinates.components:
@@ -72,6 +78,14 @@ def _choose_coordinates(
             f"--fix {', '.join(settings.fix)} leaves no parameter of {cls.__name__} to fit; leave one free"
         )
     return coordinates
+
+
+def _default_record(cls: type[DamperRecord], current: float) -> DamperRecord:
+    """Return a class at its defaults, with its laws stretched to a current in A."""
+    blank = [specification.name for specification in describe(cls) if specification.required]
+    if blank:
+        raise InputError(f"{cls.__name__}: a fit starts from defaults; give {', '.join(blank)} one")
+    return rescale_damper(cls(), 1.0, current)
 
 
 def _measure_scales(records: Sequence[BenchRecord]) -> Scales:

@@ -57,18 +57,31 @@ def search_parameters(
     of a global search; what comes out best on the stretches is refined on the records. A parameter without any
     influence keeps its default.
     """
-
-    def descend(start: Array) -> Minimum:
-        return refine(short, start, executor, progress, EVALUATIONS_ON_STRETCHES)
-
-    default = problem.to_vector(BenchModel(problem.coordinates.start, TemperatureFactors(), COIL_RATE, COIL_RATE))
-    first = min((descend(start) for start in (default, _match_force(short, default))), key=_cost)
-    evaluations = PER_PARAMETER * len(default)
-    near = descend(search_globally(short, first.vector, seed, evaluations, executor, progress))
+    default = default_vector(problem)
+    first = descend_from_defaults(short, executor, progress)
+    reached = search_globally(short, first.vector, seed, PER_PARAMETER * len(default), executor, progress)
+    near = refine(short, reached, executor, progress, EVALUATIONS_ON_STRETCHES)
     start = min((first, near), key=_cost).vector
     found = refine(problem, start, executor, progress, EVALUATIONS_ON_RECORDS).vector
     jacobian = compute_jacobian(short, found, short.residuals(found), executor)
     return np.where(np.any(jacobian != 0.0, axis=0), found, default)
+
+
+def default_vector(problem: IdentificationProblem) -> Array:
+    """Return the vector of the record that the coordinates start from, shape (P,)."""
+    return problem.to_vector(BenchModel(problem.coordinates.start, TemperatureFactors(), COIL_RATE, COIL_RATE))
+
+
+def descend_from_defaults(
+    problem: IdentificationProblem,
+    executor: Executor,
+    progress: Progress = ignore_progress,
+    most: int = EVALUATIONS_ON_STRETCHES,
+) -> Minimum:
+    """Return the better end of least squares from the defaults, as they are and with forces scaled to the data."""
+    default = default_vector(problem)
+    starts = default, _match_force(problem, default)
+    return min((refine(problem, start, executor, progress, most) for start in starts), key=_cost)
 
 
 def _cost(end: Minimum) -> float:

@@ -39,6 +39,25 @@ def render_confusions(diagnosis: Diagnosis) -> Html:
     return join([*lead, tag("div", collinear, decides, class_="beside")]) if lead or decides or collinear else Html("")
 
 
+def render_forms(diagnosis: Diagnosis) -> Html:
+    """Return the table of other forms of the damper, where they were tried."""
+    forms = diagnosis.alternatives
+    if not forms:
+        return Html("")
+    own = forms[0].replaces
+    lead = (
+        f"Other models of the damper in the place of {own}, fitted to the damper force without the held-out run, free"
+        f" of the tolerance. Shares are of the refitted gap on that run; last is {own} itself, fitted as freely."
+    )
+    rows = [
+        [tag("code", form.model), join_names(form.beside or ["no effect"]), format_percent(form.shrink),
+         format_percent(form.refitted)]
+        for form in forms
+    ]  # fmt: skip
+    head = ["model", "together with", "shrinks the gap by", f"{own}, fitted as freely"]
+    return join([tag("p", lead, class_="lead"), make_table(head, rows, 2, [0])])
+
+
 def _render_experiment(diagnosis: Diagnosis) -> Html:
     """Return the experiment that would decide, as it is described."""
     found = diagnosis.experiment

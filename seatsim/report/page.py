@@ -24,6 +24,7 @@ SECTIONS = (
     PageSection("gaps", "How far: gaps on held-out runs", answer.render_gaps, short=True),
     PageSection("causes", "Where it lies and what causes it", causes.render_causes),
     PageSection("missing", "What is missing", evidence.render_discrepancy),
+    PageSection("forms", "Other forms of the damper", causes.render_forms, short=True),
     PageSection("confusions", "Which effects are collinear", causes.render_confusions),
     PageSection("signals", "Held-out signals before and after", evidence.render_signals),
     PageSection("maps", "Where in the operating range", evidence.render_maps),

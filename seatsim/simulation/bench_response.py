@@ -46,7 +46,7 @@ def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: b
     true = _undo_readings(effects, inputs)
     rows = interval * np.arange(len(true.displacement), dtype=np.float64)
     fine = np.arange(2 * len(rows) - 1, dtype=np.float64) * 0.5 * interval
-    position, velocity = _smooth(interval, true.displacement.tobytes(), true.displacement_noise)
+    position, velocity = _follow_motion(interval, true.displacement.tobytes(), true.displacement_noise)
     if true.velocity is not None:
         velocity = CubicSpline(rows, true.velocity)(fine)
     current = _coil_current(augment_coil(effects, scenario.coil), true, rows, fine)
@@ -60,7 +60,7 @@ def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: b
 def smooth_motion(inputs: BenchInputs) -> Array:
     """Return the displacement in m that a simulation follows, at the rows of its inputs, shape (N,)."""
     rows = inputs.interval * np.arange(len(inputs.displacement), dtype=np.float64)
-    return np.asarray(_smooth(inputs.interval, inputs.displacement.tobytes(), inputs.displacement_noise)(rows))
+    return np.asarray(fit_motion(inputs.interval, inputs.displacement.tobytes(), inputs.displacement_noise)(rows))
 
 
 def _check_effects(scenario: Scenario) -> None:
@@ -88,14 +88,20 @@ def _undo_readings(effects: tuple[object, ...], inputs: BenchInputs) -> BenchInp
 
 
 @lru_cache(maxsize=64)
-def _smooth(interval: float, content: bytes, noise: float) -> tuple[Array, Array]:
-    """Return a channel and its derivative on the half-row grid, from the spline smoothed to within the noise.
+def fit_motion(interval: float, content: bytes, noise: float) -> UnivariateSpline:
+    """Return the quintic spline over time in s that passes a displacement within its noise, both in m.
 
-    The channel's `content` is the key under which they are kept, so that no run is smoothed twice.
+    It is asked for by the bytes (`content`) of the array, which are kept, so that no run is smoothed twice.
     """
     values = np.frombuffer(content)
-    spline = UnivariateSpline(np.arange(len(values)) * interval, values, k=5, s=len(values) * noise**2)
-    fine = np.arange(2 * len(values) - 1, dtype=np.float64) * 0.5 * interval
+    return UnivariateSpline(np.arange(len(values)) * interval, values, k=5, s=len(values) * noise**2)
+
+
+@lru_cache(maxsize=64)
+def _follow_motion(interval: float, content: bytes, noise: float) -> tuple[Array, Array]:
+    """Return displacement and velocity on the half-row grid; kept, since a diagnosis replays a run a thousand times."""
+    spline = fit_motion(interval, content, noise)
+    fine = np.arange(len(content) // 4 - 1, dtype=np.float64) * 0.5 * interval
     return spline(fine), spline.derivative()(fine)
 
 

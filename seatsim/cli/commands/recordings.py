@@ -32,6 +32,9 @@ def diagnose(
     budget: Annotated[
         float, typer.Option(metavar="SECONDS", help="Time that it may take; then the best answer so far is given.")
     ] = 120.0,
+    damper_forms: Annotated[
+        bool, typer.Option("--damper-forms", help="Try other forms of the damper whatever the verdict.")
+    ] = False,
     own_code: OwnCode = None,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
@@ -44,7 +47,7 @@ def diagnose(
         # A misspelt name is an error at once, not after minutes of a diagnosis that withheld nothing.
         EFFECTS.find(name)
     with show_progress() as progress:
-        diagnosis = find_cause(recording, withheld, progress, budget=budget)
+        diagnosis = find_cause(recording, withheld, progress, budget=budget, damper_forms=damper_forms)
     for table in make_tables(diagnosis):
         out.print(table)
     warn(diagnosis.notes)

@@ -59,13 +59,13 @@ def encode_diagnosis(diagnosis: Diagnosis) -> dict[str, object]:
             "floor": gap.floor.as_dict(),
             "shrink": gap.shrink, "shrink_interval": list(gap.shrink_interval),
         },
-        "notes": diagnosis.notes, "augmented": "augmented.yaml",
+        "alternatives": diagnosis.alternatives, "notes": diagnosis.notes, "augmented": "augmented.yaml",
     }  # fmt: skip
     return {name: plain(value) for name, value in fields.items()}
 
 
 def make_tables(diagnosis: Diagnosis) -> list[Table]:
-    """Return the gaps and the likeliest causes as tables."""
+    """Return the gaps, the likeliest causes and, where they were tried, other forms of the damper as tables."""
     gap = diagnosis.gap
     gaps = Table(title=f"gap on {', '.join(diagnosis.held_out)}, in standard deviations", title_justify="left")
     for heading in ("channel", "nominal", "refitted", "with effects", "noise floor"):
@@ -82,7 +82,17 @@ def make_tables(diagnosis: Diagnosis) -> list[Table]:
         ranked.add_row(cause.effect, f"{cause.probability:.2f}", f"{cause.shrink:.2f}")
     ranked.add_row("none", f"{diagnosis.probability_none:.2f}", "")
     ranked.add_row("unknown", f"{diagnosis.probability_unknown:.2f}", "")
-    return [gaps, ranked]
+    return [gaps, ranked, *([_make_forms_table(diagnosis)] if diagnosis.alternatives else [])]
+
+
+def _make_forms_table(diagnosis: Diagnosis) -> Table:
+    replaced = diagnosis.alternatives[0].replaces
+    table = Table(title=f"other forms of the damper than {replaced}", title_justify="left")
+    for heading in ("form", "beside", "shrink", f"{replaced} as free"):
+        table.add_column(heading, justify="right" if heading not in ("form", "beside") else "left")
+    for form in diagnosis.alternatives[:LISTED]:
+        table.add_row(form.model, ", ".join(form.beside), f"{form.shrink:.2f}", f"{form.refitted:.2f}")
+    return table
 
 
 def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from seatsim.diagnosis.settings.damper_forms import DamperFormSettings
 from seatsim.diagnosis.settings.designing import DesignSettings
 from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings
 from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
@@ -23,3 +24,4 @@ class DiagnosisSettings(NamedTuple):
     reconstruction: ReconstructionSettings = ReconstructionSettings()
     localisation: LocalisationSettings = LocalisationSettings()
     design: DesignSettings = DesignSettings()
+    damper_forms: DamperFormSettings = DamperFormSettings()

@@ -4,6 +4,7 @@ from typing import get_args, get_origin, get_type_hints
 
 import pytest
 
+from seatsim.diagnosis.settings.damper_forms import DamperFormSettings
 from seatsim.diagnosis.settings.designing import DesignSettings
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings
@@ -14,7 +15,7 @@ from seatsim.diagnosis.settings.threshold import Threshold, list_thresholds
 
 GROUPS = (
     NoiseSettings, FitSettings, SelectionSettings, DecisionSettings, CrossValidationSettings, ValidationSettings,
-    ReconstructionSettings, LocalisationSettings, DesignSettings,
+    ReconstructionSettings, LocalisationSettings, DesignSettings, DamperFormSettings,
 )  # fmt: skip
 UNITS = {"-", "Hz", "s", "%", "m/s"}
 OF_RECORD = {
@@ -33,6 +34,9 @@ OF_RECORD = {
     ReconstructionSettings: (0.1, 10.0, 2.0, 40.0, 20, 0.02, 2, (1.0, 0.4, 0.15, 0.05), 1.2),
     LocalisationSettings: (
         0.1, 0.02, 1.2, 0.5, 0.9, 2.0, 0.6, 100.0, 10, 1e-3, 1e-9, 0.12, 1.4, 0.03, 0.005, 0.1,
+    ),
+    DamperFormSettings: (
+        ("biviscous", "bouc_wen", "phase_transition", "maxwell_nonlinear_slider", "ellis"), 0.1, 4000, (4, 8), 0.1,
     ),
     DesignSettings: (1e-9, 10.0, 4, 8.0, 30.0, 0.9, 10, 0.003),
 }  # fmt: skip

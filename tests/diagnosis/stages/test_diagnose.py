@@ -75,7 +75,7 @@ def test_a_recording_is_examined_posed_solved_and_stated(folder, stages):
     assert 80.0 < problem.deadline.end - time.monotonic() <= 84.0
     tell("searching")
     assert said == ["looking at the data", "searching"]
-    assert stages["state_diagnosis"] == (STATED, ["mind the clock"], said.append)
+    assert stages["state_diagnosis"] == (STATED, ["mind the clock"], said.append, False)
 
 
 @pytest.mark.parametrize("given", ["somewhere", Path("somewhere")])
@@ -152,7 +152,7 @@ def test_a_method_and_notes_are_passed_on_and_algebra_keeps_to_one_thread(stages
     assert diagnose_problem(Posed(), ["a note"], ["x"], print, other) == "diagnosis"
     assert stages["solve"][1] == ["x"] and stages["solve"][3] is other
     assert not stages["solve"][0].deadline.is_past and stages["solve"][0].deadline.end == np.inf
-    assert stages["state_diagnosis"] == (STATED, ["a note"], print)
+    assert stages["state_diagnosis"] == (STATED, ["a note"], print, False)
     assert threads and set(threads) == {1}
 
 
