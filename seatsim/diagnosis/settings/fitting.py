@@ -50,6 +50,15 @@ class FitSettings(NamedTuple):
         tuple[float, ...],
         Threshold("-", "fractions of a step that are tried in turn", "more of them: slower, safer descents", NUMERICAL),
     ] = (1.0, 0.4, 0.12)
+    fitted_tolerance: Annotated[
+        float,
+        Threshold(
+            "-",
+            "tolerance of parameters that a recording states as `fitted`",
+            "higher: effects vanish in parameters; lower: what a fit has absorbed of an effect cannot be given back",
+            "a viscous coefficient fitted in place of a missing friction came out twice as large",
+        ),
+    ] = 0.5
 
 
 class SelectionSettings(NamedTuple):
