@@ -13,6 +13,7 @@ from seatsim.diagnosis.result import Diagnosis
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solve import Method, solve
 from seatsim.diagnosis.state import state_diagnosis
+from seatsim.diagnosis.widen import search_wider
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
 
@@ -50,5 +51,8 @@ def diagnose_problem(
 
     Simulations of several runs and rigs run in parallel, so linear algebra libraries are limited to one thread.
     """
+    method = method or Method()
     with threadpool_limits(1):
-        return state_diagnosis(solve(problem, without, progress, method or Method()), notes, progress)
+        first = solve(problem, without, progress, method)
+        solution, said = search_wider(first, without, progress, method)
+        return state_diagnosis(solution, [*notes, *said], progress)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from seatsim.diagnosis.settings.designing import DesignSettings
-from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings
+from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings, WideningSettings
 from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings, ReconstructionSettings
 from seatsim.diagnosis.settings.noise_model import NoiseSettings
@@ -23,3 +23,4 @@ class DiagnosisSettings(NamedTuple):
     reconstruction: ReconstructionSettings = ReconstructionSettings()
     localisation: LocalisationSettings = LocalisationSettings()
     design: DesignSettings = DesignSettings()
+    widening: WideningSettings = WideningSettings()

@@ -61,6 +61,42 @@ class FitSettings(NamedTuple):
     ] = 0.5
 
 
+class WideningSettings(NamedTuple):
+    """The second search, with wider tolerances of the parameters that end at their bounds."""
+
+    at_bound: Annotated[
+        float,
+        Threshold("-", "deviation, in tolerances, from which a parameter is at its bound", "-", NUMERICAL),
+    ] = 0.98
+    factor: Annotated[
+        float,
+        Threshold(
+            "-",
+            "factor on the tolerance of parameters at their bounds",
+            "larger: a parameter takes the place of an effect; smaller: what a fit has absorbed stays absorbed",
+            CONVENTION,
+        ),
+    ] = 3.0
+    promising: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the remainder that the same effects may leave within the wider tolerance for a search to be made",
+            "lower: a wrong first set is kept; higher: time",
+            SIMULATED_RIGS,
+        ),
+    ] = 0.8
+    clearly_less: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the remainder that the second search may leave for it to be stated",
+            "higher: stated tolerances are overruled by what lies outside the library",
+            SIMULATED_RIGS,
+        ),
+    ] = 0.5
+
+
 class SelectionSettings(NamedTuple):
     """Subset selection: screening by linear models, fits of single effects, then of larger sets."""
 

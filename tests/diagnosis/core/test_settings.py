@@ -6,7 +6,7 @@ import pytest
 
 from seatsim.diagnosis.settings.designing import DesignSettings
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings
+from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings, WideningSettings
 from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings, ReconstructionSettings
 from seatsim.diagnosis.settings.noise_model import NoiseSettings
@@ -14,7 +14,7 @@ from seatsim.diagnosis.settings.threshold import Threshold, list_thresholds
 
 GROUPS = (
     NoiseSettings, FitSettings, SelectionSettings, DecisionSettings, CrossValidationSettings, ValidationSettings,
-    ReconstructionSettings, LocalisationSettings, DesignSettings,
+    ReconstructionSettings, LocalisationSettings, DesignSettings, WideningSettings,
 )  # fmt: skip
 UNITS = {"-", "Hz", "s", "%", "m/s"}
 OF_RECORD = {
@@ -35,6 +35,7 @@ OF_RECORD = {
         0.1, 0.02, 1.2, 0.5, 0.9, 2.0, 0.6, 100.0, 10, 1e-3, 1e-9, 0.12, 1.4, 0.03, 0.005, 0.1,
     ),
     DesignSettings: (1e-9, 10.0, 4, 8.0, 30.0, 0.9, 10, 0.003),
+    WideningSettings: (0.98, 3.0, 0.8, 0.5),
 }  # fmt: skip
 """Values with which the figures of the documentation were measured; another one needs the benchmarks run anew."""
 
