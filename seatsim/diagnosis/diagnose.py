@@ -14,13 +14,14 @@ from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solve import Method, solve
 from seatsim.diagnosis.state import state_diagnosis
 from seatsim.diagnosis.widen import search_wider
+from seatsim.recordings.joined import join_recordings
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
 
 
 def diagnose(
     recording: str | Path | Recording, without: Sequence[str] = (), progress: Callable[[str], object] = lambda _: None,
-    settings: DiagnosisSettings | None = None,
+    settings: DiagnosisSettings | None = None, after: str | Path | Recording | None = None,
 ) -> Diagnosis:  # fmt: skip
     """Say where the gap between a recording and its nominal scenario lies, what causes it, and how far it shrinks.
 
@@ -29,18 +30,27 @@ def diagnose(
         without: names of effects that are withheld from the library.
         progress: called with what is being done.
         settings: thresholds, those of `DiagnosisSettings` where absent.
+        after: a second recording of the same rig, made by the experiment that a diagnosis of the first proposed, or its
+            folder; the runs of both are diagnosed together.
 
     Raises:
-        InputError: the recording is damaged in a way that would lead to a wrong verdict.
+        InputError: a recording is damaged in a way that would lead to a wrong verdict, or the two cannot be joined.
         RunError: a simulation could not be carried to its end.
     """
-    if not isinstance(recording, Recording):
-        recording = load_recording(recording)
+    recording, said = _load(recording), list[str]()
+    if after is not None:
+        recording, said = join_recordings(recording, _load(after))
     progress("looking at the data")
     examination = examine(recording)
     refuse(examination)
     with ThreadPoolExecutor() as pool:
-        return diagnose_problem(pose_problem(recording, pool, settings), examination.sentences, without, progress)
+        problem = pose_problem(recording, pool, settings)
+        return diagnose_problem(problem, [*said, *examination.sentences], without, progress)
+
+
+def _load(recording: str | Path | Recording) -> Recording:
+    """Return the recording that a path names, read from its folder."""
+    return recording if isinstance(recording, Recording) else load_recording(recording)
 
 
 def diagnose_problem(

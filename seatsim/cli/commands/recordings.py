@@ -29,6 +29,12 @@ def diagnose(
     without: Annotated[
         list[str] | None, typer.Option("--without", metavar="EFFECT", help="Withhold an effect from the library.")
     ] = None,
+    after: Annotated[
+        Path | None,
+        typer.Option(
+            "--after", metavar="RECORDING", help="Diagnose this further recording of the rig together with it."
+        ),
+    ] = None,
     own_code: OwnCode = None,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
@@ -41,7 +47,7 @@ def diagnose(
         # A misspelt name is an error at once, not after minutes of a diagnosis that withheld nothing.
         EFFECTS.find(name)
     with show_progress() as progress:
-        diagnosis = find_cause(recording, withheld, progress)
+        diagnosis = find_cause(recording, withheld, progress, after=after)
     for table in make_tables(diagnosis):
         out.print(table)
     warn(diagnosis.notes)

@@ -34,7 +34,8 @@ def stages(monkeypatch):
     stage("load_recording", "loaded")
     stage("examine", Examination([Issue("warning", "kind", "mind the clock")]))
     stage("pose_problem", "problem")
-    stage("solve", "solution")
+    stage("solve", "first")
+    stage("search_wider", ("solution", ["at the bound"]))
     stage("state_diagnosis", "diagnosis")
     return seen
 
@@ -47,7 +48,17 @@ def test_a_recording_is_examined_posed_solved_and_stated(folder, stages):
     posed, pool, given = stages["pose_problem"]
     assert posed is recording and given is settings and isinstance(pool, ThreadPoolExecutor)
     assert stages["solve"] == ("problem", ["driver.mass"], said.append, Method())
-    assert stages["state_diagnosis"] == ("solution", ["mind the clock"], said.append)
+    assert stages["search_wider"] == ("first", ["driver.mass"], said.append, Method())
+    assert stages["state_diagnosis"] == ("solution", ["mind the clock", "at the bound"], said.append)
+
+
+def test_a_second_recording_is_joined_to_the_first(folder, stages, monkeypatch):
+    monkeypatch.setattr(module, "join_recordings", lambda *both: (both, ["one channel is left out"]))
+    first = record(folder)
+    assert diagnose(first, after="elsewhere") == "diagnosis"
+    assert stages["load_recording"] == ("elsewhere",)
+    assert stages["examine"] == ((first, "loaded"),) and stages["pose_problem"][0] == (first, "loaded")
+    assert stages["state_diagnosis"][1] == ["one channel is left out", "mind the clock", "at the bound"]
 
 
 @pytest.mark.parametrize("given", ["somewhere", Path("somewhere")])
@@ -95,12 +106,12 @@ def test_a_method_and_notes_are_passed_on_and_algebra_keeps_to_one_thread(stages
     def solve(*given):
         threads.extend(each["num_threads"] for each in threadpool_info())
         stages["solve"] = given
-        return "solution"
+        return "first"
 
     monkeypatch.setattr(module, "solve", solve)
     assert diagnose_problem("problem", ["a note"], ["x"], print, other) == "diagnosis"
     assert stages["solve"] == ("problem", ["x"], print, other)
-    assert stages["state_diagnosis"] == ("solution", ["a note"], print)
+    assert stages["state_diagnosis"] == ("solution", ["a note", "at the bound"], print)
     assert threads and set(threads) == {1}
 
 
