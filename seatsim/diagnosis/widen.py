@@ -31,25 +31,27 @@ def search_wider(
         progress: called with what is being done.
         method: the stages of the search.
     """
-    problem, chosen = first.objective.problem, first.decision.chosen
-    held = find_at_bound(problem, chosen.parameters)
+    problem, best = first.objective.problem, _find_best(first)
+    held = find_at_bound(problem, best.parameters)
     if not held:
         return first, []
     notes = ["at the bound of their tolerance: " + ", ".join(held.values())]
-    settings, names = problem.settings.widening, ", ".join(problem.parameters[k].key for k in held)
-    if chosen.excess < problem.settings.selection.nothing_left:
+    settings = problem.settings.widening
+    if best.excess < problem.settings.selection.nothing_left:
         return first, notes
-    wider, start = _widen(problem, chosen.parameters, list(held))
+    wider, start = _widen(problem, best.parameters, list(held))
     judge = Objective(wider, first.objective.weights)
-    left, second = _share_left(judge, chosen, refit(judge, start)), None
+    left, second = _share_left(judge, best, refit(judge, start)), None
     if left < settings.promising:
-        progress(f"searching again with a wider tolerance of {names}")
+        progress("searching again with a wider tolerance of parameters at their bounds")
         second = solve(wider, without, progress, method)
-        left = _share_left(judge, chosen, judge.evaluate([second.decision.chosen.parameters])[0])
-    said = f"with {settings.factor:g} times the tolerance of {names} {100.0 * left:.0f} % of the remainder stays"
+        left = _share_left(judge, best, judge.evaluate([second.decision.chosen.parameters])[0])
+    said = (
+        f"with {settings.factor:g} times the tolerance of these parameters {100.0 * left:.0f} % of the remainder stays"
+    )
     if second is None or left > settings.clearly_less:
         return first, [*notes, f"{said}, which is not clearly less: the stated tolerance holds"]
-    return second, [*notes, f"{said}: this is stated here; check the nominal values, or state a wider tolerance"]
+    return second, [*notes, f"{said}, which is stated here; check the nominal values, or state a wider tolerance"]
 
 
 def find_at_bound(problem: DiagnosisProblem, parameters: Parameters) -> dict[int, str]:
@@ -59,8 +61,13 @@ def find_at_bound(problem: DiagnosisProblem, parameters: Parameters) -> dict[int
         if abs(deviation) >= problem.settings.widening.at_bound:
             each = problem.parameters[k]
             bound = each.at(float(np.sign(deviation)))
-            found[k] = f"{each.key} (nominal {each.nominal:.4g}, fitted {each.at(deviation):.4g}, bound {bound:.4g})"
+            found[k] = f"{each.key} {each.nominal:.4g} (fitted {each.at(deviation):.4g}, bound {bound:.4g})"
     return found
+
+
+def _find_best(first: Solution) -> Evaluation:
+    """Return the set that leaves least, whether it was chosen or its effects were not supported by runs left out."""
+    return min(first.decision.chosen, first.selection.sets[-1][0], key=lambda each: each.excess)
 
 
 def _widen(

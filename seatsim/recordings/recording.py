@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from seatsim.recordings.header import Header, RunEntry, check_against, read_runs, read_tolerances
 from seatsim.scenario.loading import single
-from seatsim.scenario.numbers import PARAMETERS, list_numbers, set_number
+from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
@@ -96,10 +96,7 @@ class Recording:
         return dict(_read_table(path, tuple(self.channels), _stamp(path)))
 
     def scenario_of(self, run: str, scenario: Scenario) -> Scenario:
-        """Return a scenario with what the rig's owner changed for a run.
-
-        A parameter that is not the nominal one, since it was refitted, is off by as much in the run: it is `set x value
-        / nominal`, or `set + value` where the nominal value is 0. A condition, as the temperature, is what was set.
+        """Return a scenario with what the rig's owner changed for a run; see `seatsim.scenario.numbers.change_numbers`.
 
         Raises:
             InputError: the scenario does not have a number that the run sets.
@@ -107,20 +104,12 @@ class Recording:
         changes = self.runs[run].set
         if not changes:
             return scenario
-        nominal, own = _nominal_numbers(self.nominal, _stamp(self.nominal)), list_numbers(scenario)
-        for key, value in changes.items():
+        own = list_numbers(scenario)
+        for key in changes:
             if key not in own:
                 problem = f"sets '{key}', which scenario '{scenario.name}' does not have{nearest(key, own)}"
                 raise InputError(f"{self.folder / HEADER}, run {run}: {problem}")
-            scenario = set_number(scenario, key, _in_proportion(key, value, own[key], nominal[key]))
-        return scenario
-
-
-def _in_proportion(key: str, value: float, own: float, nominal: float) -> float:
-    """Return the value that a number of a scenario has in a run that sets it."""
-    if own == nominal or not key.startswith(PARAMETERS):
-        return value
-    return value * own / nominal if nominal else value + own
+        return change_numbers(scenario, changes, _nominal_numbers(self.nominal, _stamp(self.nominal)))
 
 
 def _stamp(path: Path) -> Stamp:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import cast
 
 from seatsim.dampers.base import Damper
@@ -49,6 +49,21 @@ def set_number(scenario: Scenario, key: str, value: float) -> Scenario:
     if section == LAW and scenario.control is not None:
         return dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, law=cast("Law", record)))
     return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=cast("Damper", record)))
+
+
+def change_numbers(scenario: Scenario, changes: Mapping[str, float], nominal: Mapping[str, float]) -> Scenario:
+    """Return a scenario with what was changed on purpose, stated as values of a nominal scenario with these numbers.
+
+    A parameter that is not the nominal one, since it was refitted, is off by as much after the change: it is `value x
+    own / nominal`, or `value + own` where the nominal value is 0. A condition, as the temperature, is what was stated.
+    """
+    own = list_numbers(scenario)
+    for key, value in changes.items():
+        known = nominal[key]
+        refitted = key.startswith(PARAMETERS) and own[key] != known
+        moved = value * own[key] / known if known else value + own[key]
+        scenario = set_number(scenario, key, moved if refitted else value)
+    return scenario
 
 
 def check_key(key: str, known: Iterable[str], source: Source, keys: KeyPath) -> None:

@@ -85,7 +85,7 @@ class WideningSettings(NamedTuple):
             "lower: a wrong first set is kept; higher: time",
             SIMULATED_RIGS,
         ),
-    ] = 0.8
+    ] = 0.7
     clearly_less: Annotated[
         float,
         Threshold(

@@ -16,7 +16,7 @@ GROUPS = (
     NoiseSettings, FitSettings, SelectionSettings, DecisionSettings, CrossValidationSettings, ValidationSettings,
     ReconstructionSettings, LocalisationSettings, DesignSettings, WideningSettings,
 )  # fmt: skip
-UNITS = {"-", "Hz", "s", "%", "m/s"}
+UNITS = {"-", "Hz", "s", "%", "m/s", "m"}
 OF_RECORD = {
     NoiseSettings: (100.0, 0.01, 0.15, 3, 1e-6, 2.0, 0.5),
     FitSettings: (0.58, 0.02, 6, 0.01, (1.0, 0.4, 0.12), 0.5),
@@ -34,8 +34,8 @@ OF_RECORD = {
     LocalisationSettings: (
         0.1, 0.02, 1.2, 0.5, 0.9, 2.0, 0.6, 100.0, 10, 1e-3, 1e-9, 0.12, 1.4, 0.03, 0.005, 0.1,
     ),
-    DesignSettings: (1e-9, 10.0, 4, 8.0, 30.0, 0.9, 10, 0.003),
-    WideningSettings: (0.98, 3.0, 0.8, 0.5),
+    DesignSettings: (1e-9, 10.0, 4, 8.0, 30.0, 0.9, 10, 0.003, 16, 0.05),
+    WideningSettings: (0.98, 3.0, 0.7, 0.5),
 }  # fmt: skip
 """Values with which the figures of the documentation were measured; another one needs the benchmarks run anew."""
 
