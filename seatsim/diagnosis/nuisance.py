@@ -50,6 +50,30 @@ class Nuisance(NamedTuple):
         return min(max(self.nominal + self.tolerance * float(deviation), self.low), self.high)
 
 
+class CalibratedParameter(NamedTuple):
+    """A parameter as it was refitted: dotted key, nominal value, value, the bound on its side, whether it is there."""
+
+    key: str
+    nominal: float
+    value: float
+    bound: float
+    at_bound: bool
+
+
+def list_calibrated(parameters: Sequence[Nuisance], deviations: Array, at_bound: float) -> list[CalibratedParameter]:
+    """List the refitted parameters, of deviations of shape (parameters,); from `at_bound` on one is at its bound."""
+    return [
+        CalibratedParameter(
+            each.key,
+            each.nominal,
+            each.at(deviation),
+            each.at(math.copysign(1.0, deviation)),
+            abs(deviation) >= at_bound,
+        )
+        for each, deviation in zip(parameters, map(float, deviations), strict=True)
+    ]
+
+
 def list_nuisances(
     scenario: Scenario, tolerance: float, own: Mapping[str, float] = NONE_OF_ITS_OWN, of_zeros: float | None = None
 ) -> list[Nuisance]:

@@ -95,6 +95,15 @@ class WideningSettings(NamedTuple):
             SIMULATED_RIGS,
         ),
     ] = 0.5
+    strained: Annotated[
+        int,
+        Threshold(
+            "-",
+            "parameters at their bounds from which several effects that explain everything are tried with one less",
+            "lower: a true second effect is taken for a parameter; higher: a false one stays beside the true one",
+            SIMULATED_RIGS,
+        ),
+    ] = 3
 
 
 class SelectionSettings(NamedTuple):

@@ -8,7 +8,7 @@ from seatsim.diagnosis.solve import Method, solve
 from seatsim.diagnosis.widen import find_at_bound, search_wider
 from seatsim.effects.driver import Mass
 
-from .toy import CHANNELS, Added, place, pose, record
+from .toy import CHANNELS, Added, offer, place, pose, record
 
 RUNS = {"first": 300, "second": 360}
 WITHOUT = ["driver.mass"]
@@ -60,6 +60,7 @@ def test_what_no_parameter_can_take_is_left_to_the_first_search(folder):
 
 def test_a_parameter_at_its_bound_has_its_values_and_its_key(absorbed):
     rig = place(absorbed, deviations=[-1.0, 0.97])
+    assert find_at_bound(absorbed, rig.add(offer("driver.mass", "mass"), np.ones(1))) == {}
     assert find_at_bound(absorbed, rig) == {0: "plant.driver_mass 80 (fitted 72, bound 72)"}
     assert list(find_at_bound(absorbed, place(absorbed, deviations=[0.2, 0.985]))) == [1]
     assert find_at_bound(absorbed, place(absorbed, deviations=np.zeros(2))) == {}
