@@ -33,9 +33,9 @@ from seatsim.blind.truth.experiment import Experiment, RunPlan, read_channels, s
 from seatsim.blind.truth.faults.scenario import Changes
 from seatsim.blind.truth.physics.control_laws import SCHEDULE
 from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE
-from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, list_candidate_experiments
-from seatsim.diagnosis.problem import pose_problem
-from seatsim.diagnosis.result import Diagnosis, ProposedExperiment
+from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, excite, list_candidate_experiments
+from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
+from seatsim.diagnosis.result import Content, Diagnosis, ProposedExperiment
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.files import write_json
 
@@ -135,28 +135,40 @@ def carry_out(
         ruled_out = [name for group in first.indistinguishable for name in group if name.startswith("sensor.")]
     experiment = case.experiment
     if proposed.name != "calibrate_sensor":
-        experiment = change_experiment(experiment, find_candidate(folder, proposed.name))
+        experiment = change_experiment(experiment, find_candidate(folder, proposed))
     motions = [simulate_run(experiment, changes, k) for k in range(len(experiment.runs))]
     readings = [read_channels(experiment, changes, k, motion) for k, motion in enumerate(motions)]
     record(dataclasses.replace(case, experiment=experiment, readings=readings), after, rng)
     return ruled_out
 
 
-def find_candidate(folder: Path, name: str) -> CandidateExperiment:
-    """Return the candidate experiment of a name for a recording."""
+def find_candidate(folder: Path, proposed: ProposedExperiment) -> CandidateExperiment:
+    """Return the candidate experiment that is proposed for a recording, with its excitation as it was optimised."""
     with ThreadPoolExecutor() as pool:
-        candidates = list_candidate_experiments(pose_problem(load_recording(folder), pool))
-        return next(candidate for candidate in candidates if candidate.name == name)
+        problem = pose_problem(load_recording(folder), pool)
+        if proposed.scenario is not None:
+            return excite(problem, proposed.name, optimised_factors(problem, proposed.name, proposed.scenario))
+        candidates = list_candidate_experiments(problem)
+        return next(candidate for candidate in candidates if candidate.name == proposed.name)
+
+
+def optimised_factors(problem: DiagnosisProblem, name: str, scenario: Content) -> dict[str, float]:
+    """Return the factors by which a proposed scenario differs from the excitation of the menu."""
+    usual = excite(problem, name).scenario or {}
+    factors: dict[str, float] = {}
+    for section, keys in usual.items():
+        stated = cast("Mapping[str, float]", scenario[section])
+        factors |= {key: stated[key] / value for key, value in keys.items() if isinstance(value, float)}
+    return factors
 
 
 def change_experiment(experiment: Experiment, candidate: CandidateExperiment) -> Experiment:
     """Return the true rig and its runs with what a candidate experiment adds: a sensor, a mass, or a run."""
     if candidate.added_sensors:
         return dataclasses.replace(experiment, channels=(*experiment.channels, *candidate.added_sensors))
-    if candidate.added_mass:
-        nominal, true = (
-            {**values, "m": values["m"] + candidate.added_mass} for values in (experiment.nominal, experiment.true)
-        )
+    if "plant.driver_mass" in candidate.set:
+        added = candidate.set["plant.driver_mass"] - experiment.nominal["m"]
+        nominal, true = ({**values, "m": values["m"] + added} for values in (experiment.nominal, experiment.true))
         return dataclasses.replace(experiment, nominal=nominal, true=true)
     plan = plan_run(experiment, candidate)
     return dataclasses.replace(experiment, runs=(*experiment.runs[:-1], plan, experiment.runs[-1]))

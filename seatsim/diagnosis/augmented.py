@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from seatsim.diagnosis.nuisance import SECTIONS
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
-
-SECTIONS = {"plant": ("plant",), "damper": ("damper", "parameters"), "coil": ("actuator",)}
-"""Keys of the file under which the parameters of each section of a scenario stand."""
 
 
 def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[str, object]:
@@ -18,11 +16,11 @@ def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[s
     content = {str(key): _copy_plain(part) for key, part in source.data.items()}
     for parameter, deviation in zip(problem.parameters, parameters.deviations, strict=True):
         section = content
-        for key in SECTIONS[parameter.section]:
+        for key in SECTIONS[parameter.section].split("."):
             inner = section.setdefault(key, {})
             assert isinstance(inner, dict)
             section = inner
-        section[parameter.name] = parameter.nominal + parameter.tolerance * float(deviation)
+        section[parameter.name] = parameter.at(deviation)
     controller = content.get("controller")
     if isinstance(controller, dict) and isinstance(controller.get("design"), str):
         # A saved design is named from the folder of the nominal scenario, while this file goes to another one.

@@ -16,6 +16,8 @@ from seatsim.diagnosis.result import Diagnosis
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solve import Method, solve
 from seatsim.diagnosis.state import state_diagnosis
+from seatsim.diagnosis.widen import search_wider
+from seatsim.recordings.joined import join_recordings
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.schema.errors import InputError
@@ -29,6 +31,7 @@ CUT = "the budget of {budget:g} s was spent, so that the answer is the best so f
 def diagnose(
     recording: str | Path | Recording, without: Sequence[str] = (), progress: Callable[[str], object] = lambda _: None,
     settings: DiagnosisSettings | None = None, budget: float = BUDGET, damper_forms: bool = False,
+    after: str | Path | Recording | None = None,
 ) -> Diagnosis:  # fmt: skip
     """Say where the gap between a recording and its nominal scenario lies, what causes it, and how far it shrinks.
 
@@ -40,21 +43,30 @@ def diagnose(
         budget: seconds that the diagnosis may take once the nominal rig was simulated, which may have to be compiled
             first. Where they are spent the answer is the best so far, and a note says which stages were cut short.
         damper_forms: try other forms of the damper whatever the verdict, not only where much of its force stays open.
+        after: a second recording of the same rig, made by the experiment that a diagnosis of the first proposed, or its
+            folder; the runs of both are diagnosed together.
 
     Raises:
-        InputError: the budget is not positive, or the recording is damaged so that the verdict would be wrong.
+        InputError: the budget is not positive, a recording is damaged so that the verdict would be wrong, or the two
+            cannot be joined.
         RunError: the nominal rig cannot be simulated in a run.
     """
     if not budget > 0.0:
         raise InputError(f"a budget of {budget:g} s is not permitted; it must be above 0")
-    if not isinstance(recording, Recording):
-        recording = load_recording(recording)
+    recording, said = _load(recording), list[str]()
+    if after is not None:
+        recording, said = join_recordings(recording, _load(after))
     progress("looking at the data")
     examination = examine(recording)
     refuse(examination)
     with ThreadPoolExecutor() as pool:
-        problem, notes = pose_problem(recording, pool, settings), examination.sentences
+        problem, notes = pose_problem(recording, pool, settings), [*said, *examination.sentences]
         return diagnose_problem(problem, notes, without, progress, budget=budget, damper_forms=damper_forms)
+
+
+def _load(recording: str | Path | Recording) -> Recording:
+    """Return the recording that a path names, read from its folder."""
+    return recording if isinstance(recording, Recording) else load_recording(recording)
 
 
 def diagnose_problem(
@@ -70,6 +82,7 @@ def diagnose_problem(
         RunError: the nominal rig cannot be simulated in a run.
     """
     stages: list[tuple[str, float]] = []
+    method = method or Method()
 
     def tell(stage: str) -> None:
         stages.append((stage, time.monotonic()))
@@ -78,9 +91,10 @@ def diagnose_problem(
     with threadpool_limits(1):
         check_nominal(problem)
         deadline = Deadline.after(problem.settings.fit.search_share * budget)
-        solution = solve(problem.until(deadline), without, tell, method or Method())
+        solution = solve(problem.until(deadline), without, tell, method)
+        solution, at_bound = search_wider(solution, without, tell, method)
         cut = _list_cut(stages, deadline.end) if deadline.is_past else []
-        said = [*notes, *([f"{CUT.format(budget=budget)}: {', '.join(cut)}"] if cut else [])]
+        said = [*notes, *at_bound, *([f"{CUT.format(budget=budget)}: {', '.join(cut)}"] if cut else [])]
         solution = solution._replace(objective=solution.objective.unhurried)
         return state_diagnosis(solution, said, progress, damper_forms)
 

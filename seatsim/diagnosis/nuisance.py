@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.scenario.scenario import Scenario
-from seatsim.schema.fields import describe, replace_fields
+from seatsim.schema.fields import bounds, describe, replace_fields
 
 Array = NDArray[np.float64]
 
@@ -21,39 +23,97 @@ SCALE_OF_LENGTHS = 0.01
 NOT_UNCERTAIN = ("damper_ratio", "travel", "v_ref", "n", "resistance")
 """Fields that are a convention, a geometry or an exponent of a model's form, or that move no compared channel."""
 
+LEAST_SHARE = 0.05
+"""Share of its nominal value below which no parameter falls that may not be negative: without mass nothing moves."""
+SECTIONS = {"plant": "plant", "damper": "damper.parameters", "coil": "actuator"}
+"""Dotted key in the file of a scenario of each section that holds parameters."""
+NONE_OF_ITS_OWN: Mapping[str, float] = MappingProxyType({})
+
 
 class Nuisance(NamedTuple):
-    """One parameter: section and name in the scenario, nominal value, and the largest deviation from it (tolerance)."""
+    """One parameter: section and name in the scenario, nominal value, largest deviation, and its permitted range."""
 
     section: str
     name: str
     nominal: float
     tolerance: float
+    low: float = -math.inf
+    high: float = math.inf
+
+    @property
+    def key(self) -> str:
+        """Dotted key of the parameter in the file of a scenario."""
+        return f"{SECTIONS[self.section]}.{self.name}"
+
+    def at(self, deviation: float) -> float:
+        """Return the value at a deviation from -1 to 1, in units of the tolerance, within the permitted range."""
+        return min(max(self.nominal + self.tolerance * float(deviation), self.low), self.high)
 
 
-def list_nuisances(scenario: Scenario, tolerance: float) -> list[Nuisance]:
-    """List the parameters that a relative tolerance lets vary; those that are zero vary by a scale of their unit."""
+class CalibratedParameter(NamedTuple):
+    """A parameter as it was refitted: dotted key, nominal value, value, the bound on its side, whether it is there."""
+
+    key: str
+    nominal: float
+    value: float
+    bound: float
+    at_bound: bool
+
+
+def list_calibrated(parameters: Sequence[Nuisance], deviations: Array, at_bound: float) -> list[CalibratedParameter]:
+    """List the refitted parameters, of deviations of shape (parameters,); from `at_bound` on one is at its bound."""
+    return [
+        CalibratedParameter(
+            each.key,
+            each.nominal,
+            each.at(deviation),
+            each.at(math.copysign(1.0, deviation)),
+            abs(deviation) >= at_bound,
+        )
+        for each, deviation in zip(parameters, map(float, deviations), strict=True)
+    ]
+
+
+def list_nuisances(
+    scenario: Scenario, tolerance: float, own: Mapping[str, float] = NONE_OF_ITS_OWN, of_zeros: float | None = None
+) -> list[Nuisance]:
+    """List the parameters that relative tolerances let vary; those that are zero vary by a scale of their unit.
+
+    Args:
+        scenario: the nominal one.
+        tolerance: of the parameters that have none of their own.
+        own: tolerances by dotted key; a convention or geometry varies only where it has one.
+        of_zeros: tolerance of parameters that are zero and have none of their own, as `tolerance` where absent.
+    """
     stiffness = scenario.plant.suspension_stiffness if scenario.plant else 0.0
     scales = {"N": SCALE_OF_FORCES, "N/m": stiffness, "m": SCALE_OF_LENGTHS}
     sections = {"plant": scenario.plant, "damper": scenario.damper.record, "coil": scenario.coil}
     found = []
     for section, record in sections.items():
         for specification in describe(type(record)) if record is not None else []:
-            value = getattr(record, specification.name)
-            if specification.name in NOT_UNCERTAIN or not isinstance(value, float | int):
+            name, value = specification.name, getattr(record, specification.name)
+            key = f"{SECTIONS[section]}.{name}"
+            if (name in NOT_UNCERTAIN and key not in own) or not isinstance(value, float | int):
                 continue
+            usual = tolerance if value or of_zeros is None else of_zeros
             # Rates and times have no scale: a coil without a delay has none, and not one that is known to be small.
-            largest = tolerance * (abs(value) if value else scales.get(specification.unit, 0.0))
+            largest = own.get(key, usual) * (abs(value) if value else scales.get(specification.unit, 0.0))
             if largest > 0.0:
-                found.append(Nuisance(section, specification.name, float(value), largest))
+                found.append(Nuisance(section, name, float(value), largest, *_range(type(record), name, value)))
     return found
+
+
+def _range(record: type, name: str, value: float) -> tuple[float, float]:
+    """Return the values that a field permits; what may not be negative keeps a share of what it is nominally."""
+    low, high = bounds(record, name)
+    return (max(low, LEAST_SHARE * value), high) if low >= 0.0 else (low, high)
 
 
 def vary(scenario: Scenario, parameters: Sequence[Nuisance], deviations: Array) -> Scenario:
     """Return the scenario with each parameter changed by tolerance times deviation, shape (parameters,), -1 to 1."""
     changes: dict[str, dict[str, float]] = {"plant": {}, "damper": {}, "coil": {}}
     for parameter, deviation in zip(parameters, deviations, strict=True):
-        changes[parameter.section][parameter.name] = parameter.nominal + parameter.tolerance * float(deviation)
+        changes[parameter.section][parameter.name] = parameter.at(deviation)
     plant = None if scenario.plant is None else replace_fields(scenario.plant, changes["plant"])
     damper = dataclasses.replace(scenario.damper, record=replace_fields(scenario.damper.record, changes["damper"]))
     return dataclasses.replace(

@@ -69,6 +69,7 @@ class Parameters:
         vector = np.clip(vector, low, high)
         values, start = [], len(self.deviations)
         for term in self.terms:
+            # The product may be beyond a bound by a rounding, and no file with such a value would be read.
             values.append(np.clip(vector[start : start + len(term.free)] * term.scale, term.low, term.high))
             start += len(term.free)
         return Parameters(vector[: len(self.deviations)], self.terms, tuple(values))

@@ -16,7 +16,9 @@ from scipy.fft import prev_fast_len
 from seatsim.diagnosis.deadline import NEVER, Deadline
 from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.diagnosis.settings.fitting import FitSettings
 from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
+from seatsim.recordings.header import USUAL, Header, Tolerance
 from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording
@@ -100,6 +102,10 @@ class DiagnosisProblem:
         varied = vary(self.scenario, self.parameters, deviations)
         return dataclasses.replace(varied, effects=(*self.scenario.effects, *effects))
 
+    def scenario_of(self, run: str, deviations: Array, effects: Sequence[Record]) -> Scenario:
+        """Return the same rig as it was in a run, with what its owner changed for that run on purpose."""
+        return self.recording.scenario_of(run, self.augmented(deviations, effects))
+
     def simulated(
         self, run: str, deviations: Array, effects: Sequence[Record], inputs: RigInputs | None = None
     ) -> Array:
@@ -109,7 +115,7 @@ class DiagnosisProblem:
         """
         driven_by = self.inputs[run] if inputs is None else inputs
         # Thousands of candidates are simulated, so they have to share one compiled loop.
-        outputs = respond(self.augmented(deviations, effects), driven_by, carry_all_effects=True)
+        outputs = respond(self.scenario_of(run, deviations, effects), driven_by, carry_all_effects=True)
         end = self.skip + self.measured[run].shape[1]
         return np.array([outputs[name][self.skip : end] for name in self.channels])
 
@@ -155,11 +161,24 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     ends = {run: skip + prev_fast_len(len(table[loud[0]]) - skip, real=True) for run, table in tables.items()}
     measured = {run: np.array([table[name][skip : ends[run]] for name in loud]) for run, table in tables.items()}
     inputs = {run: recorded_inputs(recording, table, solver.step) for run, table in tables.items()}
-    parameters = tuple(list_nuisances(scenario, recording.header.parameter_tolerance))
+    settings = settings or DiagnosisSettings()
+    parameters = _list_parameters(recording.header, scenario, settings.fit)
     return DiagnosisProblem(
-        recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings or DiagnosisSettings(),
-        pool,
-    )  # fmt: skip
+        recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings, pool
+    )
+
+
+def _list_parameters(header: Header, scenario: Scenario, settings: FitSettings) -> tuple[Nuisance, ...]:
+    """Return the parameters that the tolerances of a recording let vary."""
+
+    def resolve(tolerance: Tolerance) -> float:
+        return settings.fitted_tolerance if tolerance == "fitted" else tolerance
+
+    own = {key: resolve(tolerance) for key, tolerance in header.own_tolerances.items()}
+    default = header.default_tolerance
+    # A fit leaves no parameter at zero exactly, so that one that is zero was not fitted.
+    of_zeros = USUAL if default == "fitted" else default
+    return tuple(list_nuisances(scenario, resolve(default), own, of_zeros))
 
 
 def check_nominal(problem: DiagnosisProblem) -> None:

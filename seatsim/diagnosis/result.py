@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -130,7 +130,8 @@ class Evidence:
 class ProposedExperiment:
     """An experiment that distinguishes equivalent effects; likeness of their worst pair before and after it, 0 to 1.
 
-    `scenario` is the content of a scenario that runs the excitation, where the rig is a seat.
+    `scenario` is the content of a scenario that runs the excitation, where the rig is a seat; `set` is what a recording
+    states of a run with the rig changed so.
     """
 
     kind: Literal["excitation", "intervention", "none"]
@@ -139,10 +140,12 @@ class ProposedExperiment:
     likeness_now: float
     likeness_then: float
     scenario: Content | None = None
+    set: Mapping[str, float] = field(default_factory=dict)
 
     def as_dict(self) -> dict[str, object]:
         """Return the proposal as it stands in `diagnosis.json`."""
-        file = {"file": "experiment.yaml"} if self.scenario is not None else {}
+        file: dict[str, object] = {"file": "experiment.yaml"} if self.scenario is not None else {}
+        file |= {"set": dict(self.set)} if self.set else {}
         likeness = {"alikeness_now": self.likeness_now, "alikeness_then": self.likeness_then}
         return {"kind": self.kind, "name": self.name, "reason": self.reason, **likeness, **file}
 

@@ -20,7 +20,7 @@ class CoilLag(NamedTuple):
     A second pole, of the time constant `second time`, acts as a delay of that length.
     """
 
-    time: Annotated[float, param("s", "added time constant", low=-0.05, high=1)]
+    time: Annotated[float, param("s", "added time constant", low=-0.05, high=0.2)]
     second: Annotated[float, param("-", "second time constant over the first one", low=0, high=1)] = 0.0
 
     def coil(self, coil: Coil) -> Coil:
@@ -34,7 +34,7 @@ class CoilLag(NamedTuple):
 class AsymmetricLag(NamedTuple):
     """A coil whose current falls more slowly than it rises: time constant `1 / rate + time` when falling."""
 
-    time: Annotated[float, param("s", "added time constant of a falling current", low=0, high=1)]
+    time: Annotated[float, param("s", "added time constant of a falling current", low=0, high=0.2)]
 
     def coil(self, coil: Coil) -> Coil:
         """Return the coil with the slower fall."""
@@ -45,7 +45,7 @@ class AsymmetricLag(NamedTuple):
 class Delay(NamedTuple):
     """Pure transport delay from command to coil."""
 
-    time: Annotated[float, param("s", "delay", low=0, high=0.5)]
+    time: Annotated[float, param("s", "delay", low=0, high=0.2)]
 
     def coil(self, coil: Coil) -> Coil:
         """Return the coil with the delay added."""

@@ -24,9 +24,9 @@ class Hardening(NamedTuple):
     Its damping grows too, by `cc loss d`. Under extension it gives way by `kc xc s / (1 + s)`, s = unload rise xc.
     """
 
-    rise: Annotated[float, param("1/m", "relative rise of stiffness with compression", low=0, high=1e4)]
-    bend: Annotated[float, param("1/m^2", "relative rise with its square", low=0, high=1e7)] = 0.0
-    loss: Annotated[float, param("1/m", "relative rise of damping with compression", low=0, high=1e4)] = 0.0
+    rise: Annotated[float, param("1/m", "relative rise of stiffness with compression", low=0, high=2e3)]
+    bend: Annotated[float, param("1/m^2", "relative rise with its square", low=0, high=1e6)] = 0.0
+    loss: Annotated[float, param("1/m", "relative rise of damping with compression", low=0, high=2e3)] = 0.0
     unload: Annotated[float, param("-", "fall under extension over rise under compression", low=0, high=10)] = 0.0
 
     def cushion_force(self, force: float, plant: Plant, xc: float, vc: float, z: State) -> float:

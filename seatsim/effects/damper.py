@@ -29,8 +29,8 @@ SWITCH = 0.01
 class GasSpring(NamedTuple):
     """Preload and stiffness of the accumulator: `F + preload + stiffness x`."""
 
-    preload: Annotated[float, param("N", "force at x = 0, positive against extension", low=-1e4, high=1e4)]
-    stiffness: Annotated[float, param("N/m", "stiffness", low=0, high=1e6)] = 0.0
+    preload: Annotated[float, param("N", "force at x = 0, positive against extension", low=-5e3, high=5e3)]
+    stiffness: Annotated[float, param("N/m", "stiffness", low=0, high=1e5)] = 0.0
 
     def added_force(self, x: float, v: float, z: State) -> float:
         """Return the force in N beside the damper's."""
@@ -91,7 +91,7 @@ class SealFriction(NamedTuple):
     `F + force sgn(v)`. Without a load cell it is `suspension.friction`.
     """
 
-    force: Annotated[float, param("N", "friction of seals and bearings", low=0, high=1e4)]
+    force: Annotated[float, param("N", "friction of seals and bearings", low=0, high=2e3)]
     presliding: Annotated[float, param("m", "travel over which friction builds up; 0: none", low=0, high=0.02)] = 0.0
     lubrication: Annotated[float, param("s/m", "fall of friction with speed (Stribeck)", low=0, high=200)] = 0.0
 
@@ -131,7 +131,7 @@ class FreePlay(NamedTuple):
     |g| - gap / 2) sgn g`, and u is the speed at which the damper's force is S.
     """
 
-    gap: Annotated[float, param("m", "travel without force after a reversal", low=0, high=0.05)]
+    gap: Annotated[float, param("m", "travel without force after a reversal", low=0, high=0.02)]
     softness: Annotated[float, param("-", "share of the gap over which the force returns", above=0, high=1)] = 0.3
     stiffness: Annotated[float, param("N/m", "stiffness of the mount; 0: rigid", low=0, high=1e9)] = 0.0
     turning: Annotated[float, param("m/s", "speed from which motion opens the gap; 0: force", low=0, high=1)] = 0.0
@@ -195,8 +195,8 @@ class PreyieldHysteresis(NamedTuple):
     """
 
     travel: Annotated[float, param("m", "travel over which the yield force builds up", low=0, high=0.02)]
-    lag: Annotated[float, param("s", "time over which it builds up", low=0, high=0.2)] = 0.0
-    behind: Annotated[float, param("s", "time by which its speed lags", low=0, high=0.2)] = 0.0
+    lag: Annotated[float, param("s", "time over which it builds up", low=0, high=0.05)] = 0.0
+    behind: Annotated[float, param("s", "time by which its speed lags", low=0, high=0.05)] = 0.0
     share: Annotated[float, param("-", "share of the yield force that builds up", low=0, high=2)] = 1.0
 
     def yield_speed(self, v: float, z: State) -> float:

@@ -31,7 +31,7 @@ SMOOTHING = 2.0
 class MagneticSaturation(NamedTuple):
     """Yield force that grows ever less with current: it feels `i / (1 + (bend i)^sharpness)^(1 / sharpness)`."""
 
-    bend: Annotated[float, param("1/A", "one over the current at which the force saturates", low=0, high=20)]
+    bend: Annotated[float, param("1/A", "one over the current at which the force saturates", low=0, high=10)]
     sharpness: Annotated[float, param("-", "exponent; 1 is Froehlich's law", low=0.5, high=12)] = 2.0
 
     def yield_current(self, i: float, z: State) -> float:
@@ -67,7 +67,7 @@ class Remanence(NamedTuple):
     current at once and falls as `m' = decay (i - m)`.
     """
 
-    width: Annotated[float, param("A", "current that stays remembered", low=0, high=2)]
+    width: Annotated[float, param("A", "current that stays remembered", low=0, high=1)]
     spread: Annotated[float, param("-", "difference between the two plays", low=0, high=1)] = 0.0
     lift: Annotated[float, param("-", "share of the width added to a current that flows", low=0, high=1)] = 0.0
     decay: Annotated[float, param("1/s", "rate at which the memory fades", low=0, high=200)] = 0.0
@@ -113,8 +113,8 @@ class ThermalFade(NamedTuple):
     temperature factors. The thermocouple follows the fluid with a lag: the fluid is at `T = T_c + lag dT_c/dt + rise`.
     """
 
-    viscous: Annotated[float, param("1/K", "fade of the viscous force", low=-0.02, high=0.1)]
-    yielding: Annotated[float, param("1/K", "fade of the yield force", low=-0.02, high=0.1)] = 0.0
+    viscous: Annotated[float, param("1/K", "fade of the viscous force", low=-0.02, high=0.05)]
+    yielding: Annotated[float, param("1/K", "fade of the yield force", low=-0.02, high=0.05)] = 0.0
     lag: Annotated[float, param("s", "lag of the thermocouple behind the fluid", low=0, high=600)] = 0.0
     rise: Annotated[float, param("K", "what the fluid is warmer than its thermocouple", low=-50, high=150)] = 0.0
 

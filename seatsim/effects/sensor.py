@@ -38,7 +38,7 @@ class Gain(NamedTuple):
     """One channel reads with a wrong scale: `(1 + error)` times the truth."""
 
     channel: ChannelField
-    error: Annotated[float, param("-", "relative error of the scale", above=-1, high=10)]
+    error: Annotated[float, param("-", "relative error of the scale", low=-0.5, high=1)]
 
     def reading(self, channel: str, step: float, values: Array) -> Array:
         """Return what the sensor says, shape (N,)."""
@@ -59,8 +59,8 @@ class Bias(NamedTuple):
     """
 
     channel: ChannelField
-    share: Annotated[float, param("-", "offset over the channel's scale", low=-1e3, high=1e3)]
-    drift: Annotated[float, param("1/s", "drift over the channel's scale", low=-1e3, high=1e3)] = 0.0
+    share: Annotated[float, param("-", "offset over the channel's scale", low=-50, high=50)]
+    drift: Annotated[float, param("1/s", "drift over the channel's scale", low=-1, high=1)] = 0.0
 
     def reading(self, channel: str, step: float, values: Array) -> Array:
         """Return what the sensor says, shape (N,)."""
@@ -81,7 +81,7 @@ class SensorLag(NamedTuple):
     """One channel reads through a low-pass of first order: `time r' = truth - r`."""
 
     channel: ChannelField
-    time: Annotated[float, param("s", "time constant", low=0, high=1)]
+    time: Annotated[float, param("s", "time constant", low=0, high=0.1)]
 
     def reading(self, channel: str, step: float, values: Array) -> Array:
         """Return what the sensor says, shape (N,): the truth taken as linear between samples."""
@@ -116,8 +116,8 @@ class ClockSkew(NamedTuple):
     that the controller changes at the log's own rate, `hold` 1, is delayed by whole rows only.
     """
 
-    shift: Annotated[float, param("s", "delay of the log; negative: it runs ahead", low=-1, high=1)]
-    drift: Annotated[float, param("-", "growth of the delay per second", low=-0.01, high=0.01)] = 0.0
+    shift: Annotated[float, param("s", "delay of the log; negative: it runs ahead", low=-0.5, high=0.5)]
+    drift: Annotated[float, param("-", "growth of the delay per second", low=-1e-3, high=1e-3)] = 0.0
     hold: Annotated[float, param("-", "1: commands change at the log's rows, 0: at any time", low=0, high=1)] = 0.0
 
     def reading(self, channel: str, step: float, values: Array) -> Array:

@@ -26,7 +26,7 @@ class Friction(NamedTuple):
     `force sgn(v)`, and at v = 0 whatever holds the suspension, up to `force`.
     """
 
-    force: Annotated[float, param("N", "friction of the linkage", low=0, high=1e4)]
+    force: Annotated[float, param("N", "friction of the linkage", low=0, high=2e3)]
     presliding: Annotated[float, param("m", "travel over which friction builds up; 0: none", low=0, high=0.02)] = 0.0
     lubrication: Annotated[float, param("s/m", "fall of friction with speed (Stribeck)", low=0, high=200)] = 0.0
 
@@ -62,8 +62,8 @@ class ProgressiveSpring(NamedTuple):
     stiffness beyond the travel `reach`.
     """
 
-    rise: Annotated[float, param("1/m^2", "rise of the spring force per squared travel", low=0, high=1e6)] = 0.0
-    skew: Annotated[float, param("1/m", "relative rise per travel, in extension only", low=-200, high=200)] = 0.0
+    rise: Annotated[float, param("1/m^2", "rise of the spring force per squared travel", low=0, high=1e5)] = 0.0
+    skew: Annotated[float, param("1/m", "relative rise per travel, in extension only", low=-100, high=100)] = 0.0
     helper: Annotated[float, param("-", "stiffness of a helper spring over the spring's", low=0, high=100)] = 0.0
     reach: Annotated[float, param("m", "travel over which it comes to bear", low=0, high=0.5)] = 0.0
 

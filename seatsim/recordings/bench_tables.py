@@ -208,7 +208,10 @@ def _recorded(folder: Path) -> list[BenchRecord]:
             " identified from a recording of 'rig: damper_bench' with the channel damper_force"
         )
     records = []
-    for name in recording.runs:
+    for name, entry in recording.runs.items():
+        if entry.set:
+            problem = f"run {name} sets {', '.join(entry.set)}; one damper, as it is, is identified from all runs"
+            raise InputError(f"{folder / HEADER}: {problem}: leave this one out")
         table = {KNOWN[channel].quantity: values for channel, values in recording.table(name).items()}
         if recording.voltage_gain is not None and "voltage" in table:
             table["voltage"] = table["voltage"] * recording.voltage_gain

@@ -9,11 +9,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.recordings.header import Header, RunEntry, check_against, read_runs, read_tolerances
+from seatsim.scenario.loading import single
+from seatsim.scenario.numbers import change_numbers, list_numbers
+from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
 from seatsim.schema.validation import build, check_keys, mapping
@@ -42,30 +46,11 @@ BENCH_CHANNELS = {
 }
 """Channels that a recording of each rig may have, with the unit they are in."""
 HEADER = "recording.yaml"
-KEYS = ("rig", "sample_rate", "parameter_tolerance", "nominal", "runs", "channels", "actuator", "note")
-
+KEYS = (*Header._fields, "runs", "channels", "actuator", "note")
 
 KEPT = 32
 """Number of files kept in memory while they are unchanged, since every simulation of a run reads them again."""
 Stamp = tuple[int, int, int] | None
-
-
-class Header(NamedTuple):
-    """The numbers at the top of a recording."""
-
-    rig: Literal["seat", "damper_bench"]
-    sample_rate: Annotated[float, param("Hz", "rows per second", above=0, high=1e6)]
-    nominal: str
-    parameter_tolerance: Annotated[float, param("-", "fraction to which parameters are known", low=0, high=1)] = 0.02
-
-
-class RunEntry(NamedTuple):
-    """One run of a recording; `repeat_of` names the run whose excitation it repeats."""
-
-    name: str
-    file: str
-    repeat_of: str | None = None
-    note: str | None = None
 
 
 class ChannelEntry(NamedTuple):
@@ -115,6 +100,22 @@ class Recording:
         table = dict(_read_table(path, tuple(self.channels), _stamp(path)))
         return table | {name: table[name] - constant for name, constant in self.removed.items()}
 
+    def scenario_of(self, run: str, scenario: Scenario) -> Scenario:
+        """Return a scenario with what the rig's owner changed for a run; see `seatsim.scenario.numbers.change_numbers`.
+
+        Raises:
+            InputError: the scenario does not have a number that the run sets.
+        """
+        changes = self.runs[run].set
+        if not changes:
+            return scenario
+        own = list_numbers(scenario)
+        for key in changes:
+            if key not in own:
+                problem = f"sets '{key}', which scenario '{scenario.name}' does not have{nearest(key, own)}"
+                raise InputError(f"{self.folder / HEADER}, run {run}: {problem}")
+        return change_numbers(scenario, changes, _nominal_numbers(self.nominal, _stamp(self.nominal)))
+
 
 def _stamp(path: Path) -> Stamp:
     """Return a value that changes with the content of a file, None where there is no file."""
@@ -131,37 +132,32 @@ def load_recording(folder: str | Path) -> Recording:
     Raises:
         InputError: a key or channel is unknown, missing or of the wrong unit.
     """
-    return _load(Path(folder), _stamp(Path(folder) / HEADER))
+    recording, source = _load(Path(folder), _stamp(Path(folder) / HEADER))
+    # The nominal scenario is read here only where something refers to its keys.
+    if recording.header.own_tolerances or any(run.set for run in recording.runs.values()):
+        check_against(single(recording.nominal), recording.header, recording.runs.values(), source)
+    return recording
 
 
 @lru_cache(maxsize=KEPT)
-def _load(folder: Path, stamp: Stamp) -> Recording:
+def _nominal_numbers(path: Path, stamp: Stamp) -> Mapping[str, float]:
+    return list_numbers(single(path))
+
+
+@lru_cache(maxsize=KEPT)
+def _load(folder: Path, stamp: Stamp) -> tuple[Recording, Source]:
     source = Source(folder / HEADER)
     data = source.data
     check_keys(data, KEYS, source, ())
-    header = build(Header, {k: data[k] for k in Header._fields if k in data}, source, ())
+    stated = {name: data[name] for name in Header._fields if name in data}
+    if "parameter_tolerance" in stated:
+        stated["parameter_tolerance"] = read_tolerances(stated["parameter_tolerance"], source)
+    header = build(Header, stated, source, ())
     gain = build(VoltageGain, data["actuator"], source, ("actuator",)).gain if "actuator" in data else None
     channels = _channels(data, source, header.rig)
     if "command_voltage" in channels and gain is None:
         raise source.error((), "key 'actuator' is missing; a command_voltage needs 'actuator: {gain: A/V}'")
-    return Recording(folder, header, _runs(data, source), channels, gain)
-
-
-def _runs(data: Mapping[str, object], source: Source) -> dict[str, RunEntry]:
-    entries = data.get("runs")
-    if not isinstance(entries, list) or not entries:
-        raise source.error(("runs",), "a recording has at least one run; write '- {name: run-a, file: run-a.csv.gz}'")
-    runs: dict[str, RunEntry] = {}
-    for index, entry in enumerate(entries):
-        run: RunEntry = build(RunEntry, entry, source, ("runs", index))
-        if run.name in runs:
-            raise source.error(("runs", index, "name"), f"'{run.name}' is the name of two runs; name each once")
-        runs[run.name] = run
-    for index, run in enumerate(runs.values()):
-        if run.repeat_of is not None and run.repeat_of not in runs:
-            permitted = f"{nearest(run.repeat_of, runs)}; permitted: {', '.join(runs)}"
-            raise source.error(("runs", index, "repeat_of"), f"no run is called '{run.repeat_of}'{permitted}")
-    return runs
+    return Recording(folder, header, read_runs(data.get("runs"), source), channels, gain), source
 
 
 def _channels(data: Mapping[str, object], source: Source, rig: str) -> dict[str, ChannelEntry]:

@@ -28,7 +28,8 @@ def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str
     rows = len(next(iter(table.values())))
     if rows < round(LEFT_OUT * rate) + LEAST_ROWS:
         raise InputError(f"{recording.folder}, run {run}: {rows} rows are too short; its first second is left out")
-    return select_compared(table, recording.header.rig, rate), replay_table(scenario, recording, table)
+    simulated = replay_table(recording.scenario_of(run, scenario), recording, table)
+    return select_compared(table, recording.header.rig, rate), simulated
 
 
 def replay_table(scenario: Scenario, recording: Recording, table: Mapping[str, Array]) -> dict[str, Array]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -10,16 +10,22 @@ import numpy as np
 import pandas as pd
 from ruamel.yaml import YAML
 
+from seatsim.recordings.header import USUAL, Tolerances
 from seatsim.recordings.recording import SEAT_CHANNELS
+from seatsim.scenario.numbers import PARAMETERS, TEMPERATURE, list_numbers
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.files import write_whole
 from seatsim.simulation.result import Result, Run
 
 
-def save_recording(result: Result, folder: str | Path, channels: Sequence[str], tolerance: float = 0.02) -> Path:
+def save_recording(
+    result: Result, folder: str | Path, channels: Sequence[str], tolerance: Tolerances = USUAL,
+    model_error: float | None = None,
+) -> Path:  # fmt: skip
     """Write the runs of one simulated seat as a recording without noise, one row a step, and return its folder.
 
-    The nominal scenario is the first run's, driven by `law: replay` and `kind: recording`.
+    The nominal scenario is the first run's, driven by `law: replay` and `kind: recording`. Parameters and
+    temperature of another run that differ from it stand in that run's entry under `set`.
 
     Raises:
         InputError: a channel is none that a seat recording has.
@@ -38,17 +44,31 @@ def save_recording(result: Result, folder: str | Path, channels: Sequence[str], 
     header = {
         "rig": "seat",
         "sample_rate": 1.0 / first.history.step,
-        "parameter_tolerance": tolerance,
+        "parameter_tolerance": dict(tolerance) if isinstance(tolerance, Mapping) else tolerance,
         "nominal": "nominal.yaml",
-        "runs": [{"name": name, "file": f"{name}.csv.gz"} for name in files],
+        "runs": [{"name": name, "file": f"{name}.csv.gz"} | _changes(first, run) for name, run in files.items()],
         "channels": {name: {"unit": SEAT_CHANNELS[name]} for name in channels},
     }
+    if model_error is not None:
+        header["model_error"] = model_error
     for name, run in files.items():
         frame = pd.DataFrame({key: np.asarray(run[key]) for key in ("time", *channels)})
         write_whole(folder / f"{name}.csv.gz", partial(frame.to_csv, index=False, float_format="%.7g"))
     for file, content in (("nominal.yaml", nominal), ("recording.yaml", header)):
         write_whole(folder / file, partial(YAML(typ="safe").dump, content))
     return folder
+
+
+def _changes(first: Run, run: Run) -> dict[str, dict[str, float]]:
+    """Return the entry `set` of a run: what of its rig differs from the first run's; nothing where nothing does."""
+    nominal, own = list_numbers(first.scenario), list_numbers(run.scenario)
+    if type(first.scenario.damper.record) is not type(run.scenario.damper.record):
+        raise InputError(f"{run.scenario.title}: has another damper model; a recording has one nominal scenario")
+    changed = {
+        key: value for key, value in own.items()
+        if key.startswith((*PARAMETERS, TEMPERATURE)) and value != nominal.get(key)
+    }  # fmt: skip
+    return {"set": changed} if changed else {}
 
 
 def _nominal(run: Run, recorded: set[str]) -> dict[str, object]:

@@ -11,7 +11,7 @@ from pydantic_core import ErrorDetails
 
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import describe, validated
-from seatsim.schema.registry import Registry
+from seatsim.schema.registry import Record, Registry
 from seatsim.schema.yaml_source import KeyPath, Source
 
 R = TypeVar("R")
@@ -40,6 +40,15 @@ def build(
         first = error.errors(include_url=False)[0]
         where = (*keys, *(part for part in first["loc"] if not str(part).startswith("function-")))
         raise source.error(where, _problem(record, first) + (hint if first["type"] == "missing" else "")) from None
+
+
+def check_value(record: Record, name: str, value: object, source: Source, keys: KeyPath) -> None:
+    """Raise InputError, placed at `keys` of a source, where a field of a record may not have a value."""
+    _check_finite(value, source, keys)
+    try:
+        validated(type(record), {**record._asdict(), name: value})
+    except ValidationError as error:
+        raise source.error(keys, _problem(type(record), error.errors(include_url=False)[0])) from None
 
 
 def mapping(values: object, source: Source, keys: KeyPath) -> Mapping[str, object]:

@@ -35,6 +35,12 @@ def diagnose(
     damper_forms: Annotated[
         bool, typer.Option("--damper-forms", help="Try other forms of the damper whatever the verdict.")
     ] = False,
+    after: Annotated[
+        Path | None,
+        typer.Option(
+            "--after", metavar="RECORDING", help="Diagnose this further recording of the rig together with it."
+        ),
+    ] = None,
     own_code: OwnCode = None,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
@@ -47,7 +53,7 @@ def diagnose(
         # A misspelt name is an error at once, not after minutes of a diagnosis that withheld nothing.
         EFFECTS.find(name)
     with show_progress() as progress:
-        diagnosis = find_cause(recording, withheld, progress, budget=budget, damper_forms=damper_forms)
+        diagnosis = find_cause(recording, withheld, progress, budget=budget, damper_forms=damper_forms, after=after)
     for table in make_tables(diagnosis):
         out.print(table)
     warn(diagnosis.notes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from seatsim.excitations.base import Floor
 from seatsim.simulation.inputs import SeatInputs
 
 Keys = Mapping[str, str | float]
+NOTHING: Mapping[str, float] = MappingProxyType({})
 
 SWITCHING = 0.25
 """s; time between changes of a switched current: long compared with a coil's lag, short compared with the motion."""
@@ -25,14 +27,26 @@ ADDED_MASS = 20.0
 
 
 class CandidateExperiment(NamedTuple):
-    """What drives the rig, sensors and mass added to it; an excitation has a `scenario`, its sections in a file."""
+    """What drives the rig, sensors added to it, and what is changed of it.
+
+    An excitation has a `scenario`, its sections in a file; `set` is what a recording states of such a run.
+    """
 
     name: str
     text: str
     floor: Floor
     added_sensors: tuple[str, ...] = ()
-    added_mass: float = 0.0
+    set: Mapping[str, float] = NOTHING
     scenario: Mapping[str, Keys] | None = None
+
+
+class Excitation(NamedTuple):
+    """An excitation of the menu: its text, control law, keys, and which of those keys may be optimised."""
+
+    text: str
+    law: Keys
+    keys: Keys
+    free: tuple[str, ...]
 
 
 def _tone(frequency: float, amplitude: float, duration: float) -> Keys:
@@ -41,40 +55,65 @@ def _tone(frequency: float, amplitude: float, duration: float) -> Keys:
 
 STEADY: Keys = {"law": "constant", "current": 0.3}
 SWITCHED: Keys = {"law": "on_off_skyhook", "on": NEARLY_FULL}
-EXCITATIONS: Mapping[str, tuple[str, Keys, Keys]] = {
-    "bump": ("drive over a bump of 50 mm", STEADY, {"kind": "bumps", "shape": "haversine", "height": 0.05,
-        "length": 1.0, "speed": 3.0, "duration": 8.0, "through": "direct"}),
-    "sweep": ("sweep the floor from 1 to 20 Hz at 1.5 m/s^2", STEADY, {"kind": "chirp", "start_frequency": 1.0,
-        "stop_frequency": 20.0, "amplitude": 1.5, "duration": 12.0, "quantity": "acceleration"}),
-    "large_slow_sine": ("shake the floor at 0.5 Hz with 25 mm", STEADY, _tone(0.5, 0.025, 12.0)),
-    "very_slow_sine": ("move the floor at 0.05 Hz with 25 mm", STEADY, _tone(0.05, 0.025, 20.0)),
-    "current_steps": ("switch the current about every 0.25 s on a tone of 1 Hz", SWITCHED, _tone(1.0, 0.03, 12.0)),
+SWEPT: Keys = {
+    "kind": "chirp", "start_frequency": 1.0, "stop_frequency": 20.0, "amplitude": 1.5, "duration": 12.0,
+    "quantity": "acceleration",
 }  # fmt: skip
-"""Description, control law and excitation of an experiment; currents are shares of the largest current."""
+BUMP: Keys = {
+    "kind": "bumps", "shape": "haversine", "height": 0.05, "length": 1.0, "speed": 3.0, "duration": 8.0,
+    "through": "direct",
+}  # fmt: skip
+SWEEP = "sweep the floor from {start_frequency:.3g} to {stop_frequency:.3g} Hz at {amplitude:.3g} m/s^2"
+STEPS = "switch the current about every 0.25 s on a tone of {frequency:.3g} Hz"
+OF_A_TONE = ("amplitude", "frequency", "current")
+EXCITATIONS: Mapping[str, Excitation] = {
+    "bump": Excitation("drive over a bump of {mm:.3g} mm", STEADY, BUMP, ("height", "speed", "current")),
+    "sweep": Excitation(SWEEP, STEADY, SWEPT, ("amplitude", "start_frequency", "stop_frequency", "current")),
+    "large_slow_sine": Excitation(
+        "shake the floor at {frequency:.3g} Hz with {mm:.3g} mm", STEADY, _tone(0.5, 0.025, 12.0), OF_A_TONE
+    ),
+    "very_slow_sine": Excitation(
+        "move the floor at {frequency:.3g} Hz with {mm:.3g} mm", STEADY, _tone(0.05, 0.025, 20.0), OF_A_TONE
+    ),
+    "current_steps": Excitation(STEPS, SWITCHED, _tone(1.0, 0.03, 12.0), ("amplitude", "frequency", "on")),
+}
+"""The menu; currents are shares of the largest current."""
 
 
 def list_candidate_experiments(problem: DiagnosisProblem) -> Iterator[CandidateExperiment]:
     """Yield the experiments, cheapest first: excitations with the rig as it is, then changes of the rig."""
     for name in EXCITATIONS:
         if not (problem.bench and name == "bump"):
-            yield _excite(problem, name)
+            yield excite(problem, name)
     yield from _intervene(problem, _recorded_floor(problem))
 
 
-def _excite(problem: DiagnosisProblem, name: str) -> CandidateExperiment:
-    """Return an excitation with its law and currents, as a floor and as sections of a scenario."""
-    words, law, keys = EXCITATIONS[name]
-    text = words.replace("the floor", "the damper") if problem.bench else words
+def excite(problem: DiagnosisProblem, name: str, factors: Mapping[str, float] = NOTHING) -> CandidateExperiment:
+    """Return an excitation of the menu with its law and currents, as a floor and as sections of a scenario.
+
+    `factors` change some of its free keys; no current exceeds the largest.
+    """
+    item = EXCITATIONS[name]
+    keys = {key: _scale(value, factors.get(key, 1.0)) for key, value in item.keys.items()}
+    text = item.text.format(**keys, mm=1000.0 * float(keys.get("height", keys.get("amplitude", 0.0))))
     own = {key: value for key, value in keys.items() if key != "kind"}
-    excitation = REGISTERED.find(str(keys["kind"]))(**own)
-    floor = excitation.floor(problem.scenario.solver.step, 0)
+    floor = REGISTERED.find(str(keys["kind"]))(**own).floor(problem.scenario.solver.step, 0)
     top = problem.scenario.coil.max_current
-    current = {key: top * float(value) for key, value in law.items() if key != "law"}
-    command = np.full(len(floor.time), current.get("current", 0.0))
-    if "on" in current:
-        command = current["on"] * (np.floor(floor.time / SWITCHING) % 2.0)
-    scenario: Mapping[str, Keys] = {"controller": {"law": law["law"], **current}, "excitation": keys}
+    law = {
+        key: top * min(float(_scale(value, factors.get(key, 1.0))), 1.0)
+        for key, value in item.law.items()
+        if key != "law"
+    }
+    command = np.full(len(floor.time), law.get("current", 0.0))
+    if "on" in law:
+        command = law["on"] * (np.floor(floor.time / SWITCHING) % 2.0)
+    scenario: Mapping[str, Keys] = {"controller": {"law": item.law["law"], **law}, "excitation": keys}
+    text = text.replace("the floor", "the damper") if problem.bench else text
     return CandidateExperiment(name, text, floor._replace(command=command), scenario=scenario)
+
+
+def _scale(value: str | float, factor: float) -> str | float:
+    return value if isinstance(value, str) else value * factor
 
 
 def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExperiment]:
@@ -86,14 +125,16 @@ def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExp
         text = "repeat a run and log the current of the coil"
         yield CandidateExperiment("coil_current", text, floor, ("coil_current",))
     without = floor._replace(command=rest, coil_current=rest)
-    yield CandidateExperiment("zero_current", "repeat a run without current", without)
+    off = {} if {"current_command", "coil_current"} & set(problem.recording.channels) else {"controller.current": 0.0}
+    yield CandidateExperiment("zero_current", "repeat a run without current", without, set=off)
     low, high = WARM_UP
     warming = floor._replace(temperature=low + (high - low) * time / time[-1])
     yield CandidateExperiment("warm_up", "repeat a run while the damper warms from 20 to 60 degC", warming)
-    if not problem.bench:
+    plant = problem.scenario.plant
+    if plant is not None and not problem.bench:
         yield CandidateExperiment("locked_seat", "lock the seat and switch the current every 0.25 s", still)
         text = "repeat a run with 20 kg more on the driver's place"
-        yield CandidateExperiment("added_mass", text, floor, added_mass=ADDED_MASS)
+        yield CandidateExperiment("added_mass", text, floor, set={"plant.driver_mass": plant.driver_mass + ADDED_MASS})
     if "damper_force" not in problem.channels:
         text = "repeat a run with a load cell at the damper"
         yield CandidateExperiment("load_cell", text, floor, ("damper_force",))

@@ -9,7 +9,7 @@ pair: 0 where their changes of the outputs share nothing, 1 where they are the s
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -18,14 +18,17 @@ from numpy.typing import NDArray
 from seatsim.diagnosis.augmented import write_augmented
 from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, list_candidate_experiments
 from seatsim.diagnosis.design.collinearity import fit_member, stack_jacobian, stack_whitened
+from seatsim.diagnosis.design.optimise import optimise_excitation
 from seatsim.diagnosis.design.projection import measure_likeness, project
 from seatsim.diagnosis.design.separability import PredictedExperiment, measure_separability
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Content, ProposedExperiment
+from seatsim.diagnosis.settings.designing import DesignSettings
 from seatsim.excitations.base import Floor
 from seatsim.recordings.compared import COMPARED
+from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
 from seatsim.simulation.respond import respond
 
@@ -34,16 +37,25 @@ Kind = Literal["excitation", "intervention", "none"]
 
 USUAL_NOISE = dict(zip(COMPARED["seat"], (0.03, 0.015, 5e-5, 2.5, 0.003), strict=True))
 """Noise of usual sensors, for those that state none, in the unit of their channel."""
+UNSTATED_TRAVEL = 1.0
+"""m; a scenario without a travel has one of 10 m, so that a shorter one is stated."""
+BEYOND = 10.0
+"""Score of an excitation for each time that it takes the permitted travel beyond the first."""
 NOT_REPEATED = ("start", "sweep", "variants", "published")
 """Sections of the nominal scenario that an experiment does not have."""
 
 
 class _Verdict(NamedTuple):
-    """Prediction of an experiment: separability of the nearest pair in noise units, likeness of the most alike pair."""
+    """Prediction of an experiment.
+
+    Separability of the nearest pair in noise units, likeness of the most alike pair, and the share of the permitted
+    travel of the suspension that an excitation takes.
+    """
 
     separability: float
     likeness: float
     candidate: CandidateExperiment
+    reach: float = 0.0
 
 
 def propose_experiment(objective: Objective, nuisances: Linearisation, group: Sequence[str]) -> ProposedExperiment:
@@ -75,30 +87,73 @@ def propose_experiment(objective: Objective, nuisances: Linearisation, group: Se
 def _choose(objective: Objective, seen: Sequence[_Verdict], first: str, now: float) -> ProposedExperiment:
     """Return the best candidate: of those that separate all members, the one with the least likeness."""
     separated = objective.settings.design.separated
-    best = min(seen, key=lambda each: (each.separability <= separated, each.likeness))
-    if best.separability <= separated:
-        best = max(seen, key=lambda each: each.separability)
+    permitted = [each for each in seen if each.reach <= 1.0] or seen
+    best = min(permitted, key=lambda each: (each.separability <= separated, each.likeness))
+    if best.separability <= separated or best.reach > 1.0:
+        best = max(permitted, key=lambda each: each.separability)
         reason = f"no candidate experiment separates them: the best, {best.candidate.name}, does so by"
         reason += f" {best.separability:.1f} times the noise only"
         return _propose("none", "none on the menu", first + reason, now, best.likeness)
     candidate = best.candidate
     reason = f"{candidate.text}: they then differ by {best.separability:.0f} times the noise,"
     reason += f" likeness {best.likeness:.2f} instead of {now:.2f}"
+    if candidate.set:
+        stated = ", ".join(f"{key}: {value:g}" for key, value in candidate.set.items())
+        reason += f"; its run in recording.yaml states set: {{{stated}}}"
     kind: Kind = "excitation" if candidate.scenario else "intervention"
     proposal = _propose(kind, candidate.name, first + reason, now, best.likeness)
-    return dataclasses.replace(proposal, scenario=_write_scenario(objective.problem, candidate))
+    scenario = _write_scenario(objective.problem, candidate)
+    return dataclasses.replace(proposal, scenario=scenario, set=dict(candidate.set))
 
 
 def _assess_candidates(
     objective: Objective, nuisances: Linearisation, base: Evaluation, members: Sequence[Evaluation]
 ) -> list[_Verdict]:
-    """Return the predictions of the candidates, up to the first one that distinguishes all members."""
-    settings, seen = objective.settings.design, []
-    for candidate in list_candidate_experiments(objective.problem):
-        seen.append(_assess(objective, nuisances, base, members, candidate))
-        if seen[-1].separability > settings.separated and seen[-1].likeness < settings.unlike:
+    """Return the predictions of the candidates, up to the first kind that distinguishes all members.
+
+    Excitations cost least, so the best of the menu is optimised; changes of the rig are tried where it does not either.
+    """
+    settings, candidates = objective.settings.design, list(list_candidate_experiments(objective.problem))
+
+    def assess(candidate: CandidateExperiment) -> _Verdict:
+        return _assess(objective, nuisances, base, members, candidate)
+
+    excitations = [each for each in candidates if each.scenario is not None]
+    seen = _assess_until_distinct(settings, assess, excitations)
+    best = min(seen, key=lambda each: _score(settings, each))
+
+    def score(candidate: CandidateExperiment) -> float:
+        seen.append(assess(candidate))
+        return _score(settings, seen[-1])
+
+    if settings.trials:
+        optimise_excitation(objective.problem, best.candidate.name, score, settings.trials)
+    if any(_is_distinct(settings, each) for each in seen):
+        return seen
+    return seen + _assess_until_distinct(settings, assess, [each for each in candidates if each.scenario is None])
+
+
+def _assess_until_distinct(
+    settings: DesignSettings, assess: Callable[[CandidateExperiment], _Verdict],
+    candidates: Sequence[CandidateExperiment],
+) -> list[_Verdict]:  # fmt: skip
+    seen: list[_Verdict] = []
+    for candidate in candidates:
+        seen.append(assess(candidate))
+        if _is_distinct(settings, seen[-1]):
             break
     return seen
+
+
+def _is_distinct(settings: DesignSettings, seen: _Verdict) -> bool:
+    """Whether an experiment distinguishes all members within the travel of the suspension."""
+    return seen.separability > settings.separated and seen.likeness < settings.unlike and seen.reach <= 1.0
+
+
+def _score(settings: DesignSettings, seen: _Verdict) -> float:
+    """Return what an optimised excitation has least: likeness, lack of separability, travel beyond the permitted."""
+    lacking = max(0.0, 1.0 - seen.separability / settings.separated)
+    return seen.likeness + lacking + BEYOND * max(0.0, seen.reach - 1.0)
 
 
 def _propose(kind: Kind, name: str, reason: str, now: float, then: float) -> ProposedExperiment:
@@ -128,12 +183,26 @@ def _likeness(objective: Objective, changes: Array, jacobian: Array) -> float:
 
 def _simulate(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Parameters) -> Array:
     """Return the sensor readings in an experiment, shape (channels, rows), without its first second."""
-    scenario = problem.augmented(rig.deviations, rig.effects)
-    if scenario.plant is not None:
-        plant = scenario.plant._replace(driver_mass=scenario.plant.driver_mass + candidate.added_mass)
-        scenario = dataclasses.replace(scenario, plant=plant)
-    outputs = respond(scenario, _make_inputs(problem, candidate.floor), carry_all_effects=True)
+    outputs = _respond(problem, candidate, rig)
     return np.array([outputs[name][problem.skip :] for name in (*problem.channels, *candidate.added_sensors)])
+
+
+def _respond(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Parameters) -> Mapping[str, Array]:
+    """Return all sensor readings in an experiment."""
+    augmented = problem.augmented(rig.deviations, rig.effects)
+    scenario = change_numbers(augmented, candidate.set, list_numbers(problem.scenario))
+    return respond(scenario, _make_inputs(problem, candidate.floor), carry_all_effects=True)
+
+
+def _measure_reach(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Parameters) -> float:
+    """Return the share of the permitted travel that an excitation takes; 0 for what is no excitation of a seat."""
+    plant, largest = problem.scenario.plant, problem.settings.design.largest_travel
+    if candidate.scenario is None or plant is None or problem.bench:
+        return 0.0
+    stated = min(-plant.travel[0], plant.travel[1]) < UNSTATED_TRAVEL
+    low, high = plant.travel if stated else (-largest, largest)
+    travel = _respond(problem, candidate, rig)["suspension_displacement"]
+    return float(max(np.max(travel) / max(high, 1e-9), np.min(travel) / min(low, -1e-9)))
 
 
 def _make_inputs(problem: DiagnosisProblem, floor: Floor) -> RigInputs:
@@ -183,4 +252,5 @@ def _assess(
     known = np.array([-stack_whitened(objective, member.whitened) for member in members])
     old = PredictedExperiment(known, stack_jacobian(objective, nuisances), own)
     separability = measure_separability(old, new, settings.fit.prior_std, settings.design.effect_std)
-    return _Verdict(separability, _likeness(objective, new.outputs - rows[0], jacobians[0]), candidate)
+    likeness = _likeness(objective, new.outputs - rows[0], jacobians[0])
+    return _Verdict(separability, likeness, candidate, _measure_reach(problem, candidate, rig))

@@ -126,7 +126,7 @@ def reconstruct(objective: Objective, parameters: Parameters, run: str, port: Po
     if port.current:
         inputs = problem.inputs[run]
         assert isinstance(inputs, SeatInputs)
-        scenario = problem.augmented(parameters.deviations, parameters.effects)
+        scenario = problem.scenario_of(run, parameters.deviations, parameters.effects)
         every_step = inputs._replace(interval=inputs.floor.step)
         current = respond(scenario, every_step, carry_all_effects=True)["coil_current"]
     return Reconstruction(problem, objective.weights, parameters, run, port, current)

@@ -57,3 +57,16 @@ class DesignSettings(NamedTuple):
     listed_probability: Annotated[
         float, Threshold("-", "least probability of an effect of the collinearity table", "-", CONVENTION)
     ] = 0.003
+    trials: Annotated[
+        int,
+        Threshold("-", "excitations that are tried to optimise the best of the menu", "more: time", CONVENTION),
+    ] = 16
+    largest_travel: Annotated[
+        float,
+        Threshold(
+            "m",
+            "travel that an excitation may take either way, where the scenario states none",
+            "higher: excitations that no seat can follow",
+            CONVENTION,
+        ),
+    ] = 0.05

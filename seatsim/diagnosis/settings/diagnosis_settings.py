@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from seatsim.diagnosis.settings.damper_forms import DamperFormSettings
 from seatsim.diagnosis.settings.designing import DesignSettings
-from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings
+from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings, WideningSettings
 from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings, ReconstructionSettings
 from seatsim.diagnosis.settings.noise_model import NoiseSettings
@@ -25,3 +25,4 @@ class DiagnosisSettings(NamedTuple):
     localisation: LocalisationSettings = LocalisationSettings()
     design: DesignSettings = DesignSettings()
     damper_forms: DamperFormSettings = DamperFormSettings()
+    widening: WideningSettings = WideningSettings()

@@ -59,6 +59,60 @@ class FitSettings(NamedTuple):
             "on simulated rigs, where the statement takes a fifth of the time",
         ),
     ] = 0.7
+    fitted_tolerance: Annotated[
+        float,
+        Threshold(
+            "-",
+            "tolerance of parameters that a recording states as `fitted`",
+            "higher: effects vanish in parameters; lower: what a fit has absorbed of an effect cannot be given back",
+            "a viscous coefficient fitted in place of a missing friction came out twice as large",
+        ),
+    ] = 0.5
+
+
+class WideningSettings(NamedTuple):
+    """The second search, with wider tolerances of the parameters that end at their bounds."""
+
+    at_bound: Annotated[
+        float,
+        Threshold("-", "deviation, in tolerances, from which a parameter is at its bound", "-", NUMERICAL),
+    ] = 0.98
+    factor: Annotated[
+        float,
+        Threshold(
+            "-",
+            "factor on the tolerance of parameters at their bounds",
+            "larger: a parameter takes the place of an effect; smaller: what a fit has absorbed stays absorbed",
+            CONVENTION,
+        ),
+    ] = 3.0
+    promising: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the remainder that the same effects may leave within the wider tolerance for a search to be made",
+            "lower: a wrong first set is kept; higher: time",
+            SIMULATED_RIGS,
+        ),
+    ] = 0.7
+    clearly_less: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the remainder that the second search may leave for it to be stated",
+            "higher: stated tolerances are overruled by what lies outside the library",
+            SIMULATED_RIGS,
+        ),
+    ] = 0.5
+    strained: Annotated[
+        int,
+        Threshold(
+            "-",
+            "parameters at their bounds from which several effects that explain everything are tried with one less",
+            "lower: a true second effect is taken for a parameter; higher: a false one stays beside the true one",
+            SIMULATED_RIGS,
+        ),
+    ] = 3
 
 
 class SelectionSettings(NamedTuple):

@@ -75,7 +75,7 @@ def _read(recording: Recording) -> tuple[list[RunUnderTest], list[Issue]]:
     runs, issues = [], []
     for name in recording.runs:
         try:
-            run = RunUnderTest(name, recording.table(name), recording, nominal)
+            run = RunUnderTest(name, recording.table(name), recording, recording.scenario_of(name, nominal))
         except InputError as error:
             issues.append(Issue("error", "unreadable", str(error), run=name))
         else:

@@ -7,14 +7,18 @@ import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.diagnosis.candidates import Candidate, list_candidates
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.effects.base import EFFECTS
+from seatsim.effects.coil import CoilLag, Delay
 from seatsim.effects.cushion import Hardening, Separation
-from seatsim.effects.damper import GasSpring
-from seatsim.effects.driver import Biodynamics
-from seatsim.effects.sensor import Gain
-from seatsim.effects.suspension import EndStop
+from seatsim.effects.damper import FreePlay, GasSpring, SealFriction
+from seatsim.effects.driver import Biodynamics, Mass
+from seatsim.effects.sensor import Bias, ClockSkew, Gain, SensorLag
+from seatsim.effects.suspension import EndStop, Friction
 from seatsim.recordings.recording import ChannelEntry
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.scenario import DamperChoice
+from seatsim.schema.fields import bounds
 from seatsim.schema.registry import names
 
 from .toy import add_up, draw_signals, make_problem
@@ -92,7 +96,7 @@ def test_an_effect_of_a_sensor_is_tried_on_every_compared_channel_and_the_floor(
 def test_a_form_frees_fixes_and_switches_off(listed):
     plain, bent, loss, soft = listed["cushion.hardening"]
     assert plain == Candidate(
-        "cushion.hardening", Hardening, {"bend": 0.0, "loss": 0.0, "unload": 0.0}, ("rise",), (40.0,), (0.0,), (1e4,)
+        "cushion.hardening", Hardening, {"bend": 0.0, "loss": 0.0, "unload": 0.0}, ("rise",), (40.0,), (0.0,), (2e3,)
     )
     assert bent.fixed == {"loss": 0.0, "unload": 0.0} and bent.start == (40.0, 2e3)
     assert soft.fixed == {"loss": 0.0, "unload": 1.0}
@@ -101,8 +105,8 @@ def test_a_form_frees_fixes_and_switches_off(listed):
 
 def test_the_first_parameter_keeps_the_fields_bounds_and_shapes_stay_near_their_start(listed):
     bent = listed["cushion.hardening"][1]
-    # The reach is 8: a shape from 2e3 stays within 250 and 16e3; the field itself would permit 0 to 1e7.
-    assert bent.low == (0.0, 2e3 / 8.0) and bent.high == (1e4, 8.0 * 2e3)
+    # The reach is 8: a shape from 2e3 stays within 250 and 16e3; the field itself would permit 0 to 1e6.
+    assert bent.low == (0.0, 2e3 / 8.0) and bent.high == (2e3, 8.0 * 2e3)
     held = listed["cushion.separation"][5]
     assert held.free == ("limit", "held") and held.low == (0.0, 0.5 / 8.0)
     # The field's own bound is nearer than the reach.
@@ -114,9 +118,9 @@ def test_the_first_parameter_keeps_the_fields_bounds_and_shapes_stay_near_their_
 def test_a_parameter_of_both_signs_keeps_the_bounds_of_its_field(listed):
     (spring,) = listed["damper.gas_spring"]
     assert spring.free == ("preload", "stiffness")
-    assert spring.low[0] == -1e4 and spring.high[0] == 1e4
+    assert spring.low[0] == -5e3 and spring.high[0] == 5e3
     skewed = next(each for each in listed["suspension.progressive_spring"] if each.free == ("rise", "skew"))
-    assert (skewed.low[1], skewed.high[1]) == (-200.0, 200.0)
+    assert (skewed.low[1], skewed.high[1]) == (-100.0, 100.0)
 
 
 def test_the_reach_is_that_of_the_settings():
@@ -167,3 +171,38 @@ def test_the_natural_size_is_the_size_of_the_start():
     assert stop._replace(free=("low",), start=(-0.02,)).structure != stop.structure
     limit = Candidate("cushion.separation", Separation, {}, ("limit",), (100.0,), (0.0,), (1e9,))
     assert limit.limits == [True] and not limit._replace(start=(2e9,)).is_limit
+
+
+ABSURD = [
+    (Gain, "error", (-0.6, 1.5)), (Bias, "share", (-60.0, 60.0)), (SensorLag, "time", (0.2,)),
+    (ClockSkew, "shift", (-0.6, 0.6)), (CoilLag, "time", (0.3,)), (Delay, "time", (0.3,)), (Friction, "force", (3e3,)),
+    (SealFriction, "force", (3e3,)), (GasSpring, "preload", (-6e3, 6e3)), (FreePlay, "gap", (0.03,)),
+    (Mass, "change", (-200.0, 200.0)),
+]  # fmt: skip
+"""Sizes that no engineer would believe of a rig that runs."""
+
+
+@pytest.mark.parametrize(("cls", "field", "sizes"), ABSURD)
+def test_absurd_sizes_are_outside_the_range_of_an_effect(cls, field, sizes):
+    low, high = bounds(cls, field)
+    assert all(not low <= size <= high for size in sizes)
+
+
+def test_no_fit_leaves_the_range_of_an_effect(listed):
+    for candidate in (each for found in listed.values() for each in found):
+        for name, low, high in zip(candidate.free, candidate.low, candidate.high, strict=True):
+            permitted = bounds(candidate.cls, name)
+            assert permitted[0] <= low < high <= permitted[1], (candidate.effect, name)
+        beyond = Parameters(np.zeros(0), (candidate,), (np.array(candidate.start),))
+        for sign in (-1.0, 1.0):
+            (values,) = beyond.move_to(np.full(len(candidate.free), sign * 1e12)).values
+            assert np.all(values >= candidate.low) and np.all(values <= candidate.high)
+
+
+def test_starts_and_off_values_are_within_the_range(listed):
+    for found in listed.values():
+        assert all(np.all(np.array(c.start) >= c.low) and np.all(np.array(c.start) <= c.high) for c in found)
+    for cls in (EFFECTS.find(name) for name in EFFECTS.names()):
+        for name, value in EFFECTS.specification_of(cls).off.items():
+            low, high = bounds(cls, name)
+            assert low <= value <= high, (cls, name)

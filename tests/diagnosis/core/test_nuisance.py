@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.dampers.bingham import OriginalBingham
+from seatsim.dampers.bingham import Bingham, OriginalBingham
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
 from seatsim.rig.coil import Coil
@@ -94,3 +94,35 @@ def test_no_deviation_leaves_the_scenario_and_too_few_are_refused():
     assert vary(nominal, parameters, np.zeros(len(parameters))) == nominal
     with pytest.raises(ValueError):
         vary(nominal, parameters, np.zeros(len(parameters) - 1))
+
+
+def test_a_parameter_may_have_a_tolerance_of_its_own():
+    own = {"plant.driver_mass": 0.5, "damper.parameters.c_a": 0.0, "actuator.rate": 0.3, "plant.damper_ratio": 0.05}
+    found = {each.key: each.tolerance for each in list_nuisances(scenario(), 0.1, own)}
+    assert found["plant.driver_mass"] == 40.0 and found["actuator.rate"] == pytest.approx(39.0)
+    assert found["plant.frame_mass"] == 2.0 and "damper.parameters.c_a" not in found
+    # A convention varies where it has a tolerance of its own, and only there.
+    assert found["plant.damper_ratio"] == 0.05 and "plant.damper_ratio" not in {
+        each.key for each in list_nuisances(scenario(), 0.1)
+    }
+
+
+def test_zeros_may_be_known_better_than_the_rest():
+    found = {each.key: each.tolerance for each in list_nuisances(scenario(), 0.5, of_zeros=0.02)}
+    assert found["damper.parameters.f0"] == 2.0 and found["plant.frame_mass"] == 10.0
+    own = {"damper.parameters.f0": 0.5}
+    assert {each.key: each.tolerance for each in list_nuisances(scenario(), 0.1, own, 0.02)}[next(iter(own))] == 50.0
+
+
+def test_no_parameter_leaves_the_range_of_its_field():
+    found = {each.key: each for each in list_nuisances(scenario(BoucWen(alpha_a=0.0, f0=-5.0)), 1.0)}
+    mass, offset, stiffness = (
+        found[key] for key in ("plant.frame_mass", "damper.parameters.f0", "damper.parameters.k0")
+    )
+    assert mass.at(-1.0) == pytest.approx(0.05 * 20.0) and mass.at(1.0) == 40.0
+    assert offset.at(-1.0) == -10.0 and stiffness.at(-1.0) == -4600.0
+    assert found["plant.suspension_damping"].at(-3.0) == pytest.approx(0.05 * 150.0)
+    yielding = {each.name: each for each in list_nuisances(scenario(Bingham(fc_a=0.0)), 0.05)}["fc_a"]
+    assert (yielding.at(-0.5), yielding.at(0.5)) == (0.0, 2.5)
+    varied = vary(scenario(), [mass._replace(nominal=20.0)], np.array([-1.0]))
+    assert varied.plant.frame_mass == mass.at(-1.0)

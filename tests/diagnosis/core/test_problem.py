@@ -79,6 +79,22 @@ def test_the_tolerance_is_the_recordings(posed):
     np.testing.assert_array_equal(posed.nominal, np.zeros(len(posed.parameters)))
 
 
+@pytest.mark.parametrize(
+    ("stated", "expected"),
+    [
+        ("fitted", {"frame_mass": 10.0, "c_a": 125.0, "f0": 2.0}),
+        ("{default: 0.1, damper.parameters.c_a: fitted}", {"frame_mass": 2.0, "c_a": 125.0, "f0": 10.0}),
+        ("{default: fitted, plant.frame_mass: 0.01}", {"frame_mass": 0.2, "c_a": 125.0, "f0": 2.0}),
+        ("{damper.parameters.f0: fitted}", {"frame_mass": 0.4, "c_a": 5.0, "f0": 50.0}),
+    ],
+)
+def test_tolerances_are_numbers_or_fitted_for_all_or_by_key(folder, stated, expected):
+    (folder / "recording.yaml").write_text(HEADER.replace("0.05", stated, 1))
+    parameters = pose_problem(load_recording(folder), SerialExecutor()).parameters
+    found = {each.name: each.tolerance for each in parameters}
+    assert {name: found[name] for name in expected} == pytest.approx(expected)
+
+
 def test_settings_are_passed_on(folder, posed):
     assert posed.settings == DiagnosisSettings()
     settings = posed.settings._replace(fit=posed.settings.fit._replace(most_steps=1))

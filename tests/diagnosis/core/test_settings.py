@@ -7,7 +7,7 @@ import pytest
 from seatsim.diagnosis.settings.damper_forms import DamperFormSettings
 from seatsim.diagnosis.settings.designing import DesignSettings
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings
+from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings, WideningSettings
 from seatsim.diagnosis.settings.judging import CrossValidationSettings, DecisionSettings, ValidationSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings, ReconstructionSettings
 from seatsim.diagnosis.settings.noise_model import NoiseSettings
@@ -15,12 +15,12 @@ from seatsim.diagnosis.settings.threshold import Threshold, list_thresholds
 
 GROUPS = (
     NoiseSettings, FitSettings, SelectionSettings, DecisionSettings, CrossValidationSettings, ValidationSettings,
-    ReconstructionSettings, LocalisationSettings, DesignSettings, DamperFormSettings,
+    ReconstructionSettings, LocalisationSettings, DesignSettings, DamperFormSettings, WideningSettings,
 )  # fmt: skip
-UNITS = {"-", "Hz", "s", "%", "m/s"}
+UNITS = {"-", "Hz", "s", "%", "m/s", "m"}
 OF_RECORD = {
     NoiseSettings: (100.0, 0.01, 0.15, 3, 1e-6, 2.0, 0.5),
-    FitSettings: (0.58, 0.02, 6, 0.01, (1.0, 0.4, 0.12), 0.7),
+    FitSettings: (0.58, 0.02, 6, 0.01, (1.0, 0.4, 0.12), 0.7, 0.5),
     SelectionSettings: (
         12, 7, 4, 2, 2, 3, 2, 6.0, 1.5, 3, (0.6, 1.0, 1.6), (1.08, 1.16, 1.27), (1.0, 0.5, 0.7, 1.4, 2.0), 8.0, 1e-3,
         0.15, 0.9, 0.45, 0.85,
@@ -38,7 +38,8 @@ OF_RECORD = {
     DamperFormSettings: (
         ("biviscous", "bouc_wen", "phase_transition", "maxwell_nonlinear_slider", "ellis"), 0.1, 4000, (4, 8), 0.1,
     ),
-    DesignSettings: (1e-9, 10.0, 4, 8.0, 30.0, 0.9, 10, 0.003),
+    DesignSettings: (1e-9, 10.0, 4, 8.0, 30.0, 0.9, 10, 0.003, 16, 0.05),
+    WideningSettings: (0.98, 3.0, 0.7, 0.5, 3),
 }  # fmt: skip
 """Values with which the figures of the documentation were measured; another one needs the benchmarks run anew."""
 

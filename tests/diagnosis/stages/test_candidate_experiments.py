@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.design.candidate_experiments import list_candidate_experiments
+from seatsim.diagnosis.design.candidate_experiments import EXCITATIONS, SWEPT, excite, list_candidate_experiments
 from seatsim.excitations.bumps import Bumps
 from seatsim.excitations.periodic import Chirp, Sine
 from seatsim.simulation.inputs import BenchInputs
@@ -78,7 +78,7 @@ def test_the_floor_of_an_excitation_is_that_of_its_scenario(seat, name, excitati
     assert np.array_equal(found.floor.acceleration, floor.acceleration)
     keys = {key: value for key, value in found.scenario["excitation"].items() if key != "kind"}
     assert keys.items() <= excitation._asdict().items()
-    assert found.added_mass == 0.0 and found.added_sensors == ()
+    assert not found.set and found.added_sensors == ()
 
 
 def test_a_steady_current_is_a_share_of_the_largest(seat):
@@ -113,8 +113,7 @@ def test_each_intervention_changes_one_thing(seat):
     assert warm.temperature[[0, -1]] == pytest.approx([20.0, 60.0])
     assert np.ptp(np.diff(warm.temperature)) < 1e-9
     assert np.array_equal(warm.command, recorded.command)
-    masses = {name: each.added_mass for name, each in found.items() if each.added_mass}
-    assert masses == {"added_mass": 20.0}
+    assert {name: each.set for name, each in found.items() if each.set} == {"added_mass": {"plant.driver_mass": 100.0}}
     assert found["added_mass"].floor is recorded and found["coil_current"].floor is recorded
     assert found["load_cell"].floor is recorded
 
@@ -125,3 +124,20 @@ def test_a_bench_repeats_the_motion_of_its_damper(bench):
     assert found.displacement is inputs.displacement
     assert found.command is inputs.current_command and found.temperature is inputs.damper_temperature
     assert found.coil_current is None
+
+
+def test_a_run_without_current_states_it_where_no_current_is_recorded(seat):
+    channels = {name: each for name, each in seat.recording.channels.items() if name != "current_command"}
+    silent = dataclasses.replace(seat, recording=dataclasses.replace(seat.recording, channels=channels))
+    assert by_name(silent)["zero_current"].set == {"controller.current": 0.0}
+
+
+def test_factors_change_the_free_keys_of_an_excitation_and_no_current_exceeds_the_largest(seat):
+    found = excite(seat, "sweep", {"amplitude": 2.0, "stop_frequency": 0.5, "current": 9.0})
+    assert found.text == "sweep the floor from 1 to 10 Hz at 3 m/s^2"
+    assert found.scenario["controller"] == {"law": "constant", "current": 2.0} and np.all(found.floor.command == 2.0)
+    assert found.scenario["excitation"] == dict(SWEPT) | {"stop_frequency": 10.0, "amplitude": 3.0}
+    bump = excite(seat, "bump", {"height": 0.5})
+    assert bump.text == "drive over a bump of 25 mm" and bump.scenario["excitation"]["height"] == 0.025
+    for name, item in EXCITATIONS.items():
+        assert set(item.free) <= {*item.keys, *item.law} - {"kind", "law"}, name

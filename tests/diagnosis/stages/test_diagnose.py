@@ -57,6 +57,7 @@ def stages(monkeypatch):
     stage("pose_problem", Posed())
     stage("check_nominal", None)
     stage("solve", SOLUTION)
+    stage("search_wider", (SOLUTION, ["at the bound"]))
     stage("state_diagnosis", "diagnosis")
     return seen
 
@@ -71,11 +72,21 @@ def test_a_recording_is_examined_posed_solved_and_stated(folder, stages):
     assert stages["check_nominal"] == (Posed(),)
     problem, without, tell, method = stages["solve"]
     assert without == ["driver.mass"] and method == Method()
+    assert stages["search_wider"] == (SOLUTION, without, tell, method)
     # The search ends after 0.7 of the budget of 120 s.
     assert 80.0 < problem.deadline.end - time.monotonic() <= 84.0
     tell("searching")
     assert said == ["looking at the data", "searching"]
-    assert stages["state_diagnosis"] == (STATED, ["mind the clock"], said.append, False)
+    assert stages["state_diagnosis"] == (STATED, ["mind the clock", "at the bound"], said.append, False)
+
+
+def test_a_second_recording_is_joined_to_the_first(folder, stages, monkeypatch):
+    monkeypatch.setattr(module, "join_recordings", lambda *both: (both, ["one channel is left out"]))
+    first = record(folder)
+    assert diagnose(first, after="elsewhere") == "diagnosis"
+    assert stages["load_recording"] == ("elsewhere",)
+    assert stages["examine"] == ((first, "loaded"),) and stages["pose_problem"][0] == (first, "loaded")
+    assert stages["state_diagnosis"][1] == ["one channel is left out", "mind the clock", "at the bound"]
 
 
 @pytest.mark.parametrize("given", ["somewhere", Path("somewhere")])
@@ -152,7 +163,7 @@ def test_a_method_and_notes_are_passed_on_and_algebra_keeps_to_one_thread(stages
     assert diagnose_problem(Posed(), ["a note"], ["x"], print, other) == "diagnosis"
     assert stages["solve"][1] == ["x"] and stages["solve"][3] is other
     assert not stages["solve"][0].deadline.is_past and stages["solve"][0].deadline.end == np.inf
-    assert stages["state_diagnosis"] == (STATED, ["a note"], print, False)
+    assert stages["state_diagnosis"] == (STATED, ["a note", "at the bound"], print, False)
     assert threads and set(threads) == {1}
 
 

@@ -1,0 +1,96 @@
+"""Two recordings of one rig as one: the runs of both, with the channels that both have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from seatsim.recordings.header import RunEntry
+from seatsim.recordings.recording import HEADER, ChannelEntry, Recording
+from seatsim.scenario.loading import single
+from seatsim.scenario.numbers import list_numbers
+from seatsim.schema.errors import InputError
+
+CURRENTS = ("current_command", "command_voltage", "coil_current")
+"""Channels of which one drives the coil or the damper."""
+
+
+def join_recordings(first: Recording, second: Recording) -> tuple[Recording, list[str]]:
+    """Return the runs of two recordings as one recording, and sentences on what differs between them.
+
+    Nominal scenario, tolerances and model error are those of the first. A run of the second whose name is taken gets
+    `after-` before it; the larger noise of a channel counts.
+
+    Raises:
+        InputError: rig, sample rate or nominal scenario differ, or the recordings share no channel of the current.
+    """
+    _check_alike(first, second)
+    shared = [name for name in first.channels if name in second.channels]
+    channels = {name: _louder(first.channels[name], second.channels[name]) for name in shared}
+    runs = first.runs | {entry.name: entry for entry in _rename(first, second)}
+    return replace(first, runs=runs, channels=channels), [*_say(first, second, shared)]
+
+
+def _check_alike(first: Recording, second: Recording) -> None:
+    """Raise InputError where two recordings cannot be of one rig, driven in one way."""
+    place = second.folder / HEADER
+    for key in ("rig", "sample_rate"):
+        stated, other = getattr(second.header, key), getattr(first.header, key)
+        if stated != other:
+            raise InputError(f"{place}, {key}: {stated} is not permitted beside {first.folder / HEADER}: {key} {other}")
+    if first.voltage_gain != second.voltage_gain and {"command_voltage"} <= set(first.channels) & set(second.channels):
+        gains = f"{second.voltage_gain:g} A/V is not permitted beside {first.voltage_gain:g} A/V"
+        raise InputError(f"{place}, actuator.gain: {gains} of {first.folder / HEADER}")
+    _check_nominals(first, second)
+    driven = [{name for name in CURRENTS if name in each.channels} for each in (first, second)]
+    if any(driven) and not driven[0] & driven[1]:
+        named = [" and ".join(sorted(each)) or "no current" for each in driven]
+        problem = f"has {named[1]}, and {first.folder / HEADER} has {named[0]}; record one of them in both"
+        raise InputError(f"{place}, channels: {problem}")
+
+
+def _check_nominals(first: Recording, second: Recording) -> None:
+    one, other = single(first.nominal), single(second.nominal)
+    if type(one.damper.record) is not type(other.damper.record) or one.effects != other.effects:
+        raise InputError(f"{second.nominal}: has another damper model or other effects than {first.nominal}")
+    numbers, others = list_numbers(one), list_numbers(other)
+    for key in [*numbers, *others]:
+        if numbers.get(key) != others.get(key):
+            text = f"{key}: {others.get(key)} is not permitted beside {numbers.get(key)} of {first.nominal}"
+            raise InputError(f"{second.nominal}, {text}; state under 'set' of its runs what was changed on purpose")
+
+
+def _louder(one: ChannelEntry, other: ChannelEntry) -> ChannelEntry:
+    return one if one.noise_rms >= other.noise_rms else other
+
+
+def _rename(first: Recording, second: Recording) -> Iterator[RunEntry]:
+    """Yield the runs of the second recording under free names, with the full paths of their tables."""
+    names: dict[str, str] = {}
+    for name in second.runs:
+        free = name
+        while free in first.runs or free in names.values():
+            free = f"after-{free}"
+        names[name] = free
+    for name, entry in second.runs.items():
+        repeated = names[entry.repeat_of] if entry.repeat_of is not None else None
+        file = str((second.folder / entry.file).resolve())
+        yield entry._replace(name=names[name], file=file, repeat_of=repeated)
+
+
+def _say(first: Recording, second: Recording, shared: list[str]) -> Iterator[str]:
+    """Yield a sentence on each thing that differs and is not an error."""
+    for one, other in ((first, second), (second, first)):
+        dropped = [name for name in one.channels if name not in shared]
+        if dropped:
+            yield (
+                f"{', '.join(dropped)}: left out, since {other.folder.name} does not have it;"
+                f" what it alone shows needs a diagnosis of {one.folder.name} alone"
+            )
+    for name in shared:
+        noises = first.channels[name].noise_rms, second.channels[name].noise_rms
+        if noises[0] != noises[1]:
+            yield f"{name}: noise_rms is stated as {noises[0]:g} and {noises[1]:g}; the larger counts"
+    for key in ("parameter_tolerance", "model_error"):
+        if getattr(first.header, key) != getattr(second.header, key):
+            yield f"{key}: that of {first.folder.name} counts, {second.folder.name} states another"

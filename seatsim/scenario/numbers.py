@@ -1,0 +1,95 @@
+"""Numbers of a scenario by the dotted keys of its file, such as `plant.driver_mass`, on the frozen value."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from typing import cast
+
+from seatsim.dampers.base import Damper
+from seatsim.rig.coil import Coil
+from seatsim.rig.control import Law
+from seatsim.rig.plant import Plant
+from seatsim.rig.temperature import Thermal
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.errors import nearest
+from seatsim.schema.fields import field_names, replace_fields
+from seatsim.schema.registry import Record
+from seatsim.schema.validation import check_value
+from seatsim.schema.yaml_source import KeyPath, Source
+
+PARAMETERS = ("plant", "damper.parameters", "actuator")
+"""Sections of a file whose numbers are parameters of the rig; those of the others are conditions of a run."""
+LAW, TEMPERATURE = "controller", "temperature"
+
+
+def list_numbers(scenario: Scenario) -> dict[str, float]:
+    """Return the numbers of plant, damper, coil, control law and temperature by dotted key."""
+    found = {
+        f"{section}.{name}": value
+        for section, record in _records(scenario).items()
+        for name in field_names(type(record))
+        if isinstance(value := getattr(record, name), int | float) and not isinstance(value, bool)
+    }
+    return found if isinstance(scenario.temperature, Thermal) else found | {TEMPERATURE: scenario.temperature}
+
+
+def set_number(scenario: Scenario, key: str, value: float) -> Scenario:
+    """Return the scenario with another value of a number that `list_numbers` names."""
+    section, _, name = key.rpartition(".")
+    if not section:
+        return dataclasses.replace(scenario, temperature=value)
+    record = replace_fields(_records(scenario)[section], {name: value})
+    if isinstance(record, Plant):
+        return dataclasses.replace(scenario, plant=record)
+    if isinstance(record, Coil):
+        return dataclasses.replace(scenario, coil=record)
+    if isinstance(record, Thermal):
+        return dataclasses.replace(scenario, temperature=record)
+    if section == LAW and scenario.control is not None:
+        return dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, law=cast("Law", record)))
+    return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=cast("Damper", record)))
+
+
+def change_numbers(scenario: Scenario, changes: Mapping[str, float], nominal: Mapping[str, float]) -> Scenario:
+    """Return a scenario with what was changed on purpose, stated as values of a nominal scenario with these numbers.
+
+    A parameter that is not the nominal one, since it was refitted, is off by as much after the change: it is `value x
+    own / nominal`, or `value + own` where the nominal value is 0. A condition, as the temperature, is what was stated.
+    """
+    own = list_numbers(scenario)
+    for key, value in changes.items():
+        known = nominal[key]
+        refitted = key.startswith(PARAMETERS) and own[key] != known
+        moved = value * own[key] / known if known else value + own[key]
+        scenario = set_number(scenario, key, moved if refitted else value)
+    return scenario
+
+
+def check_key(key: str, known: Iterable[str], source: Source, keys: KeyPath) -> None:
+    """Raise InputError, placed at `keys` of a source, where a dotted key names no number of a scenario."""
+    permitted = list(known)
+    if key not in permitted:
+        problem = f"the nominal scenario has no such number{nearest(key, permitted)}"
+        raise source.error(keys, f"{problem}; permitted: {', '.join(permitted)}")
+
+
+def check_number(scenario: Scenario, key: str, value: float, source: Source, keys: KeyPath) -> None:
+    """Raise InputError, placed at `keys` of a source, where a scenario has no such number or does not permit the value.
+
+    The error names the value, what is permitted, and the nearest key.
+    """
+    check_key(key, list_numbers(scenario), source, keys)
+    section, _, name = key.rpartition(".")
+    record, field = (_records(scenario)[section], name) if section else (Thermal(), "start")
+    check_value(record, field, value, source, keys)
+
+
+def _records(scenario: Scenario) -> dict[str, Record]:
+    """Return the records of numbers by the section of the file that they stand under."""
+    records: dict[str, Record] = {} if scenario.plant is None else {"plant": scenario.plant}
+    records |= {"damper.parameters": scenario.damper.record, "actuator": scenario.coil}
+    if scenario.control is not None:
+        # What is registered as a law is a record of its keys.
+        records[LAW] = cast("Record", scenario.control.law)
+    return records | ({TEMPERATURE: scenario.temperature} if isinstance(scenario.temperature, Thermal) else {})
