@@ -18,6 +18,10 @@ Fixed = Mapping[str, float | str]
 """Parameters that no fit changes."""
 
 
+INPUTS = ("floor_acceleration", "displacement")
+"""Recorded inputs whose sensor may err: it moves every channel that is simulated from them."""
+
+
 class Candidate(NamedTuple):
     """An effect with some of its parameters free: where a fit starts, and between which bounds."""
 
@@ -99,7 +103,7 @@ def _places(cls: type[Record], problem: DiagnosisProblem) -> list[Fixed]:
     if not EFFECTS.specification_of(cls).by_channel:
         return [{}]
     known = choices(cls, "channel")
-    named = [*problem.channels, "floor_acceleration"]
+    named = [*problem.channels, *INPUTS]
     return [{"channel": name} for name in named if name in problem.recording.channels and name in known]
 
 

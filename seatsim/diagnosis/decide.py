@@ -74,7 +74,8 @@ def decide_beside_unknown(
         equivalent: sets that do as well.
         tried: sets with the mean square that each leaves on runs left out of its fit.
     """
-    size = len(chosen.parameters.terms)
+    # Where no effect helps enough to be stated, the single ones are still ranked by how much they help.
+    size = max(1, len(chosen.parameters.terms))
     compared = [(each.parameters.names, left) for each, left in tried if len(each.parameters.terms) <= size]
     probabilities = weigh_effects(settings, compared, list(decision.probabilities))
     stated = dataclasses.replace(

@@ -94,7 +94,9 @@ def state_diagnosis(
     rig, channels = recording.header.rig, recording.channels
     causes = _list_causes(validation)
     nuisances = solution.selection.linearise_nuisances(objective, decision.chosen)
-    obstacle = describe_obstacle(problem) if damper_forms else ""
+    forms = _list_alternatives(validation, damper_forms, progress)
+    none = describe_obstacle(problem) or "No other form of the damper was found to fit its force better."
+    asked = [none] if damper_forms and not forms else []
     at_work = {solution.stochastic, *decision.chosen.parameters.names}
     diagnosis = Diagnosis(
         name=recording.folder.name, verdict=decision.verdict, sentence="", where=list(solution.where), causes=causes,
@@ -103,15 +105,15 @@ def state_diagnosis(
         indistinguishable=decision.groups, experiment=_propose_experiment(solution, nuisances),
         held_out=[validation.run], isolable=find_isolable_groups(rig, channels), gap=validation.gaps,
         notes=[
-            *notes, *solution.selection.notes, *describe_missing_sensors(rig, channels),
-            *([obstacle] if obstacle else []), *measure_coverage(recording).missing,
+            *notes, *solution.selection.notes, *describe_missing_sensors(rig, channels), *asked,
+            *measure_coverage(recording).missing,
         ],
         augmented=write_augmented(problem, validation.augmented.parameters),
         evidence=_collect_evidence(validation, nuisances, causes),
-        alternatives=_list_alternatives(validation, damper_forms, progress),
+        alternatives=forms,
     )  # fmt: skip
-    forms = describe_forms(diagnosis.alternatives, diagnosis.gap, problem.settings.damper_forms.better)
-    return dataclasses.replace(diagnosis, sentence=" ".join(filter(None, (write_answer(diagnosis), forms))))
+    said = describe_forms(forms, diagnosis.gap, problem.settings.damper_forms.better)
+    return dataclasses.replace(diagnosis, sentence=" ".join(filter(None, (write_answer(diagnosis), said))))
 
 
 def _list_causes(validation: Validation) -> list[Cause]:

@@ -42,12 +42,12 @@ class DamperFormSettings(NamedTuple):
         Threshold(
             "-", "most evaluations of least squares from each start, and from the better one", "more: time", NUMERICAL
         ),
-    ] = (4, 8)
+    ] = (4, 12)
     better: Annotated[
         float,
         Threshold(
             "-",
-            "least share, beyond the nominal's own, of the gap to be named, of the force to be driven",
+            "least share beyond the nominal's own: of the gap, for a model to be named; of the force, to be simulated",
             "lower: a form is named that only has more parameters",
             CONVENTION,
         ),

@@ -36,7 +36,7 @@ OF_RECORD = {
         0.1, 0.02, 1.2, 0.5, 0.9, 2.0, 0.6, 100.0, 10, 1e-3, 1e-9, 0.12, 1.4, 0.03, 0.005, 0.1,
     ),
     DamperFormSettings: (
-        ("biviscous", "bouc_wen", "phase_transition", "maxwell_nonlinear_slider", "ellis"), 0.1, 4000, (4, 8), 0.1,
+        ("biviscous", "bouc_wen", "phase_transition", "maxwell_nonlinear_slider", "ellis"), 0.1, 4000, (4, 12), 0.1,
     ),
     DesignSettings: (1e-9, 10.0, 4, 8.0, 30.0, 0.9, 10, 0.003, 16, 0.05),
     WideningSettings: (0.98, 3.0, 0.7, 0.5, 3),
