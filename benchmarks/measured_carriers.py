@@ -34,10 +34,10 @@ class Mechanism(NamedTuple):
     free: Mapping[str, tuple[float, float, float, float]]
 
 
-GAS = Mechanism("damper.gas_spring", {}, {"preload": (20.0, 50.0, -500.0, 500.0), "stiffness": (100.0, 500.0, 0.0, 1e5)})
-ASYMMETRY = Mechanism(
-    "damper.asymmetry", {}, {"viscous": (0.02, 0.1, -0.6, 0.6), "yielding": (0.02, 0.1, -0.6, 0.6)}
+GAS = Mechanism(
+    "damper.gas_spring", {}, {"preload": (20.0, 50.0, -500.0, 500.0), "stiffness": (100.0, 500.0, 0.0, 1e5)}
 )
+ASYMMETRY = Mechanism("damper.asymmetry", {}, {"viscous": (0.02, 0.1, -0.6, 0.6), "yielding": (0.02, 0.1, -0.6, 0.6)})
 SATURATION = Mechanism("damper.magnetic_saturation", {}, {"bend": (0.3, 0.5, 0.0, 5.0)})
 SEAL = Mechanism("damper.seal_friction", {"presliding": 1e-4}, {"force": (10.0, 20.0, 0.0, 500.0)})
 RUBBING = Mechanism("suspension.friction", {"presliding": 1e-4}, {"force": (10.0, 20.0, 0.0, 500.0)})
@@ -50,7 +50,9 @@ class Identified(NamedTuple):
     gap: float
 
 
-def identify(recording: Recording, start: Mapping[str, object], free: Sequence[str], mechanisms: Sequence[Mechanism]) -> Identified:
+def identify(
+    recording: Recording, start: Mapping[str, object], free: Sequence[str], mechanisms: Sequence[Mechanism]
+) -> Identified:
     """Return a nominal fitted to all runs of a recording, with those mechanisms that make it better by WORTH."""
     path = recording.nominal
     found = fit_nominal(recording, start, free, [])
@@ -60,14 +62,25 @@ def identify(recording: Recording, start: Mapping[str, object], free: Sequence[s
         if not trials:
             return found
         best, added = min(trials, key=lambda t: t[0].gap)
-        print("   ", [m.effect for m in kept], "+", added.effect, round(found.gap, 4), "->", round(best.gap, 4), flush=True)
+        print(
+            "   ",
+            [m.effect for m in kept],
+            "+",
+            added.effect,
+            round(found.gap, 4),
+            "->",
+            round(best.gap, 4),
+            flush=True,
+        )
         if best.gap > (1.0 - WORTH) * found.gap:
             write_whole(path, partial(YAML(typ="safe").dump, found.nominal))
             return found
         found, kept = best, [*kept, added]
 
 
-def fit_nominal(recording: Recording, start: Mapping[str, object], free: Sequence[str], mechanisms: Sequence[Mechanism]) -> Identified:
+def fit_nominal(
+    recording: Recording, start: Mapping[str, object], free: Sequence[str], mechanisms: Sequence[Mechanism]
+) -> Identified:
     """Return the scenario with its free parameters and those of mechanisms fitted to a recording."""
     base = {k: v for k, v in start.items() if k != "effects"}
     known = {e["effect"]: e["parameters"] for e in start.get("effects", [])}
@@ -82,7 +95,7 @@ def fit_nominal(recording: Recording, start: Mapping[str, object], free: Sequenc
         for name, value, factor in zip(free, numbers, x, strict=False):
             put(nominal, name, value, float(factor))
         effects = [{"effect": m.effect, "parameters": dict(m.fixed)} for m in mechanisms]
-        for (k, name, _, c, _, _), value in zip(extra, x[len(free):], strict=True):
+        for (k, name, _, c, _, _), value in zip(extra, x[len(free) :], strict=True):
             effects[k]["parameters"][name] = float(f"{value * c:.5g}")
         return nominal | ({"effects": effects} if effects else {})
 
@@ -119,12 +132,14 @@ def put(content: dict[str, object], dotted: str, value: float, factor: float) ->
 def carriers(data: Path) -> list[tuple[RigRecords, tuple[str, ...], tuple[Mechanism, ...]]]:
     """Return records with what is free in their nominals."""
     bench = tuple(f"damper.parameters.{k}" for k in ("c_a", "c_b", "alpha_a", "alpha_b", "A"))
-    plant = tuple(f"plant.{k}" for k in ("suspension_stiffness", "suspension_damping", "cushion_stiffness", "cushion_damping"))
+    plant = tuple(
+        f"plant.{k}" for k in ("suspension_stiffness", "suspension_damping", "cushion_stiffness", "cushion_damping")
+    )
     d = dyke(data, "dyke", 130.0)
     whole = list({**d.fit, **d.runs, **d.unseen}.values())
     joined = {c: np.concatenate([t[c] for t in whole]) for c in whole[0]}
     n = round(4.1 * 751.2)
-    pieces = {f"piece-{k}": {c: v[k * n:(k + 1) * n] for c, v in joined.items()} for k in range(6)}
+    pieces = {f"piece-{k}": {c: v[k * n : (k + 1) * n] for c, v in joined.items()} for k in range(6)}
     low = utfsm(data, "utfsm-low", (0.0, 0.25, 0.5))
     q = quanser(data, "quanser", ("frame_acceleration", "driver_acceleration", "suspension_displacement"))
     seats = {k: {c: v[:9000:2] for c, v in t.items()} for k, t in {**q.fit, **q.runs}.items()}
@@ -151,6 +166,7 @@ def build(rig: RigRecords, free: Sequence[str], mechanisms: Sequence[Mechanism],
 
 if __name__ == "__main__":
     import sys, time
+
     for rig, free, mech in carriers(Path("/work/shared/data")):
         t = time.time()
         f = build(rig, free, mech, Path(sys.argv[1]))

@@ -13,11 +13,14 @@ from numpy.typing import NDArray
 from ruamel.yaml import YAML
 
 from seatsim.blind.make.folder import encode_yaml
-from seatsim.recordings.compared import LEAST_ROWS, LEFT_OUT
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.errors import InputError
 
 Array = NDArray[np.float64]
+LEFT_OUT = 1.0
+"""s; start of each run that no gap counts (contract, section 4)."""
+LEAST_ROWS = 200
+"""Of a run beyond that."""
 Table = Mapping[str, Array]
 """Channels of a run, shape (N,) each."""
 Content = dict[str, object]

@@ -20,7 +20,8 @@ def slope(values: Array, step: float) -> Array:
 def shifted(values: Array, late: Array | float, step: float) -> Array:
     """Return the signal of `late` seconds ago, linear between rows, held at the ends."""
     time = np.arange(len(values)) * step
-    return np.interp(time - late, time, values)
+    late_values: Array = np.interp(time - late, time, values)
+    return late_values
 
 
 def shifted_rows(values: Array, late: int) -> Array:
@@ -33,7 +34,8 @@ def low_pass(values: Array, time: float, step: float) -> Array:
     """Return the exact first-order response with time constant `time` [s] to a signal held between rows' midpoints."""
     a = float(np.exp(-step / time)) if time > 0.0 else 0.0
     half = float(np.exp(-0.5 * step / time)) if time > 0.0 else 0.0
-    return np.asarray(lfilter([1.0 - half, half - a], [1.0, -a], values - values[0])) + values[0]
+    response = lfilter([1.0 - half, half - a], [1.0, -a], values - values[0])
+    return np.asarray(response + values[0])
 
 
 def slide(x: Array, travel: float) -> Array:

@@ -10,7 +10,7 @@ from numpy.random import Generator
 from seatsim.blind.carrier.change import Altered, Change, with_tables
 from seatsim.blind.carrier.injections.coil import commanded
 from seatsim.blind.carrier.recorded import Array, Carrier, Table, number, section
-from seatsim.blind.carrier.signals import slide, slope
+from seatsim.blind.carrier.signals import low_pass, slide, slope
 
 LARGEST = 1.5
 """Of a force, in standard deviations of the recorded one."""
@@ -138,8 +138,6 @@ def _saturation(carrier: Carrier) -> list[Change]:
     middle = float(np.mean(carrier.pooled("damper_force")))
     if max(float(np.max(table[command])) for table in _tables(carrier)) * gain < 0.1:
         return []
-
-    from seatsim.blind.carrier.signals import low_pass
 
     def lost(table: Table, bend: float) -> Array:
         i = np.clip(low_pass(gain * table[command], 1.0 / rate, carrier.step), 0.0, None)

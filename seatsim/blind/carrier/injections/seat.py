@@ -14,7 +14,7 @@ from numpy.random import Generator
 from scipy.linalg import expm
 from scipy.signal import butter, sosfiltfilt
 
-from seatsim.blind.carrier.change import Altered, Change, with_tables
+from seatsim.blind.carrier.change import Altered, Change
 from seatsim.blind.carrier.recorded import Array, Carrier, Table, number, section
 from seatsim.blind.carrier.signals import slope
 
@@ -121,9 +121,7 @@ def respond(
 
 def _matrices(plant: Mapping[str, float]) -> tuple[Array, Array]:
     ms, m = plant["frame_mass"], plant["driver_mass"]
-    kf, cf, kc, cc = (
-        plant[f"{part}_{law}"] for part in ("suspension", "cushion") for law in ("stiffness", "damping")
-    )
+    kf, cf, kc, cc = (plant[f"{part}_{law}"] for part in ("suspension", "cushion") for law in ("stiffness", "damping"))
     A = np.array([
         [0, 0, 1, 0], [0, 0, 0, 1],
         [-(kf + kc) / ms, kc / ms, -(cf + cc) / ms, cc / ms], [kc / m, -kc / m, cc / m, -cc / m],

@@ -32,7 +32,7 @@ def draw_sensor_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     """
     found: list[Change] = []
     for channel in SENSORS:
-        if channel not in carrier.channels or "velocity" in carrier.channels and channel == "displacement":
+        if channel not in carrier.channels or ("velocity" in carrier.channels and channel == "displacement"):
             continue
         found += [_gain(carrier, channel, rng), _lag(carrier, channel)]
         if channel not in INPUTS:
