@@ -156,9 +156,8 @@ def is_right(label: Label, verdict: Verdict) -> bool:
     naming = (*NAMING, "unknown") if label["kind"] == "carried" else NAMING
     if verdict.verdict not in naming or not verdict.causes:
         return False
-    return verdict.causes[0] in effects or any(
-        len(group) <= LARGEST_GROUP and effects <= set(group) for group in verdict.groups
-    )
+    pairs = [set(group) for group in verdict.groups if len(group) <= LARGEST_GROUP]
+    return verdict.causes[0] in effects or any(effects <= pair for pair in pairs)
 
 
 def is_wrong_name(label: Label, verdict: Verdict) -> bool:

@@ -34,10 +34,11 @@ def draw_limits(carrier: Carrier, rng: Generator) -> list[Change]:
     """Return a supply at its limit: pulses or runs at the largest command are logged as more than that.
 
     What flowed is what was measured, so the limit is the largest true command. Only some of them are raised, by
-    different amounts, so that no scale of the command does the same.
+    different amounts, so that no scale of the command does the same. Without a recorded current a limit can hardly be
+    told from a saturation of the yield force.
     """
     command = commanded(carrier)
-    if command is None:
+    if command is None or "coil_current" not in carrier.channels:
         return []
     gain = number(section(carrier.header, "actuator").get("gain", 1.0)) if command == "command_voltage" else 1.0
     top = max(float(np.quantile(table[command], 0.99)) for table in carrier.tables.values())

@@ -37,7 +37,7 @@ def _added(carrier: Carrier, force: Forces) -> Carrier:
 
 
 def _seal_friction(carrier: Carrier, rng: Generator) -> Change:
-    """Coulomb friction `F sgn v`, with the small travel over which a real seal begins to slide."""
+    """Return Coulomb friction `F sgn v`, with the small travel over which a real seal begins to slide."""
     size, travel = _spread(carrier), float(np.exp(rng.uniform(*np.log(TRAVELS))))
 
     def alter(amount: float) -> Altered:
@@ -48,7 +48,7 @@ def _seal_friction(carrier: Carrier, rng: Generator) -> Change:
 
 
 def _gas_spring(carrier: Carrier, rng: Generator) -> Change:
-    """Preload and stiffness of a gas volume; the stiffness makes half to all of its variation, by the range of x."""
+    """Return preload and stiffness of a gas volume; the stiffness makes half to all of its variation, by the range of x."""
     size, travel = _spread(carrier), float(np.std(carrier.pooled("displacement")))
     share, sign = float(rng.uniform(0.4, 1.0)), -1.0 if rng.random() < 0.5 else 1.0
 
@@ -70,7 +70,7 @@ def _preload(carrier: Carrier, rng: Generator) -> Change:
 
 
 def _asymmetry_by_force(carrier: Carrier, rng: Generator) -> Change:
-    """Push and pull of the damper scaled apart; continuous, since the scale changes where the force is zero."""
+    """Return push and pull of the damper scaled apart; continuous, since the scale changes where the force is zero."""
     sign, middle = -1.0 if rng.random() < 0.5 else 1.0, float(np.mean(carrier.pooled("damper_force")))
 
     def alter(amount: float) -> Altered:
@@ -80,7 +80,7 @@ def _asymmetry_by_force(carrier: Carrier, rng: Generator) -> Change:
 
 
 def _asymmetry_by_speed(carrier: Carrier, rng: Generator) -> Change:
-    """Extension and compression scaled apart, one turning into the other over a speed."""
+    """Return extension and compression scaled apart, one turning into the other over a speed."""
     sign, middle = -1.0 if rng.random() < 0.5 else 1.0, float(np.mean(carrier.pooled("damper_force")))
     width = float(rng.uniform(0.1, 0.4)) * float(np.std(np.concatenate([_speed(carrier, t) for t in _tables(carrier)])))
 
@@ -103,7 +103,7 @@ def _speed(carrier: Carrier, table: Table) -> Array:
 
 
 def _free_play(carrier: Carrier, rng: Generator) -> Change:
-    """A play in series: the same force, and a recorded motion that runs ahead of the damper's by half a gap.
+    """Return a play in series: the same force, a recorded motion that runs ahead of the damper's by half a gap.
 
     The gap is crossed where the force is a small share of its spread, since behind it every mount yields.
     """
@@ -125,7 +125,7 @@ def _free_play(carrier: Carrier, rng: Generator) -> Change:
 
 
 def _saturation(carrier: Carrier) -> list[Change]:
-    """Yield force that grows ever less with current: that part of the force is scaled by `1 / (1 + i / i_s)`.
+    """Return a yield force that grows ever less with current: that part of the force is scaled by `1 / (1 + i / i_s)`.
 
     The part that depends on the current is told from the rest by the nominal's own shares of it.
     """
@@ -161,7 +161,7 @@ def _yield_shares(values: Mapping[str, object]) -> tuple[float, float, float, fl
 
 
 def _fade(carrier: Carrier) -> list[Change]:
-    """Force that falls with the recorded temperature, from its value at the start of the first run."""
+    """Return a force that falls with the recorded temperature, from its value at the start of the first run."""
     if "damper_temperature" not in carrier.channels or float(np.ptp(carrier.pooled("damper_temperature"))) < 2.0:
         return []
     first = float(np.mean(_tables(carrier)[0]["damper_temperature"][:50]))
