@@ -1,173 +1,146 @@
-"""Sealed cases on measured recordings."""
+"""Sealed cases on records of real rigs, and what finds the effect: `python benchmarks/measured_carriers.py --out DIR`.
+
+Out of `../shared/data` are written carriers with their best nominals (`carrier_nominals`), and on each of them cases of
+`seatsim blind make --carrier`: an effect put into the measured signals, or a mechanism taken out of the nominal. They
+are diagnosed by seatsim and, with `--baselines`, by correlation and BIC (`diagnosis_baselines`) and by a joint fit
+(`joint_fit`). A call broken off goes on where it stopped. Counted are, by carrier and by effect:
+
+first   the effect is the likeliest cause (under whatever verdict but `none`)
+pair    a group of two indistinguishable effects holds it
+wrong   neither, and an effect is selected
+missed  neither, and none is selected
+"""
 
 from __future__ import annotations
 
-import copy
-import dataclasses
-from collections.abc import Mapping, Sequence
-from functools import partial
+import argparse
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
-from real_rigs import quick, write_part
-from rig_records import Array, RigRecords, dyke, quanser, utfsm
-from ruamel.yaml import YAML
-from scipy.optimize import least_squares
+from carrier_nominals import read_gap, write_carrier
+from cases import Diagnoser, show_progress, write_verdict
+from diagnosis_baselines import diagnose_by_bic, diagnose_by_correlation
+from joint_fit import diagnose_by_joint_fit
+from real_rigs import DATA
+from rich.console import Console
+from rich.table import Table
+from rig_records import list_carriers
 
-from seatsim.recordings.gap import pool_runs
-from seatsim.recordings.recording import Recording, load_recording
-from seatsim.scenario.loading import single
-from seatsim.schema.files import write_whole
+import seatsim
+from seatsim.blind.carrier.make import make_on_carrier
+from seatsim.blind.labels import Label
+from seatsim.blind.processes import run_jobs
+from seatsim.blind.score.score import score_verdicts
+from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name, read_verdict
+from seatsim.blind.sealed import unseal
+from seatsim.cli.outputs.diagnosis import encode_diagnosis
 
-WORTH = 0.03
-"""Share of the gap that a mechanism must take off to stand in a nominal."""
-STEP = 1e-3
-SOLE = ("A", "beta", "gamma")
-
-
-class Mechanism(NamedTuple):
-    """An effect that a nominal may hold: fixed parameters, and free ones with start, scale and bounds."""
-
-    effect: str
-    fixed: Mapping[str, float | str]
-    free: Mapping[str, tuple[float, float, float, float]]
-
-
-GAS = Mechanism(
-    "damper.gas_spring", {}, {"preload": (20.0, 50.0, -500.0, 500.0), "stiffness": (100.0, 500.0, 0.0, 1e5)}
-)
-ASYMMETRY = Mechanism("damper.asymmetry", {}, {"viscous": (0.02, 0.1, -0.6, 0.6), "yielding": (0.02, 0.1, -0.6, 0.6)})
-SATURATION = Mechanism("damper.magnetic_saturation", {}, {"bend": (0.3, 0.5, 0.0, 5.0)})
-SEAL = Mechanism("damper.seal_friction", {"presliding": 1e-4}, {"force": (10.0, 20.0, 0.0, 500.0)})
-RUBBING = Mechanism("suspension.friction", {"presliding": 1e-4}, {"force": (10.0, 20.0, 0.0, 500.0)})
+OUTCOMES = ("first", "pair", "wrong", "missed")
+Labels = dict[Path, Label]
+"""Of every case, by its folder."""
 
 
-class Identified(NamedTuple):
-    """A nominal scenario with its gap to the recording it was fitted to."""
-
-    nominal: dict[str, object]
-    gap: float
+def diagnose_by_seatsim(case: Path) -> Mapping[str, object]:
+    """Return the verdict of seatsim."""
+    return encode_diagnosis(seatsim.diagnose(case))
 
 
-def identify(
-    recording: Recording, start: Mapping[str, object], free: Sequence[str], mechanisms: Sequence[Mechanism]
-) -> Identified:
-    """Return a nominal fitted to all runs of a recording, with those mechanisms that make it better by WORTH."""
-    path = recording.nominal
-    found = fit_nominal(recording, start, free, [])
-    kept: list[Mechanism] = []
-    while True:
-        trials = [(fit_nominal(recording, found.nominal, free, [*kept, m]), m) for m in mechanisms if m not in kept]
-        if not trials:
-            return found
-        best, added = min(trials, key=lambda t: t[0].gap)
-        print(
-            "   ",
-            [m.effect for m in kept],
-            "+",
-            added.effect,
-            round(found.gap, 4),
-            "->",
-            round(best.gap, 4),
-            flush=True,
+BASELINES: dict[str, Diagnoser] = {
+    "joint fit": diagnose_by_joint_fit, "bic": diagnose_by_bic, "correlation": diagnose_by_correlation,
+}  # fmt: skip
+
+
+def make_sets(data: Path, out: Path, cases: int, seed: int, jobs: int) -> Labels:
+    """Write carriers and their cases, as far as they are not there, and return the labels."""
+    carriers = [write_carrier(records, out / "carriers") for records in list_carriers(data)]
+    labels: Labels = {}
+    for index, carrier in enumerate(carriers):
+        folder, sealed, note = (
+            out / "cases" / carrier.name,
+            *(out / f"{carrier.name}.{end}" for end in ("sealed", "key")),
         )
-        if best.gap > (1.0 - WORTH) * found.gap:
-            write_whole(path, partial(YAML(typ="safe").dump, found.nominal))
-            return found
-        found, kept = best, [*kept, added]
+        if not note.is_file():
+            key = make_on_carrier(carrier, cases, seed + index, folder, sealed, show_progress, jobs)
+            note.write_text(key)
+        opened = unseal(sealed, note.read_text(), folder)
+        labels |= {folder / name: label for name, label in opened.labels.items()}
+    return labels
 
 
-def fit_nominal(
-    recording: Recording, start: Mapping[str, object], free: Sequence[str], mechanisms: Sequence[Mechanism]
-) -> Identified:
-    """Return the scenario with its free parameters and those of mechanisms fitted to a recording."""
-    base = {k: v for k, v in start.items() if k != "effects"}
-    known = {e["effect"]: e["parameters"] for e in start.get("effects", [])}
-    numbers = [float(lookup(base, name)) for name in free]
-    extra = [(k, name, *values) for k, m in enumerate(mechanisms) for name, values in m.free.items()]
-    x0 = [1.0] * len(free) + [known.get(mechanisms[k].effect, {}).get(name, s) / c for k, name, s, c, _, _ in extra]
-    low = [0.05] * len(free) + [l / c for _, _, _, c, l, _ in extra]
-    high = [20.0] * len(free) + [h / c for _, _, _, c, _, h in extra]
-
-    def content(x: Array) -> dict[str, object]:
-        nominal = copy.deepcopy(base)
-        for name, value, factor in zip(free, numbers, x, strict=False):
-            put(nominal, name, value, float(factor))
-        effects = [{"effect": m.effect, "parameters": dict(m.fixed)} for m in mechanisms]
-        for (k, name, _, c, _, _), value in zip(extra, x[len(free) :], strict=True):
-            effects[k]["parameters"][name] = float(f"{value * c:.5g}")
-        return nominal | ({"effects": effects} if effects else {})
-
-    def residual(x: Array) -> Array:
-        settings = content(x)
-        measured, simulated = pool_runs(single(recording.nominal, settings), recording, list(recording.runs))
-        return np.concatenate([(simulated[n] - measured[n]) / np.std(measured[n]) for n in measured])
-
-    x0 = np.clip(x0, np.array(low) + 1e-6, np.array(high) - 1e-6)
-    found = least_squares(residual, x0, bounds=(low, high), diff_step=1e-3, max_nfev=12, x_scale=1.0)
-    return Identified(content(found.x), float(np.sqrt(np.mean(found.fun**2))))
+def outcome(label: Label, verdict: Verdict) -> str:
+    """Return what came out of a case: one of OUTCOMES."""
+    if is_right(label, verdict):
+        return "first" if verdict.causes[0] in label["effects"] else "pair"
+    return "wrong" if is_wrong_name(label, verdict) else "missed"
 
 
-def lookup(content: Mapping[str, object], dotted: str) -> float:
-    node = content
-    for key in dotted.split("."):
-        node = node[key]
-    return node
+def count_outcomes(labels: Labels, method: str, row_of: Callable[[Path, Label], str]) -> dict[str, Counter[str]]:
+    """Return how often each outcome came by row, `all` last; cases that the method has not done are left out."""
+    rows: dict[str, Counter[str]] = {}
+    for case, label in sorted(labels.items()):
+        verdict = read_verdict(case / method / "diagnosis.json")
+        if label["kind"] == "untouched" or not (case / method).is_dir():
+            continue
+        for row in (row_of(case, label), "all"):
+            rows.setdefault(row, Counter())[outcome(label, verdict)] += 1
+    return {row: rows[row] for row in (*sorted(rows.keys() - {"all"}), "all") if row in rows}
 
 
-def put(content: dict[str, object], dotted: str, value: float, factor: float) -> None:
-    *path, key = dotted.split(".")
-    node = content
-    for part in path:
-        node = node[part]
-    if key == "A":
-        scale = factor * value / node["A"]
-        for name in SOLE:
-            node[name] = float(f"{node[name] * scale:.5g}")
-        return
-    node[key] = float(f"{factor * value:.5g}")
+def outcome_table(title: str, rows: Mapping[str, Counter[str]]) -> Table:
+    """Return outcomes by row."""
+    table = Table(title=title, title_justify="left")
+    table.add_column("")
+    for heading in (*OUTCOMES, "right"):
+        table.add_column(heading, justify="right")
+    for name, counts in rows.items():
+        right, total = counts["first"] + counts["pair"], sum(counts.values())
+        table.add_row(name, *(str(counts[key]) for key in OUTCOMES), f"{right}/{total} = {right / total:.0%}")
+    return table
 
 
-def carriers(data: Path) -> list[tuple[RigRecords, tuple[str, ...], tuple[Mechanism, ...]]]:
-    """Return records with what is free in their nominals."""
-    bench = tuple(f"damper.parameters.{k}" for k in ("c_a", "c_b", "alpha_a", "alpha_b", "A"))
-    plant = tuple(
-        f"plant.{k}" for k in ("suspension_stiffness", "suspension_damping", "cushion_stiffness", "cushion_damping")
-    )
-    d = dyke(data, "dyke", 130.0)
-    whole = list({**d.fit, **d.runs, **d.unseen}.values())
-    joined = {c: np.concatenate([t[c] for t in whole]) for c in whole[0]}
-    n = round(4.1 * 751.2)
-    pieces = {f"piece-{k}": {c: v[k * n : (k + 1) * n] for c, v in joined.items()} for k in range(6)}
-    low = utfsm(data, "utfsm-low", (0.0, 0.25, 0.5))
-    q = quanser(data, "quanser", ("frame_acceleration", "driver_acceleration", "suspension_displacement"))
-    seats = {k: {c: v[:9000:2] for c, v in t.items()} for k, t in {**q.fit, **q.runs}.items()}
-    every = utfsm(data, "utfsm", (0.0, 0.25, 0.5, 0.75, 1.0))
-    return [
-        (d._replace(fit={}, unseen={}, runs=pieces), (*bench, "actuator.rate"), (GAS, ASYMMETRY)),
-        (low._replace(runs={**low.fit, **low.runs, **low.unseen}), bench, (GAS, ASYMMETRY, SATURATION)),
-        (every._replace(runs={**every.fit, **every.runs, **every.unseen}), bench, (GAS, ASYMMETRY, SATURATION)),
-        (q._replace(runs=seats, sample_rate=250.0), plant, (RUBBING,)),
-    ]
+def print_results(labels: Labels, carriers: Path, methods: Sequence[str]) -> None:
+    """Print what each method found, and of the diagnosis the sizes and what it names on untouched carriers."""
+    console = Console(width=150)
+    for folder in sorted(carriers.iterdir()):
+        gap, mechanisms = read_gap(folder)
+        console.print(f"{folder.name}: nominal's gap {gap:.3f}, with {mechanisms or 'no mechanism'}")
+    for method in methods:
+        by_carrier = count_outcomes(labels, method, lambda case, label: case.parent.name)
+        by_effect = count_outcomes(labels, method, lambda case, label: label["effects"][0])
+        if by_carrier:
+            console.print(outcome_table(f"{method}, by carrier", by_carrier))
+            console.print(outcome_table(f"{method}, by effect", by_effect))
+    named = {str(case): label for case, label in labels.items()}
+    verdicts = {name: read_verdict(Path(name) / "diagnosis" / "diagnosis.json") for name in named}
+    score = score_verdicts(named, verdicts)
+    console.print(f"untouched carriers, not scored: {score.untouched}")
+    ratios = [size.found / size.true for size in score.found_sizes if size.true]
+    if ratios:
+        low, middle, high = np.quantile(ratios, (0.1, 0.5, 0.9))
+        console.print(f"size found over size put in, {len(ratios)} parameters: {middle:.2f} ({low:.2f} to {high:.2f})")
 
 
-def build(rig: RigRecords, free: Sequence[str], mechanisms: Sequence[Mechanism], folder: Path) -> Identified:
-    where = folder / rig.name
-    nominal = copy.deepcopy(rig.nominal)
-    if rig.kind == "damper_bench":
-        nominal["actuator"]["max_current"] = 2.0
-    write_part(rig, nominal, rig.runs, where)
-    recording = quick(load_recording(where))
-    found = identify(recording, nominal, free, mechanisms)
-    write_whole(where / "nominal.yaml", partial(YAML(typ="safe").dump, found.nominal))
-    return found
+def main() -> None:
+    """Make the cases, diagnose what is not diagnosed yet, and print the tables."""
+    parser = argparse.ArgumentParser(description="sealed cases on measured recordings")
+    parser.add_argument("--data", type=Path, default=DATA)
+    parser.add_argument("--out", type=Path, required=True, help="folder for carriers, cases and diagnoses")
+    parser.add_argument("--cases", type=int, default=12, help="on each carrier")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=2, help="cases that are worked on at once")
+    parser.add_argument("--baselines", action="store_true")
+    args = parser.parse_args()
+    if not args.data.is_dir():
+        raise SystemExit(f"{args.data}: the measured data are not there; state their folder with --data")
+    labels = make_sets(args.data, args.out, args.cases, args.seed, args.jobs)
+    methods = {"diagnosis": diagnose_by_seatsim, **(BASELINES if args.baselines else {})}
+    wanted = [(case / name, method) for name, method in methods.items() for case in labels]
+    todo = [(out, method) for out, method in wanted if not out.is_dir()]
+    run_jobs(write_verdict, todo, args.jobs, show_progress)
+    print_results(labels, args.out / "carriers", list(methods))
 
 
 if __name__ == "__main__":
-    import sys, time
-
-    for rig, free, mech in carriers(Path("/work/shared/data")):
-        t = time.time()
-        f = build(rig, free, mech, Path(sys.argv[1]))
-        print(rig.name, f.gap, f.nominal, time.time() - t, flush=True)
+    main()

@@ -16,6 +16,10 @@ LARGEST = 1.5
 """Of a force, in standard deviations of the recorded one."""
 TRAVELS = (2e-5, 1.5e-4)
 """m; sliding travel of a seal, drawn log-uniform."""
+LEAST_LEVELS, STANDING = 3, 0.03
+"""Levels of the current that tell a saturation from another yield force, and the share of the rows that makes one."""
+REFERENCE, LEAST_WARMING = 20.0, 10.0
+"""degC at which a damper has its stated forces; K by which it must warm, else a fade is a smaller force throughout."""
 Forces = Callable[[Table], Array]
 
 
@@ -48,7 +52,7 @@ def _seal_friction(carrier: Carrier, rng: Generator) -> Change:
 
 
 def _gas_spring(carrier: Carrier, rng: Generator) -> Change:
-    """Return preload and stiffness of a gas volume; the stiffness makes half to all of its variation, by the range of x."""
+    """Return preload and stiffness of a gas volume, both of about the same force."""
     size, travel = _spread(carrier), float(np.std(carrier.pooled("displacement")))
     share, sign = float(rng.uniform(0.4, 1.0)), -1.0 if rng.random() < 0.5 else 1.0
 
@@ -136,7 +140,7 @@ def _saturation(carrier: Carrier) -> list[Change]:
     rate = number(section(carrier.nominal, "actuator").get("rate", 130.0))
     fixed, by_current, viscous, viscous_by_current = yields
     middle = float(np.mean(carrier.pooled("damper_force")))
-    if max(float(np.max(table[command])) for table in _tables(carrier)) * gain < 0.1:
+    if len(_levels(carrier.pooled(command))) < LEAST_LEVELS:
         return []
 
     def lost(table: Table, bend: float) -> Array:
@@ -150,6 +154,12 @@ def _saturation(carrier: Carrier) -> list[Change]:
     return [Change("damper.magnetic_saturation", "yield part saturates", "", (0.0, 3.0), alter)]
 
 
+def _levels(command: Array) -> Array:
+    """Return the values that a command stands at for long, in twentieths of its largest."""
+    steps, counts = np.unique(np.round(20.0 * command / max(float(np.max(command)), 1e-9)), return_counts=True)
+    return np.asarray(steps[counts > STANDING * len(command)])
+
+
 def _yield_shares(values: Mapping[str, object]) -> tuple[float, float, float, float] | None:
     """Return yield force at no current and per ampere, viscous coefficient likewise; None of another damper model."""
     for letter in ("alpha", "fc"):
@@ -161,15 +171,17 @@ def _yield_shares(values: Mapping[str, object]) -> tuple[float, float, float, fl
 
 
 def _fade(carrier: Carrier) -> list[Change]:
-    """Return a force that falls with the recorded temperature, from its value at the start of the first run."""
-    if "damper_temperature" not in carrier.channels or float(np.ptp(carrier.pooled("damper_temperature"))) < 2.0:
+    """Return a force that falls with the recorded temperature, from its value at the reference."""
+    if (
+        "damper_temperature" not in carrier.channels
+        or float(np.ptp(carrier.pooled("damper_temperature"))) < LEAST_WARMING
+    ):
         return []
-    first = float(np.mean(_tables(carrier)[0]["damper_temperature"][:50]))
     middle = float(np.mean(carrier.pooled("damper_force")))
 
     def share(table: Table, rate: float) -> Array:
         smooth = low_pass_temperature(table["damper_temperature"], carrier.step)
-        return 1.0 / (1.0 + rate * np.clip(smooth - first, 0.0, None)) - 1.0
+        return 1.0 / (1.0 + rate * np.clip(smooth - REFERENCE, 0.0, None)) - 1.0
 
     def alter(amount: float) -> Altered:
         return Altered(_added(carrier, lambda t: share(t, amount) * (t["damper_force"] - middle)), {"viscous": amount})
