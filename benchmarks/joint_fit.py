@@ -40,11 +40,13 @@ MEANS = {
 
 
 class Unknown(NamedTuple):
-    """A number of the fit, counted in `scale` from the nominal: a parameter by key, or a kind and its channel."""
+    """A number of the fit: a parameter by dotted key, or a kind and its channel.
+
+    It is `nominal + (x - 1) limit` with x from 0 to 2, so that a step of x has the same meaning for all.
+    """
 
     kind: str
     channel: str
-    scale: float
     limit: float
     nominal: float = 0.0
 
@@ -68,12 +70,9 @@ def rank_by_movement(recording: Recording) -> Ranked:
     def residual(x: Array) -> Array:
         return misfit(recording, unknowns, x)
 
-    limits = np.array([unknown.limit for unknown in unknowns])
-    found = least_squares(
-        residual, np.zeros(len(unknowns)), bounds=(-limits, limits), max_nfev=STEPS, x_scale=limits,
-        diff_step=np.full(len(limits), STEP),
-    )  # fmt: skip
-    moved = np.sqrt(np.mean(np.asarray(found.jac) ** 2, axis=0)) * np.abs(found.x)
+    ones = np.ones(len(unknowns))
+    found = least_squares(residual, ones, bounds=(0.0 * ones, 2.0 * ones), diff_step=STEP * ones, max_nfev=STEPS)
+    moved = np.sqrt(np.mean(np.asarray(found.jac) ** 2, axis=0)) * np.abs(found.x - 1.0)
     pairs = [(MEANS.get(unknown.kind, ""), float(size)) for unknown, size in zip(unknowns, moved, strict=True)]
     return rank_by_figure([pair for pair in pairs if pair[0]])
 
@@ -89,12 +88,12 @@ def list_unknowns(recording: Recording) -> list[Unknown]:
     for section, values in sections.items():
         for key, value in values.items():
             if value and key not in ("n", "v_ref"):
-                found.append(Unknown(f"{section}.{key}", "", value, WIDEST, value))
+                found.append(Unknown(f"{section}.{key}", "", WIDEST * abs(value), value))
     for channel in residual_channels(recording):
-        found += [Unknown("gain", channel, 1.0, WIDEST), Unknown("offset", channel, 1.0, LARGEST)]
-        found.append(Unknown("delay", channel, 1.0, LONGEST))
-    found += [Unknown("gain", channel, 1.0, WIDEST) for channel in MOTIONS if channel in recording.channels]
-    return found + [Unknown("command", channel, 1.0, LONGEST) for channel in COMMANDS if channel in recording.channels]
+        found += [Unknown("gain", channel, WIDEST), Unknown("offset", channel, LARGEST)]
+        found.append(Unknown("delay", channel, LONGEST))
+    found += [Unknown("gain", channel, WIDEST) for channel in MOTIONS if channel in recording.channels]
+    return found + [Unknown("command", channel, LONGEST) for channel in COMMANDS if channel in recording.channels]
 
 
 def residual_channels(recording: Recording) -> list[str]:
@@ -105,9 +104,9 @@ def residual_channels(recording: Recording) -> list[str]:
 
 def misfit(recording: Recording, unknowns: list[Unknown], x: Array) -> Array:
     """Return simulated minus measured in standard deviations of each channel, over all runs, end to end."""
-    pairs = list(zip(unknowns, x, strict=True))
-    settings = {u.kind: u.nominal + u.scale * float(v) for u, v in pairs if "." in u.kind}
-    by_channel = {(u.kind, u.channel): float(v) for u, v in pairs if "." not in u.kind}
+    values = [(u, u.nominal + (float(k) - 1.0) * u.limit) for u, k in zip(unknowns, x, strict=True)]
+    settings = {u.kind: value for u, value in values if "." in u.kind}
+    by_channel = {(u.kind, u.channel): value for u, value in values if "." not in u.kind}
     scenario = single(recording.nominal, settings)
     return np.concatenate([_misfit_of_run(recording, scenario, run, by_channel) for run in recording.runs])
 

@@ -109,7 +109,7 @@ def compare_sizes(cases: Iterable[ScoredCase]) -> list[FoundSize]:
     found = []
     for case in cases:
         for effect, true in zip(case.label["effects"], case.label.get("shapes", []), strict=False):
-            estimated = (case.verdict.parameters or {}).get(effect, {}) if effect in case.verdict.selected else {}
+            estimated = case.verdict.parameters.get(effect, {}) if effect in case.verdict.selected else {}
             found += [FoundSize(case.name, effect, p, v, estimated[p]) for p, v in true.items() if p in estimated]
     return found
 

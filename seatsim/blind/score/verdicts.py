@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NotRequired, Required, TypedDict
 
@@ -25,14 +25,14 @@ class Verdict:
     blocks: tuple[str, ...] = ()
     causes: tuple[str, ...] = ()
     probabilities: Mapping[str, float] | None = None
-    parameters: Mapping[str, Mapping[str, float]] | None = None
-    """Estimated parameters by effect and name."""
     selected: tuple[str, ...] = ()
     groups: tuple[tuple[str, ...], ...] = ()
     isolable: tuple[tuple[str, ...], ...] = ()
     shrink: float | None = None
     shrink_interval: tuple[float, float] | None = None
     augmented: Path | None = None
+    parameters: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """Estimated parameters by effect and name."""
 
     @property
     def group(self) -> tuple[str, ...]:
@@ -108,13 +108,13 @@ def _parse(data: _Diagnosis, path: Path) -> Verdict:
         blocks=tuple(str(entry["block"]) for entry in data.get("where") or []),
         causes=tuple(str(cause["effect"]) for cause in ranked),
         probabilities={str(cause["effect"]): _probability(cause) for cause in ranked},
-        parameters={str(cause["effect"]): _values(cause) for cause in ranked},
         selected=tuple(str(name) for name in data.get("selected") or []),
         groups=_groups(data.get("indistinguishable")),
         isolable=_groups(data.get("isolable")),
         shrink=None if shrink is None else float(shrink),
         shrink_interval=_interval(gap.get("shrink_interval")),
         augmented=path.parent / str(augmented) if augmented else None,
+        parameters={str(cause["effect"]): _values(cause) for cause in ranked},
     )
 
 

@@ -16,6 +16,8 @@ LARGEST = 1.5
 """Of a force, in standard deviations of the recorded one."""
 TRAVELS = (2e-5, 1.5e-4)
 """m; sliding travel of a seal, drawn log-uniform."""
+CROSSED = (0.08, 0.2)
+"""Share of the spread of the force at which a gap is crossed; less would need a motion faster than any recorded."""
 LEAST_LEVELS, STANDING = 3, 0.03
 """Levels of the current that tell a saturation from another yield force, and the share of the rows that makes one."""
 REFERENCE, LEAST_WARMING = 20.0, 10.0
@@ -111,7 +113,7 @@ def _free_play(carrier: Carrier, rng: Generator) -> Change:
 
     The gap is crossed where the force is a small share of its spread, since behind it every mount yields.
     """
-    soft = float(rng.uniform(0.03, 0.1)) * _spread(carrier)
+    soft = float(rng.uniform(*CROSSED)) * _spread(carrier)
     travel = float(np.std(carrier.pooled("displacement")))
 
     def alter(amount: float) -> Altered:

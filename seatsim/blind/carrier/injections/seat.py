@@ -132,14 +132,14 @@ def _matrices(plant: Mapping[str, float]) -> tuple[Array, Array]:
 def _motion(carrier: Carrier, plant: Mapping[str, float], table: Table) -> SeatMotion:
     """Return the recorded motion; what is not recorded is that of the linear rig on the recorded floor."""
     step = carrier.step
-    simulated = _simulate(plant, table["floor_acceleration"], step)
+    simulated = simulate_linear(plant, table["floor_acceleration"], step)
     x = table.get("suspension_displacement", simulated.x)
     v = slope(x, step) if "suspension_displacement" in table else simulated.v
     driver = table.get("driver_acceleration", simulated.driver)
     return SeatMotion(x, v, simulated.xc, simulated.vc, driver)
 
 
-def _simulate(plant: Mapping[str, float], floor: Array, step: float) -> SeatMotion:
+def simulate_linear(plant: Mapping[str, float], floor: Array, step: float) -> SeatMotion:
     """Return the motion of the linear rig relative to its floor, which is an inertial force on both masses."""
     A, _ = _matrices(plant)
     b = np.array([[0.0], [0.0], [-1.0], [-1.0]])

@@ -68,7 +68,7 @@ def _drift(carrier: Carrier, channel: str, rng: Generator) -> Change:
 
     def at(amount: float) -> tuple[dict[str, float], Callable[[Array], Array]]:
         drift = rate * amount
-        return {"drift": drift / scale}, lambda y: y + drift * carrier.step * np.arange(len(y))
+        return {"share": 0.0, "drift": drift / scale}, lambda y: y + drift * carrier.step * np.arange(len(y))
 
     change = _reading(carrier, "bias", channel, 2.0 * LARGEST_OFFSET, at)
     return change._replace(form="drift")
