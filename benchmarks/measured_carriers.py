@@ -2,8 +2,8 @@
 
 Out of `../shared/data` are written carriers with their best nominals (`carrier_nominals`), and on each of them cases of
 `seatsim blind make --carrier`: an effect put into the measured signals, or a mechanism taken out of the nominal. They
-are diagnosed by seatsim and, with `--baselines`, by correlation and BIC (`diagnosis_baselines`) and by a joint fit
-(`joint_fit`). A call broken off goes on where it stopped. Counted are, by carrier and by effect:
+are diagnosed by seatsim and, where `--methods` names them, by correlation and BIC (`diagnosis_baselines`) and a joint
+fit (`joint_fit`). A call broken off goes on where it stopped. Counted are, by carrier and by effect:
 
 first   the effect is the likeliest cause (under whatever verdict but `none`)
 pair    a group of two indistinguishable effects holds it
@@ -47,8 +47,9 @@ def diagnose_by_seatsim(case: Path) -> Mapping[str, object]:
     return encode_diagnosis(seatsim.diagnose(case))
 
 
-BASELINES: dict[str, Diagnoser] = {
-    "joint fit": diagnose_by_joint_fit, "bic": diagnose_by_bic, "correlation": diagnose_by_correlation,
+METHODS: dict[str, Diagnoser] = {
+    "diagnosis": diagnose_by_seatsim, "joint-fit": diagnose_by_joint_fit, "bic": diagnose_by_bic,
+    "correlation": diagnose_by_correlation,
 }  # fmt: skip
 
 
@@ -130,16 +131,15 @@ def main() -> None:
     parser.add_argument("--cases", type=int, default=12, help="on each carrier")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2, help="cases that are worked on at once")
-    parser.add_argument("--baselines", action="store_true")
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=["diagnosis"])
     args = parser.parse_args()
     if not args.data.is_dir():
         raise SystemExit(f"{args.data}: the measured data are not there; state their folder with --data")
     labels = make_sets(args.data, args.out, args.cases, args.seed, args.jobs)
-    methods = {"diagnosis": diagnose_by_seatsim, **(BASELINES if args.baselines else {})}
-    wanted = [(case / name, method) for name, method in methods.items() for case in labels]
+    wanted = [(case / name, METHODS[name]) for name in args.methods for case in labels]
     todo = [(out, method) for out, method in wanted if not out.is_dir()]
     run_jobs(write_verdict, todo, args.jobs, show_progress)
-    print_results(labels, args.out / "carriers", list(methods))
+    print_results(labels, args.out / "carriers", list(METHODS))
 
 
 if __name__ == "__main__":

@@ -22,31 +22,31 @@ PLANT = {
 }  # fmt: skip
 
 
-def bench_carrier(tolerance: float = 0.0, logged_coil: bool = False) -> Carrier:
+def bench_carrier(tolerance: float = 0.0, logged_coil: bool = False, rate: float = 60.0) -> Carrier:
     """Return three runs of a Bingham damper under random motion and a switched current, as its nominal has them."""
     nominal = {
         "damper": {
             "model": "bingham",
             "parameters": {"c_a": C[0], "c_b": C[1], "fc_a": FC[0], "fc_b": FC[1], "f0": 0.0, "v_ref": 0.02},
         },
-        "actuator": {"rate": 60.0, "max_current": 2.0},
+        "actuator": {"rate": rate, "max_current": 2.0},
         "temperature": 20.0,
     }
     channels = {**BENCH_CHANNELS, **({"coil_current": {"unit": "A", "noise_rms": 1e-4}} if logged_coil else {})}
     header = {"rig": "damper_bench", "sample_rate": RATE, "parameter_tolerance": tolerance, "nominal": "nominal.yaml"}
-    tables = {f"run-{k}": _bench_run(k, logged_coil) for k in range(3)}
+    tables = {f"run-{k}": _bench_run(k, logged_coil, rate) for k in range(3)}
     runs = [{"name": run, "file": f"{run}.csv.gz"} for run in tables]
     return Carrier({**header, "runs": runs, "channels": channels}, nominal, tables)
 
 
-def _bench_run(seed: int, logged_coil: bool) -> Table:
+def _bench_run(seed: int, logged_coil: bool, rate: float) -> Table:
     rng, rows = np.random.default_rng(seed), round(RATE * SECONDS)
     time = np.arange(rows) / RATE
     waves = [(rng.uniform(0.8, 5.0), rng.uniform(0.0, 2.0 * np.pi)) for _ in range(5)]
     shape = sum(np.sin(2.0 * np.pi * f * time + p) for f, p in waves)
     x = 0.005 * np.clip(time / 0.3, 0.0, 1.0) * shape
     command = np.repeat(rng.choice([0.0, 0.3, 0.6, 1.0], rows // 100 + 1), 100)[:rows]
-    current = coil(command, 60.0)
+    current = coil(command, rate)
     v = np.gradient(x, 1.0 / RATE)
     force = (C[0] + C[1] * current) * v + (FC[0] + FC[1] * current) * np.tanh(v / 0.02)
     force = force + 0.5 * rng.standard_normal(rows)

@@ -26,14 +26,16 @@ from seatsim.schema.files import write_json, write_text
 SIZES = (0.06, 0.1, 0.16, 0.25, 0.4)
 """Standard deviations by which the effect moves a compared channel: from just material to more than strong."""
 FOUND_SHARE = 0.9
+BATCH = 4
+"""Draws that are begun before those missed are counted."""
 Diagnose = Callable[[Path], None]
 """Writes CASE/diagnosis/diagnosis.json; it must be picklable."""
 
 
 class Trial(NamedTuple):
-    """One draw: what was put in, under its own names, and whether the diagnosis found it."""
+    """One draw: what was put in, None where the recording does not allow that size, and whether it was found."""
 
-    parameters: Mapping[str, float]
+    parameters: Mapping[str, float] | None
     found: bool
 
 
@@ -57,12 +59,16 @@ class Power(NamedTuple):
     def parameters(self) -> dict[str, float]:
         """Return the mean size of the effect's parameters at the smallest size that is found."""
         trials = [] if self.smallest is None else self.trials[self.smallest]
-        names = sorted(set.intersection(*({*trial.parameters} for trial in trials))) if trials else []
-        return {name: float(np.mean([abs(trial.parameters[name]) for trial in trials])) for name in names}
+        put_in = [trial.parameters for trial in trials if trial.parameters is not None]
+        names = sorted(set.intersection(*(set(parameters) for parameters in put_in))) if put_in else []
+        return {name: float(np.mean([abs(parameters[name]) for parameters in put_in])) for name in names}
 
     def as_dict(self) -> dict[str, object]:
         """Return the power as it stands in `power.json`."""
-        tried = {f"{size:g}": [trial.found for trial in trials] for size, trials in self.trials.items()}
+        tried = {
+            f"{size:g}": [trial.found for trial in trials if trial.parameters is not None]
+            for size, trials in self.trials.items()
+        }
         return {"effect": self.effect, "smallest": self.smallest, "parameters": self.parameters(), "found": tried}
 
 
@@ -96,22 +102,29 @@ def measure_power(
 
 
 def _bisect(setting: Setting, draws: int, processes: int) -> Power:
-    """Return the smallest size that is found, taking what is found at one size to be found at every larger one."""
-    low, high, trials = -1, len(SIZES), {}
+    """Return the smallest size that is found, taking what is found at one size to be found at every larger one.
+
+    Where a size is more than the recording allows, smaller ones are looked at.
+    """
+    low, high, smallest = -1, len(SIZES), None
+    trials: dict[float, list[Trial]] = {}
     while high - low > 1:
         middle = (low + high) // 2
-        trials[SIZES[middle]] = found = _try_size(setting, SIZES[middle], draws, processes)
-        enough = sum(trial.found for trial in found) >= math.ceil(FOUND_SHARE * draws)
-        low, high = (low, middle) if enough else (middle, high)
-    return Power(setting.effect, SIZES[high] if high < len(SIZES) else None, dict(sorted(trials.items())))
+        size = SIZES[middle]
+        trials[size] = _try_size(setting, size, draws, processes)
+        found = sum(trial.found for trial in trials[size]) >= math.ceil(FOUND_SHARE * draws)
+        too_large = all(trial.parameters is None for trial in trials[size])
+        smallest = size if found else smallest
+        low, high = (low, middle) if found or too_large else (middle, high)
+    return Power(setting.effect, smallest, dict(sorted(trials.items())))
 
 
 def _try_size(setting: Setting, size: float, draws: int, processes: int) -> list[Trial]:
     """Return the trials at a size, fewer than asked for where so many are missed already that it is not found."""
     trials: list[Trial] = []
     allowed = draws - math.ceil(FOUND_SHARE * draws)
-    for first in range(0, draws, processes):
-        batch = range(first, min(first + processes, draws))
+    for first in range(0, draws, BATCH):
+        batch = range(first, min(first + BATCH, draws))
         trials += run_jobs(try_draw, [(setting, size, k) for k in batch], processes)
         if sum(not trial.found for trial in trials) > allowed:
             break
@@ -119,16 +132,15 @@ def _try_size(setting: Setting, size: float, draws: int, processes: int) -> list
 
 
 def try_draw(setting: Setting, size: float, draw: int) -> Trial:
-    """Return one trial, read from its folder where it was made before; a size that cannot be put in is not found."""
+    """Return one trial, read from its file where it was made before."""
     name = f"{setting.effect}-{size:g}-{draw + 1:02d}"
     case, note = setting.out / "cases" / name, setting.out / "cases" / f"{name}.json"
     if note.is_file():
         known = json.loads(note.read_text(encoding="utf-8"))
         return Trial(known["parameters"], bool(known["found"]))
     drawn = _draw(setting, size, draw)
-    trial = Trial({}, False) if drawn is None else _diagnosed(setting, case, drawn)
-    note.parent.mkdir(parents=True, exist_ok=True)
-    write_json(note, {"parameters": dict(trial.parameters), "found": trial.found})
+    trial = Trial(None, False) if drawn is None else _diagnosed(setting, case, drawn)
+    write_json(note, trial._asdict())
     return trial
 
 

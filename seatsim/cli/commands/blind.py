@@ -26,6 +26,7 @@ def blind_make(
     carrier: Annotated[
         Path | None, typer.Option("--carrier", help="A measured recording into which the effects are put instead.")
     ] = None,
+    own_code: OwnCode = None,
 ) -> None:
     """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""
     from seatsim.blind.carrier.make import make_on_carrier

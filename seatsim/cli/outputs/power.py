@@ -22,5 +22,7 @@ def make_power_table(powers: Sequence[Power]) -> Table:
 
 
 def _count(power: Power, size: float) -> str:
-    trials = power.trials.get(size)
-    return "" if trials is None else f"{sum(trial.found for trial in trials)}/{len(trials)}"
+    if size not in power.trials:
+        return ""
+    found = [trial.found for trial in power.trials[size] if trial.parameters is not None]
+    return f"{sum(found)}/{len(found)}" if found else "too large"
