@@ -26,7 +26,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
-from rig_records import Array, Nominal, RigRecords, Runs, Trial, dyke, quanser, utfsm
+from rig_records import Array, Nominal, RigRecords, Runs, Trial, dyke, fsae, quanser, utfsm
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
@@ -77,7 +77,7 @@ def write(rig: RigRecords, folder: Path) -> Path:
     return folder / rig.name
 
 
-def write_part(rig: RigRecords, nominal: Nominal, runs: Runs, folder: Path) -> None:
+def write_part(rig: RigRecords, nominal: Nominal, runs: Runs, folder: Path, tolerance: float = TOLERANCE) -> None:
     """Write some of a rig's records and a nominal as one recording."""
     units = SEAT_CHANNELS if rig.kind == "seat" else BENCH_CHANNELS
     entries = [{"name": name, "file": f"{name}.csv.gz"} for name in runs]
@@ -86,7 +86,7 @@ def write_part(rig: RigRecords, nominal: Nominal, runs: Runs, folder: Path) -> N
     channels = next(iter(runs.values()))
     noise = {name: {"noise_rms": float(f"{rig.noise[name]:.3g}")} if name in rig.noise else {} for name in channels}
     header = {
-        "rig": rig.kind, "sample_rate": rig.sample_rate, "parameter_tolerance": TOLERANCE, "nominal": "nominal.yaml",
+        "rig": rig.kind, "sample_rate": rig.sample_rate, "parameter_tolerance": tolerance, "nominal": "nominal.yaml",
         "runs": entries, "channels": {name: {"unit": units[name]} | noise[name] for name in channels},
     }  # fmt: skip
     if rig.voltage_gain is not None:
@@ -210,6 +210,7 @@ def rigs(data: Path) -> list[RigRecords]:
         utfsm(data, "utfsm-all", (0.0, 0.25, 0.5, 0.75, 1.0)),
         dyke(data, "dyke", 1000.0),
         dyke(data, "dyke-130", 130.0),
+        fsae(data, "fsae", "t1_2_2_24_24_s5_n10_100psi", 5.0),
         quanser(data, "quanser", ("frame_acceleration", "driver_acceleration", "suspension_displacement")),
         quanser(data, "quanser-travel", ("suspension_displacement",)),
     ]

@@ -16,6 +16,10 @@ quanser, quanser-travel  Quarter car as a seat: road = floor, middle plate = fra
     that this is no fair test of whether guide friction is named: a commanded force of up to 1 N (30 N here, in step
     with the road) acts between frame and driver, where the contract's rig has no actuator; and the guides rub against
     the ground, `suspension.friction` against the moving floor. Fitted dashpots absorb most of the friction as well.
+fsae  Passive racing damper on a scotch yoke, 127 mm/s, at its stiffer setting: cold at 100 psi, and under a heat gun.
+    The motion is counted from the middle of the stroke. No current: the nominal is a Bouc-Wen law at 0 A.
+
+`list_carriers` cuts them into runs of at most 10 s that serve as backgrounds of cases (`measured_carriers`).
 """
 
 from __future__ import annotations
@@ -50,6 +54,11 @@ GAS: Addition = ("damper.gas_spring", {}, {"preload": 50.0})
 BIAS: Addition = ("sensor.bias", {"channel": "damper_force"}, {"share": 0.5})
 LAG: Addition = ("coil.lag", {}, {"time": 0.003})
 FRICTION: Addition = ("suspension.friction", {"presliding": 1e-4}, {"force": 20.0})
+GAS_SPRING: Addition = ("damper.gas_spring", {}, {"preload": 50.0, "stiffness": 500.0})
+ASYMMETRY: Addition = ("damper.asymmetry", {}, {"viscous": 0.1, "yielding": 0.1})
+SATURATION: Addition = ("damper.magnetic_saturation", {}, {"bend": 0.5})
+SEAL: Addition = ("damper.seal_friction", {"presliding": 1e-4}, {"force": 10.0})
+FADE: Addition = ("damper.thermal_fade", {}, {"viscous": 0.004, "yielding": 0.004})
 
 
 class DamperEntry(TypedDict):
@@ -57,6 +66,13 @@ class DamperEntry(TypedDict):
 
     model: str
     parameters: dict[str, float]
+
+
+class EffectEntry(TypedDict):
+    """An effect as a scenario states it."""
+
+    effect: str
+    parameters: dict[str, float | str]
 
 
 class Nominal(TypedDict, total=False):
@@ -68,6 +84,7 @@ class Nominal(TypedDict, total=False):
     plant: dict[str, float]
     controller: dict[str, str | float]
     excitation: dict[str, str]
+    effects: list[EffectEntry]
 
 
 class RigRecords(NamedTuple):
@@ -183,6 +200,71 @@ def quanser(data: Path, name: str, outputs: Sequence[str]) -> RigRecords:
         tuple(f"plant.{key}" for key in free), noise, {"repeat-1": tables[0]},
         {"repeat-2": tables[1], "repeat-3": tables[2]}, {}, ((FRICTION,),), repeats=True,
     )  # fmt: skip
+
+
+def fsae(data: Path, name: str, file: str, length: float) -> RigRecords:
+    """Return a record of the racing damper, cut into six runs of so many seconds, spread over its length."""
+    whole = pd.read_csv(data / "fsae_damper_temperature" / f"{file}.csv.gz")
+    rate = 300.03
+    middle = 0.5 * float(whole["displacement_m"].min() + whole["displacement_m"].max())
+    table = {
+        "displacement": whole["displacement_m"].to_numpy() - middle,
+        "damper_force": whole["force_N"].to_numpy(),
+        "damper_temperature": whole["temperature_C"].to_numpy(),
+    }
+    noise = {channel: white_noise(table[channel], rate) for channel in table}
+    rows = round(length * rate)
+    starts = np.linspace(0, len(whole) - rows, 6).astype(int)
+    # a record that begins in motion is at rest nowhere: the first second of a run is left out of every gap
+    runs: Runs = {f"piece-{k}": {c: v[a : a + rows] for c, v in table.items()} for k, a in enumerate(starts)}
+    guess = {"c_a": 1500.0, "c_b": 0.0, "alpha_a": 60.0, "alpha_b": 0.0, "A": 2e3, "beta": 1e3, "gamma": 1e3}
+    free = ("damper.c_a", "damper.alpha_a", "damper.A")
+    return RigRecords(
+        name, "damper_bench", rate, "gas offset, compression-rebound asymmetry, friction", bench(guess, 130.0), free,
+        noise, runs, runs, {}, ((GAS,),),
+    )  # fmt: skip
+
+
+class CarrierRecords(NamedTuple):
+    """Records that serve as a background, and the mechanisms that their nominal may hold beside its free parameters."""
+
+    rig: RigRecords
+    mechanisms: tuple[Addition, ...]
+
+
+def list_carriers(data: Path) -> list[CarrierRecords]:
+    """Return the backgrounds of cases, every record among the runs."""
+    outputs = ("frame_acceleration", "driver_acceleration", "suspension_displacement")
+    press = [utfsm(data, "utfsm-low", (0.0, 0.25, 0.5)), utfsm(data, "utfsm", (0.0, 0.25, 0.5, 0.75, 1.0))]
+    yokes = [
+        fsae(data, "fsae-cold", "t1_2_2_24_24_s5_n10_100psi", 5.0),
+        fsae(data, "fsae-hot", "t2_3_3_24_24_s5_n100_100psi_with_heat_gun", 6.0),
+    ]
+    return [
+        *(CarrierRecords(_all_runs(rig), (GAS_SPRING, ASYMMETRY, SATURATION)) for rig in press),
+        CarrierRecords(_cut(_all_runs(dyke(data, "dyke", 130.0)), 4.1), (GAS_SPRING, ASYMMETRY)),
+        *(CarrierRecords(rig, (GAS_SPRING, ASYMMETRY, SEAL, FADE)) for rig in yokes),
+        CarrierRecords(_thinned(_all_runs(quanser(data, "quanser", outputs)), 18.0, 2), (FRICTION,)),
+    ]
+
+
+def _all_runs(rig: RigRecords) -> RigRecords:
+    return rig._replace(runs={**rig.fit, **rig.runs, **rig.unseen}, fit={}, unseen={})
+
+
+def _cut(rig: RigRecords, length: float) -> RigRecords:
+    """Return records that follow each other, cut into runs of so many seconds, with the rate of the coil free."""
+    parts, rows = list(rig.runs.values()), round(length * rig.sample_rate)
+    joined = {channel: np.concatenate([part[channel] for part in parts]) for channel in parts[0]}
+    count = len(joined["displacement"]) // rows
+    runs: Runs = {f"piece-{k}": {c: v[k * rows : (k + 1) * rows] for c, v in joined.items()} for k in range(count)}
+    return rig._replace(runs=runs, free=(*rig.free, "actuator.rate"))
+
+
+def _thinned(rig: RigRecords, length: float, every: int) -> RigRecords:
+    rows = round(length * rig.sample_rate)
+    runs: Runs = {name: {c: v[:rows:every] for c, v in table.items()} for name, table in rig.runs.items()}
+    return rig._replace(runs=runs, sample_rate=rig.sample_rate / every)
 
 
 def bench(damper: Mapping[str, float], rate: float) -> Nominal:

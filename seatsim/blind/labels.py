@@ -7,6 +7,8 @@ from typing import Literal, Required, TypedDict, get_args
 Kind = Literal["none", "one", "two", "outside"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 """No effect, one or two effects of the library, something outside the library."""
+CarriedKind = Literal["carried", "untouched"]
+"""One effect on a measured recording, and such a recording as it was measured, of which nobody knows what is true."""
 Block = Literal["damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"]
 BLOCKS: tuple[Block, ...] = get_args(Block)
 EFFECTS = (
@@ -34,7 +36,7 @@ class Specification(TypedDict):
 class Label(TypedDict, total=False):
     """What is true of a case. Lists go in parallel, one entry for each fault; a hand-made label may hold less."""
 
-    kind: Required[Kind]
+    kind: Required[Kind | CarriedKind]
     effects: Required[list[str]]
     """Effects of the library that are at work; empty outside it."""
     blocks: Required[list[str]]
@@ -47,6 +49,7 @@ class Label(TypedDict, total=False):
     net_materialities: list[float]
     """The same, after what a refit inside the parameter tolerance takes away."""
     shapes: list[dict[str, float]]
+    """Parameters of each fault; on a measured recording under the names that the effect's own parameters have."""
     faulty_channels: list[str]
     overlap: float
     """Collinearity of the responses to two faults, 0..1."""

@@ -47,10 +47,10 @@ class Sealed:
     made: Provenance
 
     def extract(self, case: str, folder: Path) -> Path:
-        """Write the unseen recording of a case into `folder`/`case` and return that."""
+        """Write the unseen recording of a case into `folder`/`case` and return that; empty where none was withheld."""
         out = folder / case
         out.mkdir(parents=True, exist_ok=True)
-        for name, content in self.unseen[case].items():
+        for name, content in self.unseen.get(case, {}).items():
             (out / name).write_bytes(content)
         return out
 

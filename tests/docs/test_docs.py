@@ -47,7 +47,7 @@ def test_every_command_and_option_has_an_example():
     examples = "\n".join(re.findall(r"```sh\n(.*?)```", text, re.DOTALL))
     for command in app.registered_commands:
         assert f"seatsim {command.callback.__name__} " in examples
-    for command in ("make", "score"):
+    for command in ("make", "score", "power"):
         assert f"seatsim blind {command} " in examples
     for option in (
         "--out",
@@ -57,6 +57,9 @@ def test_every_command_and_option_has_an_example():
         "--seed",
         "--sealed",
         "--kinds",
+        "--carrier",
+        "--effect",
+        "--draws",
         "--key",
         "--bracket",
         "--with",

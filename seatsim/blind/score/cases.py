@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypedDict
+from typing import NamedTuple, TypedDict
 
 from seatsim.blind.labels import Label
 from seatsim.blind.score.measures import Rate, count_true
@@ -84,9 +84,39 @@ def confusion(cases: Iterable[ScoredCase]) -> dict[str, dict[str, int]]:
     return {row: dict(counts[row].most_common()) for row in sorted(counts)}
 
 
+def count_named(cases: Iterable[ScoredCase]) -> dict[str, int]:
+    """Return how often each effect stands first among those selected, most often first, else the verdict."""
+    counts = Counter(_first_selected(case.verdict) for case in cases)
+    return dict(counts.most_common())
+
+
+def _first_selected(verdict: Verdict) -> str:
+    return next((name for name in verdict.causes if name in verdict.selected), verdict.verdict)
+
+
+class FoundSize(NamedTuple):
+    """A parameter of an effect that was found: its true and its estimated value."""
+
+    case: str
+    effect: str
+    parameter: str
+    true: float
+    found: float
+
+
+def compare_sizes(cases: Iterable[ScoredCase]) -> list[FoundSize]:
+    """Return true and estimated parameters of the same name, of the cases in which the effect is selected."""
+    found = []
+    for case in cases:
+        for effect, true in zip(case.label["effects"], case.label.get("shapes", []), strict=False):
+            estimated = case.verdict.parameters.get(effect, {}) if effect in case.verdict.selected else {}
+            found += [FoundSize(case.name, effect, p, v, estimated[p]) for p, v in true.items() if p in estimated]
+    return found
+
+
 def _true_name(label: Label) -> str:
     match label["kind"]:
-        case "one":
+        case "one" | "carried":
             return label["effects"][0]
         case "outside":
             return f"outside ({label['blocks'][0]})"

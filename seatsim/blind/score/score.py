@@ -11,12 +11,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.blind.labels import EFFECTS, KINDS, Kind, Label
+from seatsim.blind.labels import EFFECTS, KINDS, Label
 from seatsim.blind.processes import Progress
 from seatsim.blind.score.cases import (
     Failure,
+    FoundSize,
     ScoredCase,
+    compare_sizes,
     confusion,
+    count_named,
     describe_failure,
     missing_channels,
     pair,
@@ -26,7 +29,14 @@ from seatsim.blind.score.cases import (
 )
 from seatsim.blind.score.measures import Bin, Rate, brier_score, calibration_error, count_true, reliability
 from seatsim.blind.score.shrink import ShrinkScore, score_shrink
-from seatsim.blind.score.verdicts import NAMING, Verdict, is_block_first, is_isolable_group_first, read_verdict
+from seatsim.blind.score.verdicts import (
+    NAMING,
+    Verdict,
+    is_block_first,
+    is_isolable_group_first,
+    is_wrong_name,
+    read_verdict,
+)
 from seatsim.blind.sealed import unseal
 from seatsim.schema.errors import InputError
 
@@ -36,7 +46,7 @@ class Score:
     """All figures of a set, under the names of `score.json`; rates hold how many of how many."""
 
     right: Rate
-    kinds: dict[Kind, Rate]
+    kinds: dict[str, Rate]
     outside_with_block: Rate
     """Outside the library: refused, and the right block first."""
     top1: Rate
@@ -47,6 +57,8 @@ class Score:
     """Something is wrong: the first block is one where it is."""
     block_coarse: Rate
     """The same, with blocks that the channels cannot tell apart taken for one."""
+    wrong_names: Rate
+    """One effect, simulated or carried: an effect is selected, and the first is neither right nor in a right group."""
     false_alarms: Rate
     detected: Rate
     two_recall: Rate
@@ -66,6 +78,10 @@ class Score:
     by_size: dict[str, Rate]
     failures: list[Failure]
     cases: int
+    untouched: dict[str, int]
+    """What was named first, and how often, on measured recordings without any effect put in; not scored."""
+    found_sizes: list[FoundSize]
+    """Parameters of carried effects that were found, beside the true ones."""
 
     def as_dict(self) -> dict[str, object]:
         """Return the score as it stands in `score.json`."""
@@ -108,21 +124,24 @@ def score_verdicts(
     labels: Mapping[str, Label], verdicts: Mapping[str, Verdict], shrink: ShrinkScore | None = None
 ) -> Score:
     """Return the score of verdicts by case against labels by case."""
-    cases = pair(labels, verdicts)
-    kinds = {kind: [case for case in cases if case.label["kind"] == kind] for kind in KINDS}
+    every = pair(labels, verdicts)
+    cases = [case for case in every if case.label["kind"] != "untouched"]
+    kinds = {kind: [case for case in cases if case.label["kind"] == kind] for kind in (*KINDS, "carried")}
+    known = kinds["one"] + kinds["carried"]
     faulty = [case for case in cases if case.label["kind"] != "none"]
     stated, true = _marginals(cases)
     table = reliability(stated, true)
     recall, precision = _recall_and_precision(kinds["two"])
-    single = kinds["one"] + kinds["outside"]
+    single = known + kinds["outside"]
     return Score(
         right=rate_right(cases),
         kinds={kind: rate_right(some) for kind, some in kinds.items() if some},
         outside_with_block=count_true([c.right and is_block_first(c.label, c.verdict) for c in kinds["outside"]]),
-        top1=_rate_among_first(kinds["one"], 1),
-        top3=_rate_among_first(kinds["one"], 3),
+        top1=_rate_among_first(known, 1),
+        top3=_rate_among_first(known, 3),
         block=count_true([is_block_first(c.label, c.verdict) for c in faulty]),
         block_coarse=count_true([is_isolable_group_first(c.label, c.verdict) for c in faulty]),
+        wrong_names=count_true([is_wrong_name(c.label, c.verdict) for c in known]),
         false_alarms=count_true([c.verdict.verdict != "none" for c in kinds["none"]]),
         detected=count_true([c.verdict.verdict not in ("none", "missing") for c in faulty]),
         two_recall=recall,
@@ -132,13 +151,15 @@ def score_verdicts(
         reliability=table,
         shrink=shrink,
         group_size=_mean_group_size(cases),
-        effects=rates_by(kinds["one"], lambda label: label["effects"][:1]),
+        effects=rates_by(known, lambda label: label["effects"][:1]),
         forms=rates_by(single, lambda label: label.get("forms", [])),
         confusion=confusion(cases),
         by_missing=rates_by(cases, missing_channels),
         by_size=rates_by(single, strength_class),
         failures=[describe_failure(case) for case in cases if not case.right],
-        cases=len(cases),
+        cases=len(every),
+        untouched=count_named([case for case in every if case.label["kind"] == "untouched"]),
+        found_sizes=compare_sizes(kinds["carried"]),
     )
 
 

@@ -17,6 +17,7 @@ def tables(score: Score, width: int = 12) -> list[Table]:
         _rates("by effect", score.effects),
         _confusion(score),
         _reliability(score),
+        *([_found_sizes(score)] if score.found_sizes else []),
         _failures(score, width),
     ]
 
@@ -38,6 +39,7 @@ def _summary(score: Score) -> Table:
     named = {"right": score.right} | {f"right: {kind}": value for kind, value in score.kinds.items()}
     named |= {
         "outside: unknown and right block": score.outside_with_block, "top-1 (one effect)": score.top1,
+        "wrong effect named (one effect)": score.wrong_names,
         "top-3 (one effect)": score.top3, "right block first": score.block,
         "right block first, merged as isolable": score.block_coarse, "false alarms": score.false_alarms,
         "gap detected": score.detected, "two effects: recall": score.two_recall,
@@ -46,6 +48,9 @@ def _summary(score: Score) -> Table:
     for name, value in named.items():
         if value.total:
             table.add_row(name, *_row(value))
+    if score.untouched:
+        said = ", ".join(f"{name} {count}" for name, count in score.untouched.items())
+        table.add_row("untouched carriers (not scored)", said, str(sum(score.untouched.values())), "")
     table.add_section()
     table.add_row("calibration error (ECE)", f"{score.calibration_error:.4f}", "", "")
     table.add_row("Brier", f"{score.brier:.4f}", "", "")
@@ -77,6 +82,13 @@ def _reliability(score: Score) -> Table:
     table = _table("reliability of the marginal probabilities", "from - to", "stated", "true", "count")
     for part in score.reliability:
         table.add_row(f"{part.low:.4f} - {part.high:.4f}", f"{part.stated:.4f}", f"{part.true:.4f}", str(part.count))
+    return table
+
+
+def _found_sizes(score: Score) -> Table:
+    table = _table("sizes of effects that were found", "case", "effect", "parameter", "true", "found")
+    for size in score.found_sizes:
+        table.add_row(size.case, size.effect, size.parameter, f"{size.true:.4g}", f"{size.found:.4g}")
     return table
 
 

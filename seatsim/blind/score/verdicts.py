@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NotRequired, Required, TypedDict
 
@@ -31,6 +31,8 @@ class Verdict:
     shrink: float | None = None
     shrink_interval: tuple[float, float] | None = None
     augmented: Path | None = None
+    parameters: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """Estimated parameters by effect and name."""
 
     @property
     def group(self) -> tuple[str, ...]:
@@ -64,9 +66,14 @@ def read_verdict(path: Path) -> Verdict:
         raise InputError(f"{path}: is not a diagnosis as the contract has it: {error!r}") from error
 
 
+class _Estimate(TypedDict):
+    value: float
+
+
 class _Cause(TypedDict):
     effect: str
     probability: NotRequired[float | None]
+    parameters: NotRequired[dict[str, _Estimate | str] | None]
 
 
 class _Place(TypedDict):
@@ -107,11 +114,18 @@ def _parse(data: _Diagnosis, path: Path) -> Verdict:
         shrink=None if shrink is None else float(shrink),
         shrink_interval=_interval(gap.get("shrink_interval")),
         augmented=path.parent / str(augmented) if augmented else None,
+        parameters={str(cause["effect"]): _values(cause) for cause in ranked},
     )
 
 
 def _probability(cause: _Cause) -> float:
     return float(cause.get("probability") or 0.0)
+
+
+def _values(cause: _Cause) -> dict[str, float]:
+    """Return the estimated numbers of a cause; what is a word, such as a channel, is left out."""
+    parameters = cause.get("parameters") or {}
+    return {name: float(found["value"]) for name, found in parameters.items() if not isinstance(found, str)}
 
 
 def _groups(groups: list[list[str]] | None) -> tuple[tuple[str, ...], ...]:
@@ -128,7 +142,8 @@ def is_right(label: Label, verdict: Verdict) -> bool:
     """Tell whether a diagnosis is right.
 
     none: verdict none. One: named (known, ambiguous), and the first cause is it or a group of at most two holds it.
-    Two: named, and selected is exactly both. Outside: verdict unknown.
+    Two: named, and selected is exactly both. Outside: verdict unknown. Carried: as one, and under `unknown` too, since
+    a nominal misses much else of a measured rig.
     """
     effects = set(label["effects"])
     match label["kind"]:
@@ -138,11 +153,16 @@ def is_right(label: Label, verdict: Verdict) -> bool:
             return verdict.verdict == "unknown"
         case "two":
             return verdict.verdict in NAMING and set(verdict.selected) == effects
-    if verdict.verdict not in NAMING or not verdict.causes:
+    naming = (*NAMING, "unknown") if label["kind"] == "carried" else NAMING
+    if verdict.verdict not in naming or not verdict.causes:
         return False
-    if verdict.causes[0] in effects:
-        return True
-    return any(len(group) <= LARGEST_GROUP and effects <= set(group) for group in verdict.groups)
+    pairs = [set(group) for group in verdict.groups if len(group) <= LARGEST_GROUP]
+    return verdict.causes[0] in effects or any(effects <= pair for pair in pairs)
+
+
+def is_wrong_name(label: Label, verdict: Verdict) -> bool:
+    """Tell whether a wrong effect is named first: one is selected, and neither it nor its group of two is right."""
+    return bool(verdict.selected) and verdict.verdict in (*NAMING, "unknown") and not is_right(label, verdict)
 
 
 def is_block_first(label: Label, verdict: Verdict) -> bool:

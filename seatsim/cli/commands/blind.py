@@ -1,4 +1,4 @@
-"""The commands that check diagnoses on recordings whose effects are sealed: blind make, blind score."""
+"""The commands that check diagnoses on recordings whose effects are sealed: blind make, blind score, blind power."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import typer
 
 from seatsim.cli.options import Out, OwnCode
 from seatsim.cli.terminal import count_progress, out, say, wrote_one
+from seatsim.schema.errors import InputError
 
 blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed.", no_args_is_help=True)
 
@@ -22,12 +23,22 @@ def blind_make(
     kinds: Annotated[
         str, typer.Option("--kinds", help="mixed, varied, none, one, two, outside, null or background.")
     ] = "mixed",
+    carrier: Annotated[
+        Path | None, typer.Option("--carrier", help="A measured recording into which the effects are put instead.")
+    ] = None,
+    own_code: OwnCode = None,
 ) -> None:
     """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""
+    from seatsim.blind.carrier.make import make_on_carrier
     from seatsim.blind.make.make import make
 
+    if carrier is not None and kinds != "mixed":
+        raise InputError(f"--kinds {kinds}: a measured recording carries one effect a case; leave out --kinds")
     with count_progress("making recordings") as count:
-        key = make(cases, seed, out_folder, sealed, count, kinds)
+        if carrier is not None:
+            key = make_on_carrier(carrier, cases, seed, out_folder, sealed, count)
+        else:
+            key = make(cases, seed, out_folder, sealed, count, kinds)
     out.print(f"written: {cases} recordings in {out_folder}, labels sealed in {sealed}", markup=False, highlight=False)
     say(f"key (shown once): {key}")
 
@@ -56,3 +67,33 @@ def blind_score(
     for table in tables(found):
         out.print(table)
     wrote_one(write_json((out_folder or folder) / "score.json", found.as_dict()))
+
+
+@blind.command("power")
+def blind_power(
+    recording: Annotated[Path, typer.Argument(help="A measured recording with an identified nominal.")],
+    effects: Annotated[
+        list[str] | None, typer.Option("--effect", help="Only this effect; may be given several times.")
+    ] = None,
+    draws: Annotated[int, typer.Option("--draws", min=1, help="Cases at each size.")] = 10,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of the draws.")] = 0,
+    out_folder: Out = None,
+    own_code: OwnCode = None,
+) -> None:
+    """Put effects of ever smaller size into a recording, and print the smallest found in nine of ten draws."""
+    from seatsim.blind.carrier.power import SIZES, Power, measure_power
+    from seatsim.cli.outputs.diagnosis import diagnose_one
+    from seatsim.cli.outputs.power import make_power_table
+    from seatsim.schema.files import write_json
+
+    folder = out_folder or Path("out") / f"{recording.resolve().name}-power"
+    with count_progress("diagnosing") as count:
+
+        def tell(power: Power, done: int, total: int) -> None:
+            count(done, total)
+            size = "not found" if power.smallest is None else f"{power.smallest:g} std"
+            say(f"{power.effect}: {size} (of {', '.join(f'{s:g}' for s in SIZES)})")
+
+        found = measure_power(recording, folder, diagnose_one, tuple(effects or ()), draws, seed, progress=tell)
+    out.print(make_power_table(found))
+    wrote_one(write_json(folder / "power.json", {"draws": draws, "effects": [power.as_dict() for power in found]}))

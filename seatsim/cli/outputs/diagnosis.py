@@ -101,10 +101,10 @@ def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
     open_cases = [case for case in cases if not (case / "diagnosis" / "diagnosis.json").exists()]
     count(len(cases) - len(open_cases), len(cases))
     jobs, kept = [(case,) for case in open_cases], len(cases) - len(open_cases)
-    run_jobs(_diagnose_one, jobs, PROCESSES, lambda done, _: count(kept + done, len(cases)))
+    run_jobs(diagnose_one, jobs, PROCESSES, lambda done, _: count(kept + done, len(cases)))
 
 
-def _diagnose_one(case: Path) -> None:
+def diagnose_one(case: Path) -> None:
     """Diagnose one case; one that cannot be diagnosed is left without, and counts as wrong."""
     try:
         write_diagnosis(diagnose(case), case / "diagnosis")

@@ -1,0 +1,173 @@
+"""The power of a diagnosis on a rig: for each effect, how small it may be and still be found in nine of ten draws."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import shutil
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.blind.carrier.draw import DrawnCase, choose_runs, draw_amount
+from seatsim.blind.carrier.injections.catalogue import draw_changes
+from seatsim.blind.carrier.make import label
+from seatsim.blind.carrier.recorded import encode_carrier, read_carrier
+from seatsim.blind.carrier.replays import Ruler
+from seatsim.blind.make.folder import write_folder
+from seatsim.blind.processes import run_jobs
+from seatsim.blind.score.verdicts import is_right, read_verdict
+from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.files import write_json, write_text
+
+SIZES = (0.06, 0.1, 0.16, 0.25, 0.4)
+"""Standard deviations by which the effect moves a compared channel: from just material to more than strong."""
+FOUND_SHARE = 0.9
+BATCH = 4
+"""Draws that are begun before those missed are counted."""
+Diagnose = Callable[[Path], None]
+"""Writes CASE/diagnosis/diagnosis.json; it must be picklable."""
+
+
+class Trial(NamedTuple):
+    """One draw: what was put in, None where the recording does not allow that size, and whether it was found."""
+
+    parameters: Mapping[str, float] | None
+    found: bool
+
+
+class Setting(NamedTuple):
+    """What the trials of an effect have in common; it is picklable, for other processes."""
+
+    recording: Path
+    out: Path
+    diagnose: Diagnose
+    effect: str
+    seed: int
+
+
+class Power(NamedTuple):
+    """Of an effect: the smallest size that is found, None where none is, and the trials at each size looked at."""
+
+    effect: str
+    smallest: float | None
+    trials: dict[float, list[Trial]]
+
+    def parameters(self) -> dict[str, float]:
+        """Return the mean size of the effect's parameters at the smallest size that is found."""
+        trials = [] if self.smallest is None else self.trials[self.smallest]
+        put_in = [trial.parameters for trial in trials if trial.parameters is not None]
+        names = sorted(set.intersection(*(set(parameters) for parameters in put_in))) if put_in else []
+        return {name: float(np.mean([abs(parameters[name]) for parameters in put_in])) for name in names}
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the power as it stands in `power.json`."""
+        tried = {
+            f"{size:g}": [trial.found for trial in trials if trial.parameters is not None]
+            for size, trials in self.trials.items()
+        }
+        return {"effect": self.effect, "smallest": self.smallest, "parameters": self.parameters(), "found": tried}
+
+
+def measure_power(
+    recording: Path, out: Path, diagnose: Diagnose, effects: Sequence[str] = (), draws: int = 10, seed: int = 0,
+    processes: int = 2, progress: Callable[[Power, int, int], None] | None = None,
+) -> list[Power]:  # fmt: skip
+    """Return the power for each effect that a recording allows, or for those named, by bisection over SIZES.
+
+    A size is given up once more draws are missed than a tenth. Every case stays in `out`/cases with its diagnosis, so
+    that a call broken off goes on; `progress` is called after each effect with it, those done and all.
+
+    Raises:
+        InputError: the recording is none, or does not allow an effect that is named.
+    """
+    carrier = read_carrier(recording)
+    possible = sorted({change.effect for change in draw_changes(carrier, np.random.default_rng(seed))})
+    for name in effects:
+        if name not in possible:
+            permitted = f"{nearest(name, possible)}; this recording allows {', '.join(possible)}"
+            raise InputError(f"{recording}: '{name}' cannot be put in{permitted}")
+    _begin(recording, out, seed)
+    found: list[Power] = []
+    chosen = list(effects) or possible
+    for effect in chosen:
+        setting = Setting(recording, out, diagnose, effect, seed)
+        found.append(_bisect(setting, draws, processes))
+        if progress:
+            progress(found[-1], len(found), len(chosen))
+    return found
+
+
+def _bisect(setting: Setting, draws: int, processes: int) -> Power:
+    """Return the smallest size that is found, taking what is found at one size to be found at every larger one.
+
+    Where a size is more than the recording allows, smaller ones are looked at.
+    """
+    low, high, smallest = -1, len(SIZES), None
+    trials: dict[float, list[Trial]] = {}
+    while high - low > 1:
+        middle = (low + high) // 2
+        size = SIZES[middle]
+        trials[size] = _try_size(setting, size, draws, processes)
+        found = sum(trial.found for trial in trials[size]) >= math.ceil(FOUND_SHARE * draws)
+        too_large = all(trial.parameters is None for trial in trials[size])
+        smallest = size if found else smallest
+        low, high = (low, middle) if found or too_large else (middle, high)
+    return Power(setting.effect, smallest, dict(sorted(trials.items())))
+
+
+def _try_size(setting: Setting, size: float, draws: int, processes: int) -> list[Trial]:
+    """Return the trials at a size, fewer than asked for where so many are missed already that it is not found."""
+    trials: list[Trial] = []
+    allowed = draws - math.ceil(FOUND_SHARE * draws)
+    for first in range(0, draws, BATCH):
+        batch = range(first, min(first + BATCH, draws))
+        trials += run_jobs(try_draw, [(setting, size, k) for k in batch], processes)
+        if sum(not trial.found for trial in trials) > allowed:
+            break
+    return trials
+
+
+def try_draw(setting: Setting, size: float, draw: int) -> Trial:
+    """Return one trial, read from its file where it was made before."""
+    name = f"{setting.effect}-{size:g}-{draw + 1:02d}"
+    case, note = setting.out / "cases" / name, setting.out / "cases" / f"{name}.json"
+    if note.is_file():
+        known = json.loads(note.read_text(encoding="utf-8"))
+        return Trial(known["parameters"], bool(known["found"]))
+    drawn = _draw(setting, size, draw)
+    trial = Trial(None, False) if drawn is None else _diagnosed(setting, case, drawn)
+    write_json(note, trial._asdict())
+    return trial
+
+
+def _draw(setting: Setting, size: float, draw: int) -> DrawnCase | None:
+    rng = np.random.default_rng([setting.seed, draw])
+    carrier = choose_runs(read_carrier(setting.recording), rng)
+    changes = [change for change in draw_changes(carrier, rng) if change.effect == setting.effect]
+    ruler, order = Ruler(carrier), rng.permutation(len(changes))
+    return next((drawn for k in order if (drawn := draw_amount(ruler, changes[k], size)) is not None), None)
+
+
+def _diagnosed(setting: Setting, case: Path, drawn: DrawnCase) -> Trial:
+    if case.is_dir():
+        shutil.rmtree(case)
+    carrier = drawn.altered.carrier
+    write_folder(case, encode_carrier(carrier, tuple(carrier.tables)))
+    setting.diagnose(case)
+    said = read_verdict(case / "diagnosis" / "diagnosis.json")
+    return Trial(drawn.altered.parameters, is_right(label(drawn), said))
+
+
+def _begin(recording: Path, out: Path, seed: int) -> None:
+    """Note what the folder belongs to, so that cases of another recording are not taken for this one's."""
+    digest = hashlib.sha256(str(seed).encode())
+    for path in sorted(path for path in recording.iterdir() if path.is_file()):
+        digest.update(path.read_bytes())
+    note = out / "cases" / "made-of.txt"
+    if note.is_file() and note.read_text(encoding="utf-8") != digest.hexdigest():
+        raise InputError(f"{out}: holds cases of another recording or seed; delete it, or give another --out")
+    write_text(note, digest.hexdigest())

@@ -1,0 +1,172 @@
+"""What is put into a recording is what its label says: the effect of that name and size takes the gap away again."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from seatsim.blind.carrier.change import Change
+from seatsim.blind.carrier.draw import DrawnCase, draw_amount
+from seatsim.blind.carrier.injections.catalogue import draw_changes
+from seatsim.blind.carrier.recorded import Carrier
+from seatsim.blind.carrier.replays import Ruler
+from seatsim.blind.carrier.signals import low_pass, shifted, shifted_rows, slide, slope
+from seatsim.blind.labels import EFFECTS
+
+from .carriers import RATE, bench_carrier, seat_carrier
+
+SIZE = 0.1
+LEFT = 0.4
+FIXED = {"sensor.clock_skew": {"hold": 1.0}}
+
+
+def put_in(carrier: Carrier, effect: str, form: str = "", channel: str = "", seed: int = 0) -> DrawnCase:
+    changes = draw_changes(carrier, np.random.default_rng(seed))
+    chosen = [c for c in changes if c.effect == effect and form in c.form and c.channel == channel]
+    drawn = draw_amount(Ruler(carrier), chosen[0], SIZE)
+    assert drawn is not None
+    return drawn
+
+
+def share_left(carrier: Carrier, drawn: DrawnCase) -> float:
+    """Return the gap with the effect in the nominal over that without, both above the untouched one."""
+    ruler, altered = Ruler(carrier), drawn.altered.carrier
+    parameters: dict[str, Any] = {**drawn.altered.parameters, **FIXED.get(drawn.change.effect, {})}
+    if drawn.change.channel:
+        parameters["channel"] = drawn.change.channel
+    effects = [*altered.nominal.get("effects", []), {"effect": drawn.change.effect, "parameters": parameters}]
+    mended = dataclasses.replace(altered, nominal={**altered.nominal, "effects": effects})
+    return ruler.gap(mended) / ruler.gap(altered)
+
+
+@pytest.mark.parametrize(
+    ("effect", "form", "channel"),
+    [
+        ("damper.seal_friction", "", ""),
+        ("damper.gas_spring", "stiffness", ""),
+        ("sensor.gain", "", "damper_force"),
+        ("sensor.gain", "", "displacement"),
+        ("sensor.bias", "bias", "damper_force"),
+        ("sensor.bias", "drift", "damper_force"),
+        ("sensor.lag", "", "damper_force"),
+        ("sensor.lag", "", "displacement"),
+        ("sensor.clock_skew", "", ""),
+        ("coil.delay", "", ""),
+        ("coil.lag", "", ""),
+    ],
+)
+def test_on_a_bench_the_named_effect_takes_the_gap_away(effect: str, form: str, channel: str) -> None:
+    carrier = bench_carrier()
+    drawn = put_in(carrier, effect, form, channel)
+    assert drawn.size == pytest.approx(SIZE, rel=0.45)
+    assert share_left(carrier, drawn) < LEFT
+
+
+@pytest.mark.parametrize(
+    ("effect", "channel"),
+    [
+        ("suspension.friction", ""),
+        ("suspension.progressive_spring", ""),
+        ("driver.mass", ""),
+        ("sensor.gain", "driver_acceleration"),
+        ("sensor.lag", "floor_acceleration"),
+        ("sensor.bias", "suspension_displacement"),
+    ],
+)
+def test_in_a_linear_seat_the_named_effect_takes_the_gap_away(effect: str, channel: str) -> None:
+    carrier = seat_carrier()
+    assert share_left(carrier, put_in(carrier, effect, "", channel)) < LEFT
+
+
+def test_in_a_play_the_recorded_motion_runs_ahead_of_the_force_by_half_the_gap() -> None:
+    carrier = bench_carrier()
+    altered = put_in(carrier, "damper.free_play").altered
+    for run, table in carrier.tables.items():
+        shown, force = altered.carrier.tables[run], table["damper_force"]
+        ahead = shown["displacement"] - table["displacement"]
+        assert np.array_equal(shown["damper_force"], force)
+        strong = np.abs(force) > 0.3 * np.std(carrier.pooled("damper_force"))
+        assert np.allclose(np.ptp(ahead), altered.parameters["gap"])
+        assert np.allclose((ahead - ahead[force > 0].max())[strong & (force > 0)], 0.0)
+
+
+def test_with_a_logged_coil_a_limit_is_what_flowed_and_the_log_may_run_ahead() -> None:
+    carrier = bench_carrier(logged_coil=True)
+    drawn = put_in(carrier, "coil.current_limit")
+    assert drawn.altered.parameters["limit"] == pytest.approx(1.0)
+    assert share_left(carrier, drawn) < LEFT
+    names = {c.form for seed in range(8) for c in draw_changes(carrier, np.random.default_rng(seed))}
+    assert {"late log", "early log"} < names
+    assert "early log" not in {
+        c.form for s in range(8) for c in draw_changes(bench_carrier(), np.random.default_rng(s))
+    }
+
+
+def test_every_change_has_a_name_of_the_contract_and_leaves_the_carrier_as_it_was() -> None:
+    for carrier in (bench_carrier(), bench_carrier(logged_coil=True), seat_carrier()):
+        before = {run: {name: values.copy() for name, values in table.items()} for run, table in carrier.tables.items()}
+        for change in draw_changes(carrier, np.random.default_rng(1)):
+            assert change.effect in EFFECTS
+            change.alter(change.span[1] / 2)
+        for run, table in carrier.tables.items():
+            assert all(np.array_equal(values, before[run][name]) for name, values in table.items())
+
+
+def test_a_mechanism_of_the_nominal_is_taken_out_with_its_parameters() -> None:
+    carrier = put_in(bench_carrier(), "damper.seal_friction").altered.carrier
+    stated = {"effect": "damper.seal_friction", "parameters": {"force": 60.0, "presliding": 5e-5}}
+    carrier = dataclasses.replace(carrier, nominal={**carrier.nominal, "effects": [stated]})
+    removed = [c for c in draw_changes(carrier, np.random.default_rng(0)) if "removed" in c.form]
+    altered = removed[0].alter(1.0)
+    assert (removed[0].effect, altered.parameters["force"]) == ("damper.seal_friction", 60.0)
+    assert altered.carrier.nominal["effects"] == []
+    assert altered.carrier.tables is carrier.tables
+
+
+def offset(carrier: Carrier, amount: float) -> Carrier:
+    tables = {r: {**t, "damper_force": t["damper_force"] + amount} for r, t in carrier.tables.items()}
+    return dataclasses.replace(carrier, tables=tables)
+
+
+def test_a_size_counts_in_standard_deviations_beyond_the_tolerance() -> None:
+    carrier = bench_carrier()
+    spread = float(np.std(carrier.pooled("damper_force")))
+    assert Ruler(carrier).size(offset(carrier, 0.1 * spread)) == pytest.approx(0.1, rel=1e-3)
+    gain: Callable[[Carrier], Carrier] = lambda c: dataclasses.replace(  # noqa: E731
+        c, tables={r: {**t, "damper_force": 1.08 * t["damper_force"]} for r, t in c.tables.items()}
+    )
+    known, loose = bench_carrier(0.0), bench_carrier(0.1)
+    assert Ruler(known).size(gain(known)) == pytest.approx(0.08, rel=0.05)
+    assert Ruler(loose).size(gain(loose)) < 0.02
+
+
+def test_an_effect_whose_opposite_is_in_the_background_is_not_put_in() -> None:
+    carrier = bench_carrier()
+    spread = float(np.std(carrier.pooled("damper_force")))
+    biased = offset(carrier, -0.2 * spread)
+    assert Ruler(carrier).stands_out(offset(carrier, 0.2 * spread))
+    assert not Ruler(biased).stands_out(offset(biased, 0.2 * spread))
+    opposed = Change("sensor.bias", "", "", (0.0, 1.0), lambda a: put(offset(biased, a * spread)))
+    assert draw_amount(Ruler(biased), opposed, 0.2) is None
+
+
+def put(carrier: Carrier) -> Any:
+    from seatsim.blind.carrier.change import Altered
+
+    return Altered(carrier, {})
+
+
+def test_signals() -> None:
+    time = np.arange(1000) / RATE
+    wave = np.sin(2.0 * np.pi * time)
+    assert np.allclose(slope(wave, 1.0 / RATE)[20:-20], 2.0 * np.pi * np.cos(2.0 * np.pi * time)[20:-20], atol=1e-3)
+    assert np.allclose(shifted(wave, 0.01, 1.0 / RATE)[10:], wave[:-5][5:], atol=1e-12)
+    assert np.array_equal(shifted_rows(wave, 3)[3:], wave[:-3])
+    late = low_pass(wave, 0.02, 1.0 / RATE)
+    assert np.allclose(late[400:], np.interp(time - 0.01987, time, wave)[400:] / np.hypot(1.0, 0.04 * np.pi), atol=2e-3)
+    rub = slide(np.array([0.0, 1.0, 2.0, 1.5, 1.0, 0.0]), 1.0)
+    assert np.allclose(rub, [0.0, 1.0, 1.0, 0.0, -1.0, -1.0])

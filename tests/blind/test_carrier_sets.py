@@ -1,0 +1,166 @@
+"""Sets on a measured recording, and the smallest size that a diagnosis finds on it."""
+
+from __future__ import annotations
+
+import gzip
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from seatsim import load_recording
+from seatsim.blind.carrier.make import UNTOUCHED, make_on_carrier, take_turns
+from seatsim.blind.carrier.power import SIZES, Power, Trial, measure_power
+from seatsim.blind.carrier.recorded import read_carrier
+from seatsim.blind.labels import EFFECTS
+from seatsim.blind.score.score import score_verdicts
+from seatsim.blind.score.tables import tables
+from seatsim.blind.score.verdicts import Verdict, is_right, is_wrong_name
+from seatsim.blind.sealed import unseal
+from seatsim.cli.outputs.power import make_power_table
+from seatsim.schema.errors import InputError
+
+from .carriers import bench_carrier, write_carrier
+
+FINEST = 0.16
+"""Smallest size that the diagnosis of these tests finds."""
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_carrier(bench_carrier(0.02), tmp_path_factory.mktemp("carrier") / "mine")
+
+
+def files_of(folder: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*.*")) if p.is_file()}
+
+
+def test_a_set_is_sealed_repeatable_and_silent(recording: Path, tmp_path: Path) -> None:
+    def make(name: str) -> str:
+        return make_on_carrier(recording, 3, 5, tmp_path / name, tmp_path / f"{name}.sealed", processes=1)
+
+    first, second = make("first"), make("second")
+    opened = unseal(tmp_path / "first.sealed", first, tmp_path / "first")
+    assert opened.labels == unseal(tmp_path / "second.sealed", second, tmp_path / "second").labels
+    cases = {name: data for name, data in files_of(tmp_path / "first").items() if "seal" not in name}
+    assert cases == {name: data for name, data in files_of(tmp_path / "second").items() if "seal" not in name}
+    for name, data in cases.items():
+        text = (gzip.decompress(data) if name.endswith(".gz") else data).decode().splitlines()
+        assert not [word for word in (*EFFECTS, "carried", UNTOUCHED) if any(word in line for line in text)]
+    label = next(label for label in opened.labels.values() if label["kind"] == "carried")
+    assert label["effects"][0] in EFFECTS
+    assert 1.0 < label["materialities"][0] < 10.0
+    assert list(load_recording(tmp_path / "first" / "case-0001").runs) == ["run-0", "run-1"]
+    assert list(load_recording(opened.extract("case-0001", tmp_path)).runs) == ["run-2"]
+
+
+def test_effects_and_the_untouched_carrier_take_turns(recording: Path) -> None:
+    import numpy as np
+
+    turns = take_turns(read_carrier(recording), 60, np.random.default_rng(0))
+    per_round = len(set(turns))
+    assert UNTOUCHED in turns
+    assert {"coil.delay", "damper.seal_friction", "sensor.gain"} < set(turns)
+    assert len(set(turns[:per_round])) == per_round
+
+
+def test_labels_beside_the_recordings_and_short_runs_are_refused(recording: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="must lie elsewhere"):
+        make_on_carrier(recording, 1, 1, tmp_path / "set", tmp_path / "set" / "labels.sealed")
+    carrier = bench_carrier()
+    cut = {run: {c: v[:400] for c, v in table.items()} for run, table in carrier.tables.items()}
+    short = write_carrier(type(carrier)(carrier.header, carrier.nominal, cut), tmp_path / "short")
+    with pytest.raises(InputError, match="shorter than"):
+        read_carrier(short)
+
+
+def find_from_finest(case: Path) -> None:
+    """Say what is put in, as the name of the folder has it, from a size on."""
+    effect, size, _ = case.name.rsplit("-", 2)
+    said = [{"effect": effect, "probability": 0.9, "parameters": {}}] if float(size) >= FINEST else []
+    (case / "diagnosis").mkdir()
+    (case / "diagnosis" / "diagnosis.json").write_text(
+        json.dumps({"verdict": "known", "causes": said, "selected": [c["effect"] for c in said]})
+    )
+
+
+def never(case: Path) -> None:
+    raise AssertionError(f"{case}: diagnosed again")
+
+
+def test_power_is_the_smallest_size_found_and_goes_on_where_it_stopped(recording: Path, tmp_path: Path) -> None:
+    told: list[tuple[str, int, int]] = []
+    out, effects = tmp_path / "power", ("sensor.bias", "coil.delay")
+
+    def measure(diagnose: Any) -> list[Power]:
+        return measure_power(
+            recording, out, diagnose, effects, 2, processes=1,
+            progress=lambda power, done, total: told.append((power.effect, done, total)),
+        )  # fmt: skip
+
+    found = measure(find_from_finest)
+    assert told == [("sensor.bias", 1, 2), ("coil.delay", 2, 2)]
+    assert found[0].smallest == FINEST
+    assert sorted(found[0].trials) == [0.06, 0.1, 0.16]
+    assert [trial.found for trial in found[0].trials[0.06]] == [False, False]
+    assert measure(never) == found
+    assert make_power_table(found).row_count == 2
+    with pytest.raises(InputError, match="another recording or seed"):
+        measure_power(recording, out, never, effects, 2, seed=9)
+    with pytest.raises(InputError, match=r"'coil\.dely' cannot be put in.*coil\.delay"):
+        measure_power(recording, out, never, ["coil.dely"])
+
+
+def test_power_looks_at_smaller_sizes_where_a_recording_allows_no_larger_one(tmp_path: Path) -> None:
+    quick_coil = write_carrier(bench_carrier(rate=100.0), tmp_path / "quick")
+    found = measure_power(quick_coil, tmp_path / "power", find_from_finest, ["coil.lag"], 1, processes=1)[0]
+    assert found.trials[SIZES[2]] == [Trial(None, False)]
+    assert [trial.found for trial in found.trials[SIZES[0]]] == [False]
+    assert (found.smallest, found.as_dict()["found"]) == (None, {"0.06": [False], "0.1": [False], "0.16": []})
+
+
+def test_power_of_what_is_never_found_has_no_size() -> None:
+    power = Power("sensor.gain", None, {SIZES[-1]: [Trial({"error": 0.1}, False)]})
+    assert power.parameters() == {}
+    assert power.as_dict()["found"] == {"0.4": [False]}
+    assert Power(
+        "sensor.gain", 0.4, {0.4: [Trial({"error": -0.2}, True), Trial({"error": 0.4}, True)]}
+    ).parameters() == {"error": pytest.approx(0.3)}
+
+
+CARRIED: dict[str, Any] = {
+    "kind": "carried", "effects": ["coil.delay"], "blocks": ["coil"], "materialities": [2.0],
+    "shapes": [{"time": 0.01}], "forms": ["command advanced"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("said", "right", "wrong"),
+    [
+        (Verdict("unknown", causes=("coil.delay",)), True, False),
+        (Verdict("known", causes=("coil.delay",), selected=("coil.delay",)), True, False),
+        (Verdict("ambiguous", causes=("coil.lag",), groups=(("coil.lag", "coil.delay"),)), True, False),
+        (Verdict("unknown", causes=("coil.lag",), selected=("coil.lag",)), False, True),
+        (Verdict("unknown", causes=("coil.lag",)), False, False),
+        (Verdict("none", causes=("coil.delay",)), False, False),
+        (Verdict("missing"), False, False),
+    ],
+)
+def test_what_is_right_on_a_measured_background(said: Verdict, right: bool, wrong: bool) -> None:
+    assert (is_right(CARRIED, said), is_wrong_name(CARRIED, said)) == (right, wrong)
+
+
+def test_a_score_counts_wrong_names_and_sizes_and_leaves_the_untouched_out() -> None:
+    untouched: dict[str, Any] = {"kind": "untouched", "effects": [], "blocks": []}
+    named = Verdict(
+        "unknown", causes=("coil.delay",), selected=("coil.delay",), parameters={"coil.delay": {"time": 0.012}}
+    )
+    wrong = Verdict("known", causes=("driver.mass",), selected=("driver.mass",))
+    found = score_verdicts({"a": CARRIED, "b": CARRIED, "c": untouched}, {"a": named, "b": wrong, "c": wrong})
+    assert (found.right.right, found.right.total, found.cases) == (1, 2, 3)
+    assert (found.wrong_names.right, found.wrong_names.total) == (1, 2)
+    assert found.untouched == {"driver.mass": 1}
+    assert [(s.parameter, s.true, s.found) for s in found.found_sizes] == [("time", 0.01, 0.012)]
+    assert json.dumps(found.as_dict())
+    assert "sizes of effects that were found" in [str(table.title) for table in tables(found)]
