@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from seatsim.recordings.model_error import ModelError
 
 Array = NDArray[np.float64]
 Content = Mapping[str, object]
@@ -47,6 +49,27 @@ class GapFigures(NamedTuple):
     def as_dict(self) -> dict[str, object]:
         """Return the figures as they stand in `diagnosis.json`."""
         return {"overall": self.overall, "channels": self.channels}
+
+
+class RunGaps(NamedTuple):
+    """Gaps of one run: nominal, with refitted parameters, with the effects, of the noise alone; what it shrinks by."""
+
+    run: str
+    before: GapFigures
+    calibrated: GapFigures
+    after: GapFigures
+    floor: GapFigures
+    shrink: float
+
+
+class CalibratedParameter(NamedTuple):
+    """A nuisance parameter of the rig stated, by dotted key, between its bounds."""
+
+    name: str
+    nominal: float
+    value: float
+    bound: tuple[float, float]
+    at_bound: bool
 
 
 @dataclass(frozen=True)
@@ -153,7 +176,7 @@ class Diagnosis:
 
     `sentence` is the answer in one sentence. `notes` are sentences on the data, what the channels cannot distinguish,
     and on cautions. `stochastic` is the selected effect whose signal is random, else empty. `augmented` is the content
-    of `augmented.yaml`.
+    of `augmented.yaml`, `model_error` what that leaves, `by_run` the gaps of every run under the same scenarios.
     """
 
     name: str
@@ -173,3 +196,6 @@ class Diagnosis:
     notes: list[str]
     augmented: Content
     evidence: Evidence
+    by_run: list[RunGaps] = field(default_factory=list)
+    parameters: list[CalibratedParameter] = field(default_factory=list)
+    model_error: ModelError | None = None

@@ -13,6 +13,7 @@ from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_run
+from seatsim.diagnosis.every_run import list_calibrated_parameters, list_gaps, replay_runs, state_model_error
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
 from seatsim.diagnosis.objective import Evaluation, Linearisation
@@ -42,6 +43,18 @@ class Validation:
     calibrated: Evaluation
     augmented: Evaluation
     gaps: Gaps
+
+    @property
+    def scenarios(self) -> tuple[Scenario, Scenario, Scenario]:
+        """The nominal, the calibrated and the augmented scenario."""
+        problem = self.solution.objective.problem
+        first, second, third = (make_scenario(problem, self.nominal, rig) for rig in self.rigs)
+        return first, second, third
+
+    @property
+    def fitted(self) -> Parameters:
+        """Parameters of the augmented rig, of the calibrated one where no effect is stated."""
+        return (self.augmented if self.augmented.parameters.terms else self.calibrated).parameters
 
     @property
     def rigs(self) -> tuple[Parameters, Parameters, Parameters]:
@@ -80,7 +93,7 @@ def state_diagnosis(solution: Solution, notes: Sequence[str], progress: Callable
     problem = objective.problem
     recording = problem.recording
     rig, channels = recording.header.rig, recording.channels
-    causes = _list_causes(validation)
+    causes, runs = _list_causes(validation), replay_runs(problem, validation.scenarios)
     nuisances = solution.selection.linearise_nuisances(objective, decision.chosen)
     at_work = {solution.stochastic, *decision.chosen.parameters.names}
     diagnosis = Diagnosis(
@@ -91,7 +104,8 @@ def state_diagnosis(solution: Solution, notes: Sequence[str], progress: Callable
         held_out=[validation.run], isolable=find_isolable_groups(rig, channels), gap=validation.gaps,
         notes=[*notes, *describe_missing_sensors(rig, channels), *measure_coverage(recording).missing],
         augmented=write_augmented(problem, validation.augmented.parameters),
-        evidence=_collect_evidence(validation, nuisances, causes),
+        evidence=_collect_evidence(validation, nuisances, causes), by_run=list_gaps(problem, runs),
+        parameters=list_calibrated_parameters(problem, validation.fitted), model_error=state_model_error(problem, runs),
     )  # fmt: skip
     return dataclasses.replace(diagnosis, sentence=write_answer(diagnosis))
 

@@ -11,7 +11,7 @@ from ruamel.yaml import YAML
 
 from seatsim.blind.processes import run_jobs
 from seatsim.diagnosis.diagnose import diagnose
-from seatsim.diagnosis.result import Diagnosis
+from seatsim.diagnosis.result import Diagnosis, GapFigures, RunGaps
 from seatsim.report import write_report
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import plain, write_json, write_whole
@@ -47,10 +47,18 @@ def encode_diagnosis(diagnosis: Diagnosis) -> dict[str, object]:
             "before": gap.before.as_dict(), "calibrated": gap.calibrated.as_dict(), "after": gap.after.as_dict(),
             "floor": gap.floor.as_dict(),
             "shrink": gap.shrink, "shrink_interval": list(gap.shrink_interval),
+            "by_run": [_encode_run(each) for each in diagnosis.by_run],
         },
+        "calibrated_parameters": diagnosis.parameters,
+        "model_error": None if diagnosis.model_error is None else diagnosis.model_error.as_dict(),
         "notes": diagnosis.notes, "augmented": "augmented.yaml",
     }  # fmt: skip
     return {name: plain(value) for name, value in fields.items()}
+
+
+def _encode_run(gaps: RunGaps) -> dict[str, object]:
+    """Return the gaps of a run, figures by name as they stand for the held-out run."""
+    return {name: value.as_dict() if isinstance(value, GapFigures) else value for name, value in gaps._asdict().items()}
 
 
 def make_tables(diagnosis: Diagnosis) -> list[Table]:
