@@ -18,6 +18,9 @@ BANDS = 7
 LARGEST_RATIO = 10.0
 """Most by which the measured amplitude of a band may differ from the simulated one and still be followed."""
 
+LARGEST_ERROR = 3.0
+"""Most that counts of an error in a band where a run had next to no signal."""
+
 
 def band_edges(highest: float) -> Array:
     """Return the lower edges in Hz of bands that are octaves below `highest`, the lowest 0, shape (bands,)."""
@@ -80,10 +83,10 @@ class ModelError:
         powers = band_powers(simulated - np.mean(simulated), rate, self.edges)
         return np.asarray(powers * self.ratio[channel] ** 2)
 
-    def predict_remainder(self, channel: str, simulated: Array, rate: float) -> tuple[float, Array]:
-        """Return the mean square that is to stay of a channel beside noise, from all runs and from each."""
-        amplitude = self.predict_amplitude(channel, simulated, rate)
-        return float(self.pooled[channel] ** 2 @ amplitude), np.asarray(self.error[channel] ** 2 @ amplitude)
+    def predict_remainder(self, channel: str, simulated: Array, rate: float) -> Array:
+        """Return the mean square that is to stay of a channel beside noise, by each diagnosed run, shape (runs,)."""
+        limited = np.minimum(self.error[channel], LARGEST_ERROR)
+        return np.asarray(limited**2 @ self.predict_amplitude(channel, simulated, rate))
 
 
 def measure_model_error(

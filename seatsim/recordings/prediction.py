@@ -39,6 +39,8 @@ Array = NDArray[np.float64]
 
 EXCITATION_STD = 0.1
 """Standard deviation of the logarithm of what is missed, between excitations of one kind; on sealed rigs."""
+RATIO_STD = 0.03
+"""Standard deviation of the logarithm of the share of the gap that is left, whatever is missed; on sealed rigs."""
 ONE_RUN_STD = 0.3
 """The same where a single run was diagnosed, so that its spread from run to run is not known."""
 QUANTILE = 1.645
@@ -81,7 +83,7 @@ class MeasuredGaps(NamedTuple):
     @property
     def shrink(self) -> float:
         """By how much the gap shrinks."""
-        return _shrink((self.before.overall, self.after.overall))
+        return 1.0 - _left((self.before.overall, self.after.overall))
 
     def channel(self, name: str) -> tuple[float, float]:
         """Return the gaps of a channel before and after, NaN where it is not compared."""
@@ -165,19 +167,20 @@ def _combine(
         variance = float(np.sum(error.predict_amplitude(name, after[name], rate)))
         if variance < max((NOISE_FACTOR * noise) ** 2, 1e-300):
             continue
-        missed, by_run = error.predict_remainder(name, after[name], rate)
+        missed = error.predict_remainder(name, after[name], rate)
         changed = float(np.mean((after[name] - before[name]) ** 2))
         uncertain = sum(float(np.mean((other[name] - after[name]) ** 2)) for other in shifted)
-        parts.append(np.array([changed, noise**2, missed, uncertain, *by_run]) / variance)
-        channels[name] = _roots(*parts[-1][:3])
+        parts.append(np.array([changed, noise**2, uncertain, *missed]) / variance)
+        channels[name] = _roots(changed / variance, noise**2 / variance, _mean_square(missed) / variance)
     if not parts:
         raise InputError(f"{place}: no channel of the diagnosis is to stand above its noise with these inputs")
     means = np.mean(parts, axis=0)
-    changes, floor, rest, doubt = (float(value) for value in means[:4])
-    gaps, width = _roots(changes, floor, rest), QUANTILE * _spread(means[4:])
-    least = _shrink(_roots(changes, floor, rest * np.exp(2.0 * width) + QUANTILE**2 * doubt))
-    most = _shrink(_roots(changes, floor, rest * np.exp(-2.0 * width)))
-    return Prediction(*gaps, _shrink(gaps), (least, most), channels)
+    changes, floor, doubt = (float(value) for value in means[:3])
+    rest, width = _mean_square(means[3:]), QUANTILE * _spread(means[3:])
+    gaps, share = _roots(changes, floor, rest), np.exp(QUANTILE * RATIO_STD * (changes > 0.0))
+    least = share * _left(_roots(changes, floor, rest * np.exp(2.0 * width) + QUANTILE**2 * doubt))
+    most = _left(_roots(changes, floor, rest * np.exp(-2.0 * width))) / share
+    return Prediction(*gaps, 1.0 - _left(gaps), (1.0 - least, 1.0 - most), channels)
 
 
 def _roots(changed: float, floor: float, missed: float) -> tuple[float, float]:
@@ -185,8 +188,14 @@ def _roots(changed: float, floor: float, missed: float) -> tuple[float, float]:
     return float(np.sqrt(changed + floor + missed)), float(np.sqrt(floor + missed))
 
 
-def _shrink(gaps: tuple[float, float]) -> float:
-    return 1.0 - gaps[1] / gaps[0] if gaps[0] > 0.0 else 0.0
+def _left(gaps: tuple[float, float]) -> float:
+    """Return the share of a gap that is left."""
+    return gaps[1] / gaps[0] if gaps[0] > 0.0 else 1.0
+
+
+def _mean_square(by_run: Array) -> float:
+    """Return the mean square that runs let expect: of their root mean squares, so that no single run rules."""
+    return float(np.mean(np.sqrt(by_run))) ** 2
 
 
 def _spread(by_run: Array) -> float:
