@@ -72,6 +72,18 @@ class CalibratedParameter(NamedTuple):
     at_bound: bool
 
 
+class ErrorBudget(NamedTuple):
+    """Comparison error of a channel and its parts as in ASME V&V 20, RMS on the held-out run in `unit`."""
+
+    channel: str
+    unit: str
+    comparison_error: float
+    u_num: float
+    u_input: float
+    u_d: float
+    model_form: float
+
+
 @dataclass(frozen=True)
 class Gaps:
     """Gaps on held-out runs: nominal, with refitted parameters, with the effects, and that of the noise alone.
@@ -199,3 +211,4 @@ class Diagnosis:
     by_run: list[RunGaps] = field(default_factory=list)
     parameters: list[CalibratedParameter] = field(default_factory=list)
     model_error: ModelError | None = None
+    error_budget: list[ErrorBudget] = field(default_factory=list)

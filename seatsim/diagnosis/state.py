@@ -12,6 +12,7 @@ from seatsim.diagnosis.decide import decide_beside_unknown
 from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
+from seatsim.diagnosis.error_budget import budget_errors
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_run
 from seatsim.diagnosis.every_run import list_calibrated_parameters, list_gaps, replay_runs, state_model_error
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
@@ -106,6 +107,7 @@ def state_diagnosis(solution: Solution, notes: Sequence[str], progress: Callable
         augmented=write_augmented(problem, validation.augmented.parameters),
         evidence=_collect_evidence(validation, nuisances, causes), by_run=list_gaps(problem, runs),
         parameters=list_calibrated_parameters(problem, validation.fitted), model_error=state_model_error(problem, runs),
+        error_budget=budget_errors(problem, validation.scenarios[2], validation.run),
     )  # fmt: skip
     return dataclasses.replace(diagnosis, sentence=write_answer(diagnosis))
 

@@ -51,6 +51,7 @@ def encode_diagnosis(diagnosis: Diagnosis) -> dict[str, object]:
         },
         "calibrated_parameters": diagnosis.parameters,
         "model_error": None if diagnosis.model_error is None else diagnosis.model_error.as_dict(),
+        "error_budget": diagnosis.error_budget,
         "notes": diagnosis.notes, "augmented": "augmented.yaml",
     }  # fmt: skip
     return {name: plain(value) for name, value in fields.items()}
