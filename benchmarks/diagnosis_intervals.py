@@ -27,13 +27,13 @@ from scipy.signal import butter, sosfilt
 from threadpoolctl import threadpool_limits
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
-from seatsim.diagnosis.estimates import estimate_standard_deviations
-from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_noise
 from seatsim.diagnosis.nuisance import vary
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
+from seatsim.diagnosis.uncertainty import estimate_standard_deviations
+from seatsim.diagnosis.validate import refit_closely
 from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import SEAT_CHANNELS, ChannelEntry, Header, Recording, RunEntry
 from seatsim.scenario.loading import single
@@ -170,7 +170,7 @@ def fit_case(folder: Path, seed: int, pool: Executor) -> tuple[Objective, Evalua
     problem = pose_problem(recording, pool)
     objective = Objective(problem, weigh_noise(problem))
     start = Parameters(problem.nominal).add(candidate, np.asarray(candidate.start))
-    return objective, refit(objective, start), size, effect
+    return objective, refit_closely(objective, start), size, effect
 
 
 def run_case(folder: Path, seed: int, pool: Executor) -> IntervalCase:

@@ -239,3 +239,21 @@ class ValidationSettings(NamedTuple):
             "least bias of the stated shrink on sealed rigs",
         ),
     ] = 0.25
+    least_time: Annotated[
+        float,
+        Threshold(
+            "-",
+            "least standard deviation of a time, as a share of the interval between rows",
+            "higher: intervals of delays that are known better are too wide",
+            "a tenth of what rounding to whole rows makes",
+        ),
+    ] = 0.03
+    settled: Annotated[
+        float,
+        Threshold(
+            "-",
+            "the stated fit ends where a step lowers its cost by less than this share",
+            "higher: a parameter ends farther from its estimate than its standard deviation",
+            NUMERICAL,
+        ),
+    ] = 1e-5
