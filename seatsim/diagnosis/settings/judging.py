@@ -257,3 +257,12 @@ class ValidationSettings(NamedTuple):
             NUMERICAL,
         ),
     ] = 1e-5
+    by_chance: Annotated[
+        float,
+        Threshold(
+            "-",
+            "standard deviations of the power of noise by which a residual must exceed it to show an error of the form",
+            "higher: intervals that do not cover under a wrong form; lower: too wide ones under a right form",
+            SIMULATED_RIGS,
+        ),
+    ] = 2.0
