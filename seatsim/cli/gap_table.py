@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.table import Table
 
+from seatsim.recordings.forecast import Forecast
 from seatsim.recordings.gap import Gap
-from seatsim.recordings.prediction import Forecast
 
 
 def gap_table(found: Gap) -> Table:

@@ -6,7 +6,8 @@ the standard deviation s to be expected of the measured channel,
 
     after^2 = mean((m + n^2) / s^2),    before^2 = mean((d^2 + m + n^2) / s^2),    shrink = 1 - after / before.
 
-What is missed is taken for uncorrelated with what the effects change, as the residual of a fit is.
+What is missed is taken for uncorrelated with what the effects change, as the residual of a fit is. Where the effects
+change more here than they explained of a diagnosed run, they are extrapolated, and m grows in proportion.
 """
 
 from __future__ import annotations
@@ -23,10 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.effects.base import EFFECTS
-from seatsim.recordings.compared import COMPARED, NOISE_FACTOR
-from seatsim.recordings.gap import Gap, measure_gap
+from seatsim.recordings.compared import NOISE_FACTOR
 from seatsim.recordings.model_error import ModelError, read_model_error
-from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import simulate_table
 from seatsim.scenario.loading import single
@@ -39,12 +38,23 @@ Array = NDArray[np.float64]
 
 EXCITATION_STD = 0.1
 """Standard deviation of the logarithm of what is missed, between excitations of one kind; on sealed rigs."""
+LARGEST_GROWTH = 3.0
+"""Most by which what is missed grows where the effects change more than they explained of a diagnosed run."""
 RATIO_STD = 0.03
 """Standard deviation of the logarithm of the share of the gap that is left, whatever is missed; on sealed rigs."""
 ONE_RUN_STD = 0.3
 """The same where a single run was diagnosed, so that its spread from run to run is not known."""
 QUANTILE = 1.645
 """Of the normal distribution, at the ends of a 90 % interval."""
+
+
+class SimulatedRigs(NamedTuple):
+    """Outputs of the nominal and the augmented rig, and of that with each parameter of an effect moved, shape (N,)."""
+
+    rate: float
+    before: Mapping[str, Array]
+    after: Mapping[str, Array]
+    shifted: Sequence[Mapping[str, Array]]
 
 
 class StatedCause(NamedTuple):
@@ -74,64 +84,6 @@ class Prediction:
         }  # fmt: skip
 
 
-class MeasuredGaps(NamedTuple):
-    """The gaps that were measured with the nominal and with the augmented scenario."""
-
-    before: Gap
-    after: Gap
-
-    @property
-    def shrink(self) -> float:
-        """By how much the gap shrinks."""
-        return 1.0 - _left((self.before.overall, self.after.overall))
-
-    def channel(self, name: str) -> tuple[float, float]:
-        """Return the gaps of a channel before and after, NaN where it is not compared."""
-        return self.before.channels.get(name, math.nan), self.after.channels.get(name, math.nan)
-
-
-class Forecast(NamedTuple):
-    """What is to be expected on a recording, what was measured if outputs are recorded, and notes on its data."""
-
-    predicted: Prediction
-    measured: MeasuredGaps | None
-    notes: tuple[str, ...]
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the forecast as it stands in `gap.json`, whose measured figures are null where there is none."""
-        none: dict[str, object] = {"overall": None, "channels": {}}
-        content: dict[str, object] = {"predicted": self.predicted.as_dict()}
-        if self.measured is None:
-            return none | {"floor": none, "notes": list(self.notes)} | content
-        before, after = self.measured.before.overall, self.measured.after.overall
-        measured = {"before": before, "after": after, "shrink": self.measured.shrink}
-        return self.measured.after.as_dict() | content | {"measured": measured, "notes": list(self.notes)}
-
-
-def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Recording, diagnosis: str | Path) -> Forecast:
-    """Return what is to be expected on a recording (`predict_gap`) beside what was measured there, where it was.
-
-    Raises:
-        InputError: as `predict_gap`, or the recording has a fault.
-        RunError: a simulation could not be carried to its end.
-    """
-    recording = recording if isinstance(recording, Recording) else load_recording(recording)
-    examination = examine(recording)
-    refuse(examination)
-    predicted = predict_gap(scenario, recording, diagnosis)
-    measured = None
-    if has_outputs(recording):
-        measured = MeasuredGaps(measure_gap(recording.nominal, recording), measure_gap(scenario, recording))
-    return Forecast(predicted, measured, tuple(examination.sentences))
-
-
-def has_outputs(recording: Recording) -> bool:
-    """Whether an output is recorded; a coil current is an input where it drives the damper in place of a command."""
-    recorded, commands = set(recording.channels), {"current_command", "command_voltage"}
-    outputs = recorded.intersection(COMPARED[recording.header.rig])
-    return bool(outputs if commands & recorded else outputs - {"coil_current"})
-
-
 def predict_gap(
     scenario: str | Path | Scenario, recording: str | Path | Recording, diagnosis: str | Path, runs: Sequence[str] = ()
 ) -> Prediction:
@@ -154,33 +106,37 @@ def predict_gap(
     after = _simulate(augmented, recording, names)
     before = _simulate(single(recording.nominal), recording, names)
     shifted = [_simulate(other, recording, names) for other in _move_parameters(augmented, _read_causes(stated))]
-    return _combine(error, recording.header.sample_rate, before, after, shifted, str(recording.folder))
+    simulated = SimulatedRigs(recording.header.sample_rate, before, after, shifted)
+    return _combine(error, _read_explained(stated, error.runs, str(diagnosis)), simulated, str(recording.folder))
 
 
-def _combine(
-    error: ModelError, rate: float, before: Mapping[str, Array], after: Mapping[str, Array],
-    shifted: Sequence[Mapping[str, Array]], place: str,
-) -> Prediction:  # fmt: skip
-    """Return the prediction from simulated channels: nominal, augmented, and with each parameter moved by its error."""
-    channels, parts = {}, []
-    for name, noise in error.noise.items():
-        variance = float(np.sum(error.predict_amplitude(name, after[name], rate)))
-        if variance < max((NOISE_FACTOR * noise) ** 2, 1e-300):
-            continue
-        missed = error.predict_remainder(name, after[name], rate)
-        changed = float(np.mean((after[name] - before[name]) ** 2))
-        uncertain = sum(float(np.mean((other[name] - after[name]) ** 2)) for other in shifted)
-        parts.append(np.array([changed, noise**2, uncertain, *missed]) / variance)
-        channels[name] = _roots(changed / variance, noise**2 / variance, _mean_square(missed) / variance)
+def _combine(error: ModelError, explained: Array, rigs: SimulatedRigs, place: str) -> Prediction:
+    """Return the prediction from what each diagnosed run had `explained` of its gap, shape (runs,), and simulations."""
+    parts = {name: part for name in error.noise if (part := _measure_channel(error, name, rigs)) is not None}
     if not parts:
         raise InputError(f"{place}: no channel of the diagnosis is to stand above its noise with these inputs")
-    means = np.mean(parts, axis=0)
-    changes, floor, doubt = (float(value) for value in means[:3])
-    rest, width = _mean_square(means[3:]), QUANTILE * _spread(means[3:])
+    changes, floor, doubt = (float(value) for value in np.mean([part[:3] for part in parts.values()], axis=0))
+    growth = np.clip(np.sqrt(changes) / np.maximum(explained, 1e-9), 1.0, LARGEST_GROWTH) ** 2
+    missed = {name: growth * part[3:] for name, part in parts.items()}
+    by_run = np.mean(list(missed.values()), axis=0)
+    rest, width = _mean_square(by_run), QUANTILE * _spread(by_run / growth)
     gaps, share = _roots(changes, floor, rest), np.exp(QUANTILE * RATIO_STD * (changes > 0.0))
     least = share * _left(_roots(changes, floor, rest * np.exp(2.0 * width) + QUANTILE**2 * doubt))
     most = _left(_roots(changes, floor, rest * np.exp(-2.0 * width))) / share
+    channels = {name: _roots(part[0], part[1], _mean_square(missed[name])) for name, part in parts.items()}
     return Prediction(*gaps, 1.0 - _left(gaps), (1.0 - least, 1.0 - most), channels)
+
+
+def _measure_channel(error: ModelError, name: str, rigs: SimulatedRigs) -> Array | None:
+    """Return mean squares of a channel in variances: changed, noise, doubtful, missed by run; None if not compared."""
+    after, noise = rigs.after[name], error.noise[name]
+    variance = float(np.sum(error.predict_amplitude(name, after, rigs.rate)))
+    if variance < max((NOISE_FACTOR * noise) ** 2, 1e-300):
+        return None
+    changed = np.mean((after - rigs.before[name]) ** 2)
+    doubtful = sum(float(np.mean((other[name] - after) ** 2)) for other in rigs.shifted)
+    missed = error.predict_remainder(name, after, rigs.rate)
+    return np.array([changed, noise**2, doubtful, *missed]) / variance
 
 
 def _roots(changed: float, floor: float, missed: float) -> tuple[float, float]:
@@ -238,6 +194,17 @@ def _read_causes(content: Mapping[str, object]) -> list[StatedCause]:
         stds = {name: float(value["std"]) for name, value in stated.items() if isinstance(value, dict) and value["std"]}
         found.append(StatedCause(cause["effect"], stated.get("channel"), stds))
     return found
+
+
+def _read_explained(content: Mapping[str, object], runs: Sequence[str], place: str) -> Array:
+    """Return by run the root of what the squared gap was reduced by; infinite for a run with nothing compared."""
+    gap = content.get("gap")
+    stated = gap.get("by_run") if isinstance(gap, Mapping) else None
+    if not isinstance(stated, list):
+        raise InputError(f"{place}: states no gap.by_run; diagnose the recording again")
+    gaps = {each["run"]: (each["before"]["overall"], each["after"]["overall"]) for each in stated}
+    pairs = [gaps.get(run, (math.inf, 0.0)) for run in runs]
+    return np.sqrt([max(before**2 - after**2, 0.0) for before, after in pairs])
 
 
 def _read_diagnosis(path: Path) -> Mapping[str, object]:

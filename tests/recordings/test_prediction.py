@@ -10,9 +10,10 @@ import seatsim
 from seatsim.cli.app import main
 from seatsim.recordings import prediction
 from seatsim.recordings.compared import COMPARED
+from seatsim.recordings.forecast import has_outputs
 from seatsim.recordings.gap import measure_gap, pool_runs
 from seatsim.recordings.model_error import measure_model_error
-from seatsim.recordings.prediction import has_outputs, predict_gap
+from seatsim.recordings.prediction import predict_gap
 from seatsim.recordings.recording import load_recording
 from seatsim.scenario.loading import single
 
@@ -26,8 +27,9 @@ def white(seed, size=1.0):
     return size * np.random.default_rng(seed).standard_normal(N)
 
 
-def combine(error, before, after, shifted=(), rate=RATE):
-    return prediction._combine(error, rate, {"x": before}, {"x": after}, [{"x": each} for each in shifted], "here")
+def combine(error, before, after, shifted=(), explained=1.0):
+    rigs = prediction.SimulatedRigs(RATE, {"x": before}, {"x": after}, [{"x": each} for each in shifted])
+    return prediction._combine(error, np.full(len(error.runs), explained), rigs, "here")
 
 
 @pytest.fixture
@@ -58,6 +60,15 @@ def test_what_is_left_as_it_is_does_not_shrink(error):
     assert (found.shrink, found.shrink_interval) == (0.0, (0.0, 0.0)) and found.before == found.after > 0.0
 
 
+def test_what_is_missed_grows_where_effects_change_more_than_they_explained(error):
+    after, before = white(3), white(3) - white(4, 0.5)
+    within, beyond, far = (combine(error, before, after, explained=each) for each in (0.6, 0.25, 0.01))
+    assert within == combine(error, before, after)
+    assert beyond.after == pytest.approx(2.0 * within.after, rel=0.02)
+    assert far.after == pytest.approx(prediction.LARGEST_GROWTH * within.after)
+    assert beyond.channels["x"] == pytest.approx((beyond.before, beyond.after))
+
+
 def test_doubtful_parameters_and_unlike_runs_widen_the_interval(error):
     after, before = white(3), white(3) - white(4, 0.5)
     sure = combine(error, before, after)
@@ -77,13 +88,14 @@ def test_channels_that_do_not_stand_above_their_noise_are_left_out():
         combine(error, white(3), white(3))
 
 
-def write_diagnosis(folder, recording, scenario, causes=()):
+def write_diagnosis(folder, recording, scenario):
     """Write what a diagnosis would state of a scenario on a recording."""
     runs = [(run, *pool_runs(scenario, recording, [run])) for run in recording.runs]
     noise = {name: recording.channels[name].noise_rms for name in runs[0][1]}
     error = measure_model_error(runs, noise, recording.header.sample_rate, 100.0)
     path = folder / "diagnosis.json"
-    path.write_text(json.dumps({"model_error": error.as_dict(), "causes": list(causes), "selected": []}))
+    by_run = [{"run": run, "before": {"overall": 1.0}, "after": {"overall": 0.1}} for run in recording.runs]
+    path.write_text(json.dumps({"model_error": error.as_dict(), "gap": {"by_run": by_run}, "causes": []}))
     return path
 
 
@@ -145,6 +157,15 @@ def test_what_is_no_diagnosis_is_refused_and_nothing_is_written(heavier, tmp_pat
         (tmp_path / name).write_text(text)
         assert call(monkeypatch, "gap", right, copy, "--predict", tmp_path / name, "--out", tmp_path / "out") == 2
         assert name in "".join(capsys.readouterr()).replace("\n", "") and not (tmp_path / "out").exists()
+
+
+def test_what_runs_explained_is_read_by_name():
+    gaps = {"b": (0.5, 0.3), "a": (0.1, 0.2)}
+    by_run = [{"run": run, "before": {"overall": b}, "after": {"overall": a}} for run, (b, a) in gaps.items()]
+    found = prediction._read_explained({"gap": {"by_run": by_run}}, ["a", "b", "c"], "here")
+    assert found == pytest.approx([0.0, 0.4, np.inf])
+    with pytest.raises(seatsim.InputError, match=r"here: states no gap\.by_run"):
+        prediction._read_explained({"gap": {}}, ["a"], "here")
 
 
 def test_each_parameter_is_moved_by_its_deviation_and_stays_in_its_range(copy):

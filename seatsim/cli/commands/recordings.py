@@ -23,8 +23,8 @@ def gap(
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
     from seatsim.cli.gap_table import forecast_table, gap_table
+    from seatsim.recordings.forecast import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
-    from seatsim.recordings.prediction import forecast_gap
     from seatsim.schema.files import write_json
 
     if predict is None:
