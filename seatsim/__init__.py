@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from seatsim.diagnosis.result import Diagnosis
     from seatsim.identification.identify import Identification, identify
     from seatsim.recordings.gap import Gap, gap
+    from seatsim.recordings.prediction import Prediction, predict_gap
     from seatsim.recordings.recording import Recording, load_recording
     from seatsim.scenario.loading import load
     from seatsim.scenario.scenario import Scenario
@@ -24,6 +25,7 @@ _HOME = {
     "Gap": "recordings.gap",
     "Identification": "identification.identify",
     "InputError": "schema.errors",
+    "Prediction": "recordings.prediction",
     "Recording": "recordings.recording",
     "Result": "simulation.result",
     "Run": "simulation.result",
@@ -37,6 +39,7 @@ _HOME = {
     "identify": "identification.identify",
     "load": "scenario.loading",
     "load_recording": "recordings.recording",
+    "predict_gap": "recordings.prediction",
     "run": "simulation.runs",
     "use": "schema.modules",
 }
@@ -46,6 +49,7 @@ __all__ = [
     "Gap",
     "Identification",
     "InputError",
+    "Prediction",
     "Recording",
     "Result",
     "Run",
@@ -59,6 +63,7 @@ __all__ = [
     "identify",
     "load",
     "load_recording",
+    "predict_gap",
     "run",
     "use",
 ]

@@ -1,9 +1,10 @@
-"""The gap of a simulation, as the terminal shows it."""
+"""The gap of a simulation, and the one to be expected, as the terminal shows them."""
 
 from __future__ import annotations
 
 from rich.table import Table
 
+from seatsim.recordings.forecast import Forecast
 from seatsim.recordings.gap import Gap
 
 
@@ -16,4 +17,23 @@ def gap_table(found: Gap) -> Table:
         table.add_row(name, f"{value:.4f}", f"{found.floor['channels'][name]:.4f}")
     table.add_section()
     table.add_row("overall", f"{found.overall:.4f}", f"{found.floor['overall']:.4f}")
+    return table
+
+
+def forecast_table(found: Forecast) -> Table:
+    """Return the gap to be expected before and after, beside the measured one where outputs are recorded."""
+    predicted, measured = found.predicted, found.measured
+    low, high = predicted.shrink_interval
+    title = f"expected shrink {predicted.shrink:.2f}, 90 % interval {low:.2f} to {high:.2f}"
+    if measured is not None:
+        title += f"; measured {measured.shrink:.2f}"
+    table = Table(title=title, title_justify="left")
+    headings = ("channel", "expected before", "expected after")
+    for heading in (*headings, "measured before", "measured after") if measured else headings:
+        table.add_column(heading, justify="left" if heading == "channel" else "right")
+    for name, expected in predicted.channels.items():
+        table.add_row(name, *(f"{value:.4f}" for value in (*expected, *(measured.channel(name) if measured else ()))))
+    table.add_section()
+    overall = (measured.before.overall, measured.after.overall) if measured else ()
+    table.add_row("overall", *(f"{value:.4f}" for value in (predicted.before, predicted.after, *overall)))
     return table

@@ -13,6 +13,7 @@ from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Cause, ComfortFigure, Estimate, Trace
 from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 from seatsim.diagnosis.validate import make_scenario
 from seatsim.metrics.motion import rms
 from seatsim.recordings.gap import measure_gap
@@ -71,31 +72,18 @@ def _estimate_parameters(
     """Return by effect its free parameters with their standard deviations, and the channel that it acts on."""
     parameters, found = evaluation.parameters, {}
     deviations = estimate_standard_deviations(objective, evaluation, nuisances)
-    start = len(parameters.deviations)
+    start, shortest = len(parameters.deviations), objective.settings.validation.least_time / objective.problem.rate
     for term, values in zip(parameters.terms, parameters.values, strict=True):
         units = {field.name: field.unit for field in describe(term.cls)}
         estimates: dict[str, Estimate | str] = {}
         if "channel" in term.fixed:
             estimates["channel"] = str(term.fixed["channel"])
         for k, (name, value) in enumerate(zip(term.free, values, strict=True)):
-            estimates[name] = Estimate(float(value), float(deviations[start + k] * term.scale[k]), units[name])
+            std = max(float(deviations[start + k] * term.scale[k]), shortest if units[name] == "s" else 0.0)
+            estimates[name] = Estimate(float(value), std, units[name])
         found[term.effect] = estimates
         start += len(term.free)
     return found
-
-
-def estimate_standard_deviations(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Array:
-    """Return the standard deviations of `vector`, scaled up by what the fit leaves beyond noise.
-
-    `sqrt(diag((J' J + P)^-1) max(1, cost / rows))`, with J the whitened Jacobian and P the prior's precision.
-    """
-    own = objective.linearise_effects(evaluation).jacobian
-    parts = [nuisances.normal_equations(run, own[run], evaluation.whitened[run])[0] for run in own]
-    matrix = np.sum(parts, axis=0)
-    index = np.arange(len(evaluation.parameters.deviations))
-    matrix[index, index] += objective.settings.fit.prior_std**-2
-    variances = np.maximum(np.diag(np.linalg.pinv(matrix)), 0.0)
-    return np.asarray(np.sqrt(variances * max(1.0, evaluation.cost / evaluation.rows)))
 
 
 def trace_run(problem: DiagnosisProblem, rigs: Sequence[Parameters], run: str) -> list[Trace]:

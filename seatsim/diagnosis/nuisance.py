@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.diagnosis.result import CalibratedParameter
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import bounds, describe, replace_fields
 
@@ -50,27 +51,13 @@ class Nuisance(NamedTuple):
         return min(max(self.nominal + self.tolerance * float(deviation), self.low), self.high)
 
 
-class CalibratedParameter(NamedTuple):
-    """A parameter as it was refitted: dotted key, nominal value, value, the bound on its side, whether it is there."""
-
-    key: str
-    nominal: float
-    value: float
-    bound: float
-    at_bound: bool
-
-
 def list_calibrated(parameters: Sequence[Nuisance], deviations: Array, at_bound: float) -> list[CalibratedParameter]:
     """List the refitted parameters, of deviations of shape (parameters,); from `at_bound` on one is at its bound."""
     return [
         CalibratedParameter(
-            each.key,
-            each.nominal,
-            each.at(deviation),
-            each.at(math.copysign(1.0, deviation)),
-            abs(deviation) >= at_bound,
+            each.key, each.nominal, each.at(deviation), (each.at(-1.0), each.at(1.0)), abs(deviation) >= at_bound
         )
-        for each, deviation in zip(parameters, map(float, deviations), strict=True)
+        for each, deviation in zip(parameters, deviations.tolist(), strict=True)
     ]
 
 

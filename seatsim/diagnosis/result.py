@@ -9,6 +9,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.recordings.model_error import ModelError
+
 Array = NDArray[np.float64]
 Content = Mapping[str, object]
 """What a YAML file holds: sections by key."""
@@ -47,6 +49,39 @@ class GapFigures(NamedTuple):
     def as_dict(self) -> dict[str, object]:
         """Return the figures as they stand in `diagnosis.json`."""
         return {"overall": self.overall, "channels": self.channels}
+
+
+class RunGaps(NamedTuple):
+    """Gaps of one run: nominal, with refitted parameters, with the effects, of the noise alone; what it shrinks by."""
+
+    run: str
+    before: GapFigures
+    calibrated: GapFigures
+    after: GapFigures
+    floor: GapFigures
+    shrink: float
+
+
+class CalibratedParameter(NamedTuple):
+    """A nuisance parameter of the rig stated, by dotted key, between its bounds."""
+
+    name: str
+    nominal: float
+    value: float
+    bound: tuple[float, float]
+    at_bound: bool
+
+
+class ErrorBudget(NamedTuple):
+    """Comparison error of a channel and its parts as in ASME V&V 20, RMS on the held-out run in `unit`."""
+
+    channel: str
+    unit: str
+    comparison_error: float
+    u_num: float
+    u_input: float
+    u_d: float
+    model_form: float
 
 
 @dataclass(frozen=True)
@@ -173,7 +208,8 @@ class Diagnosis:
 
     `sentence` is the answer in one sentence. `notes` are sentences on the data, what the channels cannot distinguish,
     and on cautions. `stochastic` is the selected effect whose signal is random, else empty. `augmented` is the content
-    of `augmented.yaml`. `alternatives` are other models of the damper, the best first.
+    of `augmented.yaml`, `model_error` what that leaves, `by_run` the gaps of every run under the same scenarios.
+    `alternatives` are other models of the damper, the best first.
     """
 
     name: str
@@ -194,3 +230,7 @@ class Diagnosis:
     augmented: Content
     evidence: Evidence
     alternatives: Sequence[DamperForm] = ()
+    by_run: list[RunGaps] = field(default_factory=list)
+    parameters: list[CalibratedParameter] = field(default_factory=list)
+    model_error: ModelError | None = None
+    error_budget: list[ErrorBudget] = field(default_factory=list)

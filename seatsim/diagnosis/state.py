@@ -13,10 +13,13 @@ from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown
 from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
+from seatsim.diagnosis.error_budget import budget_errors
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_run
+from seatsim.diagnosis.every_run import list_gaps, replay_runs, state_model_error
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
 from seatsim.diagnosis.movement import measure_gap_taken
+from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Linearisation
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment
@@ -44,6 +47,18 @@ class Validation:
     calibrated: Evaluation
     augmented: Evaluation
     gaps: Gaps
+
+    @property
+    def scenarios(self) -> tuple[Scenario, Scenario, Scenario]:
+        """The nominal, the calibrated and the augmented scenario."""
+        problem = self.solution.objective.problem
+        first, second, third = (make_scenario(problem, self.nominal, rig) for rig in self.rigs)
+        return first, second, third
+
+    @property
+    def fitted(self) -> Parameters:
+        """Parameters of the augmented rig, of the calibrated one where no effect is stated."""
+        return (self.augmented if self.augmented.parameters.terms else self.calibrated).parameters
 
     @property
     def rigs(self) -> tuple[Parameters, Parameters, Parameters]:
@@ -92,11 +107,12 @@ def state_diagnosis(
     problem = objective.problem
     recording = problem.recording
     rig, channels = recording.header.rig, recording.channels
-    causes = _list_causes(validation)
+    causes, runs = _list_causes(validation), replay_runs(problem, validation.scenarios)
     nuisances = solution.selection.linearise_nuisances(objective, decision.chosen)
     forms = _list_alternatives(validation, damper_forms, progress)
     none = describe_obstacle(problem) or "No other form of the damper was found to fit its force better."
     asked = [none] if damper_forms and not forms else []
+    at_bound = problem.settings.widening.at_bound
     at_work = {solution.stochastic, *decision.chosen.parameters.names}
     diagnosis = Diagnosis(
         name=recording.folder.name, verdict=decision.verdict, sentence="", where=list(solution.where), causes=causes,
@@ -109,8 +125,10 @@ def state_diagnosis(
             *measure_coverage(recording).missing,
         ],
         augmented=write_augmented(problem, validation.augmented.parameters),
-        evidence=_collect_evidence(validation, nuisances, causes),
-        alternatives=forms,
+        evidence=_collect_evidence(validation, nuisances, causes), alternatives=forms, by_run=list_gaps(problem, runs),
+        parameters=list_calibrated(problem.parameters, validation.fitted.deviations, at_bound),
+        model_error=state_model_error(problem, runs),
+        error_budget=budget_errors(problem, validation.scenarios[2], validation.run),
     )  # fmt: skip
     said = describe_forms(forms, diagnosis.gap, problem.settings.damper_forms.better)
     return dataclasses.replace(diagnosis, sentence=" ".join(filter(None, (write_answer(diagnosis), said))))

@@ -53,7 +53,14 @@ def refit_without(objective: Objective, evaluation: Evaluation, run: str) -> tup
     others = tuple(name for name in objective.problem.runs if name != run) or objective.problem.runs
     part = objective.on_runs(others)
     calibrated = refit(part, Parameters(objective.problem.nominal))
-    return calibrated, refit(part, evaluation.parameters) if evaluation.parameters.terms else calibrated
+    return calibrated, refit_closely(part, evaluation.parameters) if evaluation.parameters.terms else calibrated
+
+
+def refit_closely(objective: Objective, parameters: Parameters) -> Evaluation:
+    """Return a refit that ends where steps change the estimate by less than its standard deviation."""
+    problem, settings = objective.problem, objective.settings
+    closer = settings._replace(fit=settings.fit._replace(settled=settings.validation.settled))
+    return refit(dataclasses.replace(objective, problem=dataclasses.replace(problem, settings=closer)), parameters)
 
 
 def make_scenario(problem: DiagnosisProblem, nominal: Scenario, parameters: Parameters) -> Scenario:

@@ -101,14 +101,14 @@ def _need_fewer(wider: Wider, search: Search, held: int) -> tuple[Solution | Non
 
 
 def find_at_bound(problem: DiagnosisProblem, parameters: Parameters) -> dict[int, str]:
-    """Return a phrase on each nuisance parameter at its bound, with nominal value, value and bound, by its index.
+    """Return a phrase on each nuisance parameter at its bound, with nominal value and bound, by its index.
 
     A parameter that an effect of the rig continues beyond its tolerance is left out.
     """
     listed = list_calibrated(problem.parameters, parameters.deviations, problem.settings.widening.at_bound)
     return {
-        k: f"{each.key} {each.nominal:.4g} (fitted {each.value:.4g}, bound {each.bound:.4g})"
-        for k, each in enumerate(listed) if each.at_bound and THEIRS.get(each.key) not in parameters.names
+        k: f"{each.name} {each.nominal:.4g} (fitted {each.value:.4g})"
+        for k, each in enumerate(listed) if each.at_bound and THEIRS.get(each.name) not in parameters.names
     }  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypedDict
@@ -21,6 +21,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
 
 Array = NDArray[np.float64]
+Signals = Mapping[str, Array]
 
 
 class NoiseFloor(TypedDict):
@@ -73,9 +74,14 @@ def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recordi
         RunError: a replay could not be carried to its end.
     """
     scenario, recording = _load(scenario, recording)
-    measured, simulated = pool_runs(scenario, recording, list(runs) or list(recording.runs))
-    channels = {name: rms(measured[name] - simulated[name]) / float(np.std(measured[name])) for name in measured}
-    floors = {name: recording.channels[name].noise_rms / float(np.std(measured[name])) for name in measured}
+    return compare_signals(recording, *pool_runs(scenario, recording, list(runs) or list(recording.runs)))
+
+
+def compare_signals(recording: Recording, measured: Signals, simulated: Signals) -> Gap:
+    """Return the gap of simulated to measured channels, shape (N,) each, all of which are compared."""
+    spreads = {name: float(np.std(values)) for name, values in measured.items()}
+    channels = {name: rms(measured[name] - simulated[name]) / spread for name, spread in spreads.items()}
+    floors = {name: recording.channels[name].noise_rms / spread for name, spread in spreads.items()}
     return Gap(_overall(channels), channels, NoiseFloor(overall=_overall(floors), channels=floors))
 
 
@@ -93,10 +99,15 @@ def pool_runs(
     names = [name for name in COMPARED[recording.header.rig] if name in recording.channels]
     measured = {name: np.concatenate([m[name] for m, _ in pairs]) for name in names}
     simulated = {name: np.concatenate([s[name] for _, s in pairs]) for name in names}
-    loud = [n for n in names if stands_out(measured[n], recording.channels[n].noise_rms)]
+    loud = loud_channels(recording, measured)
     if not loud:
         raise InputError(f"{recording.folder}: no recorded output stands above its noise; there is nothing to compare")
     return {n: measured[n] for n in loud}, {n: simulated[n] for n in loud}
+
+
+def loud_channels(recording: Recording, measured: Signals) -> list[str]:
+    """Return the names of the channels that are compared, since they stand above their noise."""
+    return [name for name, values in measured.items() if stands_out(values, recording.channels[name].noise_rms)]
 
 
 def _overall(values: dict[str, float]) -> float:

@@ -34,6 +34,10 @@ def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str
 
 def replay_table(scenario: Scenario, recording: Recording, table: Mapping[str, Array]) -> dict[str, Array]:
     """Return the simulated channels that are compared, driven by the inputs of a table, without the first second."""
+    return {name: values for name, values in simulate_table(scenario, recording, table).items() if name in table}
+
+
+def simulate_table(scenario: Scenario, recording: Recording, table: Mapping[str, Array]) -> dict[str, Array]:
+    """Return the same of every output, recorded or not."""
     outputs = respond(scenario, recorded_inputs(recording, table, scenario.solver.step))
-    recorded = {name: values for name, values in outputs.items() if name in table}
-    return select_compared(recorded, recording.header.rig, recording.header.sample_rate)
+    return select_compared(outputs, recording.header.rig, recording.header.sample_rate)

@@ -56,6 +56,20 @@ def render_comfort(diagnosis: Diagnosis) -> Html:
     return make_table(["held-out runs", "unit", "measured", "nominal", "error", last, "error"], rows, words=2)
 
 
+def render_budget(diagnosis: Diagnosis) -> Html:
+    """Return what the error of the stated scenario is made of on the held-out run, by channel."""
+    if not diagnosis.error_budget:
+        return Html("")
+    lead = (
+        "Comparison error E of the scenario stated, in the terms of ASME V&V 20, as RMS: u_num from halving the step of"
+        " the integration, u_input from the noise of the recorded inputs, u_D the noise of the sensor; what these leave"
+        " is the error of the model's form."
+    )
+    head = ["channel", "unit", "E", "u_num", "u_input", "u_D", "model form"]
+    rows = [_make_budget_row(*row) for row in diagnosis.error_budget]
+    return join([tag("p", lead, class_="lead"), make_table(head, rows, words=2)])
+
+
 def render_notes(diagnosis: Diagnosis) -> Html:
     """Return notes on the data, and the groups of blocks that the recorded channels can tell apart."""
     sentences = [format_sentence(note) for note in diagnosis.notes]
@@ -90,6 +104,11 @@ def _make_comfort_row(quantity: str, unit: str, measured: float, nominal: float,
         quantity.replace("_", " "), shown, _format_number(factor * measured), _format_number(factor * nominal),
         _format_error(nominal, measured), _format_number(factor * after), _format_error(after, measured),
     ]  # fmt: skip
+
+
+def _make_budget_row(channel: str, unit: str, *parts: float) -> list[str]:
+    factor, shown = FACTORS.get(unit, (1.0, labels.format_unit(unit)))
+    return [channel.replace("_", " "), shown, *(_format_number(factor * part) for part in parts)]
 
 
 def _format_number(value: float) -> str:

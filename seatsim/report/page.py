@@ -29,6 +29,7 @@ SECTIONS = (
     PageSection("signals", "Held-out signals before and after", evidence.render_signals),
     PageSection("maps", "Where in the operating range", evidence.render_maps),
     PageSection("spectra", "Residual spectra", evidence.render_spectra),
+    PageSection("budget", "What the remaining error is made of", evidence.render_budget, short=True),
     PageSection("comfort", "Comfort and travel", evidence.render_comfort, short=True),
     PageSection("notes", "Notes on the data", evidence.render_notes, short=True),
     PageSection("use", "Check the result", evidence.render_use),

@@ -124,7 +124,14 @@ def test_shrink_claimed_and_reached(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             raise InputError("cannot be replayed")
         return SimpleNamespace(overall=gaps[scenario.name])
 
+    def predict(scenario: Path, recording: Path, diagnosis: Path) -> SimpleNamespace:
+        assert diagnosis == scenario.parent / "diagnosis.json"
+        if scenario.name == "bad.yaml":
+            raise InputError("states no model error")
+        return SimpleNamespace(shrink=0.75, shrink_interval=(0.7, 0.79))
+
     monkeypatch.setattr("seatsim.recordings.gap.measure_gap", gap)
+    monkeypatch.setattr("seatsim.recordings.prediction.predict_gap", predict)
     names = ["a", "b", "c", "d", "e"]
     opened = Sealed(dict.fromkeys(names, ONE), {name: {"run-u.csv.gz": b"unseen"} for name in names}, {})
     verdicts = {
@@ -142,6 +149,9 @@ def test_shrink_claimed_and_reached(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert [true for _, _, true, _ in found.cases][:2] == pytest.approx([0.8, 0.2])
     assert found.mean_difference == pytest.approx(0.5 * (0.1 + 0.3)) and found.bias == pytest.approx(0.5 * (-0.1 + 0.3))
     assert found.coverage == Rate(1, 2)
+    assert found.predicted is not None and found.predicted.coverage == Rate(0, 1)
+    assert [(name, claimed) for name, claimed, _, _ in found.predicted.cases] == [("a", 0.75)]
+    assert found.predicted.mean_difference == pytest.approx(0.05)
     assert score_shrink(tmp_path, opened, dict.fromkeys(names, Verdict("known")), 1, None) is None
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,14 +24,30 @@ CaseShrink = tuple[str, float, float, bool | None]
 """Name, stated shrink, true shrink (NaN: cannot be replayed), whether the interval holds (None: none is given)."""
 
 
+ROUNDING = 1e-9
+"""By how much a true shrink may lie beyond an interval of no width, as of a scenario that is left as it is."""
+
+
 @dataclass(frozen=True)
 class ShrinkScore:
-    """Stated against true shrink on the unseen runs: mean absolute and mean difference, coverage, and each case."""
+    """Stated against true shrink on the unseen runs: mean absolute and mean difference, coverage, and each case.
+
+    `predicted` holds the same of the shrink that is predicted from the inputs of these runs alone.
+    """
 
     mean_difference: float
     bias: float
     coverage: Rate
     cases: list[CaseShrink]
+    predicted: ShrinkScore | None = None
+
+
+class UnseenShrink(NamedTuple):
+    """The shrink on an unseen run: true, and predicted from its inputs with an interval; None where there is none."""
+
+    true: float | None
+    predicted: float | None = None
+    interval: tuple[float, float] | None = None
 
 
 def score_shrink(
@@ -45,8 +63,16 @@ def score_shrink(
             (base / name / "nominal.yaml", verdicts[name].augmented, folder)
             for name, folder in zip(claims, unseen, strict=True)
         ]
-        found = run_jobs(true_shrink, jobs, processes if len(jobs) >= FEWEST_FOR_PROCESSES else 1, progress)
-    return _compare([_compare_case(name, verdicts[name], true) for name, true in zip(claims, found, strict=True)])
+        found = run_jobs(find_unseen_shrink, jobs, processes if len(jobs) >= FEWEST_FOR_PROCESSES else 1, progress)
+    stated = [
+        _compare_case(name, verdicts[name].shrink, verdicts[name].shrink_interval, unseen.true)
+        for name, unseen in zip(claims, found, strict=True)
+    ]
+    predicted = [
+        _compare_case(name, unseen.predicted, unseen.interval, unseen.true)
+        for name, unseen in zip(claims, found, strict=True) if unseen.predicted is not None
+    ]  # fmt: skip
+    return dataclasses.replace(_compare(stated), predicted=_compare(predicted) if predicted else None)
 
 
 def _claims_shrink(verdict: Verdict) -> bool:
@@ -55,10 +81,11 @@ def _claims_shrink(verdict: Verdict) -> bool:
     return said and verdict.shrink is not None and verdict.augmented is not None
 
 
-def _compare_case(name: str, verdict: Verdict, true: float | None) -> CaseShrink:
-    interval = verdict.shrink_interval
-    covered = None if interval is None or true is None else interval[0] <= true <= interval[1]
-    return name, float(verdict.shrink or 0.0), math.nan if true is None else true, covered
+def _compare_case(
+    name: str, shrink: float | None, interval: tuple[float, float] | None, true: float | None
+) -> CaseShrink:
+    covered = None if interval is None or true is None else interval[0] - ROUNDING <= true <= interval[1] + ROUNDING
+    return name, float(shrink or 0.0), math.nan if true is None else true, covered
 
 
 def _compare(cases: Sequence[CaseShrink]) -> ShrinkScore:
@@ -69,14 +96,21 @@ def _compare(cases: Sequence[CaseShrink]) -> ShrinkScore:
     return ShrinkScore(float(np.mean(np.abs(off))), float(np.mean(off)), coverage, list(cases))
 
 
-def true_shrink(nominal: Path, augmented: Path | None, unseen: Path) -> float | None:
-    """Return `1 - after / before` of the overall gap on the unseen recording; None where it cannot be replayed."""
-    # imported here, since the gap imports the whole simulator, which only a score with unseen runs needs
+def find_unseen_shrink(nominal: Path, augmented: Path | None, unseen: Path) -> UnseenShrink:
+    """Return `1 - after / before` of the overall gap on the unseen recording, and what its inputs let one expect."""
+    # imported here, since both import the whole simulator, which only a score with unseen runs needs
     from seatsim.recordings.gap import measure_gap
+    from seatsim.recordings.prediction import predict_gap
 
     try:
         before = measure_gap(nominal, unseen).overall
         after = measure_gap(augmented or nominal, unseen).overall
     except SeatsimError:
-        return None
-    return 1.0 - after / before
+        return UnseenShrink(None)
+    true = 1.0 - after / before
+    try:
+        predicted = predict_gap(augmented or nominal, unseen, (augmented or nominal).parent / "diagnosis.json")
+    except SeatsimError:
+        # A diagnosis of another tool states no model error.
+        return UnseenShrink(true)
+    return UnseenShrink(true, predicted.shrink, predicted.shrink_interval)

@@ -56,10 +56,11 @@ def _summary(score: Score) -> Table:
     table.add_row("Brier", f"{score.brier:.4f}", "", "")
     table.add_row("mean group size", f"{score.group_size:.2f}", "", "")
     if score.shrink is not None:
-        shrink = score.shrink
-        table.add_row("shrink: |stated - true|", f"{shrink.mean_difference:.3f}", str(len(shrink.cases)), "")
-        table.add_row("shrink: stated - true", f"{shrink.bias:+.3f}", "", "")
-        table.add_row("shrink: interval covers", *_row(shrink.coverage))
+        for word, shrink in (("stated", score.shrink), ("predicted", score.shrink.predicted)):
+            if shrink is not None:
+                table.add_row(f"shrink: |{word} - true|", f"{shrink.mean_difference:.3f}", str(len(shrink.cases)), "")
+                table.add_row(f"shrink: {word} - true", f"{shrink.bias:+.3f}", "", "")
+                table.add_row(f"shrink: interval {word} covers", *_row(shrink.coverage))
     return table
 
 

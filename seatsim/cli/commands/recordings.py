@@ -11,16 +11,31 @@ from seatsim.cli.options import OneScenario, Out, OwnCode
 from seatsim.cli.terminal import out, say, show_progress, warn, wrote, wrote_one
 
 
-def gap(scenario: OneScenario, recording: Path, out_folder: Out = None, own_code: OwnCode = None) -> None:
+def gap(
+    scenario: OneScenario,
+    recording: Path,
+    out_folder: Out = None,
+    predict: Annotated[
+        Path | None,
+        typer.Option("--predict", metavar="DIAGNOSIS.json", help="Predict the gap from the recording's inputs alone."),
+    ] = None,
+    own_code: OwnCode = None,
+) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
-    from seatsim.cli.gap_table import gap_table
+    from seatsim.cli.gap_table import forecast_table, gap_table
+    from seatsim.recordings.forecast import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
     from seatsim.schema.files import write_json
 
-    found = find_gap(scenario, recording)
-    out.print(gap_table(found))
-    warn(found.notes)
-    wrote_one(write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", found.as_dict()))
+    if predict is None:
+        found = find_gap(scenario, recording)
+        table, notes, content = gap_table(found), found.notes, found.as_dict()
+    else:
+        forecast = forecast_gap(scenario, recording, predict)
+        table, notes, content = forecast_table(forecast), forecast.notes, forecast.as_dict()
+    out.print(table)
+    warn(notes)
+    wrote_one(write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", content))
 
 
 def diagnose(

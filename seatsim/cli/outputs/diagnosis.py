@@ -12,7 +12,7 @@ from ruamel.yaml import YAML
 
 from seatsim.blind.processes import run_jobs
 from seatsim.diagnosis.diagnose import diagnose
-from seatsim.diagnosis.result import Diagnosis
+from seatsim.diagnosis.result import Diagnosis, GapFigures, RunGaps
 from seatsim.report import write_report
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import SeatsimError
@@ -58,10 +58,18 @@ def encode_diagnosis(diagnosis: Diagnosis) -> dict[str, object]:
             "before": gap.before.as_dict(), "calibrated": gap.calibrated.as_dict(), "after": gap.after.as_dict(),
             "floor": gap.floor.as_dict(),
             "shrink": gap.shrink, "shrink_interval": list(gap.shrink_interval),
+            "by_run": [_encode_run(each) for each in diagnosis.by_run],
         },
-        "alternatives": diagnosis.alternatives, "notes": diagnosis.notes, "augmented": "augmented.yaml",
+        "alternatives": diagnosis.alternatives, "calibrated_parameters": diagnosis.parameters,
+        "model_error": None if diagnosis.model_error is None else diagnosis.model_error.as_dict(),
+        "error_budget": diagnosis.error_budget, "notes": diagnosis.notes, "augmented": "augmented.yaml",
     }  # fmt: skip
     return {name: plain(value) for name, value in fields.items()}
+
+
+def _encode_run(gaps: RunGaps) -> dict[str, object]:
+    """Return the gaps of a run, figures by name as they stand for the held-out run."""
+    return {name: value.as_dict() if isinstance(value, GapFigures) else value for name, value in gaps._asdict().items()}
 
 
 def make_tables(diagnosis: Diagnosis) -> list[Table]:

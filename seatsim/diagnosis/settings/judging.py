@@ -272,3 +272,30 @@ class ValidationSettings(NamedTuple):
             "least bias of the stated shrink on sealed rigs",
         ),
     ] = 0.25
+    least_time: Annotated[
+        float,
+        Threshold(
+            "-",
+            "least standard deviation of a time, as a share of the interval between rows",
+            "higher: intervals of delays that are known better are too wide",
+            "a tenth of what rounding to whole rows makes",
+        ),
+    ] = 0.03
+    settled: Annotated[
+        float,
+        Threshold(
+            "-",
+            "the stated fit ends where a step lowers its cost by less than this share",
+            "higher: a parameter ends farther from its estimate than its standard deviation",
+            NUMERICAL,
+        ),
+    ] = 1e-5
+    by_chance: Annotated[
+        float,
+        Threshold(
+            "-",
+            "standard deviations of the power of noise by which a residual must exceed it to show an error of the form",
+            "higher: intervals that do not cover under a wrong form; lower: too wide ones under a right form",
+            SIMULATED_RIGS,
+        ),
+    ] = 2.0

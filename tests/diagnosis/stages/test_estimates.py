@@ -10,7 +10,6 @@ from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.estimates import (
     compare_comfort,
     estimate_causes,
-    estimate_standard_deviations,
     trace_motion,
     trace_run,
 )
@@ -18,6 +17,7 @@ from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.result import Estimate, Trace
 from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 from seatsim.scenario.loading import single
 
 from .toy import (
@@ -66,19 +66,34 @@ def deviations_of(objective, *terms, deviations=None):
 def test_standard_deviations_count_in_the_natural_sizes_of_the_parameters(folder):
     objective = pose_one(folder)
     # The starts of the free parameters, 0.5 and -4, are their sizes.
-    found, rig = deviations_of(objective, (TWICE, 0.5, 0.0), deviations=[0.1, 0.0])
-    expected = scatter(objective, ["one", "two"], max(1.0, rig.cost / rig.rows)) / [1.0, 1.0, 0.5, 4.0]
-    assert found == pytest.approx(expected, rel=1e-5)
+    found, _ = deviations_of(objective, (TWICE, 0.5, 0.0), deviations=[0.1, 0.0])
+    apart = (offer("a", "one", start=1.0), 0.5), (offer("c", "two", start=1.0), 0.0)
+    whole, _ = deviations_of(objective, *apart, deviations=[0.1, 0.0])
+    assert found * [1.0, 1.0, 0.5, 4.0] == pytest.approx(whole, rel=1e-4)
 
 
-@pytest.mark.parametrize("amount", [0.5, 2.5])
-def test_what_the_fit_leaves_beyond_noise_scales_them_up(folder, amount):
+def test_noise_alone_is_the_least_that_they_hold(folder):
     objective = pose_one(folder)
-    term = (offer("a", "one", start=0.25), amount), (offer("c", "two", start=-4.0), 0.0)
-    found, rig = deviations_of(objective, *term)
-    expected = scatter(objective, ["one", "two"], max(1.0, rig.cost / rig.rows)) / [1.0, 1.0, 0.25, 4.0]
-    assert found == pytest.approx(expected, rel=1e-5)
-    assert (rig.cost > 100.0 * rig.rows) == (amount > 1.0)
+    found, rig = deviations_of(objective, (offer("a", "one", start=0.25), 0.5))
+    least = scatter(objective, ["one"]) / [1.0, 1.0, 0.25]
+    assert rig.cost < 1.1 * rig.rows and np.all(found > 0.95 * least) and np.all(found < 1.8 * least)
+
+
+def test_what_the_fit_leaves_beyond_noise_widens_them(folder):
+    objective = pose_one(folder)
+    small, large = (deviations_of(objective, (offer("a", "one", start=0.25), size))[0] for size in (0.5, 2.5))
+    assert np.all(large > 5.0 * small)
+
+
+def test_an_error_of_the_form_that_shows_in_one_band_widens_what_that_band_says(folder):
+    """An error that is coherent with the signal does not average out as runs grow longer, as noise does."""
+    ratios = []
+    for rows in (400, 1600):
+        runs = {"first": rows, "second": rows}
+        objective = weigh_stated(pose(record(folder, (Added("one", 0.5), Added("three", 0.2)), runs, noise=0.01)))
+        found, _ = deviations_of(objective, (offer("a", "one"), 0.5))
+        ratios.append(found[2] / scatter(objective, ["one"])[2])
+    assert ratios[0] > 3.0 and ratios[1] == pytest.approx(2.0 * ratios[0], rel=0.4)
 
 
 def test_a_fit_below_its_noise_does_not_scale_them_down(folder):
@@ -88,23 +103,25 @@ def test_a_fit_below_its_noise_does_not_scale_them_down(folder):
     quiet = weigh_stated(dataclasses.replace(problem, recording=dataclasses.replace(problem.recording, channels=loud)))
     found, rig = deviations_of(quiet, (offer("a", "one"), 0.5))
     assert rig.cost < 0.2 * rig.rows
-    assert found == pytest.approx(scatter(quiet, ["one"]), rel=1e-5)
+    assert found == pytest.approx(scatter(quiet, ["one"]), rel=1e-4)
 
 
 def test_they_are_the_spread_of_fits_to_other_noise(folder):
     objective = pose_one(folder)
-    problem, rng, fits = objective.problem, np.random.default_rng(5), []
+    problem, rng, fits, stated = objective.problem, np.random.default_rng(5), [], []
     term = offer("a", "one", start=0.25)
     true = {run: problem.simulated(run, problem.nominal, (Added("one", 0.5),)) for run in problem.runs}
     for _ in range(150):
         drawn = {run: v + problem.noise[:, None] * rng.standard_normal(v.shape) for run, v in true.items()}
         other = dataclasses.replace(objective, problem=dataclasses.replace(problem, measured=drawn))
         fits.append(refit(other, place(problem, (term, 0.4))))
-    found = estimate_standard_deviations(objective, fits[-1], objective.linearise_nuisances(fits[-1]))
+        if len(fits) <= 8:
+            stated.append(estimate_standard_deviations(other, fits[-1], other.linearise_nuisances(fits[-1])))
+    found = np.mean(stated, axis=0)
     spread = np.std([each.parameters.vector for each in fits], axis=0)
     # The data outweigh the prior, which would draw the fits together.
     assert np.all(found[:2] < 0.3 * PRIOR)
-    assert found == pytest.approx(spread, rel=0.25)
+    assert np.all(found > 0.9 * spread) and np.all(found < 1.4 * spread)
     assert np.mean([each.parameters.values[0] for each in fits]) == pytest.approx(0.5, abs=0.25 * found[2])
 
 
@@ -164,8 +181,7 @@ def test_a_chosen_effect_has_the_parameters_of_the_fit_without_the_held_out_run(
     objective, _, held, causes, _ = found
     cause = {each.effect: each for each in causes}["a.one"]
     augmented, first = held["augmented"], objective.on_runs(["first"])
-    scale = max(1.0, augmented.cost / augmented.rows)
-    (std,) = scatter(first, ["one"], scale)[2:]
+    std = estimate_standard_deviations(first, augmented, first.linearise_nuisances(augmented))[2] * 0.25
     estimate = cause.parameters["amount"]
     assert list(cause.parameters) == ["amount"] and (estimate.value, estimate.unit) == (0.45, "N")
     assert estimate.std == pytest.approx(std, rel=1e-5)
@@ -175,8 +191,9 @@ def test_another_effect_has_those_of_its_own_fit_to_all_runs(found):
     objective, rigs, _, causes, _ = found
     cause = {each.effect: each for each in causes}["b.twice"]
     assert list(cause.parameters) == ["channel", "first", "second"] and cause.parameters["channel"] == "damper_force"
-    scale = max(1.0, rigs["twice"].cost / rigs["twice"].rows)
-    std = scatter(objective, ["one", "two"], scale)[2:]
+    # Single effects share the linearisation of the nuisances about the calibrated rig.
+    about = objective.linearise_nuisances(rigs["calibrated"])
+    std = estimate_standard_deviations(objective, rigs["twice"], about)[2:] * [0.5, 4.0]
     for name, value, unit, expected in zip(("first", "second"), (0.5, 0.2), ("kg", "m"), std, strict=True):
         estimate = cause.parameters[name]
         assert isinstance(estimate, Estimate) and (estimate.value, estimate.unit) == (value, unit)
@@ -200,7 +217,8 @@ def test_an_effect_behind_one_with_several_parameters_has_its_own_deviation(fold
     decision = Decision("known", chosen, [], {"b.twice": 0.9, "c.three": 0.8}, 0.0, 0.0)
     selection, nominal = Selection(calibrated, ((calibrated,),), ()), single(folder / "nominal.yaml")
     twice, third = estimate_causes(objective, selection, decision, calibrated, chosen, nominal, "first")
-    std = scatter(objective, ["one", "two", "three"], max(1.0, chosen.cost / chosen.rows))[2:]
+    about = objective.linearise_nuisances(chosen)
+    std = estimate_standard_deviations(objective, chosen, about)[2:] * [0.5, 4.0, 0.25]
     stated = [twice.parameters["first"].std, twice.parameters["second"].std, third.parameters["amount"].std]
     assert stated == pytest.approx(list(std), rel=1e-5)
 
@@ -261,7 +279,8 @@ def test_comfort_is_the_rms_of_the_quoted_channels(folder):
 
 
 def test_parameters_of_a_rig_without_effects_are_those_of_the_nuisances_alone(folder):
-    objective = pose_one(folder)
+    objective = pose_one(folder, ())
     rig = objective.evaluate([Parameters(np.zeros(2))])[0]
     found = estimate_standard_deviations(objective, rig, objective.linearise_nuisances(rig))
-    assert found == pytest.approx(scatter(objective, [], max(1.0, rig.cost / rig.rows)), rel=1e-5)
+    least = scatter(objective, [])
+    assert found.shape == (2,) and np.all(found > 0.95 * least) and np.all(found < 1.8 * least)

@@ -34,7 +34,7 @@ def test_what_a_tolerance_forbids_is_found_by_a_second_search_and_said(absorbed)
     assert mass.tolerance == pytest.approx(3.0 * 8.0)
     assert mass.at(second.decision.chosen.parameters.deviations[0]) == pytest.approx(100.0, abs=0.5)
     assert second.objective.problem.parameters[1] == absorbed.parameters[1]
-    assert notes[0] == "at the bound of their tolerance: plant.driver_mass 80 (fitted 88, bound 88)"
+    assert notes[0] == "at the bound of their tolerance: plant.driver_mass 80 (fitted 88)"
     assert notes[1].startswith("with 3 times the tolerance of these parameters ") and "is stated here" in notes[1]
     assert any("searching again with a wider tolerance" in text for text in said)
 
@@ -61,6 +61,6 @@ def test_what_no_parameter_can_take_is_left_to_the_first_search(folder):
 def test_a_parameter_at_its_bound_has_its_values_and_its_key(absorbed):
     rig = place(absorbed, deviations=[-1.0, 0.97])
     assert find_at_bound(absorbed, rig.add(offer("driver.mass", "mass"), np.ones(1))) == {}
-    assert find_at_bound(absorbed, rig) == {0: "plant.driver_mass 80 (fitted 72, bound 72)"}
+    assert find_at_bound(absorbed, rig) == {0: "plant.driver_mass 80 (fitted 72)"}
     assert list(find_at_bound(absorbed, place(absorbed, deviations=[0.2, 0.985]))) == [1]
     assert find_at_bound(absorbed, place(absorbed, deviations=np.zeros(2))) == {}

@@ -1,0 +1,159 @@
+"""What a scenario leaves beyond stated noise, by channel and frequency band, and what that predicts elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.schema.errors import InputError
+
+Array = NDArray[np.float64]
+Signals = Mapping[str, Array]
+
+BANDS = 7
+"""Octaves down from the highest compared frequency; the lowest band begins at 0, the highest one has no end."""
+LARGEST_RATIO = 10.0
+"""Most by which the measured amplitude of a band may differ from the simulated one and still be followed."""
+
+LARGEST_ERROR = 3.0
+"""Most that counts of an error in a band where a run had next to no signal."""
+
+
+def band_edges(highest: float) -> Array:
+    """Return the lower edges in Hz of bands that are octaves below `highest`, the lowest 0, shape (bands,)."""
+    return np.concatenate([[0.0], highest / 2.0 ** np.arange(BANDS - 1, 0, -1)])
+
+
+def band_powers(values: Array, rate: float, edges: Array) -> Array:
+    """Return the mean square of a signal, shape (N,), by frequency band, shape (bands,); Parseval: they add up."""
+    power = np.abs(np.fft.rfft(values)) ** 2 / len(values) ** 2
+    power[1 : (len(values) + 1) // 2] *= 2.0
+    band = np.searchsorted(edges, np.fft.rfftfreq(len(values), 1.0 / rate), side="right") - 1
+    return np.asarray(np.bincount(band, power, minlength=len(edges)), dtype=np.float64)
+
+
+def band_widths(rate: float, edges: Array) -> Array:
+    """Return the share of white noise that lies in each band, shape (bands,)."""
+    limits = np.minimum(np.append(edges, np.inf), 0.5 * rate)
+    return np.asarray(np.diff(limits) / (0.5 * rate))
+
+
+@dataclass(frozen=True)
+class ModelError:
+    """What a scenario leaves of each measured channel beyond stated noise, by frequency band.
+
+    With the mean squares E of `measured - simulated`, M of measured and S of simulated in a band, and N of the noise,
+
+        error = sqrt(max(E - N, 0) / M),    ratio = sqrt(M / S)  (within `LARGEST_RATIO`).
+
+    Attributes:
+        edges: lower edge of each band in Hz, shape (bands,).
+        noise: stated noise of each channel, in its unit.
+        error: by channel, shape (runs, bands); of all runs together in `pooled`.
+        ratio: by channel, of all runs together, shape (bands,).
+        pooled: by channel, shape (bands,).
+        runs: names, in the order of the rows of `error`.
+    """
+
+    edges: Array
+    noise: dict[str, float]
+    error: dict[str, Array]
+    ratio: dict[str, Array]
+    pooled: dict[str, Array]
+    runs: tuple[str, ...]
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the content of `model_error` in `diagnosis.json`."""
+        return {
+            "bands": [list(pair) for pair in zip(self.edges.tolist(), [*self.edges[1:].tolist(), None], strict=True)],
+            "channels": {name: values.tolist() for name, values in self.pooled.items()},
+            "measured_over_simulated": {name: values.tolist() for name, values in self.ratio.items()},
+            "by_run": [
+                {"run": run, "channels": {name: values[k].tolist() for name, values in self.error.items()}}
+                for k, run in enumerate(self.runs)
+            ],
+            "noise_rms": self.noise,
+        }
+
+    def predict_amplitude(self, channel: str, simulated: Array, rate: float) -> Array:
+        """Return the mean square to be expected of a measured channel by band, from the simulated one."""
+        powers = band_powers(simulated - np.mean(simulated), rate, self.edges)
+        return np.asarray(powers * self.ratio[channel] ** 2)
+
+    def predict_remainder(self, channel: str, simulated: Array, rate: float) -> Array:
+        """Return the mean square that is to stay of a channel beside noise, by each diagnosed run, shape (runs,)."""
+        limited = np.minimum(self.error[channel], LARGEST_ERROR)
+        return np.asarray(limited**2 @ self.predict_amplitude(channel, simulated, rate))
+
+
+def measure_model_error(
+    runs: Iterable[tuple[str, Signals, Signals]], noise: Mapping[str, float], rate: float, highest: float
+) -> ModelError:
+    """Return what a scenario leaves.
+
+    Args:
+        runs: name, measured and simulated channels of each run, shape (N,) each; all runs have the same channels.
+        noise: stated noise of the channels.
+        rate: rows per second.
+        highest: highest compared frequency in Hz.
+    """
+    edges, pairs = band_edges(min(highest, 0.5 * rate)), list(runs)
+    widths = band_widths(rate, edges)
+    powers = {
+        name: np.array([_powers(measured[name], simulated[name], rate, edges) for _, measured, simulated in pairs])
+        for name in noise
+    }
+    left = {name: np.maximum(value[:, 0] - noise[name] ** 2 * widths, 0.0) for name, value in powers.items()}
+    sums = {name: np.sum(value, axis=0) for name, value in powers.items()}
+    return ModelError(
+        edges,
+        dict(noise),
+        {name: _root_ratio(left[name], value[:, 1]) for name, value in powers.items()},
+        {name: np.clip(_root_ratio(s[1], s[2]), 1.0 / LARGEST_RATIO, LARGEST_RATIO) for name, s in sums.items()},
+        {name: _root_ratio(np.sum(left[name], axis=0), s[1]) for name, s in sums.items()},
+        tuple(name for name, _, _ in pairs),
+    )
+
+
+def _powers(measured: Array, simulated: Array, rate: float, edges: Array) -> Array:
+    """Return the band powers of residual, measured and simulated channel, shape (3, bands); the first keeps a mean."""
+    signals = (measured - simulated, measured - np.mean(measured), simulated - np.mean(simulated))
+    return np.array([band_powers(values, rate, edges) for values in signals])
+
+
+def _root_ratio(above: Array, below: Array) -> Array:
+    """Return the root of a ratio of powers, 0 where the lower one vanishes."""
+    return np.asarray(np.sqrt(np.divide(above, below, out=np.zeros_like(above), where=below > 0.0)))
+
+
+def read_model_error(content: Mapping[str, object], place: str) -> ModelError:
+    """Return the model error that stands in a `diagnosis.json`.
+
+    Raises:
+        InputError: it is not there or not of this form.
+    """
+    stated = content.get("model_error")
+    try:
+        assert isinstance(stated, Mapping)
+        by_run: Sequence[Mapping[str, object]] = stated["by_run"]
+        pooled = _arrays(stated["channels"])
+        return ModelError(
+            np.array([low for low, _ in stated["bands"]], dtype=np.float64),
+            {str(name): float(value) for name, value in stated["noise_rms"].items()},
+            {name: np.array([_arrays(run["channels"])[name] for run in by_run]) for name in pooled},
+            _arrays(stated["measured_over_simulated"]),
+            pooled,
+            tuple(str(run["run"]) for run in by_run),
+        )
+    except (AssertionError, KeyError, TypeError, ValueError, AttributeError) as error:
+        problem = f"{place}: states no model_error by channel and band; diagnose the recording again"
+        raise InputError(problem) from error
+
+
+def _arrays(values: object) -> dict[str, Array]:
+    """Return lists of numbers by name as arrays."""
+    assert isinstance(values, Mapping)
+    return {str(name): np.asarray(row, dtype=np.float64) for name, row in values.items()}

@@ -1,0 +1,218 @@
+"""The gap to be expected of a diagnosis on other inputs: what its effects change there, and what stays unexplained.
+
+Only the inputs of a recording are used. With the change d between the augmented and the nominal simulation of a
+channel, the mean square m that the augmented one is expected to miss (`ModelError.predict_remainder`), the noise n and
+the standard deviation s to be expected of the measured channel,
+
+    after^2 = mean((m + n^2) / s^2),    before^2 = mean((d^2 + m + n^2) / s^2),    shrink = 1 - after / before.
+
+What is missed is taken for uncorrelated with what the effects change, as the residual of a fit is. Where the effects
+change more here than they explained of a diagnosed run, they are extrapolated, and m grows in proportion.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.effects.base import EFFECTS
+from seatsim.recordings.compared import NOISE_FACTOR
+from seatsim.recordings.model_error import ModelError, read_model_error
+from seatsim.recordings.recording import Recording, load_recording
+from seatsim.recordings.replay import simulate_table
+from seatsim.scenario.loading import single
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import bounds, replace_fields
+from seatsim.schema.registry import Record
+
+Array = NDArray[np.float64]
+
+EXCITATION_STD = 0.1
+"""Standard deviation of the logarithm of what is missed, between excitations of one kind; on sealed rigs."""
+LARGEST_GROWTH = 3.0
+"""Most by which what is missed grows where the effects change more than they explained of a diagnosed run."""
+RATIO_STD = 0.03
+"""Standard deviation of the logarithm of the share of the gap that is left, whatever is missed; on sealed rigs."""
+ONE_RUN_STD = 0.3
+"""The same where a single run was diagnosed, so that its spread from run to run is not known."""
+QUANTILE = 1.645
+"""Of the normal distribution, at the ends of a 90 % interval."""
+
+
+class SimulatedRigs(NamedTuple):
+    """Outputs of the nominal and the augmented rig, and of that with each parameter of an effect moved, shape (N,)."""
+
+    rate: float
+    before: Mapping[str, Array]
+    after: Mapping[str, Array]
+    shifted: Sequence[Mapping[str, Array]]
+
+
+class StatedCause(NamedTuple):
+    """An effect of a `diagnosis.json`: its channel, if it acts on one, and its parameters' standard deviations."""
+
+    effect: str
+    channel: str | None
+    stds: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """The gap to be expected before and after, overall and by channel, and the shrink with its 90 % interval."""
+
+    before: float
+    after: float
+    shrink: float
+    shrink_interval: tuple[float, float]
+    channels: dict[str, tuple[float, float]]
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the prediction as it stands under `predicted` in `gap.json`."""
+        channels = {name: {"before": before, "after": after} for name, (before, after) in self.channels.items()}
+        return {
+            "before": self.before, "after": self.after, "shrink": self.shrink,
+            "shrink_interval": list(self.shrink_interval), "channels": channels,
+        }  # fmt: skip
+
+
+def predict_gap(
+    scenario: str | Path | Scenario, recording: str | Path | Recording, diagnosis: str | Path, runs: Sequence[str] = ()
+) -> Prediction:
+    """Return the gap to be expected on the inputs of a recording, of its nominal and of the augmented scenario.
+
+    Args:
+        scenario: the augmented scenario that the diagnosis wrote.
+        recording: its inputs are used, and its nominal scenario; outputs need not be recorded.
+        diagnosis: `diagnosis.json`.
+        runs: all of the recording's where none are named.
+
+    Raises:
+        InputError: the diagnosis is none or states no model error, or no channel of it stands above its noise here.
+        RunError: a simulation could not be carried to its end.
+    """
+    recording = recording if isinstance(recording, Recording) else load_recording(recording)
+    augmented = scenario if isinstance(scenario, Scenario) else single(scenario)
+    stated, names = _read_diagnosis(Path(diagnosis)), list(runs) or list(recording.runs)
+    error = read_model_error(stated, str(diagnosis))
+    after = _simulate(augmented, recording, names)
+    before = _simulate(single(recording.nominal), recording, names)
+    shifted = [_simulate(other, recording, names) for other in _move_parameters(augmented, _read_causes(stated))]
+    simulated = SimulatedRigs(recording.header.sample_rate, before, after, shifted)
+    return _combine(error, _read_explained(stated, error.runs, str(diagnosis)), simulated, str(recording.folder))
+
+
+def _combine(error: ModelError, explained: Array, rigs: SimulatedRigs, place: str) -> Prediction:
+    """Return the prediction from what each diagnosed run had `explained` of its gap, shape (runs,), and simulations."""
+    parts = {name: part for name in error.noise if (part := _measure_channel(error, name, rigs)) is not None}
+    if not parts:
+        raise InputError(f"{place}: no channel of the diagnosis is to stand above its noise with these inputs")
+    changes, floor, doubt = (float(value) for value in np.mean([part[:3] for part in parts.values()], axis=0))
+    growth = np.clip(np.sqrt(changes) / np.maximum(explained, 1e-9), 1.0, LARGEST_GROWTH) ** 2
+    missed = {name: growth * part[3:] for name, part in parts.items()}
+    by_run = np.mean(list(missed.values()), axis=0)
+    rest, width = _mean_square(by_run), QUANTILE * _spread(by_run / growth)
+    gaps, share = _roots(changes, floor, rest), np.exp(QUANTILE * RATIO_STD * (changes > 0.0))
+    least = share * _left(_roots(changes, floor, rest * np.exp(2.0 * width) + QUANTILE**2 * doubt))
+    most = _left(_roots(changes, floor, rest * np.exp(-2.0 * width))) / share
+    channels = {name: _roots(part[0], part[1], _mean_square(missed[name])) for name, part in parts.items()}
+    return Prediction(*gaps, 1.0 - _left(gaps), (1.0 - least, 1.0 - most), channels)
+
+
+def _measure_channel(error: ModelError, name: str, rigs: SimulatedRigs) -> Array | None:
+    """Return mean squares of a channel in variances: changed, noise, doubtful, missed by run; None if not compared."""
+    after, noise = rigs.after[name], error.noise[name]
+    variance = float(np.sum(error.predict_amplitude(name, after, rigs.rate)))
+    if variance < max((NOISE_FACTOR * noise) ** 2, 1e-300):
+        return None
+    changed = np.mean((after - rigs.before[name]) ** 2)
+    doubtful = sum(float(np.mean((other[name] - after) ** 2)) for other in rigs.shifted)
+    missed = error.predict_remainder(name, after, rigs.rate)
+    return np.array([changed, noise**2, doubtful, *missed]) / variance
+
+
+def _roots(changed: float, floor: float, missed: float) -> tuple[float, float]:
+    """Return the gap before and after, from mean squares in variances of the channels."""
+    return float(np.sqrt(changed + floor + missed)), float(np.sqrt(floor + missed))
+
+
+def _left(gaps: tuple[float, float]) -> float:
+    """Return the share of a gap that is left."""
+    return gaps[1] / gaps[0] if gaps[0] > 0.0 else 1.0
+
+
+def _mean_square(by_run: Array) -> float:
+    """Return the mean square that runs let expect: of their root mean squares, so that no single run rules."""
+    return float(np.mean(np.sqrt(by_run))) ** 2
+
+
+def _spread(by_run: Array) -> float:
+    """Return the standard deviation of the logarithm of what is missed, from run to run and between excitations."""
+    between = float(np.std(0.5 * np.log(np.maximum(by_run, 1e-300)), ddof=1)) if len(by_run) > 1 else ONE_RUN_STD
+    return float(np.hypot(EXCITATION_STD, between))
+
+
+def _simulate(scenario: Scenario, recording: Recording, runs: Sequence[str]) -> dict[str, Array]:
+    """Return the simulated outputs over all samples of the runs, driven by the recorded inputs, shape (N,) each."""
+    parts = [simulate_table(scenario, recording, recording.table(run)) for run in runs]
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _move_parameters(scenario: Scenario, causes: Sequence[StatedCause]) -> Iterator[Scenario]:
+    """Yield the augmented scenario with each parameter of its effects moved by its standard deviation."""
+    for index, effect in enumerate(scenario.effects):
+        name, channel = EFFECTS.name_of(type(effect)), effect._asdict().get("channel")
+        for cause in causes:
+            if cause.effect == name and cause.channel == channel:
+                for parameter, std in cause.stds.items():
+                    moved = _move(effect, parameter, std)
+                    effects = (*scenario.effects[:index], moved, *scenario.effects[index + 1 :])
+                    yield dataclasses.replace(scenario, effects=effects)
+
+
+def _move(effect: Record, parameter: str, std: float) -> Record:
+    """Return an effect with one parameter moved by its standard deviation, down where that would leave its range."""
+    value = float(str(effect._asdict()[parameter]))
+    low, high = bounds(type(effect), parameter)
+    moved = value + std if value + std <= high else max(value - std, low)
+    return replace_fields(effect, {parameter: moved})
+
+
+def _read_causes(content: Mapping[str, object]) -> list[StatedCause]:
+    """Return the standard deviations of the parameters of every cause that states some."""
+    found, causes = [], content.get("causes")
+    for cause in causes if isinstance(causes, list) else []:
+        stated = cause["parameters"]
+        stds = {name: float(value["std"]) for name, value in stated.items() if isinstance(value, dict) and value["std"]}
+        found.append(StatedCause(cause["effect"], stated.get("channel"), stds))
+    return found
+
+
+def _read_explained(content: Mapping[str, object], runs: Sequence[str], place: str) -> Array:
+    """Return by run the root of what the squared gap was reduced by; infinite for a run with nothing compared."""
+    gap = content.get("gap")
+    stated = gap.get("by_run") if isinstance(gap, Mapping) else None
+    if not isinstance(stated, list):
+        raise InputError(f"{place}: states no gap.by_run; diagnose the recording again")
+    gaps = {each["run"]: (each["before"]["overall"], each["after"]["overall"]) for each in stated}
+    pairs = [gaps.get(run, (math.inf, 0.0)) for run in runs]
+    return np.sqrt([max(before**2 - after**2, 0.0) for before, after in pairs])
+
+
+def _read_diagnosis(path: Path) -> Mapping[str, object]:
+    """Return the content of a `diagnosis.json`."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read as a diagnosis: {error}; name the diagnosis.json") from error
+    if not isinstance(content, dict):
+        raise InputError(f"{path}: is no diagnosis; name the diagnosis.json that 'seatsim diagnose' wrote")
+    return content

@@ -1,0 +1,185 @@
+"""The gap to be expected: by arithmetic on signals, and through the command on a recording with and without outputs."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import seatsim
+from seatsim.cli.app import main
+from seatsim.recordings import prediction
+from seatsim.recordings.compared import COMPARED
+from seatsim.recordings.forecast import has_outputs
+from seatsim.recordings.gap import measure_gap, pool_runs
+from seatsim.recordings.model_error import measure_model_error
+from seatsim.recordings.prediction import predict_gap
+from seatsim.recordings.recording import load_recording
+from seatsim.scenario.loading import single
+
+from ..faulty_recordings import edit
+
+RATE, N = 200.0, 20000
+OUTPUTS = COMPARED["seat"]
+
+
+def white(seed, size=1.0):
+    return size * np.random.default_rng(seed).standard_normal(N)
+
+
+def combine(error, before, after, shifted=(), explained=1.0):
+    rigs = prediction.SimulatedRigs(RATE, {"x": before}, {"x": after}, [{"x": each} for each in shifted])
+    return prediction._combine(error, np.full(len(error.runs), explained), rigs, "here")
+
+
+@pytest.fixture
+def error():
+    """Two runs whose residuals are a tenth and a fifth of what was measured, and no noise."""
+    runs = []
+    for run, share in (("a", 0.1), ("b", 0.2)):
+        simulated = white(run == "b")
+        runs.append((run, {"x": simulated + share * white(9)}, {"x": simulated}))
+    return measure_model_error(runs, {"x": 0.0}, RATE, 100.0)
+
+
+def test_before_has_what_the_effects_change_beside_what_is_missed(error):
+    after, change = white(3), white(4, 0.5)
+    found = combine(error, after - change, after)
+    missed = 0.15
+    assert found.after == pytest.approx(missed, rel=0.05)
+    assert found.before == pytest.approx(np.hypot(missed, 0.5), rel=0.03)
+    assert found.shrink == pytest.approx(1.0 - missed / np.hypot(missed, 0.5), abs=0.01)
+    assert found.channels == {"x": (pytest.approx(found.before), pytest.approx(found.after))}
+    low, high = found.shrink_interval
+    # Between a residual of a tenth and one of a fifth lies a factor of two, of which the interval holds more.
+    assert low < 1.0 - 0.2 / np.hypot(0.2, 0.5) < found.shrink < 1.0 - 0.1 / np.hypot(0.1, 0.5) < high < 1.0
+
+
+def test_what_is_left_as_it_is_does_not_shrink(error):
+    found = combine(error, white(3), white(3))
+    assert (found.shrink, found.shrink_interval) == (0.0, (0.0, 0.0)) and found.before == found.after > 0.0
+
+
+def test_what_is_missed_grows_where_effects_change_more_than_they_explained(error):
+    after, before = white(3), white(3) - white(4, 0.5)
+    within, beyond, far = (combine(error, before, after, explained=each) for each in (0.6, 0.25, 0.01))
+    assert within == combine(error, before, after)
+    assert beyond.after == pytest.approx(2.0 * within.after, rel=0.02)
+    assert far.after == pytest.approx(prediction.LARGEST_GROWTH * within.after)
+    assert beyond.channels["x"] == pytest.approx((beyond.before, beyond.after))
+
+
+def test_doubtful_parameters_and_unlike_runs_widen_the_interval(error):
+    after, before = white(3), white(3) - white(4, 0.5)
+    sure = combine(error, before, after)
+    doubtful = combine(error, before, after, [after + white(5, 0.3)])
+    assert doubtful.shrink == sure.shrink and doubtful.shrink_interval[0] < sure.shrink_interval[0] - 0.1
+    alike = measure_model_error(
+        [(run, {"x": white(0) + 0.15 * white(9)}, {"x": white(0)}) for run in "ab"], {"x": 0.0}, RATE, 100.0
+    )
+    assert np.ptp(combine(alike, before, after).shrink_interval) < 0.5 * np.ptp(sure.shrink_interval)
+    alone = measure_model_error([("a", {"x": white(0) + 0.15 * white(9)}, {"x": white(0)})], {"x": 0.0}, RATE, 100.0)
+    assert np.ptp(combine(alone, before, after).shrink_interval) > np.ptp(combine(alike, before, after).shrink_interval)
+
+
+def test_channels_that_do_not_stand_above_their_noise_are_left_out():
+    error = measure_model_error([("a", {"x": white(0)}, {"x": white(0)})], {"x": 0.5}, RATE, 100.0)
+    with pytest.raises(seatsim.InputError, match="no channel of the diagnosis is to stand above its noise"):
+        combine(error, white(3), white(3))
+
+
+def write_diagnosis(folder, recording, scenario):
+    """Write what a diagnosis would state of a scenario on a recording."""
+    runs = [(run, *pool_runs(scenario, recording, [run])) for run in recording.runs]
+    noise = {name: recording.channels[name].noise_rms for name in runs[0][1]}
+    error = measure_model_error(runs, noise, recording.header.sample_rate, 100.0)
+    path = folder / "diagnosis.json"
+    by_run = [{"run": run, "before": {"overall": 1.0}, "after": {"overall": 0.1}} for run in recording.runs]
+    path.write_text(json.dumps({"model_error": error.as_dict(), "gap": {"by_run": by_run}, "causes": []}))
+    return path
+
+
+@pytest.fixture
+def heavier(copy):
+    """The sound recording with a nominal whose driver is too light; the scenario that fits, and its diagnosis."""
+    right = copy / "augmented.yaml"
+    right.write_text((copy / "nominal.yaml").read_text())
+    light = (copy / "nominal.yaml").read_text().replace("driver_mass: 80.0", "driver_mass: 60.0")
+    (copy / "nominal.yaml").write_text(light)
+    recording = load_recording(copy)
+    return copy, right, write_diagnosis(copy, recording, single(right))
+
+
+def test_a_prediction_needs_no_outputs_and_agrees_with_what_is_measured(heavier):
+    copy, right, diagnosis = heavier
+    recording = load_recording(copy)
+    before, after = (measure_gap(each, recording).overall for each in (copy / "nominal.yaml", right))
+    found = predict_gap(right, copy, diagnosis)
+    assert found.before == pytest.approx(before, rel=0.05) and found.after == pytest.approx(after, rel=0.05)
+    low, high = found.shrink_interval
+    assert low < 1.0 - after / before < high
+    edit(copy, lambda header: [header["channels"].pop(name, None) for name in OUTPUTS])
+    for run in recording.runs.values():
+        table = pd.read_csv(copy / run.file).drop(columns=list(OUTPUTS), errors="ignore")
+        table.to_csv(copy / run.file, index=False)
+    assert not has_outputs(load_recording(copy))
+    blind = predict_gap(right, copy, diagnosis)
+    assert blind.before == pytest.approx(found.before, rel=1e-3) and blind.after == pytest.approx(found.after, rel=1e-3)
+
+
+def call(monkeypatch, *arguments):
+    monkeypatch.setattr("sys.argv", ["seatsim", *map(str, arguments)])
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    return stopped.value.code
+
+
+def test_the_command_shows_both_and_writes_them(heavier, tmp_path, monkeypatch, capsys):
+    copy, right, diagnosis = heavier
+    assert call(monkeypatch, "gap", right, copy, "--predict", diagnosis, "--out", tmp_path / "out") == 0
+    content = json.loads((tmp_path / "out" / "gap.json").read_text())
+    predicted, measured = content["predicted"], content["measured"]
+    assert content["overall"] == measured["after"] and set(content["channels"]) == set(predicted["channels"])
+    assert predicted["shrink"] == pytest.approx(measured["shrink"], abs=0.05)
+    low, high = predicted["shrink_interval"]
+    assert low <= predicted["shrink"] <= high
+    assert f"expected shrink {predicted['shrink']:.2f}" in capsys.readouterr().out
+    edit(copy, lambda header: [header["channels"].pop(name, None) for name in OUTPUTS])
+    assert call(monkeypatch, "gap", right, copy, "--predict", diagnosis, "--out", tmp_path / "blind") == 0
+    content = json.loads((tmp_path / "blind" / "gap.json").read_text())
+    assert content["overall"] is None and content["channels"] == {} and "measured" not in content
+    assert content["predicted"]["shrink"] == pytest.approx(predicted["shrink"], abs=0.01)
+
+
+def test_what_is_no_diagnosis_is_refused_and_nothing_is_written(heavier, tmp_path, monkeypatch, capsys):
+    copy, right, _ = heavier
+    for name, text in (("no.json", "{"), ("old.json", "{}"), ("list.json", "[]")):
+        (tmp_path / name).write_text(text)
+        assert call(monkeypatch, "gap", right, copy, "--predict", tmp_path / name, "--out", tmp_path / "out") == 2
+        assert name in "".join(capsys.readouterr()).replace("\n", "") and not (tmp_path / "out").exists()
+
+
+def test_what_runs_explained_is_read_by_name():
+    gaps = {"b": (0.5, 0.3), "a": (0.1, 0.2)}
+    by_run = [{"run": run, "before": {"overall": b}, "after": {"overall": a}} for run, (b, a) in gaps.items()]
+    found = prediction._read_explained({"gap": {"by_run": by_run}}, ["a", "b", "c"], "here")
+    assert found == pytest.approx([0.0, 0.4, np.inf])
+    with pytest.raises(seatsim.InputError, match=r"here: states no gap\.by_run"):
+        prediction._read_explained({"gap": {}}, ["a"], "here")
+
+
+def test_each_parameter_is_moved_by_its_deviation_and_stays_in_its_range(copy):
+    text = (copy / "nominal.yaml").read_text().replace("effects: []", "")
+    text += "\neffects: [{effect: suspension.friction, parameters: {force: 45.0}},"
+    text += " {effect: sensor.gain, parameters: {channel: damper_force, error: 0.1}}]\n"
+    (copy / "augmented.yaml").write_text(text)
+    causes = [
+        {"effect": "suspension.friction", "parameters": {"force": {"value": 45.0, "std": 2.0, "unit": "N"}}},
+        {"effect": "sensor.gain", "parameters": {"channel": "damper_force", "error": {"value": 0.1, "std": 10.0}}},
+        {"effect": "sensor.gain", "parameters": {"channel": "coil_current", "error": {"value": 0.1, "std": 1.0}}},
+        {"effect": "coil.delay", "parameters": {"time": {"value": 0.1, "std": None, "unit": "s"}}},
+    ]
+    stated = prediction._read_causes({"causes": causes})
+    moved = list(prediction._move_parameters(single(copy / "augmented.yaml"), stated))
+    assert [scenario.effects[0].force for scenario in moved] == [47.0, 45.0]
+    assert [scenario.effects[1].error for scenario in moved] == [0.1, pytest.approx(-1.0, abs=1e-6)]
