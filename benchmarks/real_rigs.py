@@ -210,7 +210,7 @@ def rigs(data: Path) -> list[RigRecords]:
         utfsm(data, "utfsm-all", (0.0, 0.25, 0.5, 0.75, 1.0)),
         dyke(data, "dyke", 1000.0),
         dyke(data, "dyke-130", 130.0),
-        fsae(data, "fsae", "t1_2_2_24_24_s5_n10_100psi", 5.0),
+        fsae(data, "fsae", "t1_3_3_18_18_s5_n100_50psi", 6.0),
         quanser(data, "quanser", ("frame_acceleration", "driver_acceleration", "suspension_displacement")),
         quanser(data, "quanser-travel", ("suspension_displacement",)),
     ]

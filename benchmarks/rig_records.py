@@ -16,7 +16,7 @@ quanser, quanser-travel  Quarter car as a seat: road = floor, middle plate = fra
     that this is no fair test of whether guide friction is named: a commanded force of up to 1 N (30 N here, in step
     with the road) acts between frame and driver, where the contract's rig has no actuator; and the guides rub against
     the ground, `suspension.friction` against the moving floor. Fitted dashpots absorb most of the friction as well.
-fsae  Passive racing damper on a scotch yoke, 127 mm/s, at its stiffer setting: cold at 100 psi, and under a heat gun.
+fsae  Passive racing damper on a scotch yoke, 127 mm/s: at 25-29 degC and 50 psi, and under a heat gun at 49-83 degC.
     The motion is counted from the middle of the stroke. No current: the nominal is a Bouc-Wen law at 0 A.
 
 `list_carriers` cuts them into runs of at most 10 s that serve as backgrounds of cases (`measured_carriers`).
@@ -203,7 +203,7 @@ def quanser(data: Path, name: str, outputs: Sequence[str]) -> RigRecords:
 
 
 def fsae(data: Path, name: str, file: str, length: float) -> RigRecords:
-    """Return a record of the racing damper, cut into six runs of so many seconds, spread over its length."""
+    """Return a record of the racing damper: six pieces of so many seconds, apart from each other."""
     whole = pd.read_csv(data / "fsae_damper_temperature" / f"{file}.csv.gz")
     rate = 300.03
     middle = 0.5 * float(whole["displacement_m"].min() + whole["displacement_m"].max())
@@ -216,12 +216,13 @@ def fsae(data: Path, name: str, file: str, length: float) -> RigRecords:
     rows = round(length * rate)
     starts = np.linspace(0, len(whole) - rows, 6).astype(int)
     # a record that begins in motion is at rest nowhere: the first second of a run is left out of every gap
-    runs: Runs = {f"piece-{k}": {c: v[a : a + rows] for c, v in table.items()} for k, a in enumerate(starts)}
+    pieces: Runs = {f"piece-{k}": {c: v[a : a + rows] for c, v in table.items()} for k, a in enumerate(starts)}
+    fit, runs, unseen = ({name: pieces[name] for name in list(pieces)[k::3]} for k in range(3))
     guess = {"c_a": 1500.0, "c_b": 0.0, "alpha_a": 60.0, "alpha_b": 0.0, "A": 2e3, "beta": 1e3, "gamma": 1e3}
     free = ("damper.c_a", "damper.alpha_a", "damper.A")
     return RigRecords(
         name, "damper_bench", rate, "gas offset, compression-rebound asymmetry, friction", bench(guess, 130.0), free,
-        noise, runs, runs, {}, ((GAS,),),
+        noise, fit, runs, unseen, ((GAS,),),
     )  # fmt: skip
 
 
@@ -237,13 +238,13 @@ def list_carriers(data: Path) -> list[CarrierRecords]:
     outputs = ("frame_acceleration", "driver_acceleration", "suspension_displacement")
     press = [utfsm(data, "utfsm-low", (0.0, 0.25, 0.5)), utfsm(data, "utfsm", (0.0, 0.25, 0.5, 0.75, 1.0))]
     yokes = [
-        fsae(data, "fsae-cold", "t1_2_2_24_24_s5_n10_100psi", 5.0),
+        fsae(data, "fsae", "t1_3_3_18_18_s5_n100_50psi", 6.0),
         fsae(data, "fsae-hot", "t2_3_3_24_24_s5_n100_100psi_with_heat_gun", 6.0),
     ]
     return [
         *(CarrierRecords(_all_runs(rig), (GAS_SPRING, ASYMMETRY, SATURATION)) for rig in press),
         CarrierRecords(_cut(_all_runs(dyke(data, "dyke", 130.0)), 4.1), (GAS_SPRING, ASYMMETRY)),
-        *(CarrierRecords(rig, (GAS_SPRING, ASYMMETRY, SEAL, FADE)) for rig in yokes),
+        *(CarrierRecords(_all_runs(rig), (GAS_SPRING, ASYMMETRY, SEAL, FADE)) for rig in yokes),
         CarrierRecords(_thinned(_all_runs(quanser(data, "quanser", outputs)), 18.0, 2), (FRICTION,)),
     ]
 

@@ -1,0 +1,75 @@
+"""Cases on measured recordings: how they are counted, nominals that hold mechanisms, and the joint fit beside them."""
+
+import dataclasses
+import importlib
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from seatsim.blind.score.verdicts import Verdict
+from ..blind.carriers import bench_carrier, write_carrier
+
+CARRIED = {"kind": "carried", "effects": ["sensor.gain"], "blocks": ["sensor"]}
+
+
+@pytest.fixture(scope="module")
+def benchmark():
+    """Import a benchmark as the scripts beside it do."""
+    folder = str(Path(__file__).parents[2] / "benchmarks")
+    sys.path.insert(0, folder)
+    yield importlib.import_module
+    sys.path.remove(folder)
+
+
+@pytest.mark.parametrize(
+    ("said", "expected"),
+    [
+        (Verdict("unknown", causes=("sensor.gain",)), "first"),
+        (Verdict("known", causes=("coil.lag",), groups=(("coil.lag", "sensor.gain"),)), "pair"),
+        (Verdict("known", causes=("coil.lag",), selected=("coil.lag",)), "wrong"),
+        (Verdict("unknown", causes=("coil.lag",)), "missed"),
+        (Verdict("missing"), "missed"),
+    ],
+)
+def test_outcomes(benchmark, said, expected):
+    assert benchmark("measured_carriers").outcome(CARRIED, said) == expected
+
+
+def test_cases_that_a_method_has_not_done_and_untouched_ones_are_not_counted(benchmark, tmp_path):
+    labels = {tmp_path / "rig" / name: CARRIED for name in ("a", "b", "c")}
+    labels[tmp_path / "rig" / "d"] = {"kind": "untouched", "effects": [], "blocks": []}
+    for name in ("a", "b", "d"):
+        (tmp_path / "rig" / name / "bic").mkdir(parents=True)
+    said = {"verdict": "known", "causes": [{"effect": "sensor.gain"}], "selected": ["sensor.gain"]}
+    (tmp_path / "rig" / "a" / "bic" / "diagnosis.json").write_text(json.dumps(said))
+    rows = benchmark("measured_carriers").count_outcomes(labels, "bic", lambda case, label: case.parent.name)
+    assert rows == {"rig": {"first": 1, "missed": 1}, "all": {"first": 1, "missed": 1}}
+
+
+def test_a_nominal_holds_the_mechanism_that_the_records_show(benchmark, tmp_path):
+    nominals, records = benchmark("carrier_nominals"), benchmark("rig_records")
+    carrier = bench_carrier()
+    tables = {r: {**t, "damper_force": t["damper_force"] + 60.0} for r, t in list(carrier.tables.items())[:1]}
+    runs = {**carrier.header, "runs": carrier.header["runs"][:1]}
+    folder = write_carrier(dataclasses.replace(carrier, header=runs, tables=tables), tmp_path / "rig")
+    recording = nominals.quick(nominals.load_recording(folder))
+    trials = (records.SATURATION, ("damper.gas_spring", {}, {"preload": 50.0}))
+    found, kept = nominals.identify(recording, carrier.nominal, ("damper.c_a",), trials)
+    assert kept == ["damper.gas_spring"]
+    assert found.nominal["effects"][0]["parameters"]["preload"] == pytest.approx(60.0, rel=0.01)
+    assert found.nominal["damper"]["parameters"]["c_a"] == pytest.approx(400.0, rel=0.02)
+
+
+def test_the_joint_fit_names_the_offset_that_moved_most(benchmark, tmp_path):
+    carrier = bench_carrier()
+    tables = {r: {**t, "damper_force": t["damper_force"] + 60.0} for r, t in carrier.tables.items()}
+    said = benchmark("joint_fit").diagnose_by_joint_fit(
+        write_carrier(dataclasses.replace(carrier, tables=tables), tmp_path / "rig")
+    )
+    assert said["selected"] == ["sensor.bias"]
+    nothing = benchmark("joint_fit").diagnose_by_joint_fit(write_carrier(carrier, tmp_path / "sound"))
+    assert nothing["verdict"] == "none"
+    assert np.isclose(nothing["causes"][0]["probability"], 0.0)
