@@ -47,7 +47,7 @@ class Nuisance(NamedTuple):
 
     def at(self, deviation: float) -> float:
         """Return the value at a deviation from -1 to 1, in units of the tolerance, within the permitted range."""
-        return min(max(self.nominal + self.tolerance * float(deviation), self.low), self.high)
+        return float(min(max(self.nominal + self.tolerance * deviation, self.low), self.high))
 
 
 class CalibratedParameter(NamedTuple):
