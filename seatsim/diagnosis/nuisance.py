@@ -48,7 +48,7 @@ class Nuisance(NamedTuple):
 
     def at(self, deviation: float) -> float:
         """Return the value at a deviation from -1 to 1, in units of the tolerance, within the permitted range."""
-        return min(max(self.nominal + self.tolerance * float(deviation), self.low), self.high)
+        return float(min(max(self.nominal + self.tolerance * deviation, self.low), self.high))
 
 
 def list_calibrated(parameters: Sequence[Nuisance], deviations: Array, at_bound: float) -> list[CalibratedParameter]:

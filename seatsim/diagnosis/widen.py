@@ -117,7 +117,7 @@ def _widen(objective: Objective, parameters: Parameters, held: Sequence[int]) ->
     problem = objective.problem
     factors = np.ones(len(problem.parameters))
     factors[list(held)] = problem.settings.widening.factor
-    pairs = zip(problem.parameters, factors, strict=True)
+    pairs = zip(problem.parameters, factors.tolist(), strict=True)
     wider = tuple(each._replace(tolerance=factor * each.tolerance) for each, factor in pairs)
     same = dataclasses.replace(parameters, deviations=parameters.deviations / factors)
     return same, Objective(dataclasses.replace(problem, parameters=wider), objective.weights)
