@@ -26,6 +26,10 @@ FORCE_SCALE = 10.0
 """N added to the force that the tolerance is relative to, so that a force near zero needs no finer steps."""
 MOST_PARTS = 4096
 """Most parts that a step is divided into; at 1 ms a part of 0.24 us, as short as any damper of the library needs."""
+MOST_WORK = 100
+"""Mean number of parts of a step at which a run is given up: it would take minutes, where others take milliseconds."""
+FEWEST_STEPS = 1000
+"""Steps that a short run counts as, so that a stiff start does not end it."""
 MARGIN = 32.0
 """Half as many parts are tried once the error is this much below the tolerance; twice the 16 of a method of order 4."""
 DIVERGED = 1e8
@@ -49,13 +53,13 @@ def run_bench(
 
     x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step;
     temperature is constant over a step. `initial_state` is the damper's at the first sample, `step` in s. The number
-    returned is n + 1 on success; otherwise the damper's state has diverged at the last sample reached.
+    returned is n + 1 on success; otherwise the damper's state has diverged at the last sample reached, or is too stiff.
     Set-valued friction acts as `coulomb sgn(v)`, zero at v = 0. A step is divided into at most `most_parts` parts, so
     that it adds an error of `tolerance` at most, relative to the force plus `FORCE_SCALE`. To be compiled by
     `compiled`.
     """
     z = initial_state
-    parts = 1
+    parts, spent = 1, 0
     now = temperature[0]
     factor = scaling_at(factors, now)
     for k in range(out.shape[0]):
@@ -71,7 +75,8 @@ def run_bench(
             z, parts, good = _advance(
                 damper, factor, x[span], v[span], current[span], z, step, parts, most_parts, tolerance
             )
-            if not good:
+            spent += parts
+            if not good or spent > MOST_WORK * max(out.shape[0], FEWEST_STEPS):
                 return k + 1
     return int(out.shape[0])
 
@@ -89,7 +94,10 @@ def _advance(
     most_parts: int,
     tolerance: float,
 ) -> tuple[State, int, bool]:
-    """Return the state after a step, the parts to try next, and whether the state is still finite."""
+    """Return the state after a step, the parts to try next, and whether the state is still finite.
+
+    An error of exactly 0 says nothing of the state: an open free play lets none of its force through.
+    """
     while True:
         state, worst = z, 0.0
         for part in range(parts):
@@ -99,7 +107,7 @@ def _advance(
         if worst <= tolerance or parts >= most_parts:
             break
         parts *= 2
-    if worst < tolerance / MARGIN and parts > 1:
+    if 0.0 < worst < tolerance / MARGIN and parts > 1:
         parts //= 2
     return state, parts, worst < DIVERGED
 

@@ -46,20 +46,20 @@ def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: b
     true = _undo_readings(effects, inputs)
     rows = interval * np.arange(len(true.displacement), dtype=np.float64)
     fine = np.arange(2 * len(rows) - 1, dtype=np.float64) * 0.5 * interval
-    position = _smooth(interval, true.displacement.tobytes(), true.displacement_noise)
-    velocity = position.derivative()(fine) if true.velocity is None else CubicSpline(rows, true.velocity)(fine)
+    position, velocity = _smooth(interval, true.displacement.tobytes(), true.displacement_noise)
+    if true.velocity is not None:
+        velocity = CubicSpline(rows, true.velocity)(fine)
     current = _coil_current(augment_coil(effects, scenario.coil), true, rows, fine)
     damper, state = augment_damper(scenario.damper.record, select_in_loop(effects, carry_all_effects)[0])
     temperature = augment_temperature(effects, 0.5 * interval, _temperature(scenario, true, rows, fine))
     factors = augment_factors(effects, scenario.damper.factors)
-    force = bench_force(damper, position(fine), velocity, current, temperature, interval, factors, state)
+    force = bench_force(damper, position, velocity, current, temperature, interval, factors, state)
     return read_sensors(effects, interval, {"damper_force": force, "coil_current": current[::2]})
 
 
 def smooth_motion(inputs: BenchInputs) -> Array:
     """Return the displacement in m that a simulation follows, at the rows of its inputs, shape (N,)."""
-    rows = inputs.interval * np.arange(len(inputs.displacement), dtype=np.float64)
-    return np.asarray(_smooth(inputs.interval, inputs.displacement.tobytes(), inputs.displacement_noise)(rows))
+    return _smooth(inputs.interval, inputs.displacement.tobytes(), inputs.displacement_noise)[0][::2]
 
 
 def _check_effects(scenario: Scenario) -> None:
@@ -87,10 +87,15 @@ def _undo_readings(effects: tuple[object, ...], inputs: BenchInputs) -> BenchInp
 
 
 @lru_cache(maxsize=64)
-def _smooth(interval: float, content: bytes, noise: float) -> UnivariateSpline:
-    """Return the spline through a channel, whose `content` is kept so that no run is smoothed twice."""
+def _smooth(interval: float, content: bytes, noise: float) -> tuple[Array, Array]:
+    """Return a channel and its derivative on the half-row grid, from the spline smoothed to within the noise.
+
+    The channel's `content` is the key under which they are kept, so that no run is smoothed twice.
+    """
     values = np.frombuffer(content)
-    return UnivariateSpline(np.arange(len(values)) * interval, values, k=5, s=len(values) * noise**2)
+    spline = UnivariateSpline(np.arange(len(values)) * interval, values, k=5, s=len(values) * noise**2)
+    fine = np.arange(2 * len(values) - 1, dtype=np.float64) * 0.5 * interval
+    return spline(fine), spline.derivative()(fine)
 
 
 def _coil_current(coil: Coil, true: BenchInputs, rows: Array, fine: Array) -> Array:

@@ -133,7 +133,9 @@ def bench_force(
     run = compiled(run_bench, classes_of(damper))
     reached = run(damper, factors, x, v, i, degrees, state, float(step), MOST_PARTS, TOLERANCE, out)
     if reached < len(out) or not np.all(np.isfinite(out)):
-        raise RunError(f"the force of {type(damper).__name__} is not finite after {reached * step:.3g} s")
+        raise RunError(
+            f"the force of {type(damper).__name__} is not finite, or its state too stiff, after {reached * step:.3g} s"
+        )
     return out
 
 
