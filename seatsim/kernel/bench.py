@@ -94,10 +94,7 @@ def _advance(
     most_parts: int,
     tolerance: float,
 ) -> tuple[State, int, bool]:
-    """Return the state after a step, the parts to try next, and whether the state is still finite.
-
-    An error of exactly 0 says nothing of the state: an open free play lets none of its force through.
-    """
+    """Return the state after a step, the parts to try next, and whether the state is still finite."""
     while True:
         state, worst = z, 0.0
         for part in range(parts):
@@ -107,7 +104,7 @@ def _advance(
         if worst <= tolerance or parts >= most_parts:
             break
         parts *= 2
-    if 0.0 < worst < tolerance / MARGIN and parts > 1:
+    if worst < tolerance / MARGIN and parts > 1:
         parts //= 2
     return state, parts, worst < DIVERGED
 

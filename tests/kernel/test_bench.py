@@ -1,6 +1,5 @@
 """The damper bench as plain Python, against closed forms and `scipy.integrate`."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -127,27 +126,6 @@ def test_the_error_is_the_difference_to_the_embedded_solution():
     assert state == pytest.approx((expected,), rel=1e-13)
     force = 2e5 * expected + 50.0
     assert error == pytest.approx(2e5 * h / 6.0 * abs(r(0.4, expected) - k4) / (10.0 + abs(force)), rel=1e-6)
-
-
-class Masked(NamedTuple):
-    """The same element behind a play that is open for 50 ms out of 100."""
-
-    time: float = 1e-3
-
-    def force(self, x, v, i, scaling, z):
-        return 1e5 * z[0] if math.sin(20.0 * np.pi * i) > 0.0 else 0.0
-
-    def rates(self, x, v, i, scaling, z):
-        return (v - z[0] / self.time,)
-
-
-def test_a_stiff_state_keeps_its_parts_while_nothing_of_it_is_felt():
-    clock = 0.5 * 5e-3 * np.arange(161)
-    out = np.full(81, np.nan)
-    given = (FACTORS, 0.03 * clock, np.full(161, 0.03), clock, np.full(161, 20.0), (0.0,), 5e-3)
-    assert run_bench(Masked(), *given, MOST_PARTS, TOLERANCE, out) == 81
-    felt = np.sin(20.0 * np.pi * clock[::2]) > 0.0
-    assert out == pytest.approx(np.where(felt, 1e5 * 0.03e-3 * (1.0 - np.exp(-clock[::2] / 1e-3)), 0.0), abs=0.01)
 
 
 def test_a_state_that_runs_away_stops_the_bench():
