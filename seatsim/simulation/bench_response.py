@@ -10,7 +10,6 @@ from scipy.interpolate import CubicSpline, UnivariateSpline
 
 from seatsim.effects.base import ON_SEAT, acts_on
 from seatsim.kernel.coil_current import simulate_current
-from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
@@ -28,6 +27,8 @@ from seatsim.simulation.damper_bench import bench_force
 from seatsim.simulation.inputs import BenchInputs
 
 Array = NDArray[np.float64]
+FINER = 16
+"""Parts of a row by which a log may be shifted, an even number: a sixteenth of 5 ms is far below any coil's lag."""
 
 
 def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: bool = False) -> dict[str, Array]:
@@ -49,7 +50,7 @@ def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: b
     position, velocity = _follow_motion(interval, true.displacement.tobytes(), true.displacement_noise)
     if true.velocity is not None:
         velocity = CubicSpline(rows, true.velocity)(fine)
-    current = _coil_current(augment_coil(effects, scenario.coil), true, rows, fine)
+    current = _coil_current(scenario, true, rows, fine)
     damper, state = augment_damper(scenario.damper.record, select_in_loop(effects, carry_all_effects)[0])
     temperature = augment_temperature(effects, 0.5 * interval, _temperature(scenario, true, rows, fine))
     factors = augment_factors(effects, scenario.damper.factors)
@@ -59,8 +60,7 @@ def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: b
 
 def smooth_motion(inputs: BenchInputs) -> Array:
     """Return the displacement in m that a simulation follows, at the rows of its inputs, shape (N,)."""
-    rows = inputs.interval * np.arange(len(inputs.displacement), dtype=np.float64)
-    return np.asarray(fit_motion(inputs.interval, inputs.displacement.tobytes(), inputs.displacement_noise)(rows))
+    return _follow_motion(inputs.interval, inputs.displacement.tobytes(), inputs.displacement_noise)[0][::2]
 
 
 def _check_effects(scenario: Scenario) -> None:
@@ -72,7 +72,7 @@ def _check_effects(scenario: Scenario) -> None:
 
 
 def _undo_readings(effects: tuple[object, ...], inputs: BenchInputs) -> BenchInputs:
-    """Return the inputs as they truly were."""
+    """Return the inputs as they truly were, but for the command."""
 
     def true(channel: str, values: Array | None) -> Array | None:
         return None if values is None else undo_reading(effects, values, channel, inputs.interval)
@@ -80,8 +80,6 @@ def _undo_readings(effects: tuple[object, ...], inputs: BenchInputs) -> BenchInp
     return inputs._replace(
         displacement=undo_reading(effects, inputs.displacement, "displacement", inputs.interval),
         velocity=true("velocity", inputs.velocity),
-        current_command=true("current_command", inputs.current_command),
-        command_voltage=true("command_voltage", inputs.command_voltage),
         coil_current=true("coil_current", inputs.coil_current),
         damper_temperature=true("damper_temperature", inputs.damper_temperature),
     )
@@ -105,16 +103,29 @@ def _follow_motion(interval: float, content: bytes, noise: float) -> tuple[Array
     return spline(fine), spline.derivative()(fine)
 
 
-def _coil_current(coil: Coil, true: BenchInputs, rows: Array, fine: Array) -> Array:
+def _coil_current(scenario: Scenario, true: BenchInputs, rows: Array, fine: Array) -> Array:
     """Return the coil current in A on the half-row grid."""
-    command = true.current_command
-    if command is None and true.voltage_gain is not None and true.command_voltage is not None:
-        command = true.voltage_gain * true.command_voltage
-    if command is None:
+    if true.current_command is not None:
+        command, parts = _undo_command(scenario.effects, true.current_command, "current_command", true.interval)
+    elif true.command_voltage is not None and true.voltage_gain is not None:
+        command, parts = _undo_command(scenario.effects, true.command_voltage, "command_voltage", true.interval)
+        command = true.voltage_gain * command
+    else:
         return np.zeros(len(fine)) if true.coil_current is None else np.interp(fine, rows, true.coil_current)
+    coil = augment_coil(scenario.effects, scenario.coil)
     start = 0.0 if true.coil_current is None else true.coil_current[0]
-    held = np.repeat(np.clip(command, 0.0, coil.max_current), 2)[:-1]
-    return np.asarray(simulate_current(coil, held, fine[1], start))
+    current = simulate_current(coil, np.clip(command, 0.0, coil.max_current), true.interval / parts, start)
+    return current[:: parts // 2]
+
+
+def _undo_command(effects: tuple[object, ...], logged: Array, channel: str, interval: float) -> tuple[Array, int]:
+    """Return the true command or voltage, held from its row until the next, and how many values of it a row has.
+
+    A log by another clock is shifted by parts of a row, so that the command changes within the rows.
+    """
+    held = np.repeat(logged, FINER)[: 1 - FINER]
+    true = undo_reading(effects, held, channel, interval / FINER)
+    return (np.repeat(logged, 2)[:-1], 2) if true is held else (true, FINER)
 
 
 def _temperature(scenario: Scenario, true: BenchInputs, rows: Array, fine: Array) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from seatsim.blind.score.verdicts import Verdict
+
 from ..blind.carriers import bench_carrier, write_carrier
 
 CARRIED = {"kind": "carried", "effects": ["sensor.gain"], "blocks": ["sensor"]}

@@ -1,5 +1,6 @@
 """What the commands write of runs, and how they shorten names and numbers."""
 
+import inspect
 import json
 import math
 from types import SimpleNamespace
@@ -9,9 +10,11 @@ import pytest
 from matplotlib.figure import Figure
 from ruamel.yaml import YAML
 
+from seatsim.cli.commands.recordings import diagnose as diagnose_command
 from seatsim.cli.outputs import characterisation as output
 from seatsim.cli.outputs import diagnosis
 from seatsim.cli.outputs import runs as outputs
+from seatsim.diagnosis.diagnose import BUDGET
 from seatsim.metrics import Metric
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import plain
@@ -97,3 +100,7 @@ def test_a_scenario_that_cannot_be_loaded_again_is_not_written(tmp_path, kept_se
     with pytest.raises(InputError, match=r"driver_mass: -4\.8 is not permitted"):
         diagnosis.write_diagnosis(found, tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_the_commands_budget_is_that_of_the_function():
+    assert inspect.signature(diagnose_command).parameters["budget"].default == BUDGET
