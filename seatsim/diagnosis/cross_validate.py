@@ -23,9 +23,9 @@ Array = NDArray[np.float64]
 
 
 class Supported(NamedTuple):
-    """What runs left out support: a set, sets that help as much, and all sets tried, with the mean square they leave.
+    """What runs left out support: a set, sets that help as much, and all sets tried, with what they leave.
 
-    The mean square is relative to that of the rig without effects.
+    That is the square of the share of the gap that stays, mean over the runs, of the rig without effects.
     """
 
     chosen: Evaluation
@@ -42,7 +42,7 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> Su
     for sets in selection.sets[1:]:
         compared = sets[: settings.sets_compared]
         tried = [(each, cross_validate(objective, each)) for each in compared if is_material(problem, each)]
-        found += [(each, float(np.mean((after / alone) ** 2))) for each, after in tried]
+        found += [(each, float(np.mean(after / alone) ** 2)) for each, after in tried]
         gains = [float(np.mean(1.0 - after / before)) for _, after in tried]
         if max(gains, default=0.0) < settings.least_gain:
             break

@@ -158,14 +158,14 @@ def test_of_two_that_help_as_much_the_rig_is_chosen_before_the_sensor():
     assert select(pose(), [("sensor.alike",)]) == ({"sensor.alike"}, [])
 
 
-def test_every_set_tried_is_returned_with_the_mean_square_that_it_leaves():
+def test_every_set_tried_is_returned_with_what_it_leaves():
     objective = pose()
     calibrated, one, two = (fitted(objective, *names) for names in ((), ("rig.one",), ("rig.two",)))
     selection = Selection(calibrated, ((calibrated,), (one, two)), ())
     tried = select_by_cross_validation(objective, selection).tried
     assert [each for each, _ in tried] == [calibrated, one, two]
     alone = left_out(objective, [], 3)
-    expected = [np.mean((left_out(objective, names, 3) / alone) ** 2) for names in ([], ["rig.one"], ["rig.two"])]
+    expected = [np.mean(left_out(objective, names, 3) / alone) ** 2 for names in ([], ["rig.one"], ["rig.two"])]
     np.testing.assert_allclose([left for _, left in tried], expected)
 
 
