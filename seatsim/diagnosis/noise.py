@@ -3,8 +3,8 @@
     P(f) = noise^2 + input noise carried through the rig + (model_error * spectrum of the channel)^2
 
 is the power that a perfect model leaves: the stated noise, the noise of the recorded inputs (the floor or the motion of
-a bench, and the coil current where no command is recorded) carried through the simulation, and a small share of the
-signal that no model of finite order gets right. It is never fitted to the residual under test, which would hide narrow
+a bench, and the coil current where no command is recorded) carried through the simulation, and a share of the signal
+that no model of finite order gets right, as the recording states it or else small. It is never fitted to the residual under test, which would hide narrow
 gaps.
 """
 
@@ -47,7 +47,8 @@ def weigh_noise(
         forces: signals of a random force on the frame in N by run, shape (samples,), whose power counts as noise.
         errors: power spectra of errors of the channels, shape (channels, frequencies) or (channels, 1).
     """
-    settings = problem.settings.noise
+    settings, stated = problem.settings.noise, problem.recording.header.model_error
+    missed = settings.model_error if stated is None else stated
     repeated = _measure_nonrepeatable(problem)
     weights, bins = {}, {}
     for run in problem.runs:
@@ -63,7 +64,7 @@ def weigh_noise(
                 power, np.array([np.interp(frequency, repeated[0], row) for row in repeated[1]]) * samples
             )
         signal = np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True), axis=1)) ** 2
-        total = power + settings.model_error**2 * smooth_spectrum(signal, settings.smoothing)
+        total = power + missed**2 * smooth_spectrum(signal, settings.smoothing)
         total = np.maximum(total, settings.least_power * problem.spread[:, None] ** 2 * samples)
         # A spectrum's real and imaginary part have half of its power each.
         weights[run] = np.sqrt(2.0 / total[:, : bins[run]])

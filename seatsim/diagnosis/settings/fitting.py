@@ -56,7 +56,7 @@ class FitSettings(NamedTuple):
             "-",
             "share of the time budget after which the search ends",
             "higher: more is tried where time is short; lower: more of it is left to validate and state the answer",
-            "on simulated rigs, where the statement takes a fifth of the time",
+            CONVENTION,
         ),
     ] = 0.7
     fitted_tolerance: Annotated[

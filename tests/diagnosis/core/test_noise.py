@@ -79,6 +79,15 @@ def test_a_small_share_of_the_signal_counts_as_noise():
     np.testing.assert_allclose(2.0 / weigh_noise(problem).weights["first"] ** 2, expected[:, :150], rtol=1e-9)
 
 
+def test_a_model_error_that_the_recording_states_stands_for_the_small_share():
+    problem = pose({"model_error": 0.1}, {"first": 300})
+    for stated in (0.0, 0.3):
+        header = problem.recording.header._replace(model_error=stated)
+        told = dataclasses.replace(problem, recording=dataclasses.replace(problem.recording, header=header))
+        same = pose({"model_error": stated}, {"first": 300})
+        np.testing.assert_array_equal(weigh_noise(told).weights["first"], weigh_noise(same).weights["first"])
+
+
 def test_an_offset_of_a_channel_is_no_signal():
     problem = pose(runs={"first": 300})
     shifted = dataclasses.replace(problem, measured={"first": problem.measured["first"] + 50.0})
