@@ -37,7 +37,7 @@ class Biodynamics(NamedTuple):
     carries the force of the inner mass and is lighter by it. In a recording the resonance is sought from 3 to 8 Hz.
     """
 
-    share: Annotated[float, param("-", "share of the mass that is sprung", low=0, high=0.9)]
+    share: Annotated[float, param("-", "share of the mass that is sprung", low=0, high=0.95)]
     frequency: Annotated[float, param("Hz", "natural frequency of the inner mass", above=0, high=30)] = 5.0
     damping: Annotated[float, param("-", "damping ratio of the inner mass", low=0, high=3)] = 0.3
 
