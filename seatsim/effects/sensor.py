@@ -113,13 +113,8 @@ class ClockSkew(NamedTuple):
     """The controller's log is late by `shift + drift t` against the other channels: it says at t what was at t - shift.
 
     The coil current, a continuous signal, is delayed by exactly that. So is the command where `hold` is 0. A command
-<<<<<<< HEAD
-    that the controller changes at the log's own rate, `hold` 1, is delayed by whole intervals of its samples only:
-    steps of the simulation on a seat, sixteenths of a row on a bench.
-=======
     that the controller changes at the log's own rate, `hold` 1, is delayed by whole steps only, those of the simulation
     on a seat, sixteenths of a row on a bench.
->>>>>>> h/defects
     """
 
     shift: Annotated[float, param("s", "delay of the log; negative: it runs ahead", low=-0.5, high=0.5)]
