@@ -73,6 +73,8 @@ def _measure_form_variance(objective: Objective, evaluation: Evaluation, gains: 
         signal += _band_powers(measured - measured.mean(axis=1, keepdims=True), problem.rate, edges)
     left = np.maximum(left - problem.settings.validation.by_chance * np.sqrt(chance), 0.0)
     moves = np.sum([_sum_bands(objective, run, gain, edges) for run, gain in gains.items()], axis=0)
+    # A mean that is missed is no share of a signal.
+    signal[:, 0] = 0.0
     share = np.divide(left, signal, out=np.zeros_like(left), where=signal > 0.0)
     return np.asarray(np.sum(share * np.abs(moves) ** 2, axis=(1, 2)))
 

@@ -14,7 +14,9 @@ Array = NDArray[np.float64]
 Signals = Mapping[str, Array]
 
 BANDS = 7
-"""Octaves down from the highest compared frequency; the lowest band begins at 0, the highest one has no end."""
+"""Octaves down from the highest compared frequency; the lowest band begins above 0, the highest one has no end."""
+QUIET = 0.01
+"""Share of a channel's power below which a band shows nothing of its own; it is taken to be as all bands are."""
 LARGEST_RATIO = 10.0
 """Most by which the measured amplitude of a band may differ from the simulated one and still be followed."""
 
@@ -23,8 +25,8 @@ LARGEST_ERROR = 3.0
 
 
 def band_edges(highest: float) -> Array:
-    """Return the lower edges in Hz of bands that are octaves below `highest`, the lowest 0, shape (bands,)."""
-    return np.concatenate([[0.0], highest / 2.0 ** np.arange(BANDS - 1, 0, -1)])
+    """Return the lower edges in Hz of the mean, which is a band of its own, and of octaves below `highest`."""
+    return np.concatenate([[0.0, np.finfo(float).tiny], highest / 2.0 ** np.arange(BANDS - 1, 0, -1)])
 
 
 def band_powers(values: Array, rate: float, edges: Array) -> Array:
@@ -48,6 +50,8 @@ class ModelError:
     With the mean squares E of `measured - simulated`, M of measured and S of simulated in a band, and N of the noise,
 
         error = sqrt(max(E - N, 0) / M),    ratio = sqrt(M / S)  (within `LARGEST_RATIO`).
+
+    The first band is the mean, whose error counts relative to the standard deviation of the channel.
 
     Attributes:
         edges: lower edge of each band in Hz, shape (bands,).
@@ -79,9 +83,9 @@ class ModelError:
         }
 
     def predict_amplitude(self, channel: str, simulated: Array, rate: float) -> Array:
-        """Return the mean square to be expected of a measured channel by band, from the simulated one."""
-        powers = band_powers(simulated - np.mean(simulated), rate, self.edges)
-        return np.asarray(powers * self.ratio[channel] ** 2)
+        """Return the mean square to be expected of a measured channel by band, in the first place that of all bands."""
+        powers = band_powers(simulated - np.mean(simulated), rate, self.edges) * self.ratio[channel] ** 2
+        return _with_whole(powers)
 
     def predict_remainder(self, channel: str, simulated: Array, rate: float) -> Array:
         """Return the mean square that is to stay of a channel beside noise, by each diagnosed run, shape (runs,)."""
@@ -111,7 +115,7 @@ def measure_model_error(
     return ModelError(
         edges,
         dict(noise),
-        {name: _root_ratio(left[name], value[:, 1]) for name, value in powers.items()},
+        {name: np.array(list(map(_root_ratio, left[name], value[:, 1]))) for name, value in powers.items()},
         {name: np.clip(_root_ratio(s[1], s[2]), 1.0 / LARGEST_RATIO, LARGEST_RATIO) for name, s in sums.items()},
         {name: _root_ratio(np.sum(left[name], axis=0), s[1]) for name, s in sums.items()},
         tuple(name for name, _, _ in pairs),
@@ -119,14 +123,22 @@ def measure_model_error(
 
 
 def _powers(measured: Array, simulated: Array, rate: float, edges: Array) -> Array:
-    """Return the band powers of residual, measured and simulated channel, shape (3, bands); the first keeps a mean."""
-    signals = (measured - simulated, measured - np.mean(measured), simulated - np.mean(simulated))
-    return np.array([band_powers(values, rate, edges) for values in signals])
+    """Return the band powers of residual, measured and simulated channel, shape (3, bands); the first has its mean."""
+    residual = band_powers(measured - simulated, rate, edges)
+    signals = [band_powers(values - np.mean(values), rate, edges) for values in (measured, simulated)]
+    return np.array([residual, *map(_with_whole, signals)])
+
+
+def _with_whole(powers: Array) -> Array:
+    """Return band powers with that of all bands in the place of the mean's."""
+    return np.concatenate([[np.sum(powers[1:])], powers[1:]])
 
 
 def _root_ratio(above: Array, below: Array) -> Array:
-    """Return the root of a ratio of powers, 0 where the lower one vanishes."""
-    return np.asarray(np.sqrt(np.divide(above, below, out=np.zeros_like(above), where=below > 0.0)))
+    """Return the root of a ratio of powers, shape (bands,); of all bands where one is quiet, 0 where all are silent."""
+    quiet = below <= QUIET * below[0]
+    whole = np.sum(above[1:]) / below[0] if below[0] > 0.0 else 0.0
+    return np.asarray(np.sqrt(np.where(quiet, whole, above / np.where(quiet, 1.0, below))))
 
 
 def read_model_error(content: Mapping[str, object], place: str) -> ModelError:

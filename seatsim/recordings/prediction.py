@@ -130,7 +130,7 @@ def _combine(error: ModelError, explained: Array, rigs: SimulatedRigs, place: st
 def _measure_channel(error: ModelError, name: str, rigs: SimulatedRigs) -> Array | None:
     """Return mean squares of a channel in variances: changed, noise, doubtful, missed by run; None if not compared."""
     after, noise = rigs.after[name], error.noise[name]
-    variance = float(np.sum(error.predict_amplitude(name, after, rigs.rate)))
+    variance = float(error.predict_amplitude(name, after, rigs.rate)[0])
     if variance < max((NOISE_FACTOR * noise) ** 2, 1e-300):
         return None
     changed = np.mean((after - rigs.before[name]) ** 2)

@@ -24,11 +24,12 @@ def tone(frequency, amplitude=1.0):
 
 def test_bands_are_octaves_and_their_powers_add_up_to_the_mean_square():
     edges = band_edges(64.0)
-    assert edges.tolist() == [0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0] and len(edges) == BANDS
+    assert edges[2:].tolist() == [1.0, 2.0, 4.0, 8.0, 16.0, 32.0] and len(edges) == BANDS + 1
+    assert edges[0] == 0.0 < edges[1] < 1e-9
     for count in (N, N - 1):
         values = np.random.default_rng(1).standard_normal(count) + 3.0
         assert np.sum(band_powers(values, RATE, edges)) == pytest.approx(np.mean(values**2))
-    assert band_powers(tone(3.0) + 0.5, RATE, edges) == pytest.approx([0.25, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+    assert band_powers(tone(3.0) + 0.5, RATE, edges) == pytest.approx([0.25, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
     assert np.sum(band_widths(RATE, edges)) == pytest.approx(1.0)
     assert band_widths(RATE, edges)[-1] == pytest.approx(0.68)
 
@@ -36,22 +37,32 @@ def test_bands_are_octaves_and_their_powers_add_up_to_the_mean_square():
 def test_the_error_is_what_is_left_over_what_was_measured_band_by_band():
     measured, simulated = tone(3.0, 2.0) + tone(10.0), tone(3.0, 1.8) + tone(10.0, 0.5)
     found = measure_model_error([("a", {"x": measured}, {"x": simulated})], {"x": 0.0}, RATE, 64.0)
-    assert found.error["x"][0, [2, 4]] == pytest.approx([0.1, 0.5])
-    assert found.pooled["x"][[2, 4]] == pytest.approx([0.1, 0.5])
-    assert found.ratio["x"][[2, 4]] == pytest.approx([2.0 / 1.8, 2.0])
-    assert found.predict_amplitude("x", simulated, RATE)[[2, 4]] == pytest.approx([4.0, 1.0])
-    assert found.predict_remainder("x", simulated, RATE) == pytest.approx([0.04 + 0.25])
+    assert found.error["x"][0, [3, 5]] == pytest.approx([0.1, 0.5])
+    assert found.pooled["x"][[3, 5]] == pytest.approx([0.1, 0.5])
+    assert found.ratio["x"][[3, 5]] == pytest.approx([2.0 / 1.8, 2.0])
+    assert found.predict_amplitude("x", simulated, RATE)[[3, 5]] == pytest.approx([4.0, 1.0])
+    assert found.predict_remainder("x", simulated, RATE) == pytest.approx([0.04 + 0.25], rel=1e-6)
+    # A band without a signal is taken to be as all are.
+    assert found.error["x"][0, 7] == pytest.approx(np.sqrt((0.04 + 0.25) / 5.0))
     # Another excitation, twice as strong at 3 Hz and without 10 Hz, is missed in proportion.
     assert found.predict_remainder("x", tone(2.5, 3.6), RATE) == pytest.approx([0.16])
+
+
+def test_a_missed_mean_counts_relative_to_the_whole_channel():
+    measured, simulated = tone(3.0, 2.0) + 1.0, tone(3.0, 2.0)
+    found = measure_model_error([("a", {"x": measured}, {"x": simulated})], {"x": 0.0}, RATE, 64.0)
+    assert found.pooled["x"] == pytest.approx([0.5, *[0.0] * 7], abs=1e-6)
+    assert found.predict_remainder("x", tone(0.5, 4.0), RATE) == pytest.approx([4.0])
+    assert found.predict_amplitude("x", tone(0.5, 4.0), RATE)[:2] == pytest.approx([16.0, 16.0])
 
 
 def test_stated_noise_is_no_error_and_a_silent_band_has_none():
     noise = 0.1 * np.random.default_rng(2).standard_normal(N)
     measured = tone(3.0) + noise
     found = measure_model_error([("a", {"x": measured}, {"x": tone(3.0)})], {"x": 0.1}, RATE, 64.0)
-    assert found.pooled["x"][2] < 0.02
+    assert found.pooled["x"][3] < 0.02
     silent = measure_model_error([("a", {"x": np.zeros(N)}, {"x": tone(3.0)})], {"x": 0.1}, RATE, 64.0)
-    assert np.all(silent.pooled["x"] == 0.0) and silent.ratio["x"][2] == 1.0 / LARGEST_RATIO
+    assert np.all(silent.pooled["x"] == 0.0) and silent.ratio["x"][3] == 1.0 / LARGEST_RATIO
 
 
 def test_it_is_read_as_it_was_written_and_refused_where_it_is_not_there():

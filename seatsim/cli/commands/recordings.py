@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from seatsim.cli.options import OneScenario, Out, OwnCode
-from seatsim.cli.terminal import out, say, show_progress, warn, wrote, wrote_one
+from seatsim.cli.terminal import out, say, show_progress, warn, wide, wrote, wrote_one
 
 
 def gap(
@@ -22,7 +22,7 @@ def gap(
     own_code: OwnCode = None,
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
-    from seatsim.cli.gap_table import forecast_table, gap_table
+    from seatsim.cli.gap_table import FORECAST_LETTERS, forecast_table, gap_table
     from seatsim.recordings.forecast import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
     from seatsim.schema.files import write_json
@@ -33,7 +33,7 @@ def gap(
     else:
         forecast = forecast_gap(scenario, recording, predict)
         table, notes, content = forecast_table(forecast), forecast.notes, forecast.as_dict()
-    out.print(table)
+    (out if predict is None else wide(FORECAST_LETTERS)).print(table)
     warn(notes)
     wrote_one(write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", content))
 
