@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -66,9 +65,3 @@ def _at(ruler: Ruler, change: Change, amount: float, least: float, most: float) 
 def draw_size(rng: Generator) -> float:
     """Draw a size, log-uniform from just material to strong."""
     return float(np.exp(rng.uniform(math.log(WEAKEST), math.log(STRONGEST))))
-
-
-def spread_over(changes: Sequence[Change], used: dict[str, int], rng: Generator) -> list[Change]:
-    """Return the changes in the order in which they are to be tried: effects used least first, then by chance."""
-    order = rng.permutation(len(changes))
-    return sorted((changes[k] for k in order), key=lambda change: used.get(change.effect, 0))

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.blind.carrier.change import Change
 from seatsim.blind.carrier.draw import DrawnCase, choose_runs, draw_amount
 from seatsim.blind.carrier.injections.catalogue import draw_changes
 from seatsim.blind.carrier.make import label
@@ -85,7 +86,8 @@ def measure_power(
         InputError: the recording is none, or does not allow an effect that is named.
     """
     carrier = read_carrier(recording)
-    possible = sorted({change.effect for change in draw_changes(carrier, np.random.default_rng(seed))})
+    changes = draw_changes(carrier, np.random.default_rng(seed))
+    possible = sorted({change.effect for change in changes if has_sizes(change)})
     for name in effects:
         if name not in possible:
             permitted = f"{nearest(name, possible)}; this recording allows {', '.join(possible)}"
@@ -99,6 +101,11 @@ def measure_power(
         if progress:
             progress(found[-1], len(found), len(chosen))
     return found
+
+
+def has_sizes(change: Change) -> bool:
+    """Tell whether a change can be of any size; what is taken out of a nominal has the one that it has."""
+    return change.span[0] < change.span[1]
 
 
 def _bisect(setting: Setting, draws: int, processes: int) -> Power:
@@ -147,7 +154,7 @@ def try_draw(setting: Setting, size: float, draw: int) -> Trial:
 def _draw(setting: Setting, size: float, draw: int) -> DrawnCase | None:
     rng = np.random.default_rng([setting.seed, draw])
     carrier = choose_runs(read_carrier(setting.recording), rng)
-    changes = [change for change in draw_changes(carrier, rng) if change.effect == setting.effect]
+    changes = [c for c in draw_changes(carrier, rng) if c.effect == setting.effect and has_sizes(c)]
     ruler, order = Ruler(carrier), rng.permutation(len(changes))
     return next((drawn for k in order if (drawn := draw_amount(ruler, changes[k], size)) is not None), None)
 
