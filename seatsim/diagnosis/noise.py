@@ -4,8 +4,8 @@
 
 is the power that a perfect model leaves: the stated noise, the noise of the recorded inputs (the floor or the motion of
 a bench, and the coil current where no command is recorded) carried through the simulation, and a share of the signal
-that no model of finite order gets right, as the recording states it or else small. It is never fitted to the residual under test, which would hide narrow
-gaps.
+that no model of finite order gets right, as the recording states it or else small. It is never fitted to the residual
+under test, which would hide narrow gaps.
 """
 
 from __future__ import annotations
