@@ -47,10 +47,18 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> Su
         if max(gains, default=0.0) < settings.least_gain:
             break
         best = [each for each, gain in zip(tried, gains, strict=True) if gain > max(gains) - settings.equivalent]
-        # Where a wrong sensor and a change of the rig help equally, the change of the rig is the more useful answer.
-        best.sort(key=lambda each: sum(term.block == "sensor" for term in each[0].parameters.terms))
+        best.sort(key=lambda each: _complexity(each[0]))
         (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
     return Supported(chosen, equivalent, found)
+
+
+def _complexity(evaluation: Evaluation) -> tuple[int, int]:
+    """Return what decides between sets that help equally: how many sensors err, and how many parameters are free.
+
+    A change of the rig is a more useful answer than a wrong sensor, and a law with fewer parameters a likelier one.
+    """
+    terms = evaluation.parameters.terms
+    return sum(term.block == "sensor" for term in terms), sum(len(term.free) for term in terms)
 
 
 def cross_validate(objective: Objective, evaluation: Evaluation) -> Array:

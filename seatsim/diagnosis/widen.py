@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Objective
@@ -66,8 +67,11 @@ def search_wider(
         return solve(judge.problem, without, progress, method)
 
     attempt = _leave_less if best.excess > problem.settings.selection.nothing_left else _need_fewer
-    second, said = attempt(Wider(best, start, judge), search, len(held))
     notes = ["at the bound of their tolerance: " + ", ".join(held.values())]
+    try:
+        second, said = attempt(Wider(best, start, judge), search, len(held))
+    except OutOfTimeError:
+        return first, notes
     if said:
         told = "this is stated here; check the nominal values, or state a wider tolerance"
         told = told if second else "the stated tolerance holds"

@@ -218,7 +218,7 @@ class CrossValidationSettings(NamedTuple):
     ] = 0.02
     sets_compared: Annotated[
         int, Threshold("-", "sets of each size that are cross-validated", "more: time", "on measured rigs")
-    ] = 5
+    ] = 8
     folds: Annotated[int, Threshold("-", "parts of the runs that are left out in turn", "more: time", CONVENTION)] = 3
 
 

@@ -115,9 +115,9 @@ def test_stages_that_the_budget_cut_short_are_named(stages, monkeypatch):
     monkeypatch.setattr(module, "solve", solve)
     diagnose_problem(Posed(), ["a note"], budget=0.03)
     noted = stages["state_diagnosis"][1]
-    assert noted[0] == "a note" and len(noted) == 2
-    assert noted[1].startswith("the budget of 0.03 s was spent, so that the answer is the best so far")
-    assert noted[1].endswith("cut short: fitting sets of 1, fitting sets of 2")
+    assert noted[:2] == ["a note", "at the bound"] and len(noted) == 3
+    assert noted[2].startswith("the budget of 0.03 s was spent, so that the answer is the best so far")
+    assert noted[2].endswith("cut short: fitting sets of 1, fitting sets of 2")
 
 
 def test_a_recording_with_an_error_is_refused_before_anything_is_fitted(folder, stages, monkeypatch):
@@ -189,7 +189,7 @@ def test_a_heavier_driver_is_found(heavier):
     assert found.probability_unknown < 0.1 and found.probability_none < 0.1
 
 
-@pytest.mark.parametrize("budget", [1e-6, 0.05, 0.3])
+@pytest.mark.parametrize("budget", [1e-6, 1e-3])
 def test_however_short_the_time_there_is_an_answer_that_says_what_was_cut(heavier, budget):
     found = diagnose_problem(heavier, budget=budget)
     assert any(note.startswith(f"the budget of {budget:g} s was spent") for note in found.notes)
