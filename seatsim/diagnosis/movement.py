@@ -59,16 +59,24 @@ def measure_shares_left(problem: DiagnosisProblem, before: Evaluation, after: Ev
 
 
 def measure_gap_taken(objective: Objective, before: Evaluation, after: Evaluation) -> float:
-    """Return the share that a rig takes off the part of the gap that a right model would take off, over all runs.
+    """Return the share that a rig takes off the part of the gap that a right model would take off, over all runs."""
+    gaps = [
+        float(np.sqrt(np.mean(normalise_rms_errors(objective.problem, each.residuals) ** 2)))
+        for each in (before, after)
+    ]
+    return share_removable(objective, gaps[0], gaps[1])
 
-    `(before - after) / (before - left)`, gaps in standard deviations as the recording's contract states them, with
-    `left` the gap of what the noise weights expect of a right model; 1 where noise alone makes the gap.
+
+def share_removable(objective: Objective, before: float, after: float) -> float:
+    """Return the share of the removable gap that is taken, from the gap before and after, as the contract states them.
+
+    `(before - after) / (before - left)`, in standard deviations, with `left` the gap that the noise weights expect
+    of a right model; 1 where noise alone makes the gap.
     """
     problem = objective.problem
-    gaps = [np.sqrt(np.mean(normalise_rms_errors(problem, each.residuals) ** 2)) for each in (before, after)]
     left = np.sqrt(np.mean([_expect_power(objective, run) / problem.spread**2 for run in problem.runs]))
-    removable = gaps[0] - left
-    return float((gaps[0] - gaps[1]) / removable) if removable > problem.settings.decision.least_removable else 1.0
+    removable = float(before - left)
+    return (before - after) / removable if removable > problem.settings.decision.least_removable else 1.0
 
 
 def _expect_power(objective: Objective, run: str) -> Array:

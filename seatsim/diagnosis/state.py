@@ -18,7 +18,7 @@ from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_
 from seatsim.diagnosis.every_run import list_gaps, replay_runs, state_model_error
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
-from seatsim.diagnosis.movement import measure_gap_taken
+from seatsim.diagnosis.movement import share_removable
 from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Linearisation
 from seatsim.diagnosis.parameters import Parameters
@@ -86,9 +86,8 @@ def validate_on_held_out(solution: Solution) -> Validation:
         alone = decide_beside_unknown(problem.settings.decision, decision, selection.calibrated)
         return validate_on_held_out(solution._replace(decision=alone))
     if not solution.stochastic and decision.verdict in ("known", "ambiguous"):
-        held_out = objective.on_runs([run])
-        before, after = held_out.evaluate([rigs[0], rigs[2]])
-        if measure_gap_taken(held_out, before, after) < problem.settings.decision.least_taken:
+        taken = share_removable(objective.on_runs([run]), gaps.before.overall, gaps.after.overall)
+        if taken < problem.settings.decision.least_taken:
             solution = solution._replace(decision=call_unknown(problem.settings.decision, decision))
     return Validation(solution, nominal, run, calibrated, augmented, gaps)
 
