@@ -9,7 +9,7 @@ from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, show_discrepancy
-from seatsim.diagnosis.result import Share
+from seatsim.diagnosis.result import GapFigures, Gaps, Share
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.sentences import write_answer
 from seatsim.diagnosis.solve import Solution
@@ -78,7 +78,8 @@ def test_the_shrinks_own_spread_from_run_to_run_widens_its_interval(known, monke
 
     def measure(problem, scenarios, runs, spread):
         seen.append((runs, spread))
-        return dataclasses.make_dataclass("Gaps", ["shrink"])(0.5)
+        figures = [GapFigures(each, {}) for each in (0.5, 0.5, 0.1, 0.05)]
+        return Gaps(*figures, 0.8, (0.7, 0.9))
 
     monkeypatch.setattr("seatsim.diagnosis.state.measure_gaps", measure)
     run = validate_on_held_out(known).run
