@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.movement import is_material
-from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.problem import normalise_rms_errors
 from seatsim.diagnosis.select import Selection
 
@@ -37,11 +37,12 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> Su
     """Return the smallest set of effects that no larger one improves on left-out runs, and sets that help as much."""
     settings, problem = objective.settings.cross_validation, objective.problem
     chosen, equivalent = selection.calibrated, list[Evaluation]()
-    alone = before = cross_validate(objective, chosen)
+    alone = before = cross_validate(objective, chosen, selection.linearise_nuisances(objective, chosen))
     found = [(chosen, 1.0)]
     for sets in selection.sets[1:]:
         compared = sets[: settings.sets_compared]
-        tried = [(each, cross_validate(objective, each)) for each in compared if is_material(problem, each)]
+        nuisances = selection.linearise_nuisances(objective, sets[0])
+        tried = [(each, cross_validate(objective, each, nuisances)) for each in compared if is_material(problem, each)]
         found += [(each, float(np.mean(after / alone) ** 2)) for each, after in tried]
         gains = [float(np.mean(1.0 - after / before)) for _, after in tried]
         if max(gains, default=0.0) < settings.least_gain:
@@ -61,8 +62,11 @@ def _complexity(evaluation: Evaluation) -> tuple[int, int]:
     return sum(term.block == "sensor" for term in terms), sum(len(term.free) for term in terms)
 
 
-def cross_validate(objective: Objective, evaluation: Evaluation) -> Array:
-    """Return the gap of each run under a set of effects fitted without it, in standard deviations, shape (runs,)."""
+def cross_validate(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Array:
+    """Return the gap of each run under a set of effects fitted without it, in standard deviations, shape (runs,).
+
+    `nuisances` are the sensitivities to the nuisance parameters over all runs; those of a fit are of its own runs.
+    """
     problem = objective.problem
     if len(problem.runs) == 1:
         return normalise_rms_errors(problem, evaluation.residuals)
@@ -70,7 +74,8 @@ def cross_validate(objective: Objective, evaluation: Evaluation) -> Array:
     folds = objective.settings.cross_validation.folds
     for k in range(min(folds, len(problem.runs))):
         others = [run for j, run in enumerate(problem.runs) if j % folds != k]
-        fitted = refit(objective.on_runs(others), evaluation.parameters)
+        part = objective.on_runs(others)
+        fitted = fit(part, part.evaluate([evaluation.parameters])[0], nuisances)
         left_out = objective.evaluate([fitted.parameters])[0]
         errors[k::folds] = normalise_rms_errors(problem, left_out.residuals)[k::folds]
     return errors

@@ -274,7 +274,10 @@ def test_an_effect_that_runs_left_out_support_stands_beside_the_unknown(folder):
     expected = weigh_gap(problem, script.selected[0][3].calibrated.residuals)
     assert np.array_equal(found.objective.weights.weights["first"], expected.weights["first"])
     # How likely the effect is follows from what it takes off runs left out, whatever else is unknown.
-    one = cross_validate(found.objective, chosen) / cross_validate(found.objective, script.selected[1][3].calibrated)
+    nuisances = found.objective.linearise_nuisances(chosen)
+    alone = found.objective.linearise_nuisances(found.selection.calibrated)
+    one = cross_validate(found.objective, chosen, nuisances)
+    one /= cross_validate(found.objective, found.selection.calibrated, alone)
     odds = 0.05 / np.mean(one) ** 8
     assert found.decision.probabilities["toy.one"] == pytest.approx(odds / (1.0 + odds))
     assert found.decision.unknown == 0.6 and odds > 1.0
