@@ -152,7 +152,7 @@ def _list_alternatives(validation: Validation, asked: bool, progress: Callable[[
     if not due:
         return []
     progress("trying other forms of the damper")
-    _, calibrated, augmented = (make_scenario(problem, validation.nominal, rig) for rig in validation.rigs)
+    _, calibrated, augmented = validation.scenarios
     return compare_damper_forms(problem, calibrated, augmented, validation.run)
 
 

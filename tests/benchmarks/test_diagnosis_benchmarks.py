@@ -1,9 +1,6 @@
 """The benchmarks of the diagnosis: what they replace, what they feed a rig with, and how they count."""
 
-import importlib
-import sys
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,15 +10,6 @@ from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solve import Method
 from seatsim.effects.sensor import Gain
 from seatsim.recordings.recording import load_recording
-
-
-@pytest.fixture(scope="module")
-def benchmark():
-    """Import a benchmark as the scripts beside it do."""
-    folder = str(Path(__file__).parents[2] / "benchmarks")
-    sys.path.insert(0, folder)
-    yield importlib.import_module
-    sys.path.remove(folder)
 
 
 @pytest.fixture(scope="module")

@@ -1,10 +1,7 @@
 """Cases on measured recordings: how they are counted, nominals that hold mechanisms, and the joint fit beside them."""
 
 import dataclasses
-import importlib
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,15 +11,6 @@ from seatsim.blind.score.verdicts import Verdict
 from ..blind.carriers import bench_carrier, write_carrier
 
 CARRIED = {"kind": "carried", "effects": ["sensor.gain"], "blocks": ["sensor"]}
-
-
-@pytest.fixture(scope="module")
-def benchmark():
-    """Import a benchmark as the scripts beside it do."""
-    folder = str(Path(__file__).parents[2] / "benchmarks")
-    sys.path.insert(0, folder)
-    yield importlib.import_module
-    sys.path.remove(folder)
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,7 @@
 """The comparison of two versions: what counts as a difference, and what is told only."""
 
-import importlib
 import json
 import math
-import sys
-from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -19,12 +16,8 @@ DIAGNOSIS = {
 
 
 @pytest.fixture(scope="module")
-def module():
-    """The module, imported as the script beside it does."""
-    folder = str(Path(__file__).parents[2] / "benchmarks")
-    sys.path.insert(0, folder)
-    yield importlib.import_module("output_differences")
-    sys.path.remove(folder)
+def module(benchmark):
+    return benchmark("output_differences")
 
 
 @pytest.fixture

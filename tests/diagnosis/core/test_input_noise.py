@@ -13,7 +13,7 @@ from seatsim.recordings.recording import load_recording
 from seatsim.simulation.inputs import BenchInputs
 from seatsim.simulation.respond import respond
 
-from .toy import SerialExecutor
+from ..serial import SerialExecutor
 
 RATE, ROWS, NOISE = 200.0, 1500, 2e-5
 TIME = np.arange(ROWS) / RATE

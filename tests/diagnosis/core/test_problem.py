@@ -12,7 +12,8 @@ from seatsim.recordings.recording import load_recording
 from seatsim.scenario.scenario import Start
 from seatsim.schema.errors import InputError, RunError
 
-from .toy import CHANNELS, NOISE, Added, SerialExecutor, add_up, draw_signals, make_problem
+from ..serial import SerialExecutor
+from .toy import CHANNELS, NOISE, Added, add_up, draw_signals, make_problem
 
 HEADER = """\
 rig: seat

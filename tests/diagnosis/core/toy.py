@@ -3,7 +3,6 @@
 `measured = nominal + sum deviation_k nuisance_k + sum amount_j signal_j + noise`, by run and channel.
 """
 
-from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -26,6 +25,8 @@ from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.scenario import DamperChoice, Scenario, Solver
 from seatsim.schema.registry import register
 from seatsim.simulation.inputs import SeatInputs
+
+from ..serial import SerialExecutor
 
 RATE = 200.0
 CHANNELS = ("frame_acceleration", "driver_acceleration")
@@ -93,15 +94,6 @@ class Edge(NamedTuple):
 
     def outputs(self, signals):
         return self.amount * signals[self.signal] if self.amount <= 1.0 else np.full_like(signals["nominal"], np.inf)
-
-
-class SerialExecutor(Executor):
-    """Does everything at once, in the caller's thread."""
-
-    def submit(self, function, /, *args, **keywords):
-        future = Future()
-        future.set_result(function(*args, **keywords))
-        return future
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@
 plant's parameters and effects, each with its own taps by channel. Real effects act where their class is listed.
 """
 
-from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field, replace
 from typing import Annotated, NamedTuple
 
@@ -29,6 +28,8 @@ from seatsim.schema.fields import param
 from seatsim.schema.registry import register
 from seatsim.simulation.augment import augment_plant, read_sensors
 from seatsim.simulation.respond import SEAT_OUTPUTS
+
+from ..serial import SerialExecutor
 
 RATE, SKIP = 200.0, 200
 CHANNELS = SEAT_OUTPUTS
@@ -100,15 +101,6 @@ for _cls in (Added, AddedTwice, Diverging):
     register("toy effect of stages", _cls.__name__, EffectSpecification("", (), {}, (), lambda damper: True, False))(
         _cls
     )
-
-
-class SerialExecutor(Executor):
-    """Does everything at once, in the caller's thread."""
-
-    def submit(self, function, /, *args, **keywords):
-        future = Future()
-        future.set_result(function(*args, **keywords))
-        return future
 
 
 @dataclass(frozen=True)
