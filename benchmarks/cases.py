@@ -103,14 +103,7 @@ def show_scores(title: str, base: Path, labels: Mapping[str, Label], methods: Se
     Console(width=150).print(table)
 
 
-def weigh_stated_noise(
-    problem: DiagnosisProblem, forces: Mapping[str, Array] | None = None, errors: Mapping[str, Array] | None = None
-) -> NoiseWeights:
-    """Return weights from the stated noise alone, the same at every frequency that is compared.
-
-    It stands in place of `weigh_noise`, with its arguments: `errors` are white powers by run, shape (channels, 1),
-    that are added; `forces` count for nothing, since no noise is carried through the rig.
-    """
+def weigh_stated_noise(problem: DiagnosisProblem) -> NoiseWeights:
+    """Return weights from the stated noise alone, the same at every frequency that is compared."""
     noise = np.maximum(problem.noise, LEAST_NOISE * problem.spread)[:, None]
-    power = {run: noise**2 * values.shape[1] for run, values in problem.measured.items()}
-    return weigh_uniformly(problem, {run: level + (errors or {}).get(run, 0.0) for run, level in power.items()})
+    return weigh_uniformly(problem, {run: noise**2 * values.shape[1] for run, values in problem.measured.items()})

@@ -36,7 +36,7 @@ from seatsim.diagnosis.localise.localisation import Remainder, share_gap
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.result import Share
-from seatsim.diagnosis.select import Selection, select_effects
+from seatsim.diagnosis.select import LinearisedRig, Selection, select_effects
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solve import Method
 from seatsim.recordings.quality.examination import examine, refuse
@@ -85,14 +85,15 @@ def decide_by_chance(problem: DiagnosisProblem, selection: Selection, effects: S
 
 
 def select_fed(
-    objective: Objective, candidates: Sequence[Candidate], progress: Callable[[str], object], largest: int | None
-) -> Selection:
+    objective: Objective, candidates: Sequence[Candidate], progress: Callable[[str], object], largest: int | None,
+    rig: LinearisedRig | None = None,
+) -> Selection:  # fmt: skip
     """Select effects with all blocks fed measured signals, where these were recorded."""
     if not has_measured_motion(objective.problem):
-        return select_effects(objective, candidates, progress, largest)
+        return select_effects(objective, candidates, progress, largest, rig)
     fed = select_effects(feed_objective(objective), candidates, progress, largest)
     calibrated = objective.evaluate([fed.calibrated.parameters])[0]
-    return FedSelection(fed.nominal, ((calibrated,), *fed.sets[1:]), (), fed, objective)
+    return FedSelection(fed.nominal, ((calibrated,), *fed.sets[1:]), fed.linearisations, fed, objective)
 
 
 def decide_fed(problem: DiagnosisProblem, selection: Selection, effects: Sequence[str]) -> Decision:

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
-from seatsim.diagnosis.noise import NoiseWeights
 from seatsim.diagnosis.nuisance import vary
 from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.problem import DiagnosisProblem
@@ -84,13 +83,12 @@ def feed_objective(objective: Objective) -> Objective:
     That is found on a replicate of the nominal rig, fed its own noisy signals.
     """
     problem, replicate = objective.problem, replicate_nominal(objective.problem)
-    weights = {}
-    for run, before in objective.weights.weights.items():
+    left_by_feed = {}
+    for run in problem.runs:
         left = replicate.measured[run] - simulate_fed(replicate, run, problem.nominal, ())
         power = smooth_spectrum(np.abs(np.fft.rfft(left, axis=1)) ** 2, problem.settings.noise.smoothing)
-        # Weights are of the real and the imaginary part, which have half of the power each.
-        weights[run] = 1.0 / np.sqrt(1.0 / before**2 + 0.5 * power[:, : before.shape[1]])
-    return Objective(feed_problem(problem), NoiseWeights(weights, objective.weights.bins))
+        left_by_feed[run] = power
+    return Objective(feed_problem(problem), objective.weights.add(left_by_feed))
 
 
 def simulate_fed(problem: DiagnosisProblem, run: str, deviations: Array, effects: Sequence[Record]) -> Array:

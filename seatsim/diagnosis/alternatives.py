@@ -75,7 +75,7 @@ def describe_obstacle(problem: DiagnosisProblem) -> str:
 def compare_damper_forms(
     problem: DiagnosisProblem, calibrated: Scenario, augmented: Scenario, run: str
 ) -> list[DamperForm]:
-    """Return other models of the damper instead of all effects, and beside those found, the best on a run first.
+    """Return other models of the damper beside the effects found, and the best one instead of them; the best first.
 
     On a bench every model is driven through the run left out; on a seat, where each has to be compiled into a time loop
     of its own, only the one that fits the force best, if it does so better than the nominal's own. A model that leaves
@@ -90,8 +90,13 @@ def compare_damper_forms(
     before = measure_gap(calibrated, problem.recording, [run]).overall
     if before == 0.0:
         return []
-    rigs = [calibrated, augmented] if augmented.effects != calibrated.effects else [calibrated]
-    found = [form for rig in rigs for form in _compare_about(problem, rig, len(calibrated.effects), run, before)]
+    own = name_of("damper", type(calibrated.damper.record))
+    models = [name for name in problem.settings.damper_forms.models if name != own]
+    beside = tuple(name_of("effect", type(each)) for each in augmented.effects if each not in calibrated.effects)
+    found = list(_compare_about(problem, augmented, models, beside, run, before))
+    if found and beside:
+        best = max(found, key=lambda form: form.shrink).model
+        found += _compare_about(problem, calibrated, [best], (), run, before)
     return sorted(found, key=lambda form: -form.shrink)
 
 
@@ -121,19 +126,17 @@ def describe_forms(forms: Sequence[DamperForm], gaps: Gaps, better: float) -> st
 
 
 def _compare_about(
-    problem: DiagnosisProblem, rig: Scenario, stated: int, run: str, before: float
+    problem: DiagnosisProblem, rig: Scenario, models: Sequence[str], beside: tuple[str, ...], run: str, before: float
 ) -> Iterator[DamperForm]:
-    """Yield the models in one rig, whose effects after the `stated` ones were found; `before`: the calibrated gap."""
+    """Yield the models in one rig, in which the effects `beside` were found; `before`: the calibrated gap."""
     records = [_isolate_damper(problem, rig, name) for name in problem.runs if name != run]
     own = name_of("damper", type(rig.damper.record))
-    beside = tuple(name_of("effect", type(effect)) for effect in rig.effects[stated:])
 
     def shrink(fit: FormFit | None) -> float:
         return -math.inf if fit is None else 1.0 - _measure_gap(problem, fit.scenario, run) / before
 
     as_free = _fit_form(problem, rig, own, records)
     refitted = max(0.0, shrink(as_free))
-    models = [name for name in problem.settings.damper_forms.models if name != own]
     fits = [fit for name in models if (fit := _fit_form(problem, rig, name, records)) is not None]
     for fit in fits if problem.bench else _screen_fits(problem, fits, as_free):
         if math.isfinite(gain := shrink(fit)):

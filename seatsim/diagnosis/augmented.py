@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from seatsim.diagnosis.nuisance import SECTIONS
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.effects.base import same_place
 
 
 def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[str, object]:
@@ -27,11 +28,17 @@ def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[s
         controller["design"] = str((source.path.parent / controller["design"]).resolve())
     present = content.get("effects", [])
     assert isinstance(present, list)
+    # An effect found replaces the one that the nominal scenario has at its place, as in the rig that was fitted.
+    kept = [
+        entry
+        for entry, effect in zip(present, problem.scenario.effects, strict=True)
+        if not any(same_place(effect, found) for found in parameters.effects)
+    ]
     added = [
         {"effect": term.effect, "parameters": _as_plain(term.record(values)._asdict())}
         for term, values in zip(parameters.terms, parameters.values, strict=True)
     ]
-    content["effects"] = [*present, *added]
+    content["effects"] = [*kept, *added]
     return content
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import DiagnosisProblem
-from seatsim.effects.base import EFFECTS, ON_SEAT, Form, acts_on
+from seatsim.effects.base import EFFECTS, ON_SEAT, Form, acts_on, same_place
 from seatsim.schema.fields import bounds, choices, field_names
 from seatsim.schema.registry import Record
 
@@ -23,7 +23,11 @@ INPUTS = ("floor_acceleration", "displacement")
 
 
 class Candidate(NamedTuple):
-    """An effect with some of its parameters free: where a fit starts, and between which bounds."""
+    """An effect with some of its parameters free: where a fit starts, and between which bounds.
+
+    `nominal` is the first free parameter in the nominal scenario: 0 unless the effect is one of that scenario's own,
+    which the candidate then replaces.
+    """
 
     effect: str
     cls: type[Record]
@@ -32,11 +36,14 @@ class Candidate(NamedTuple):
     start: tuple[float, ...]
     low: tuple[float, ...]
     high: tuple[float, ...]
+    nominal: float = 0.0
 
     @property
     def scale(self) -> Array:
         """Natural size of each free parameter, shape (len(free),)."""
-        return np.abs(self.start)
+        size = np.abs(self.start)
+        size[0] = max(size[0], abs(self.start[0] - self.nominal))
+        return size
 
     def record(self, values: Array | Sequence[float]) -> Record:
         """Return the effect at these values of the free parameters."""
@@ -67,16 +74,34 @@ class Candidate(NamedTuple):
 def list_candidates(problem: DiagnosisProblem, without: Sequence[str] = ()) -> list[Candidate]:
     """List the effects that the nominal scenario of a recording could lack, except those named in `without`."""
     settings = problem.settings.selection
-    present = {type(effect) for effect in problem.scenario.effects}
-    found = []
+    present, found = problem.scenario.effects, list[Candidate]()
     for name in EFFECTS.names():
         cls = EFFECTS.find(name)
-        if name in without or cls in present or not _fits(cls, problem):
+        if name in without or not _fits(cls, problem):
             continue
         for form in EFFECTS.specification_of(cls).forms:
-            placed = [_candidate(name, cls, form, place, settings.shape_reach) for place in _places(cls, problem)]
-            found += [start for each in placed for start in _starts(each, settings.limit_starts)]
+            for place in _places(cls, problem):
+                candidate = _candidate(name, cls, form, place, settings.shape_reach)
+                own = next((each for each in present if same_place(each, candidate.record(candidate.start))), None)
+                candidate = candidate if own is None else _change(candidate, own)
+                found += _starts(candidate, settings.limit_starts)
     return found
+
+
+def _change(candidate: Candidate, own: Record) -> Candidate:
+    """Return the candidate as a change of an effect that the nominal scenario has: what it leaves is as it is there.
+
+    The nominal scenario may have the right effect at a wrong size. A size is changed by the candidate's own start, a
+    limit by a factor of what it is.
+    """
+    have: dict[str, float | str] = {name: getattr(own, name) for name in own._fields}
+    at = np.array([float(have[name]) for name in candidate.free])
+    start = at.copy() if candidate.is_limit else np.where(np.arange(len(at)) == 0, at + candidate.start, at)
+    low, high = np.minimum(candidate.low, at), np.maximum(candidate.high, at)
+    return candidate._replace(
+        fixed={name: value for name, value in have.items() if name not in candidate.free}, nominal=float(at[0]),
+        start=tuple(start.tolist()), low=tuple(low.tolist()), high=tuple(high.tolist()),
+    )  # fmt: skip
 
 
 def _starts(candidate: Candidate, limit_starts: Sequence[float]) -> list[Candidate]:

@@ -8,14 +8,16 @@ left out of its fit.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.fit import fit
+from seatsim.diagnosis.fit import find_step
 from seatsim.diagnosis.movement import is_material
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
+from seatsim.diagnosis.probability import weigh_set
 from seatsim.diagnosis.problem import normalise_rms_errors
 from seatsim.diagnosis.select import Selection
 
@@ -25,7 +27,7 @@ Array = NDArray[np.float64]
 class Supported(NamedTuple):
     """What runs left out support: a set, sets that help as much, and all sets tried, with what they leave.
 
-    That is the square of the share of the gap that stays, mean over the runs, of the rig without effects.
+    That is the square of the share of the gap that stays, pooled over the runs, of the rig without effects.
     """
 
     chosen: Evaluation
@@ -34,48 +36,68 @@ class Supported(NamedTuple):
 
 
 def select_by_cross_validation(objective: Objective, selection: Selection) -> Supported:
-    """Return the smallest set of effects that no larger one improves on left-out runs, and sets that help as much."""
+    """Return the smallest set of effects that no larger one improves on left-out runs, and sets that help as much.
+
+    A larger set is chosen as long as its evidence is higher (see `seatsim.diagnosis.probability`).
+    """
     settings, problem = objective.settings.cross_validation, objective.problem
     chosen, equivalent = selection.calibrated, list[Evaluation]()
-    alone = before = cross_validate(objective, chosen, selection.linearise_nuisances(objective, chosen))
-    found = [(chosen, 1.0)]
+    alone = cross_validate(objective, chosen, selection.linearise_nuisances(objective, chosen))
+    before = _charge(objective, chosen, 1.0)
+    found = [(chosen, before)]
     for sets in selection.sets[1:]:
-        compared = sets[: settings.sets_compared]
-        nuisances = selection.linearise_nuisances(objective, sets[0])
-        tried = [(each, cross_validate(objective, each, nuisances)) for each in compared if is_material(problem, each)]
-        found += [(each, float(np.mean(after / alone) ** 2)) for each, after in tried]
-        gains = [float(np.mean(1.0 - after / before)) for _, after in tried]
-        if max(gains, default=0.0) < settings.least_gain:
+        compared = [each for each in sets[: settings.sets_compared] if is_material(problem, each)]
+        nuisances, tried = selection.linearise_nuisances(objective, sets[0]), []
+        for each in compared:
+            after = cross_validate(objective, each, nuisances)
+            tried.append((each, _charge(objective, each, float(np.mean(after**2) / np.mean(alone**2)))))
+        found += tried
+        within = min((left for _, left in tried), default=0.0) * settings.equivalent ** (1.0 / settings.power)
+        best = sorted((each for each in tried if each[1] < within), key=lambda each: (_count_sensors(each[0]), each[1]))
+        if not best or _weigh(objective, *best[0]) < _weigh(objective, chosen, before):
             break
-        best = [each for each, gain in zip(tried, gains, strict=True) if gain > max(gains) - settings.equivalent]
-        best.sort(key=lambda each: _complexity(each[0]))
         (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
     return Supported(chosen, equivalent, found)
 
 
-def _complexity(evaluation: Evaluation) -> tuple[int, int]:
-    """Return what decides between sets that help equally: how many sensors err, and how many parameters are free.
+def _weigh(objective: Objective, evaluation: Evaluation, left: float) -> float:
+    """Return the logarithm of a set's evidence."""
+    settings = objective.settings
+    return weigh_set(settings.decision, evaluation.parameters.names, left, settings.cross_validation.power)
 
-    A change of the rig is a more useful answer than a wrong sensor, and a law with fewer parameters a likelier one.
+
+def _charge(objective: Objective, evaluation: Evaluation, left: float) -> float:
+    """Return what a set leaves, charged for its parameters, which raise it by as much as they lower the evidence.
+
+    Nuisance parameters cost their prior. Of n independent numbers each further parameter of an effect costs n^(1/2),
+    as by Schwarz's criterion: runs of like excitation share the errors of the form, which its law may fit.
     """
-    terms = evaluation.parameters.terms
-    return sum(term.block == "sensor" for term in terms), sum(len(term.free) for term in terms)
+    settings, parameters = objective.settings, evaluation.parameters
+    prior = float(np.sum((parameters.deviations / settings.fit.prior_std) ** 2))
+    further = sum(len(term.free) - 1 for term in parameters.terms)
+    cost = prior + further * math.log(settings.cross_validation.independent)
+    return left * math.exp(0.5 * cost / settings.cross_validation.power)
+
+
+def _count_sensors(evaluation: Evaluation) -> int:
+    """Return how many sensors err, which decides between equals: a change of the rig is a more useful answer."""
+    return sum(term.block == "sensor" for term in evaluation.parameters.terms)
 
 
 def cross_validate(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Array:
     """Return the gap of each run under a set of effects fitted without it, in standard deviations, shape (runs,).
 
-    `nuisances` are the sensitivities to the nuisance parameters over all runs; those of a fit are of its own runs.
+    A fit over all runs moves by one Gauss-Newton step as a run is left out. `nuisances` are the sensitivities to the
+    nuisance parameters over all runs.
     """
     problem = objective.problem
     if len(problem.runs) == 1:
         return normalise_rms_errors(problem, evaluation.residuals)
-    errors = np.zeros(len(problem.runs))
+    own, residuals = objective.linearise_effects(evaluation).jacobian, dict[str, Array]()
     folds = objective.settings.cross_validation.folds
     for k in range(min(folds, len(problem.runs))):
         others = [run for j, run in enumerate(problem.runs) if j % folds != k]
-        part = objective.on_runs(others)
-        fitted = fit(part, part.evaluate([evaluation.parameters])[0], nuisances)
-        left_out = objective.evaluate([fitted.parameters])[0]
-        errors[k::folds] = normalise_rms_errors(problem, left_out.residuals)[k::folds]
-    return errors
+        step = find_step(objective, evaluation, nuisances, {run: own[run] for run in others})
+        moved = evaluation.parameters.move_to(evaluation.parameters.vector + step)
+        residuals |= objective.on_runs(problem.runs[k::folds]).evaluate([moved])[0].residuals
+    return normalise_rms_errors(problem, residuals)

@@ -52,7 +52,7 @@ def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Seq
     unknown = min(max(unknown, least), most) if explained else max(unknown, settings.unknown_if_unknown)
     groups = groups if explained else []
     verdict: Verdict = ("ambiguous" if groups else "known") if explained else "unknown"
-    probabilities = weigh_effects(settings, _list_compared(settings, selection, chosen), effects)
+    probabilities = weigh_effects(settings, _list_compared(settings, selection, chosen), effects, settings.power)
     return Decision(verdict, chosen, groups, probabilities, settings.none_if_gap, unknown)
 
 
@@ -63,7 +63,7 @@ def call_unknown(settings: DecisionSettings, decision: Decision) -> Decision:
 
 def decide_beside_unknown(
     settings: DecisionSettings, decision: Decision, chosen: Evaluation, equivalent: Sequence[Evaluation] = (),
-    tried: Sequence[tuple[Evaluation, float]] = (),
+    tried: Sequence[tuple[Evaluation, float]] = (), power: float = 0.0,
 ) -> Decision:  # fmt: skip
     """Return the decision `unknown` with another set of effects stated beside the unknown cause.
 
@@ -73,11 +73,12 @@ def decide_beside_unknown(
         chosen: the set to be stated, possibly none.
         equivalent: sets that do as well.
         tried: sets with the mean square that each leaves on runs left out of its fit.
+        power: exponent of that mean square in the evidence of a set.
     """
     # Where no effect helps enough to be stated, the single ones are still ranked by how much they help.
     size = max(1, len(chosen.parameters.terms))
     compared = [(each.parameters.names, left) for each, left in tried if len(each.parameters.terms) <= size]
-    probabilities = weigh_effects(settings, compared, list(decision.probabilities))
+    probabilities = weigh_effects(settings, compared, list(decision.probabilities), power)
     stated = dataclasses.replace(
         decision, chosen=chosen, groups=group_equivalent(chosen, equivalent), probabilities=probabilities
     )

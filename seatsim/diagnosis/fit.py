@@ -6,6 +6,8 @@ therefore uses those that its caller passes in, and recomputes those of the effe
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cholesky
@@ -37,7 +39,7 @@ def fit(objective: Objective, start: Evaluation, nuisances: Linearisation, steps
 
 def _step_down(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Evaluation:
     """Return the evaluation after one step, the whole or a fraction of it; the one given where none lowers the cost."""
-    step = _gauss_newton_step(objective, evaluation, nuisances)
+    step = find_step(objective, evaluation, nuisances, objective.linearise_effects(evaluation).jacobian)
     for fraction in objective.settings.fit.backtracking:
         moved = evaluation.parameters.move_to(evaluation.parameters.vector + fraction * step)
         tried = objective.evaluate([moved])[0]
@@ -52,9 +54,13 @@ def refit(objective: Objective, parameters: Parameters) -> Evaluation:
     return fit(objective, start, objective.linearise_nuisances(start))
 
 
-def _gauss_newton_step(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Array:
-    """Return the Gauss-Newton step of the vector under its bounds."""
-    own = objective.linearise_effects(evaluation).jacobian
+def find_step(
+    objective: Objective, evaluation: Evaluation, nuisances: Linearisation, own: Mapping[str, Array]
+) -> Array:
+    """Return the Gauss-Newton step of the vector under its bounds, over the runs of `own`.
+
+    `own` holds the sensitivities to the effects' free parameters by run.
+    """
     parts = [nuisances.normal_equations(run, own[run], evaluation.whitened[run]) for run in own]
     low, high = evaluation.parameters.limits
     matrix, right = np.sum([part[0] for part in parts], axis=0), np.sum([part[1] for part in parts], axis=0)

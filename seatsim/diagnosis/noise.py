@@ -1,17 +1,19 @@
-"""Weights that make the residuals of all channels and frequencies comparable, from noise and model error.
+"""The noise of a recording, as one sum of power spectra, and the weights by it that make residuals comparable.
 
-    P(f) = noise^2 + input noise carried through the rig + (model_error * spectrum of the channel)^2
+    P(f) = noise^2 + input noise carried through the rig + (model_error * spectrum of the channel)^2 + disturbances
 
 is the power that a perfect model leaves: the stated noise, the noise of the recorded inputs (the floor or the motion of
-a bench, and the coil current where no command is recorded) carried through the simulation, and a share of the signal
-that no model of finite order gets right, as the recording states it or else small. It is never fitted to the residual
-under test, which would hide narrow gaps.
+a bench, and the coil current where no command is recorded) carried through the simulation, a share of the signal that
+no model of finite order gets right, as the recording states it or else small, and random disturbances, each added as it
+is found to all that is there. It is never fitted to the residual under test, which would hide narrow gaps.
 """
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,67 +28,75 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class NoiseWeights:
-    """Turns residuals into whitened numbers: `weights[run]` has shape (channels, frequencies)."""
+    """Turns residuals into whitened numbers, by the power of the noise: `power[run]`, shape (channels, frequencies).
 
-    weights: dict[str, Array]
-    bins: dict[str, int]
+    `independent` is the share of these numbers that count as independent of each other.
+    """
+
+    power: dict[str, Array]
+    independent: float = 1.0
+
+    @cached_property
+    def weights(self) -> dict[str, Array]:
+        """Factors on the spectra of the residuals by run, shape (channels, frequencies)."""
+        # A spectrum's real and imaginary part have half of its power each.
+        return {run: np.sqrt(2.0 * self.independent / power) for run, power in self.power.items()}
+
+    @cached_property
+    def bins(self) -> dict[str, int]:
+        """How many frequencies of each run are compared."""
+        return {run: power.shape[1] for run, power in self.power.items()}
 
     def __call__(self, residuals: Array, run: str) -> Array:
-        """Return whitened residuals, shape (channels, 2 frequencies), mean square 1 where only noise is left."""
+        """Return whitened residuals, shape (channels, 2 frequencies), mean square `independent` for noise alone."""
         spectrum = rfft(residuals, axis=1)[:, : self.bins[run]] * self.weights[run]
         return np.concatenate([spectrum.real, spectrum.imag], axis=1)
 
+    def add(self, disturbance: Mapping[str, Array]) -> NoiseWeights:
+        """Return the weights with the power of one more disturbance, (channels, frequencies) or (channels, 1)."""
+        summed = {run: power + disturbance[run][:, : power.shape[1]] for run, power in self.power.items()}
+        return dataclasses.replace(self, power=summed)
 
-def weigh_noise(
-    problem: DiagnosisProblem, forces: Mapping[str, Array] | None = None, errors: Mapping[str, Array] | None = None
-) -> NoiseWeights:
-    """Return the weights for a recording.
 
-    Args:
-        problem: the recording beside its nominal scenario.
-        forces: signals of a random force on the frame in N by run, shape (samples,), whose power counts as noise.
-        errors: power spectra of errors of the channels, shape (channels, frequencies) or (channels, 1).
-    """
+def weigh_noise(problem: DiagnosisProblem) -> NoiseWeights:
+    """Return the weights for a recording: by all noise that is stated, and the disturbance that repeated runs show."""
     settings, stated = problem.settings.noise, problem.recording.header.model_error
     missed = settings.model_error if stated is None else stated
     repeated = _measure_nonrepeatable(problem)
-    weights, bins = {}, {}
+    found = {}
     for run in problem.runs:
         measured = problem.measured[run]
         samples = measured.shape[1]
-        frequency = np.fft.rfftfreq(samples, 1.0 / problem.rate)
-        bins[run] = _count_compared(problem, samples)
-        power = problem.noise[:, None] ** 2 * samples + carry_input_noise(problem, run, (forces or {}).get(run))
-        if errors is not None:
-            power = power + errors[run]
+        power = problem.noise[:, None] ** 2 * samples + carry_input_noise(problem, run)
         if repeated is not None:
+            frequency = np.fft.rfftfreq(samples, 1.0 / problem.rate)
             power = np.maximum(
                 power, np.array([np.interp(frequency, repeated[0], row) for row in repeated[1]]) * samples
             )
         signal = np.abs(np.fft.rfft(measured - measured.mean(axis=1, keepdims=True), axis=1)) ** 2
         total = power + missed**2 * smooth_spectrum(signal, settings.smoothing)
         total = np.maximum(total, settings.least_power * problem.spread[:, None] ** 2 * samples)
-        # A spectrum's real and imaginary part have half of its power each.
-        weights[run] = np.sqrt(2.0 / total[:, : bins[run]])
-    return NoiseWeights(weights, bins)
+        found[run] = total[:, : _count_compared(problem, samples)]
+    return NoiseWeights(found)
 
 
-def weigh_uniformly(problem: DiagnosisProblem, power: Mapping[str, Array]) -> NoiseWeights:
+def weigh_uniformly(problem: DiagnosisProblem, power: Mapping[str, Array], independent: float = 1.0) -> NoiseWeights:
     """Return weights that are the same at all frequencies, from white power by run, shape (channels, 1)."""
-    weights, bins = {}, {}
-    for run in problem.runs:
-        bins[run] = _count_compared(problem, problem.measured[run].shape[1])
-        weights[run] = np.tile(np.sqrt(2.0 / power[run]), bins[run])
-    return NoiseWeights(weights, bins)
+    counts = {run: _count_compared(problem, problem.measured[run].shape[1]) for run in problem.runs}
+    return NoiseWeights({run: np.tile(power[run], count) for run, count in counts.items()}, independent)
 
 
 def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> NoiseWeights:
-    """Return weights that are the same at all frequencies, from the power of the given residuals over all runs."""
-    errors = normalise_rms_errors(problem, residuals)
-    level = problem.settings.cross_validation.noise_level * np.sqrt(np.mean(errors**2)) * problem.spread
-    return weigh_uniformly(
-        problem, {run: level[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
-    )
+    """Return weights that are the same at all frequencies, from the power of the given residuals over all runs.
+
+    What a rig leaves whose form is wrong is no noise: its numbers depend on each other, so that few of them count as
+    independent. A parameter inside its tolerance then weighs as much as what it takes off the gap.
+    """
+    settings, errors = problem.settings.cross_validation, normalise_rms_errors(problem, residuals)
+    level = settings.noise_level * np.sqrt(np.mean(errors**2)) * problem.spread
+    power = {run: level[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
+    compared = 2 * sum(each.size for each in weigh_uniformly(problem, power).power.values())
+    return weigh_uniformly(problem, power, settings.noise_level**2 * settings.independent / compared)
 
 
 def measure_broadband(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> dict[str, Array]:

@@ -36,11 +36,12 @@ class Evaluation:
     residuals: dict[str, Array]
     whitened: dict[str, Array]
     cost: float
+    independent: float = 1.0
 
     @property
-    def rows(self) -> int:
-        """Number of whitened numbers that are compared."""
-        return sum(values.size for values in self.whitened.values())
+    def rows(self) -> float:
+        """Number of whitened numbers that are compared, of which a share may count as independent."""
+        return self.independent * sum(values.size for values in self.whitened.values())
 
     @property
     def excess(self) -> float:
@@ -102,10 +103,11 @@ class Objective:
             self.problem.deadline.check()
             part = several[first : first + AT_ONCE]
             residuals = self.problem.residuals([(each.deviations, each.effects) for each in part])
-            evaluations += self.problem.pool.map(self._weigh, part, residuals)
+            evaluations += self.problem.pool.map(self.weigh, part, residuals)
         return evaluations
 
-    def _weigh(self, parameters: Parameters, residuals: dict[str, Array]) -> Evaluation:
+    def weigh(self, parameters: Parameters, residuals: dict[str, Array]) -> Evaluation:
+        """Return the evaluation of a rig whose residuals are known."""
         finite = all(np.all(np.isfinite(values)) for values in residuals.values())
         whitened = {
             run: self.weights(values if finite else np.zeros_like(values), run) for run, values in residuals.items()
@@ -114,7 +116,7 @@ class Objective:
         if not finite:
             cost = np.inf
         prior = float(np.sum((parameters.deviations / self.settings.fit.prior_std) ** 2))
-        return Evaluation(parameters, residuals, whitened, cost + prior)
+        return Evaluation(parameters, residuals, whitened, cost + prior, self.weights.independent)
 
     def linearise(self, evaluation: Evaluation, components: Sequence[int]) -> Linearisation:
         """Return the sensitivities of the whitened outputs to some components of the vector, by finite differences.
@@ -141,3 +143,15 @@ class Objective:
     def linearise_effects(self, evaluation: Evaluation) -> Linearisation:
         """Return the sensitivities to the effects' free parameters."""
         return self.linearise(evaluation, evaluation.parameters.effect_components)
+
+
+def scale(whitened: dict[str, Array], old: Objective, new: Objective) -> dict[str, Array]:
+    """Return numbers by run that were whitened by one objective as another whitens them.
+
+    Their last axis, or the last two, hold channels and both parts of each frequency, as residuals do.
+    """
+    ratios = {run: np.tile(new.weights.weights[run] / old.weights.weights[run], 2) for run in whitened}
+    return {
+        run: (values.reshape(-1, *ratios[run].shape) * ratios[run]).reshape(values.shape)
+        for run, values in whitened.items()
+    }

@@ -17,6 +17,7 @@ from seatsim.diagnosis.deadline import NEVER, Deadline
 from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.settings.fitting import FitSettings
+from seatsim.effects.base import replace_effects
 from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
 from seatsim.recordings.header import USUAL, Header, Tolerance
 from seatsim.recordings.inputs import recorded_inputs
@@ -98,9 +99,9 @@ class DiagnosisProblem:
         return dataclasses.replace(self, deadline=deadline)
 
     def augmented(self, deviations: Array, effects: Sequence[Record]) -> Scenario:
-        """Return the nominal scenario with other parameters and with effects."""
+        """Return the nominal scenario with other parameters, and effects, which replace its own of the same kind."""
         varied = vary(self.scenario, self.parameters, deviations)
-        return dataclasses.replace(varied, effects=(*self.scenario.effects, *effects))
+        return dataclasses.replace(varied, effects=replace_effects(self.scenario.effects, effects))
 
     def scenario_of(self, run: str, deviations: Array, effects: Sequence[Record]) -> Scenario:
         """Return the same rig as it was in a run, with what its owner changed for that run on purpose."""

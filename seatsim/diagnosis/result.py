@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.recordings.model_error import ModelError
+from seatsim.schema.notebook import Pictures, draw, html_table
 
 Array = NDArray[np.float64]
 Content = Mapping[str, object]
@@ -234,3 +235,13 @@ class Diagnosis:
     parameters: list[CalibratedParameter] = field(default_factory=list)
     model_error: ModelError | None = None
     error_budget: list[ErrorBudget] = field(default_factory=list)
+
+    def plot(self, *names: str) -> Pictures:
+        """Return its pictures, or those that are named, such as `ranking`; a notebook shows them."""
+        return draw(self, names)
+
+    def _repr_html_(self) -> str:
+        likely = [cause for cause in self.causes if cause.probability >= 0.01 or cause.effect in self.selected]
+        rows = [(cause.effect, cause.probability, cause.shrink) for cause in likely]
+        none, unknown = ("none", self.probability_none, ""), ("unknown", self.probability_unknown, "")
+        return html_table(self.sentence, ("effect", "probability", "own shrink"), [*rows, none, unknown])

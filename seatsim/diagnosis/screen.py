@@ -100,7 +100,10 @@ def _predict(
     ]
     matrix, right = np.sum([part[0] for part in parts], axis=0), np.sum([part[1] for part in parts], axis=0)
     count, stretch = len(base.parameters.deviations), objective.settings.selection.stretch
-    low = np.append(low, 0.0 if candidate.low[0] >= 0.0 else -stretch)
+    ends = (np.array([candidate.low[0], candidate.high[0]]) - candidate.nominal) / (
+        candidate.start[0] - candidate.nominal
+    )
+    low = np.append(low, 0.0 if ends.min() >= 0.0 else -stretch)
     high = np.append(high, stretch)
     prior_std = objective.settings.fit.prior_std
     step = solve_step(matrix, right, count, np.append(vector, 0.0), low, high, prior_std)
@@ -119,5 +122,6 @@ def _starts_around(
     else:
         factors = tuple(factor * each for each in settings.start_factors if abs(factor) > settings.least_factor)
     starts = np.tile(candidate.start, (1 + len(factors), 1))
-    starts[1:, 0] = np.clip(starts[1:, 0] * factors, candidate.low[0], candidate.high[0])
+    nominal = 0.0 if candidate.is_limit else candidate.nominal
+    starts[1:, 0] = np.clip(nominal + (starts[1:, 0] - nominal) * factors, candidate.low[0], candidate.high[0])
     return [parameters.add(candidate, values) for values in starts]

@@ -5,26 +5,42 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import fit
-from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, scale
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.screen import Sensitivity, measure_sensitivities, name_unstable, screen_candidates
+
+
+class LinearisedRig(NamedTuple):
+    """The nominal rig, the sensitivities to its nuisance parameters about the calibrated one, and to the candidates."""
+
+    nominal: Evaluation
+    nuisances: Linearisation
+    sensitivities: list[Sensitivity]
+
+    @property
+    def calibrated(self) -> Evaluation:
+        """The rig with refitted nuisance parameters."""
+        return self.nuisances.evaluation
 
 
 @dataclass(frozen=True)
 class Selection:
     """Fitted sets of effects by size, the best first; `sets[0]` holds the calibrated nominal scenario alone.
 
-    `linearisations` holds the sensitivities to the nuisance parameters about the best set of each size, `notes` a
-    sentence on each effect that could not be simulated from some start.
+    `linearisations` holds the sensitivities to the nuisance parameters about the best set of each size, `sensitivities`
+    those of the calibrated rig to the candidates, `notes` a sentence on each effect that could not be simulated from
+    some start.
     """
 
     nominal: Evaluation
     sets: tuple[tuple[Evaluation, ...], ...]
     linearisations: tuple[Linearisation, ...]
+    sensitivities: Sequence[Sensitivity] = field(default=(), kw_only=True)
     notes: tuple[str, ...] = field(default=(), kw_only=True)
 
     @property
@@ -42,10 +58,20 @@ class Selection:
                 return Linearisation(evaluation, taken.jacobian)
         return objective.linearise_nuisances(evaluation)
 
+    def weigh_again(self, old: Objective, new: Objective) -> LinearisedRig:
+        """Return the rig under other weights, its nuisance parameters refitted; nothing is linearised again."""
+        nominal, calibrated = (new.weigh(each.parameters, each.residuals) for each in (self.nominal, self.calibrated))
+        jacobian = scale(self.linearisations[0].jacobian, old, new)
+        nearest = min(nominal, calibrated, key=lambda each: each.cost)
+        refitted = fit(new.unhurried, nearest, Linearisation(calibrated, jacobian))
+        sensitivities = [each._replace(changes=scale(each.changes, old, new)) for each in self.sensitivities]
+        return LinearisedRig(nominal, Linearisation(refitted, jacobian), sensitivities)
+
 
 def select_effects(
-    objective: Objective, candidates: Sequence[Candidate], progress: Callable[[str], object], largest: int | None = None
-) -> Selection:
+    objective: Objective, candidates: Sequence[Candidate], progress: Callable[[str], object],
+    largest: int | None = None, rig: LinearisedRig | None = None,
+) -> Selection:  # fmt: skip
     """Fit the nuisance parameters alone, then single effects, then larger sets as long as the cost falls enough.
 
     Args:
@@ -53,12 +79,13 @@ def select_effects(
         candidates: effects with the starts of their fits.
         progress: called with what is being done.
         largest: most effects of a set; that of the settings where absent.
+        rig: the rig with its sensitivities to the candidates, where they are known.
     """
     settings = objective.settings.selection
     largest = settings.largest_set if largest is None else largest
-    nominal, calibrated, nuisances = _calibrate(objective)
-    sensitivities = measure_sensitivities(objective, calibrated, candidates)
-    sets: list[list[Evaluation]] = [[calibrated]]
+    rig = linearise_rig(objective, candidates) if rig is None else rig
+    nuisances, sensitivities = rig.nuisances, rig.sensitivities
+    sets: list[list[Evaluation]] = [[rig.calibrated]]
     linearisations = [nuisances]
     notes = () if objective.problem.deadline.is_past else name_unstable(candidates, sensitivities)
     # At the deadline the sets so far are the answer.
@@ -80,19 +107,22 @@ def select_effects(
         if len(sets) > settings.largest_set and sets[-1][0].excess < settings.enlarge * sets[-2][0].excess:
             progress("eliminating backwards")
             sets[-2] = _best_of_each_set([*sets[-2], *_eliminate_backwards(objective, sets[-1][0], nuisances)])
-    return Selection(nominal, tuple(tuple(each) for each in sets), tuple(linearisations), notes=notes)
+    fitted = tuple(tuple(each) for each in sets)
+    return Selection(rig.nominal, fitted, tuple(linearisations), sensitivities=sensitivities, notes=notes)
 
 
-def _calibrate(objective: Objective) -> tuple[Evaluation, Evaluation, Linearisation]:
-    """Return the nominal rig, the one with refitted nuisance parameters, and the linearisation of that last fit.
+def linearise_rig(objective: Objective, candidates: Sequence[Candidate]) -> LinearisedRig:
+    """Return the rig with refitted nuisance parameters, and its sensitivities to them and to the candidates.
 
-    They are what every answer starts from, so that no deadline ends them.
+    The refitted rig is what every answer starts from, so that no deadline ends that fit.
     """
-    objective = objective.unhurried
-    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
-    calibrated = fit(objective, nominal, objective.linearise_nuisances(nominal))
-    nuisances = objective.linearise_nuisances(calibrated)
-    return nominal, fit(objective, calibrated, nuisances), nuisances
+    unhurried = objective.unhurried
+    nominal = unhurried.evaluate([Parameters(objective.problem.nominal)])[0]
+    calibrated = fit(unhurried, nominal, unhurried.linearise_nuisances(nominal))
+    nuisances = unhurried.linearise_nuisances(calibrated)
+    calibrated = fit(unhurried, calibrated, nuisances)
+    sensitivities = measure_sensitivities(objective, calibrated, candidates)
+    return LinearisedRig(nominal, Linearisation(calibrated, nuisances.jacobian), sensitivities)
 
 
 def _gains(objective: Objective, sets: Sequence[Sequence[Evaluation]]) -> bool:

@@ -14,6 +14,7 @@ from seatsim.diagnosis.cross_validate import select_by_cross_validation
 from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.decide import Decision, call_unknown, decide_beside_unknown, decide_verdict
 from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import Remainder, localise_remainder, share_gap
@@ -29,20 +30,21 @@ from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Share
-from seatsim.diagnosis.select import Selection, select_effects
+from seatsim.diagnosis.select import LinearisedRig, Selection, select_effects
 from seatsim.effects.base import EFFECTS
 
 Array = NDArray[np.float64]
 P = ParamSpec("P")
 Progress = Callable[[str], object]
-Forces = Mapping[str, Array] | None
 
 
 class Method(NamedTuple):
     """The stages of a diagnosis; a benchmark replaces one of them to measure its contribution."""
 
-    weigh_noise: Callable[[DiagnosisProblem, Forces, Forces], NoiseWeights] = weigh_noise
-    select_effects: Callable[[Objective, Sequence[Candidate], Progress, int | None], Selection] = select_effects
+    weigh_noise: Callable[[DiagnosisProblem], NoiseWeights] = weigh_noise
+    select_effects: Callable[
+        [Objective, Sequence[Candidate], Progress, int | None, LinearisedRig | None], Selection
+    ] = select_effects
     decide_verdict: Callable[[DiagnosisProblem, Selection, Sequence[str]], Decision] = decide_verdict
     share_gap: Callable[[Objective, Evaluation, Remainder | None], list[Share]] = share_gap
 
@@ -82,22 +84,23 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
     effects = [name for name in EFFECTS.names() if name not in without]
     task = SearchTask(list_candidates(problem, without), effects, progress, method)
     progress("weighing the channels")
-    objective = Objective(problem, method.weigh_noise(problem, None, None))
+    objective = Objective(problem, method.weigh_noise(problem))
     forces = None if problem.bench else _estimate_nonrepeatable(objective)
     if forces is not None:
-        objective = Objective(problem, method.weigh_noise(problem, forces, None))
+        objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
     first = _search(task, objective)
     if first.decision.verdict == "unknown":
-        first = _in_time(_search_beyond_broadband, task, first, forces) or first
+        first = _in_time(_search_beyond_broadband, task, first) or first
+    weights = first.objective.weights
     if first.decision.verdict != "unknown":
         localised = _localise(task, first)
-        found = _in_time(_search_beside_stochastic, task, localised, without) or localised
+        found = _in_time(_search_beside_stochastic, task, localised, weights, without) or localised
         # A random signal takes nothing off the gap, however right it is.
         if found.decision.verdict == "none" or found.stochastic or _takes_enough(found):
             return found
         first = first._replace(decision=call_unknown(problem.settings.decision, first.decision))
     first = _in_time(_search_by_gap, task, first) or _localise(task, first)
-    return _in_time(_search_beside_stochastic, task, first, without) or first
+    return _in_time(_search_beside_stochastic, task, first, weights, without) or first
 
 
 def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs) -> Solution | None:
@@ -108,14 +111,14 @@ def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs
         return None
 
 
-def _estimate_nonrepeatable(objective: Objective) -> Forces:
+def _estimate_nonrepeatable(objective: Objective) -> Mapping[str, Array] | None:
     """Return the force on the frame by which repeated runs of the nominal rig differ, None without repeats."""
     nominal = objective.unhurried.evaluate([Parameters(objective.problem.nominal)])[0]
     return estimate_nonrepeatable_force(objective, nominal)
 
 
 def _search(task: SearchTask, objective: Objective) -> Solution:
-    selection = task.method.select_effects(objective, task.candidates, task.progress, None)
+    selection = task.method.select_effects(objective, task.candidates, task.progress, None, None)
     decision = task.method.decide_verdict(objective.problem, selection, task.effects)
     return Solution(objective, selection, decision)
 
@@ -130,7 +133,7 @@ def _takes_enough(solution: Solution) -> bool:
     return min(taken) >= objective.settings.decision.least_taken
 
 
-def _search_beyond_broadband(task: SearchTask, first: Solution, forces: Forces) -> Solution:
+def _search_beyond_broadband(task: SearchTask, first: Solution) -> Solution:
     """Search again with the broadband residual added to the noise, where most of the remainder is broadband."""
     problem, best = first.objective.problem, first.selection.sets[-1][0]
     errors, weights = measure_broadband(problem, best.residuals), first.objective.weights.weights
@@ -138,7 +141,7 @@ def _search_beyond_broadband(task: SearchTask, first: Solution, forces: Forces) 
     if broadband < problem.settings.noise.broadband_share * best.excess * best.rows:
         return first
     task.progress("counting a broadband residual as noise")
-    second = _search(task, Objective(problem, task.method.weigh_noise(problem, forces, errors)))
+    second = _search(task, Objective(problem, first.objective.weights.add(errors)))
     return second if second.decision.verdict in ("known", "ambiguous") else first
 
 
@@ -148,10 +151,13 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
     problem, settings = first.objective.problem, first.objective.settings
     objective = Objective(problem, weigh_gap(problem, first.selection.calibrated.residuals))
     largest = settings.selection.largest_uniform_set
-    selection = task.method.select_effects(objective, task.candidates, task.progress, largest)
+    rig = first.selection.weigh_again(first.objective, objective)
+    selection = task.method.select_effects(objective, task.candidates, task.progress, largest, rig)
     chosen, equivalent, tried = select_by_cross_validation(objective, selection)
     refitted = refit(first.objective, chosen.parameters)
-    decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
+    decision = decide_beside_unknown(
+        settings.decision, first.decision, refitted, equivalent, tried, settings.cross_validation.power
+    )
     localised = _localise(task, first._replace(decision=decision))
     if localised.decision is not decision:
         return localised
@@ -183,8 +189,10 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
     return solution._replace(decision=decision, where=share(objective, rig, remainder), discrepancy=found)
 
 
-def _search_beside_stochastic(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
-    """Search again with the discrepancy added to the noise, where it may be a stochastic disturbance."""
+def _search_beside_stochastic(
+    task: SearchTask, first: Solution, weights: NoiseWeights, without: Sequence[str]
+) -> Solution:
+    """Search again with the discrepancy added to the noise of the weights, where it may be a stochastic disturbance."""
     problem, found = first.objective.problem, first.discrepancy
     if first.decision.verdict in ("known", "ambiguous") and not problem.bench:
         found = find_bias_drift(problem, first.decision.chosen)
@@ -192,7 +200,7 @@ def _search_beside_stochastic(task: SearchTask, first: Solution, without: Sequen
     if found is None or not effect or effect in without:
         return first
     task.progress(f"counting {effect} as noise")
-    noisy = Objective(problem, add_to_noise(problem, first.objective.weights, effect, found))
+    noisy = Objective(problem, add_to_noise(problem, weights, effect, found))
     others = task._replace(candidates=[each for each in task.candidates if each.effect != effect])
     second = _search(others, noisy)
     if second.decision.verdict == "unknown":

@@ -72,7 +72,9 @@ def validate_on_held_out(solution: Solution) -> Validation:
     objective, decision, selection = solution.objective, solution.decision, solution.selection
     problem, chosen = objective.problem, decision.chosen
     shrink = shrink_by_run(problem, selection.nominal, chosen)
-    run = choose_held_out_run(problem, chosen, shrink)
+    # Beside an unknown cause runs differ in how much of the gap is its own; the run in the middle speaks for all.
+    quantile = problem.settings.validation.quantile if decision.verdict != "unknown" else 0.5
+    run = choose_held_out_run(problem, chosen, shrink, quantile)
     calibrated, augmented = refit_without(objective, chosen, run)
     if decision.verdict == "unknown" and not chosen.parameters.terms:
         augmented = selection.nominal

@@ -15,6 +15,7 @@ from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.result import GapFigures, Gaps
+from seatsim.effects.base import replace_effects
 from seatsim.recordings.gap import measure_gap, pool_runs
 from seatsim.scenario.scenario import Scenario
 
@@ -27,8 +28,8 @@ def shrink_by_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: Evalua
     return 1.0 - after / before
 
 
-def choose_held_out_run(problem: DiagnosisProblem, chosen: Evaluation, shrink: Array) -> str:
-    """Return the run to hold out: one that the effects move about as much as others, at a low quantile of shrink.
+def choose_held_out_run(problem: DiagnosisProblem, chosen: Evaluation, shrink: Array, quantile: float) -> str:
+    """Return the run to hold out: one that the effects move about as much as others, at a quantile of shrink.
 
     The gap of a new excitation shrinks less than that of the runs in which the effect was found, hence a low quantile.
     """
@@ -45,7 +46,7 @@ def choose_held_out_run(problem: DiagnosisProblem, chosen: Evaluation, shrink: A
     spared = largest < max(settings.most_share, 1.001 * largest.min())
     moved = spared & (share.min(axis=1) > settings.least_share)
     suitable = sorted(np.flatnonzero(moved if moved.any() else spared), key=lambda k: shrink[k])
-    return runs[suitable[int(settings.quantile * (len(suitable) - 1))]]
+    return runs[suitable[int(quantile * (len(suitable) - 1))]]
 
 
 def refit_without(objective: Objective, evaluation: Evaluation, run: str) -> tuple[Evaluation, Evaluation]:
@@ -66,7 +67,7 @@ def refit_closely(objective: Objective, parameters: Parameters) -> Evaluation:
 def make_scenario(problem: DiagnosisProblem, nominal: Scenario, parameters: Parameters) -> Scenario:
     """Return the nominal scenario with some parameters and effects."""
     varied = vary(nominal, problem.parameters, parameters.deviations)
-    return dataclasses.replace(varied, effects=(*nominal.effects, *parameters.effects))
+    return dataclasses.replace(varied, effects=replace_effects(nominal.effects, parameters.effects))
 
 
 def measure_gaps(

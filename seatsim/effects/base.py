@@ -42,7 +42,8 @@ On the seat, with the plant, suspension x [m], v [m/s] and cushion xc, vc:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from types import MappingProxyType
 from typing import NamedTuple, TypeVar
 
@@ -129,10 +130,22 @@ def effect(
     return check_and_enter
 
 
+@cache
 def off(cls: type[R]) -> R:
     """Return the record of an effect at the parameters that leave the rig unchanged."""
     values = dict.fromkeys(field_names(cls), 0.0) | dict(EFFECTS.specification_of(cls).off)
     return cls(**values)
+
+
+def same_place(first: Record, second: Record) -> bool:
+    """Whether two effects are the same one at the same place: of one class and, where it has channels, on one."""
+    return type(first) is type(second) and getattr(first, "channel", "") == getattr(second, "channel", "")
+
+
+def replace_effects(present: Sequence[Record], others: Sequence[Record]) -> tuple[Record, ...]:
+    """Return the effects of a rig with others, each of which replaces the one that is present at its place."""
+    kept = [effect for effect in present if not any(same_place(effect, other) for other in others)]
+    return (*kept, *others)
 
 
 def acts_on(cls: type, hooks: tuple[str, ...]) -> bool:

@@ -6,7 +6,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
 from seatsim.compilation.jit import jit
 from seatsim.effects.base import effect
@@ -126,5 +125,8 @@ class ThermalFade(NamedTuple):
         """Return the temperature of the fluid in degC out of that of the thermocouple, shape (N,)."""
         if self.lag <= 0.0:
             return values + self.rise
+        # Takes its time to load, and few rigs have the effect.
+        from scipy.ndimage import uniform_filter1d
+
         smooth = uniform_filter1d(uniform_filter1d(values, round(SMOOTHING / step)), round(SMOOTHING / step))
         return smooth + self.lag * np.gradient(smooth, step) + self.rise

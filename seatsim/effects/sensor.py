@@ -7,7 +7,6 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
-from scipy.signal import lfilter, lfilter_zi
 
 from seatsim.effects.base import Form, effect
 from seatsim.rig.sensors import discretise_lag
@@ -87,6 +86,9 @@ class SensorLag(NamedTuple):
         """Return what the sensor says, shape (N,): the truth taken as linear between samples."""
         if channel != self.channel or self.time <= SHORTEST_LAG:
             return values
+        # Takes half a second to load, and few rigs have the effect.
+        from scipy.signal import lfilter, lfilter_zi
+
         one = discretise_lag(1.0 / self.time, step)
         numerator, denominator = [one.new, one.old], [1.0, -one.keep]
         start = lfilter_zi(numerator, denominator) * values[0]

@@ -69,8 +69,9 @@ def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, data, 
 
 @pytest.mark.parametrize("name, known", [
     ("utfsm", [{"damper.gas_spring"}]),
-    ("dyke", [{"coil.lag"}, {"damper.gas_spring"}]),
-    ("dyke-130", [{"damper.gas_spring"}]),
+    # The force follows the voltage faster one way than the other, by which the standard lag, too, is passed.
+    ("dyke", [{"coil.asymmetric_lag"}, {"damper.gas_spring"}]),
+    ("dyke-130", [{"coil.asymmetric_lag"}, {"damper.gas_spring"}]),
     ("quanser-travel", [{"suspension.friction"}]),
 ])  # fmt: skip
 def test_what_the_data_are_known_to_show_stands_beside_what_is_unexplained(real_rigs, data, tmp_path, name, known):

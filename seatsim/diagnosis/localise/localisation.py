@@ -55,14 +55,16 @@ def localise_remainder(
 ) -> tuple[Remainder, Evaluation]:
     """Return what is unexplained, and the rig that lacks it: the calibrated one where a single block explains the gap.
 
-    Effects that were chosen but do not explain the gap are dropped for one unknown input, unless that leaves more.
+    Effects that were chosen but do not explain the gap are dropped for one unknown input that explains it, unless that
+    leaves more than one beside them. Where the form of the rig is wrong everywhere no such input explains it.
     """
     alone = _weigh_blocks(objective, calibrated)
     if not chosen.parameters.terms:
         return alone, chosen
     beside = _weigh_blocks(objective, chosen)
+    little = objective.settings.decision.explained * calibrated.excess
     slight = objective.settings.localisation.slight * calibrated.excess
-    if alone.likeliest.negative_log_evidence < beside.likeliest.negative_log_evidence + slight:
+    if alone.likeliest.negative_log_evidence < min(little, beside.likeliest.negative_log_evidence + slight):
         return alone, calibrated
     return beside, chosen
 

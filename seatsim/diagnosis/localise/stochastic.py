@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.decide import Decision
+from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy, is_bias_drift, is_from_outside
 from seatsim.diagnosis.localise.hypotheses import FaultHypothesis
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.movement import measure_remainders
-from seatsim.diagnosis.noise import NoiseWeights, weigh_noise
+from seatsim.diagnosis.noise import NoiseWeights
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
@@ -57,17 +58,16 @@ def name_stochastic_effect(problem: DiagnosisProblem, found: Discrepancy) -> str
 
 
 def add_to_noise(problem: DiagnosisProblem, weights: NoiseWeights, effect: str, found: Discrepancy) -> NoiseWeights:
-    """Return weights with the signal added to the noise of the recording; `weights` are those used before."""
+    """Return the weights with the signal added to the noise of the recording."""
     smoothing = problem.settings.noise.smoothing
     if effect == FORCE_FROM_OUTSIDE:
-        return weigh_noise(problem, found.signals)
+        return weights.add(carry_force(problem, found.signals))
     if found.channel not in problem.channels:
         objective = Objective(problem, weights)
-        errors = {run: _carry_floor_motion(objective, run, signal) for run, signal in found.signals.items()}
-        return weigh_noise(problem, errors=errors)
+        return weights.add({run: _carry_floor_motion(objective, run, each) for run, each in found.signals.items()})
     row = np.array([[name == found.channel] for name in problem.channels], dtype=float)
     powers = {run: row * measure_power(np.fft.rfft(signal), smoothing) for run, signal in found.signals.items()}
-    return weigh_noise(problem, errors=powers)
+    return weights.add(powers)
 
 
 def _carry_floor_motion(objective: Objective, run: str, signal: Array) -> Array:

@@ -133,6 +133,15 @@ class DecisionSettings(NamedTuple):
             "a set must leave less than `enlarge` for a further effect to be likelier than not: enlarge^power",
         ),
     ] = 0.05
+    prior_of_sensor: Annotated[
+        float,
+        Threshold(
+            "-",
+            "prior odds of a sensor that errs",
+            "higher: a sensor is blamed where a change of the rig does as much",
+            "sensors are calibrated, while dampers and cushions age; on measured rigs",
+        ),
+    ] = 0.01
     power: Annotated[
         float,
         Threshold(
@@ -198,28 +207,33 @@ class CrossValidationSettings(NamedTuple):
             "-", "share of the gap that counts as noise under uniform weights", "only scales the cost", CONVENTION
         ),
     ] = 0.1
-    least_gain: Annotated[
+    independent: Annotated[
         float,
         Threshold(
             "-",
-            "share of the gap of runs left out that an effect must take off, mean over the runs",
-            "lower: effects of chance; higher: true ones are not stated",
+            "how many of the numbers of a gap count as independent",
+            "higher: effects are stated that take little of the gap, and parameters within their tolerance cost little",
             "on measured rigs",
         ),
-    ] = 0.1
+    ] = 40.0
     equivalent: Annotated[
         float,
         Threshold(
             "-",
-            "difference of that share within which two sets help as much",
+            "ratio of the evidences of two sets below which they help as much",
             "higher: larger groups",
             "on measured rigs",
         ),
-    ] = 0.02
+    ] = 5.0
     sets_compared: Annotated[
         int, Threshold("-", "sets of each size that are cross-validated", "more: time", "on measured rigs")
     ] = 8
     folds: Annotated[int, Threshold("-", "parts of the runs that are left out in turn", "more: time", CONVENTION)] = 3
+
+    @property
+    def power(self) -> float:
+        """Exponent of the mean square that a set leaves in its evidence."""
+        return 0.5 * self.independent
 
 
 class ValidationSettings(NamedTuple):

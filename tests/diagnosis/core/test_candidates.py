@@ -62,10 +62,19 @@ def test_effects_come_in_the_order_of_their_names():
     assert found == sorted(found)
 
 
-def test_what_is_withheld_or_in_the_nominal_scenario_is_no_candidate():
-    found = by_effect(list_candidates(posed(effects=(GasSpring(10.0, 0.0),)), without=["coil.lag", "sensor.gain"]))
-    left_out = {"damper.gas_spring", "coil.lag", "sensor.gain", "floor.unmeasured_input"}
-    assert set(found) == set(names("effect")) - left_out
+def test_what_is_withheld_is_no_candidate():
+    found = by_effect(list_candidates(posed(), without=["coil.lag", "sensor.gain"]))
+    assert set(found) == set(names("effect")) - {"coil.lag", "sensor.gain", "floor.unmeasured_input"}
+
+
+def test_an_effect_of_the_nominal_scenario_may_have_another_size_there(listed):
+    changed = by_effect(list_candidates(posed(effects=(GasSpring(10.0, 70.0), Gain("driver_acceleration", 0.4)))))
+    for absent, present in zip(listed["damper.gas_spring"], changed["damper.gas_spring"], strict=True):
+        assert present.nominal == 10.0 and present.start[0] == absent.start[0] + 10.0
+        # What a form does not change stays as it is in the scenario.
+        assert present.record(present.start).stiffness == 70.0
+    places = {each.fixed["channel"]: each.nominal for each in changed["sensor.gain"]}
+    assert places == {"frame_acceleration": 0.0, "driver_acceleration": 0.4, "floor_acceleration": 0.0}
 
 
 def test_without_a_command_nothing_can_be_said_of_the_coil():

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
+from seatsim.diagnosis.cross_validate import _charge, cross_validate, select_by_cross_validation
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_gap
-from seatsim.diagnosis.objective import Objective
+from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import normalise_rms_errors
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
@@ -110,7 +111,9 @@ def select(objective, *sets):
 
 
 def gain(objective, names, before=()):
-    return float(np.mean(1.0 - left_out(objective, names, 3) / left_out(objective, before, 3)))
+    """Return the share of the pooled gap of runs left out that a set of effects takes off."""
+    after, alone = (np.mean(left_out(objective, each, 3) ** 2) for each in (names, before))
+    return float(1.0 - np.sqrt(after / alone))
 
 
 def test_what_only_fits_one_run_is_not_chosen_though_it_fits_all_better():
@@ -139,26 +142,27 @@ def test_a_search_ends_at_the_first_size_that_does_not_gain():
     assert select(objective, [("rig.overfit",)], [("rig.one", "rig.two")]) == (set(), [])
 
 
-@pytest.mark.parametrize("factor, chosen", [(0.98, {"rig.two"}), (1.02, set())])
-def test_the_least_gain_is_that_of_the_settings(factor, chosen):
-    own = gain(pose(), ["rig.two"])
-    assert select(pose(least_gain=factor * own), [("rig.two",)]) == (chosen, [])
+@pytest.mark.parametrize("factor, chosen", [(1.05, {"rig.two"}), (0.95, set())])
+def test_an_effect_is_chosen_whose_evidence_outweighs_its_prior(factor, chosen):
+    # 0.05 (1 - gain)^-n = 1
+    least = -np.log(0.05) / -np.log(1.0 - gain(pose(), ["rig.two"]))
+    assert select(pose(independent=factor * least), [("rig.two",)]) == (chosen, [])
 
 
 def test_sets_that_help_as_much_are_equivalent():
     objective = pose()
     # Two signals that differ by a tenth help alike; another effect does not.
-    difference = gain(objective, ["rig.one"]) - gain(objective, ["rig.alike"])
-    assert 0.001 < difference < 0.02
     sets = [("rig.one",), ("rig.alike",), ("rig.two",)]
+    ratio = ((1.0 - gain(objective, ["rig.alike"])) / (1.0 - gain(objective, ["rig.one"]))) ** 40
+    assert 1.05 < ratio < 2.0
     assert select(objective, sets) == ({"rig.one"}, [{"rig.alike"}])
-    assert select(pose(equivalent=0.98 * difference), sets) == ({"rig.one"}, [])
-    assert select(pose(equivalent=1.02 * difference), sets) == ({"rig.one"}, [{"rig.alike"}])
+    assert select(pose(equivalent=0.9 * ratio), sets) == ({"rig.one"}, [])
+    assert select(pose(equivalent=1.1 * ratio), sets) == ({"rig.one"}, [{"rig.alike"}])
 
 
 def test_of_two_that_help_as_much_the_rig_is_chosen_before_the_sensor():
     assert select(pose(), [("sensor.alike",), ("rig.one",)]) == ({"rig.one"}, [{"sensor.alike"}])
-    assert select(pose(), [("rig.alike",), ("rig.one",)]) == ({"rig.alike"}, [{"rig.one"}])
+    assert select(pose(), [("rig.alike",), ("rig.one",)]) == ({"rig.one"}, [{"rig.alike"}])
     assert select(pose(), [("sensor.alike",)]) == ({"sensor.alike"}, [])
 
 
@@ -168,9 +172,20 @@ def test_every_set_tried_is_returned_with_what_it_leaves():
     selection = Selection(calibrated, ((calibrated,), (one, two)), ())
     tried = select_by_cross_validation(objective, selection).tried
     assert [each for each, _ in tried] == [calibrated, one, two]
-    alone = left_out(objective, [], 3)
-    expected = [np.mean(left_out(objective, names, 3) / alone) ** 2 for names in ([], ["rig.one"], ["rig.two"])]
-    np.testing.assert_allclose([left for _, left in tried], expected)
+    expected = [(1.0 - gain(objective, names)) ** 2 for names in ([], ["rig.one"], ["rig.two"])]
+    # The prior of the nuisance parameter raises what is left by as much as it lowers the evidence.
+    charged = [np.exp((each.parameters.deviations[0] / 0.58) ** 2 / 40.0) for each in (calibrated, one, two)]
+    np.testing.assert_allclose([left for _, left in tried], np.array(expected) * charged, rtol=1e-3)
+
+
+def test_a_further_parameter_costs_as_by_schwarz():
+    term = offer("rig.one")
+    one, two = (
+        Parameters(np.zeros(1), (term._replace(free=free),), (np.ones(len(free)),)) for free in (("a",), ("a", "b"))
+    )
+    plain, charged = (_charge(pose(), Evaluation(rig, {}, {}, 0.0), 0.5) for rig in (one, two))
+    # (charged / plain)^-20 = 40^(-1/2)
+    assert plain == 0.5 and (charged / plain) ** 20 == pytest.approx(np.sqrt(40.0))
 
 
 def test_only_the_first_sets_of_a_size_are_cross_validated():
@@ -181,7 +196,7 @@ def test_only_the_first_sets_of_a_size_are_cross_validated():
 def test_an_immaterial_effect_is_not_chosen_however_it_helps():
     objective = pose(amounts={"rig.one": 0.02, "rig.unknown": 0.02})
     loud = dataclasses.replace(
-        objective, problem=dataclasses.replace(objective.problem, settings=pose(least_gain=0.001).settings)
+        objective, problem=dataclasses.replace(objective.problem, settings=pose(independent=1e4).settings)
     )
     evaluation = fitted(loud, "rig.one")
     selection = Selection(evaluation, ((fitted(loud),), (evaluation,)), ())

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.noise import NoiseWeights, weigh_noise
 from seatsim.recordings.recording import ChannelEntry
 
@@ -104,7 +105,7 @@ def test_a_channel_without_noise_has_the_least_power():
 def test_errors_of_channels_add_to_the_noise():
     problem = pose({"model_error": 0.0})
     errors = {run: np.array([[7.0], [0.0]]) for run in RUNS}
-    power = 2.0 / weigh_noise(problem, errors=errors).weights["second"] ** 2
+    power = 2.0 / weigh_noise(problem).add(errors).weights["second"] ** 2
     np.testing.assert_allclose(power[0], NOISE[0] ** 2 * 2400 + 7.0)
     np.testing.assert_allclose(power[1], NOISE[1] ** 2 * 2400)
 
@@ -113,7 +114,7 @@ def test_a_random_force_counts_with_its_spectrum_wherever_it_comes_from():
     problem = pose({"model_error": 0.0, "replicates": 12}, force_gain=(0.0, 0.3))
     rng = np.random.default_rng(3)
     forces = {run: 2.0 * rng.standard_normal(count + 201) for run, count in RUNS.items()}
-    found = weigh_noise(problem, forces)
+    found = weigh_noise(problem).add(carry_force(problem, forces))
     level = np.mean(2.0 / found.weights["second"] ** 2, axis=1) / 2400
     np.testing.assert_allclose(level, NOISE**2 + np.array([0.0, 0.6]) ** 2, rtol=0.05)
     without = weigh_noise(problem)
@@ -125,7 +126,7 @@ def test_a_burst_of_the_force_counts_as_if_it_were_spread_over_the_run():
     burst = np.zeros(2401 + 200)
     # Within the first second, which is not compared.
     burst[:150] = 8.0 * np.random.default_rng(3).standard_normal(150)
-    found = weigh_noise(problem, {"first": burst[:2001], "second": burst})
+    found = weigh_noise(problem).add(carry_force(problem, {"first": burst[:2001], "second": burst}))
     level = np.mean(2.0 / found.weights["second"][1] ** 2) / 2400
     assert level == pytest.approx(NOISE[1] ** 2 + (0.3 * 8.0) ** 2 * 150 / 2601, rel=0.2)
 
@@ -216,4 +217,4 @@ def test_repeats_that_differ_at_one_frequency_count_there_alone():
 
 def test_weights_are_frozen():
     with pytest.raises(dataclasses.FrozenInstanceError):
-        NoiseWeights({}, {}).bins = {}
+        NoiseWeights({}).power = {}

@@ -5,12 +5,12 @@ import pytest
 from seatsim.diagnosis.probability import weigh_effects
 from seatsim.diagnosis.settings.judging import DecisionSettings
 
-SETTINGS = DecisionSettings()._replace(prior=0.1, power=2.0, effect_bounds=(0.01, 0.9))
+SETTINGS = DecisionSettings()._replace(prior=0.1, prior_of_sensor=0.02, effect_bounds=(0.01, 0.9))
 NAMES = ["a", "b", "c"]
 
 
-def weigh(*sets, settings=SETTINGS):
-    return weigh_effects(settings, [(frozenset(names), left) for names, left in sets], NAMES)
+def weigh(*sets, power=2.0):
+    return weigh_effects(SETTINGS, [(frozenset(names), left) for names, left in sets], NAMES, power)
 
 
 def test_an_effect_has_the_share_of_the_weight_that_lies_in_sets_with_it():
@@ -33,5 +33,11 @@ def test_probabilities_stay_within_their_bounds():
 
 
 def test_very_different_sets_are_weighed_without_overflow():
-    strong = SETTINGS._replace(power=500.0)
-    assert weigh(("", 1e-6), ("a", 1e-5), settings=strong)["a"] == 0.01
+    assert weigh(("", 1e-6), ("a", 1e-5), power=500.0)["a"] == 0.01
+
+
+def test_a_sensor_has_a_prior_of_its_own():
+    sets = [(frozenset(), 1.0), (frozenset({"sensor.gain"}), 0.2), (frozenset({"rig.one", "sensor.gain"}), 0.1)]
+    found = weigh_effects(SETTINGS, sets, ["sensor.gain", "rig.one"], 2.0)
+    total = 1.0 + 0.02 / 0.04 + 0.1 * 0.02 / 0.01
+    assert found == pytest.approx({"sensor.gain": (0.5 + 0.2) / total, "rig.one": 0.2 / total})

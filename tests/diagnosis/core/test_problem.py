@@ -8,6 +8,7 @@ import pytest
 from seatsim.diagnosis import problem as module
 from seatsim.diagnosis.problem import DiagnosisProblem, check_nominal, normalise_rms_errors, pose_problem
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.effects.sensor import Gain
 from seatsim.recordings.recording import load_recording
 from seatsim.scenario.scenario import Start
 from seatsim.schema.errors import InputError, RunError
@@ -131,11 +132,14 @@ def test_a_rig_is_simulated_with_parameters_effects_and_inputs_of_its_run(posed,
     np.testing.assert_allclose(residuals["short"][0], posed.measured["short"][0] - outputs[0])
 
 
-def test_effects_stand_beside_those_of_the_nominal_scenario(posed):
-    present = dataclasses.replace(posed, scenario=dataclasses.replace(posed.scenario, effects=(Added("own", 1.0),)))
-    rig = present.augmented(present.nominal, [Added("x", 2.0)])
-    assert rig.effects == (Added("own", 1.0), Added("x", 2.0))
-    assert present.scenario.effects == (Added("own", 1.0),)
+def test_effects_stand_beside_those_of_the_nominal_scenario_or_replace_one_at_the_same_place(posed):
+    own = Added("own", 1.0), Gain("coil_current", 0.1)
+    present = dataclasses.replace(posed, scenario=dataclasses.replace(posed.scenario, effects=own))
+    rig = present.augmented(present.nominal, [Gain("driver_acceleration", 0.2)])
+    assert rig.effects == (*own, Gain("driver_acceleration", 0.2))
+    rig = present.augmented(present.nominal, [Gain("coil_current", 0.3)])
+    assert rig.effects == (own[0], Gain("coil_current", 0.3))
+    assert present.scenario.effects == own
 
 
 @pytest.fixture

@@ -75,6 +75,17 @@ def test_effects_are_appended_with_all_their_parameters(problem, tmp_path):
     assert other.scenario.source.data["effects"] == [{"effect": "driver.mass", "parameters": {"change": 4}}]
 
 
+def test_an_effect_replaces_the_one_of_the_nominal_scenario_at_its_place(problem, tmp_path):
+    biased = "effects: [{effect: sensor.bias, parameters: {channel: %s, share: 0.1}}]\n"
+    rig = place(problem, (BIAS, 0.25))
+    found = {"effect": "sensor.bias", "parameters": {"channel": "damper_force", "share": 0.25, "drift": 0.0}}
+    same = loaded(problem, NOMINAL + biased % "damper_force", tmp_path)
+    assert write_augmented(same, rig)["effects"] == [found]
+    other = loaded(problem, NOMINAL + biased % "coil_current", tmp_path)
+    own = {"effect": "sensor.bias", "parameters": {"channel": "coil_current", "share": 0.1}}
+    assert write_augmented(other, rig)["effects"] == [own, found]
+
+
 def test_a_saved_design_is_named_so_that_it_is_found_from_another_folder(problem, tmp_path):
     law = "controller: {law: static_output_feedback, design: saved/design.yaml}\n"
     text = "\n".join(line for line in NOMINAL.splitlines() if not line.startswith("controller")) + "\n" + law

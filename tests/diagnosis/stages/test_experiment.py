@@ -1,5 +1,6 @@
 """The proposed experiment of a linear seat: what is proposed, by which figures, in which words."""
 
+import copy
 import dataclasses
 import re
 
@@ -10,6 +11,7 @@ from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.design import experiment
 from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, list_candidate_experiments
 from seatsim.diagnosis.design.experiment import propose_experiment
+from seatsim.effects.driver import Mass
 from seatsim.effects.sensor import ClockSkew, Gain
 from seatsim.excitations.base import Floor
 from seatsim.simulation.inputs import BenchInputs, SeatInputs
@@ -213,16 +215,13 @@ def test_where_none_separates_the_best_is_named_but_not_proposed(equivalent):
 
 def test_an_excitation_has_a_scenario_without_what_is_not_repeated(equivalent):
     problem = equivalent[0].problem
+    source = copy.copy(problem.scenario.source)
     stated = {"start": {"displacement": 0.1}, "sweep": {}, "name": "nominal", "effects": [{"effect": "driver.mass"}]}
-    problem.scenario.source.data.update(stated)
-    try:
-        candidate = verdict(
-            90.0, 0.1, "b", {"controller": {"law": "constant"}, "excitation": {"kind": "sine"}}
-        ).candidate
-        found = experiment._write_scenario(problem, candidate)
-    finally:
-        for key in stated:
-            problem.scenario.source.data.pop(key)
+    source.data = source.data | stated
+    scenario = dataclasses.replace(problem.scenario, source=source, effects=(Mass(10.0),))
+    problem = dataclasses.replace(problem, scenario=scenario)
+    candidate = verdict(90.0, 0.1, "b", {"controller": {"law": "constant"}, "excitation": {"kind": "sine"}}).candidate
+    found = experiment._write_scenario(problem, candidate)
     assert found["name"] == "experiment-b" and found["excitation"] == {"kind": "sine"}
     assert found["controller"] == {"law": "constant"} and found["plant"]["driver_mass"] == 80.0
     assert found["effects"] == [{"effect": "driver.mass"}]

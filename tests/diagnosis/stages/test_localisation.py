@@ -143,8 +143,12 @@ def test_where_no_block_explains_anything_they_still_have_shares(weigh):
 
 @pytest.mark.parametrize(
     ("alone", "beside", "kept"),
-    [(0.5, 0.5, False), (0.5, 0.6, False), (0.559, 0.5, False), (0.561, 0.5, True), (0.9, 0.1, True)],
-)
+    [
+        (0.2, 0.2, False), (0.2, 0.3, False), (0.259, 0.2, False), (0.261, 0.2, True), (0.9, 0.1, True),
+        # An input that leaves more than 12 % of the excess explains nothing, so that it takes no effect's place.
+        (0.359, 0.5, False), (0.361, 0.5, True),
+    ],
+)  # fmt: skip
 def test_effects_are_kept_where_an_input_beside_them_explains_enough_more(objective, monkeypatch, alone, beside, kept):
     # Enough is 2 % of the calibrated excess, which is 3.
     calibrated, chosen = rig(objective), rig(objective, ("a.x", "one", 1.0))

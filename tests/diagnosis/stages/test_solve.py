@@ -9,9 +9,12 @@ from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.cross_validate import cross_validate
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.fit import refit
+from seatsim.diagnosis.input_noise import carry_force
+from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
 from seatsim.diagnosis.localise.localisation import share_gap
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.noise import measure_broadband, weigh_gap, weigh_noise
+from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solve import Method, solve
@@ -36,20 +39,19 @@ class Script:
         self.verdicts, self.effects, self.groups = list(verdicts), effects or {}, list(groups)
         self.calls, self.weighed, self.selected, self.decided, self.shared, self.said = [], [], [], [], [], []
 
-    def weigh_noise(self, problem, forces, errors):
+    def weigh_noise(self, problem):
         self.calls.append("weigh")
-        weights = weigh_noise(problem, forces, errors)
-        self.weighed.append((forces, errors, weights))
-        return weights
+        self.weighed.append(weigh_noise(problem))
+        return self.weighed[-1]
 
-    def select_effects(self, objective, candidates, progress, largest):
+    def select_effects(self, objective, candidates, progress, largest, rig):
         self.calls.append("select")
         calibrated = objective.evaluate([place(objective.problem)])[0]
         sets = [(calibrated,)]
         if self.effects:
             terms = [(offer(f"toy.{cause}", cause), amount) for cause, amount in self.effects.items()]
             sets.append(tuple(objective.evaluate([place(objective.problem, *terms)])))
-        selection = Selection(calibrated, tuple(sets), ())
+        selection = Selection(calibrated, tuple(sets), (objective.linearise_nuisances(calibrated),))
         self.selected.append((objective, candidates, largest, selection))
         return selection
 
@@ -84,7 +86,7 @@ def test_without_a_gap_nothing_is_localised(folder):
     assert script.calls == ["weigh", "select", "decide"] and script.said == ["weighing the channels"]
     assert (found.where, found.discrepancy, found.stochastic) == ((), None, "")
     objective, candidates, largest, selection = script.selected[0]
-    assert script.weighed[0][:2] == (None, None) and objective.weights is script.weighed[0][2]
+    assert objective.weights is script.weighed[0]
     assert found.objective is objective and found.selection is selection
     assert largest is None and candidates == list_candidates(problem)
     assert script.decided[0][1] == names("effect")
@@ -115,11 +117,14 @@ def test_repeated_runs_show_a_force_that_counts_as_noise(folder):
     problem = push(problem, 20.0)
     script = Script("none")
     found = script.solve(problem)
-    assert script.calls == ["weigh", "weigh", "select", "decide"]
-    forces, errors, weights = script.weighed[1]
-    assert script.weighed[0][0] is None and errors is None
+    assert script.calls == ["weigh", "select", "decide"]
+    forces = estimate_nonrepeatable_force(
+        Objective(problem, script.weighed[0]), Objective(problem, script.weighed[0]).evaluate([place(problem)])[0]
+    )
     assert set(forces) == {"first", "again"} and np.std(forces["first"]) > 1.0
-    assert found.objective.weights is weights is script.selected[0][0].weights
+    expected = script.weighed[0].add(carry_force(problem, forces))
+    assert found.objective is script.selected[0][0]
+    assert all(np.array_equal(found.objective.weights.power[run], expected.power[run]) for run in problem.runs)
 
 
 def push(problem, newtons, port="suspension"):
@@ -159,11 +164,10 @@ def test_a_broadband_residual_counts_as_noise_where_that_explains_the_gap(folder
     script = Script("unknown", verdict)
     found = script.solve(problem)
     assert script.said[:2] == ["weighing the channels", "counting a broadband residual as noise"]
-    assert script.calls == ["weigh", "select", "decide", "weigh", "select", "decide", "share"]
-    forces, errors, weights = script.weighed[1]
-    expected = measure_broadband(problem, script.selected[0][3].sets[-1][0].residuals)
-    assert forces is None and all(np.array_equal(errors[run], expected[run]) for run in problem.runs)
-    assert found.objective.weights is weights and found.decision.verdict == verdict
+    assert script.calls == ["weigh", "select", "decide", "select", "decide", "share"]
+    expected = script.weighed[0].add(measure_broadband(problem, script.selected[0][3].sets[-1][0].residuals))
+    assert all(np.array_equal(found.objective.weights.power[run], expected.power[run]) for run in problem.runs)
+    assert found.objective is script.selected[1][0] and found.decision.verdict == verdict
 
 
 def narrow(settings):
@@ -188,8 +192,8 @@ def test_a_second_search_that_explains_nothing_is_forgotten(folder, second):
     script.solve(problem)
     # The search by the gap alone goes on from the first weights.
     assert script.said[1:3] == ["counting a broadband residual as noise", "weighing the gap alone"]
-    assert script.shared[0][0].weights is not script.weighed[1][2]
-    assert script.calls[:6] == ["weigh", "select", "decide"] * 2
+    assert script.shared[0][0].weights is script.weighed[0]
+    assert script.calls[:5] == ["weigh", "select", "decide", "select", "decide"]
 
 
 def test_what_is_not_broadband_for_the_most_part_is_searched_once(folder):
@@ -197,7 +201,7 @@ def test_what_is_not_broadband_for_the_most_part_is_searched_once(folder):
     problem = dataclasses.replace(problem, settings=narrow(problem.settings))
     script = Script("unknown")
     script.solve(problem)
-    assert "counting a broadband residual as noise" not in script.said and len(script.weighed) == 1
+    assert "counting a broadband residual as noise" not in script.said and script.calls.count("decide") == 1
 
 
 def test_the_share_that_is_broadband_decides(folder):
@@ -276,11 +280,16 @@ def test_an_effect_that_runs_left_out_support_stands_beside_the_unknown(folder):
     # How likely the effect is follows from what it takes off runs left out, whatever else is unknown.
     nuisances = found.objective.linearise_nuisances(chosen)
     alone = found.objective.linearise_nuisances(found.selection.calibrated)
-    one = cross_validate(found.objective, chosen, nuisances)
-    one /= cross_validate(found.objective, found.selection.calibrated, alone)
-    odds = 0.05 / np.mean(one) ** 8
-    assert found.decision.probabilities["toy.one"] == pytest.approx(odds / (1.0 + odds))
-    assert found.decision.unknown == 0.6 and odds > 1.0
+    left, before = (
+        np.mean(cross_validate(found.objective, rig, known) ** 2)
+        * np.exp(np.sum((rig.parameters.deviations / 0.58) ** 2) / 40.0)
+        for rig, known in ((chosen, nuisances), (found.selection.calibrated, alone))
+    )
+    odds = 0.05 * (before / left) ** 20
+    assert odds > 1e3 and found.decision.probabilities["toy.one"] == 0.98 == pytest.approx(
+        odds / (1.0 + odds), abs=0.02
+    )
+    assert found.decision.unknown == 0.6
     assert {share.block for share in found.where} >= {"cushion", "toy"}
 
 
@@ -289,7 +298,7 @@ def test_an_effect_that_an_input_alone_makes_up_for_is_given_up(folder):
     problem = push(make_problem(folder), 60.0, "cushion")
     settings = problem.settings._replace(
         localisation=problem.settings.localisation._replace(slight=1e9),
-        cross_validation=problem.settings.cross_validation._replace(least_gain=-1e9),
+        decision=problem.settings.decision._replace(prior=1e9, explained=1.0),
     )
     script = Script("unknown", effects={"one": 0.5})
     found = script.solve(dataclasses.replace(problem, settings=settings))

@@ -59,7 +59,7 @@ def test_a_solution_is_checked_on_a_run_that_its_rigs_are_fitted_without(known):
     problem, chosen = known.objective.problem, known.decision.chosen
     found = validate_on_held_out(known)
     shrink = shrink_by_run(problem, known.selection.nominal, chosen)
-    assert found.run == choose_held_out_run(problem, chosen, shrink)
+    assert found.run == choose_held_out_run(problem, chosen, shrink, 0.25)
     calibrated, augmented = refit_without(known.objective, chosen, found.run)
     assert np.array_equal(found.calibrated.parameters.vector, calibrated.parameters.vector)
     assert np.array_equal(found.augmented.parameters.vector, augmented.parameters.vector)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.decide import Decision
+from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import Discrepancy
 from seatsim.diagnosis.localise.stochastic import (
     BIAS_DRIFT,
@@ -22,7 +23,7 @@ from seatsim.diagnosis.result import Cause, Estimate, Share
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.spectra import measure_power, smooth_spectrum
 
-from .toy import CHANNELS, RATE, SIZES, SKIP, add_taps, place, pose, record, weigh_stated
+from .toy import CHANNELS, RATE, SIZES, SKIP, add_taps, place, pose, record
 
 SETTINGS = DiagnosisSettings()
 
@@ -103,15 +104,16 @@ def test_without_a_load_cell_a_force_of_the_damper_may_be_one_from_outside(probl
     assert name_stochastic_effect(short, discrepancy("driver")) == ""
 
 
-def powers_beyond(problem, weights):
-    """Return the power of the noise by run beyond that of the recording alone."""
-    alone = weigh_noise(problem)
-    return {run: 2.0 / weights.weights[run] ** 2 - 2.0 / alone.weights[run] ** 2 for run in problem.runs}
+def powers_beyond(problem, effect, found):
+    """Return the power of the noise by run that is added to what was there, whatever that was."""
+    before = weigh_noise(problem).add({run: np.full((4, 1), 0.3) for run in problem.runs})
+    after = add_to_noise(problem, before, effect, found)
+    return {run: after.power[run] - before.power[run] for run in problem.runs}
 
 
 def test_a_drift_adds_its_power_to_the_noise_of_its_channel(problem):
     found = discrepancy("sensor", 0.25, channel="damper_force")
-    beyond = powers_beyond(problem, add_to_noise(problem, weigh_stated(problem).weights, BIAS_DRIFT, found))
+    beyond = powers_beyond(problem, BIAS_DRIFT, found)
     for run, power in beyond.items():
         expected = measure_power(np.fft.rfft(found.signals[run]), 0.15)[: power.shape[1]]
         assert power[3] == pytest.approx(expected, rel=1e-6, abs=1e-6)
@@ -120,7 +122,7 @@ def test_a_drift_adds_its_power_to_the_noise_of_its_channel(problem):
 
 def test_a_drift_of_the_floors_sensor_adds_what_its_motion_leaves_in_all_channels(problem):
     found = discrepancy("sensor", 0.25, channel="floor_acceleration", rms=0.3)
-    beyond = powers_beyond(problem, add_to_noise(problem, weigh_stated(problem).weights, BIAS_DRIFT, found))
+    beyond = powers_beyond(problem, BIAS_DRIFT, found)
     for run, power in beyond.items():
         whole = np.zeros(len(problem.recording.table(run)["floor_acceleration"]))
         whole[SKIP : SKIP + len(found.signals[run])] = found.signals[run]
@@ -131,10 +133,9 @@ def test_a_drift_of_the_floors_sensor_adds_what_its_motion_leaves_in_all_channel
 
 def test_a_force_from_outside_adds_what_forces_of_its_spectrum_leave(problem):
     found = discrepancy("suspension", 5.0, rms=30.0)
-    weights = add_to_noise(problem, weigh_stated(problem).weights, FORCE_FROM_OUTSIDE, found)
-    expected = weigh_noise(problem, found.signals)
-    assert all(np.array_equal(weights.weights[run], expected.weights[run]) for run in problem.runs)
-    beyond = powers_beyond(problem, weights)["first"]
+    beyond = powers_beyond(problem, FORCE_FROM_OUTSIDE, found)["first"]
+    expected = carry_force(problem, found.signals)["first"][:, : beyond.shape[1]]
+    assert np.allclose(beyond, expected, rtol=1e-6, atol=1e-9 * np.max(expected))
     # A tone of 5 Hz is the tenth of the lines, about which its power is spread.
     gain = np.array([size * a for size, a in zip(SIZES[:4], (0.03, 0.01, 0.03, 0.006), strict=True)])
     share = np.sum(beyond[:, 4:18], axis=1) / np.sum(beyond, axis=1)
