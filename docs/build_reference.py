@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import inspect
 from pathlib import Path
 
 from seatsim.dampers.base import CONFIDENCE
-from seatsim.scenario.describe import KINDS, SECTIONS, describe
+from seatsim.scenario.describe import KINDS, SECTIONS, describe, find_page
 from seatsim.schema import registry
 
 PAGE = Path(__file__).with_name("reference.md")
@@ -22,12 +21,10 @@ def catalogue(names: list[str]) -> str:
     lines += [f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items()]
     lines += ["", "| model | is | confidence | states | speed | current |", "|---|---|---|---|---|---|"]
     for name in names:
-        cls = registry.find("damper", name)
-        specification, title = registry.specification_of(cls), (inspect.getdoc(cls) or "").partition("\n\n")[0]
-        title = " ".join(title.partition(": `")[0].split()).rstrip(".")
+        specification = registry.specification_of(registry.find("damper", name))
         row = (
             name,
-            title,
+            find_page(name).title,
             specification.confidence,
             len(specification.initial),
             f"{specification.max_speed:g} m/s",

@@ -18,9 +18,13 @@ if TYPE_CHECKING:
     from seatsim.schema.modules import use
     from seatsim.simulation.result import Channel, Result, Run
     from seatsim.simulation.runs import compare, run
+    from seatsim.standards.comfort import Comfort, comfort
+    from seatsim.standards.seat_rows import SeatTest
+    from seatsim.standards.seat_test import seat_test
 
 _HOME = {
     "Channel": "simulation.result",
+    "Comfort": "standards.comfort",
     "Diagnosis": "diagnosis.result",
     "Gap": "recordings.gap",
     "Identification": "identification.identify",
@@ -31,8 +35,10 @@ _HOME = {
     "Run": "simulation.result",
     "RunError": "schema.errors",
     "Scenario": "scenario.scenario",
+    "SeatTest": "standards.seat_rows",
     "SeatsimError": "schema.errors",
     "SynthesisError": "schema.errors",
+    "comfort": "standards.comfort",
     "compare": "simulation.runs",
     "diagnose": "diagnosis.diagnose",
     "gap": "recordings.gap",
@@ -41,10 +47,12 @@ _HOME = {
     "load_recording": "recordings.recording",
     "predict_gap": "recordings.prediction",
     "run": "simulation.runs",
+    "seat_test": "standards.seat_test",
     "use": "schema.modules",
 }
 __all__ = [
     "Channel",
+    "Comfort",
     "Diagnosis",
     "Gap",
     "Identification",
@@ -55,8 +63,10 @@ __all__ = [
     "Run",
     "RunError",
     "Scenario",
+    "SeatTest",
     "SeatsimError",
     "SynthesisError",
+    "comfort",
     "compare",
     "diagnose",
     "gap",
@@ -65,12 +75,15 @@ __all__ = [
     "load_recording",
     "predict_gap",
     "run",
+    "seat_test",
     "use",
 ]
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first asked for."""
+    if name == "__version__":
+        return import_module("importlib.metadata").version("seatsim")
     if name not in _HOME:
         raise AttributeError(f"module 'seatsim' has no attribute '{name}'")
     return getattr(import_module(f"seatsim.{_HOME[name]}"), name)

@@ -1,8 +1,11 @@
 """Shared fixtures."""
 
+import sys
 from pathlib import Path
 
 import pytest
+
+from seatsim.schema import modules, registry
 
 from .faulty_recordings import record_sound_rig
 
@@ -50,3 +53,14 @@ def shared():
     if not folder.is_dir():
         pytest.skip("measured data are not beside the repository")
     return folder
+
+
+@pytest.fixture
+def forget_own_code(monkeypatch):
+    """Forget at the end which files were used, their modules and what these registered."""
+    registry.names("damper")
+    monkeypatch.setattr(modules, "_used", {})
+    monkeypatch.setattr(registry, "_classes", {kind: dict(known) for kind, known in registry._classes.items()})
+    yield
+    for name in modules._used:
+        sys.modules.pop(name, None)

@@ -14,6 +14,7 @@ from controllers.clairvoyant.performance_bounds import Array, ClairvoyantBounds
 from controllers.clairvoyant.problem import ClairvoyantRun, HeldForceProblem
 from controllers.clairvoyant.transcription import Transcription, transcribe
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on
+from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import name_of, register
@@ -121,6 +122,10 @@ def _pose(scenario: Scenario, hold: float) -> tuple[Transcription, DamperEnvelop
 
 def _require_plain_rig(scenario: Scenario) -> float:
     """Return the damper's temperature in degC where seat, damper and floor are those that the bounds hold for."""
+    if scenario.driver.model != SINGLE_MASS:
+        raise InputError(
+            f"{scenario.name}: the bracket is of a driver of one mass; run it with --set driver.model={SINGLE_MASS}"
+        )
     for effect in scenario.effects:
         if acts_on(type(effect), UNKNOWN):
             name = name_of("effect", type(effect))

@@ -14,7 +14,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import scipy.signal
 from numpy.typing import NDArray
 
 from controllers.linear_systems import (
@@ -58,6 +57,9 @@ def transcribe(plant: Plant, floor: Array, sample: float, every: int, start: tup
     which only lowers the criterion.
     """
     s = state_space(plant)
+    # Takes half a second to load, which runs without bounds do without.
+    import scipy.signal
+
     count = (len(floor) - 1) // every
     used = count * every + 1
     time = sample * np.arange(used)

@@ -25,7 +25,7 @@ PASSES = 2
 class DeliverableForces(NamedTuple):
     """Forces that a damper can deliver at speed v: `(viscous |v| + yielding min(1, |v| / pre_yield))` in v's direction.
 
-    From the softest to the stiffest setting. The defaults are those of the damper of the quickstart, 0 A and 1 A.
+    From the softest to the stiffest setting. The defaults are those of the damper of `laws.yaml`, 0 A and 1 A.
     """
 
     soft_viscous: Annotated[float, param("N s/m", "softest viscous damping", low=0, high=1e6)] = 250.0

@@ -4,38 +4,63 @@ from __future__ import annotations
 
 import shlex
 import sys
+from typing import Annotated
 
 import typer
 
 from seatsim.cli.commands.blind import blind
 from seatsim.cli.commands.dampers import characterise, identify
 from seatsim.cli.commands.describe import describe
+from seatsim.cli.commands.files import check, new, schema
+from seatsim.cli.commands.importing import import_data, inspect_data
 from seatsim.cli.commands.recordings import diagnose, gap
 from seatsim.cli.commands.runs import compare, run
+from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.synthesis import synthesise
-from seatsim.cli.terminal import complain, err
+from seatsim.cli.terminal import complain, fail
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.modules import MissingModuleError
 
 app = typer.Typer(
     help="Simulate semi-active MR-damper seats and compare what is done to them.",
-    no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False,
+    no_args_is_help=True, pretty_exceptions_enable=False,
 )  # fmt: skip
-for command in (run, compare, synthesise, gap, diagnose, characterise, identify, describe):
+for command in (
+    run, compare, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test, new, check, schema,
+):  # fmt: skip
     app.command()(command)
+app.command("import")(import_data)
+app.command("inspect")(inspect_data)
 app.add_typer(blind, name="blind")
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        import seatsim
+
+        typer.echo(f"seatsim {seatsim.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _seatsim(
+    version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_show_version, help="Print the version.")
+    ] = False,
+) -> None:
+    """Simulate semi-active MR-damper seats and compare what is done to them."""
 
 
 def main() -> None:
     """Run the command line: exit 0 done, 1 a run failed, 2 bad input (nothing written)."""
     try:
-        app()
+        app(prog_name="seatsim")
     except SeatsimError as error:
-        complain(f"error: {error}")
+        fail(str(error))
         _show_command_with_file(error)
         sys.exit(error.exit_status)
     except KeyboardInterrupt:
-        err.print("interrupted")
+        fail("interrupted")
         sys.exit(130)
 
 

@@ -7,9 +7,6 @@ from rich.table import Table
 from seatsim.recordings.forecast import Forecast
 from seatsim.recordings.gap import Gap
 
-FORECAST_LETTERS = 96
-"""Width of a forecast with measured figures."""
-
 
 def gap_table(found: Gap) -> Table:
     """Return the gap as a table: each channel and the overall figure, with the noise floor."""

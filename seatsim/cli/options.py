@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
+from seatsim.cli.terminal import answer_as_json
 from seatsim.schema.errors import InputError
 from seatsim.schema.modules import use_all
 
@@ -20,7 +20,21 @@ def _use_files(files: list[Path] | None) -> list[Path]:
     return files or []
 
 
-Out = Annotated[Path | None, typer.Option("--out", help="Folder for the files.", show_default="out/NAME")]
+def _check_folder(folder: Path | None) -> Path | None:
+    """Refuse a folder that could not be written, while options are read and before anything runs."""
+    chosen = folder or Path("out")
+    there = next(path for path in (chosen, *chosen.absolute().parents) if path.exists())
+    if not there.is_dir():
+        raise InputError(f"--out {chosen}: {there} is a file; give a folder that is there or can be made")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(f"--out {chosen}: {there} cannot be written; give another --out")
+    return folder
+
+
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", help="Folder for the files.", show_default="out/NAME", callback=_check_folder),
+]
 Scenarios = Annotated[list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)]
 OneScenario = Annotated[str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)]
 Settings = Annotated[
@@ -34,6 +48,11 @@ OwnCode = Annotated[
         help="Run a file of your own, whose classes are then named as FILE:Class; may be given several times.",
     ),
 ]  # fmt: skip
+Json = Annotated[
+    bool,
+    # Eager, so that an error in another option is an object, too.
+    typer.Option("--json", is_eager=True, callback=answer_as_json, help="Print one JSON object and nothing else."),
+]
 
 
 def scenario_settings(texts: Sequence[str] | None) -> dict[str, object]:
@@ -47,6 +66,9 @@ def pairs(texts: Sequence[str] | None, option: str, example: str) -> dict[str, o
     Raises:
         InputError: a text is no such pair.
     """
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
     values: dict[str, object] = {}
     for text in texts or []:
         key, sign, value = text.partition("=")

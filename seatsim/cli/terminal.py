@@ -1,26 +1,40 @@
-"""What every command says on the terminal: sentences, the files written, notes, failures, progress."""
+"""What every command says: sentences, files written, notes, failures and progress, or one JSON object."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import json
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import Progress
+
+from seatsim.compilation.watch import watch_compilation
 
 out = Console()
 err = Console(stderr=True)
 
+COMPILING = "compiling (first time only)"
 Report = Callable[[str], None]
 """Is called with what is being done."""
 Count = Callable[[int, int], None]
 """Is called with how many are done, and of how many."""
 
 
-def wide(letters: int) -> Console:
-    """Return the console; where it is a file, or another program, one of at least so many letters."""
-    return out if out.is_terminal else Console(width=max(out.width, letters))
+def answer_as_json(wanted: bool) -> bool:
+    """Leave standard output to the one object of `answer`, or not; returns what was wanted."""
+    out.quiet = wanted
+    return wanted
+
+
+def answer(content: Mapping[str, object], paths: Iterable[Path] = ()) -> None:
+    """Print the answer of a command as one JSON object, with the files it wrote, where `--json` asks for it."""
+    if out.quiet:
+        from seatsim.schema.files import plain
+
+        whole = {**content, "files": [str(path) for path in paths]}
+        sys.stdout.write(json.dumps(plain(whole), allow_nan=False) + "\n")
 
 
 def say(text: str) -> None:
@@ -30,12 +44,12 @@ def say(text: str) -> None:
 
 def wrote(folder: Path, paths: Sequence[Path]) -> None:
     """Print which files were written."""
-    out.print(f"written to {folder}: {', '.join(path.name for path in paths)}", markup=False, highlight=False)
+    say(f"written to {folder}: {', '.join(path.name for path in paths)}")
 
 
 def wrote_one(path: Path) -> None:
     """Print which file was written."""
-    out.print(f"written: {path}", markup=False, highlight=False)
+    say(f"written: {path}")
 
 
 def warn(texts: Iterable[str], kind: str = "note") -> None:
@@ -49,16 +63,43 @@ def complain(text: str) -> None:
     err.print(text, style="red", markup=False, highlight=False, soft_wrap=True)
 
 
+def fail(text: str) -> None:
+    """Print why a command came to its end: on standard error, and as the one object where `--json` asks for it."""
+    complain(f"error: {text}")
+    if out.quiet:
+        sys.stdout.write(json.dumps({"error": text}) + "\n")
+
+
 @contextmanager
 def count_progress(title: str, total: int | None = None) -> Iterator[Count]:
-    """Show a bar on the terminal."""
+    """Show a bar on the terminal; what is compiled before the first is done has one of its own."""
+    from rich.progress import Progress
+
     with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
+        compiling = progress.add_task(COMPILING, total=None, visible=False)
         task = progress.add_task(title, total=total)
-        yield lambda done, total: progress.update(task, completed=done, total=total)
+
+        def tell(parts: int) -> None:
+            progress.update(compiling, description=_describe_parts(parts), visible=parts > 0)
+            progress.update(task, visible=parts == 0 or progress.tasks[task].completed > 0)
+
+        with watch_compilation(tell):
+            yield lambda done, total: progress.update(task, completed=done, total=total)
 
 
 @contextmanager
 def show_progress() -> Iterator[Report]:
     """Show on the terminal what is being done."""
-    with err.status("reading") as status:
-        yield status.update
+    doing = ["reading"]
+    with err.status(doing[0]) as status:
+
+        def show(text: str) -> None:
+            doing[0] = text
+            status.update(text)
+
+        with watch_compilation(lambda parts: status.update(_describe_parts(parts) if parts else doing[0])):
+            yield show
+
+
+def _describe_parts(parts: int) -> str:
+    return f"{COMPILING}: {parts} functions"

@@ -23,8 +23,10 @@ from typing import TypeVar, cast
 import numba
 import numpy as np
 import platformdirs
+from numba.core import event
 
 from seatsim.compilation.jit import ARITHMETIC
+from seatsim.compilation.watch import report
 
 F = TypeVar("F", bound=Callable[..., object])
 
@@ -35,6 +37,27 @@ _DIGITS = 20
 """Hexadecimal digits of the key that are kept: 80 bits, in which no two of a user's models meet by chance."""
 _ONE_AT_A_TIME = threading.Lock()
 """Runs on threads share numba's setting of the cache folder, and Python 3.11 cannot parse on two of them at once."""
+
+
+class _Reporter(event.Listener):  # type: ignore[misc]  # numba has no types
+    """Reports what numba compiles, functions within functions; what is taken from the disk is no such event."""
+
+    def __init__(self) -> None:
+        self.depth, self.parts = 0, 0
+
+    def on_start(self, event: object) -> None:
+        """Count a function that begins."""
+        self.depth, self.parts = self.depth + 1, self.parts + 1
+        report(self.parts)
+
+    def on_end(self, event: object) -> None:
+        """Report the end of the outermost function."""
+        self.depth -= 1
+        if self.depth == 0:
+            report(0)
+
+
+event.register("numba:compile", _Reporter())
 
 
 def compiled(function: F, plugged: Iterable[type]) -> F:

@@ -17,16 +17,18 @@ from typing import Literal, NamedTuple, Protocol, TypeVar
 from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
-from seatsim.schema.registry import Record, Registry
+from seatsim.schema.registry import Record, Registry, is_own
 
 T = TypeVar("T", bound=type)
 
 Confidence = Literal["published", "recalled", "reading", "derived"]
-CONFIDENCE: dict[Confidence, str] = {
+OWN = "own"
+CONFIDENCE: dict[str, str] = {
     "published": "equation and source were seen in print or in public code",
     "recalled": "the form is known from the literature, not checked against the original",
     "reading": "a sound physical reading, because the original's equation could not be had",
     "derived": "composed here",
+    OWN: "from a file or package of the user's own; nothing was checked here",
 }
 """How closely a model's equation follows its source; the docstring states the origin of parameters and changes."""
 
@@ -65,6 +67,11 @@ class DamperSpecification(NamedTuple):
 
 DAMPERS: Registry[Damper, DamperSpecification] = Registry("damper")
 """All damper models by name."""
+
+
+def find_confidence(cls: type) -> str:
+    """Return the word of `CONFIDENCE` for a model; one that is not part of seatsim is never `published`."""
+    return OWN if is_own(cls) else DAMPERS.specification_of(cls).confidence
 
 
 def damper(

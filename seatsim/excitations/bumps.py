@@ -33,7 +33,9 @@ class Bumps(NamedTuple):
     """
 
     shape: Annotated[Literal["half_sine", "haversine"], choice("shape of a bump")]
-    height: Annotated[float, param("m", "height of a bump; negative for a pothole", low=-0.5, high=0.5)]
+    height: Annotated[
+        float, param("m", "height of a bump; negative for a pothole", low=-0.5, high=0.5, usual=(0.002, 0.4))
+    ]
     length: Annotated[float, param("m", "length of a bump along the road", above=0)]
     speed: Speed
     duration: Duration

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import zlib
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from seatsim.excitations.base import Array
 from seatsim.schema.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LEAST_ROWS = 16
 # Rounded times of a steady clock deviate by less than this part of an interval; a lost row deviates by more.
@@ -52,6 +54,8 @@ def read_record(path: str, axis: str, column: str, start: float) -> EvenSeries:
 
 
 def _read(path: str, axis: str, column: str) -> pd.DataFrame:
+    import pandas as pd
+
     try:
         known = list(pd.read_csv(path, nrows=0, skipinitialspace=True).columns)
         for name in (axis, column):
@@ -76,6 +80,8 @@ def _neighbour(path: Path) -> str:
 
 
 def _numbers(path: str, column: pd.Series) -> Array:
+    import pandas as pd
+
     numbers = pd.to_numeric(column, errors="coerce").to_numpy(dtype=float)
     bad = np.flatnonzero(~np.isfinite(numbers))
     if len(bad):

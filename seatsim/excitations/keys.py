@@ -18,7 +18,7 @@ def choice(meaning: str, unit: str = "") -> FieldInfo:
 
 DURATION = param("s", "length of the run", above=0, high=7200)
 Duration = Annotated[float, DURATION]
-SPEED = param("m/s", "constant vehicle speed", low=1, high=60)
+SPEED = param("m/s", "constant vehicle speed", low=1, high=60, usual=(1, 45))
 Speed = Annotated[float, SPEED]
 Through = Annotated[
     Literal["vehicle", "direct"],

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
-from scipy.constants import g
-
 from seatsim.excitations.base import Floor, excitation
 from seatsim.excitations.keys import DURATION, SPEED, Through, choice
 from seatsim.excitations.motion import check_step, samples, soft_start
@@ -14,6 +12,7 @@ from seatsim.excitations.spectra import Spectrum, band, integrated_twice, limite
 from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
+from seatsim.schema.units import conversion
 
 if TYPE_CHECKING:
     from seatsim.excitations.columns import EvenSeries
@@ -78,7 +77,7 @@ class Table(NamedTuple):
                 f"table {self.path}: no band is left between {self.high_pass:g} and {highest:g} Hz; "
                 f"permitted: a high_pass below {highest / 2:g} Hz"
             )
-        scale = g if self.unit == "g" else 1.0
+        scale = conversion(self.unit, "m/s^2").factor
         period = 2 * record.length
         acceleration = mirrored(scale * (record.values - record.values.mean()))
         acceleration = acceleration[: int(highest * period) + 1]

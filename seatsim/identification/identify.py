@@ -30,6 +30,7 @@ from seatsim.identification.settings import IdentificationSettings
 from seatsim.identification.split import split_records
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 from seatsim.schema.errors import RunError
+from seatsim.schema.notebook import Pictures, draw, html_table
 
 Array = NDArray[np.float64]
 
@@ -63,6 +64,16 @@ class Identification(NamedTuple):
         """Return the mean agreement over the records of a part (train, test, predicted), None where it has none."""
         each = [assessment.agreement for assessment in self.assessments if assessment.part == part]
         return mean_agreement(each) if each else None
+
+    def plot(self, *names: str) -> Pictures:
+        """Return its picture, which a notebook shows."""
+        return draw(self, names)
+
+    def _repr_html_(self) -> str:
+        mean = self.mean("test") or self.mean("train")
+        fit = f", mean fit {mean.fit_percent:.1f} %" if mean else ""
+        rows = [(each.name, each.value, each.std, each.unit) for each in self.information.estimates]
+        return html_table(f"{self.model}{fit}", ("parameter", "value", "standard deviation", "unit"), rows)
 
 
 def identify(

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.compilation.cached import digest
+from seatsim.dampers.base import find_confidence
 from seatsim.identification.adjustment import numeric_fields
 from seatsim.identification.assessment import PredictionData
 from seatsim.identification.damper_record import find_model
@@ -24,12 +25,15 @@ from seatsim.schema.errors import InputError, SeatsimError, nearest
 from seatsim.schema.files import write_json
 from seatsim.schema.registry import names
 
+ALL = "all"
+"""Stands for every registered model."""
+
 
 class BenchmarkEntry(NamedTuple):
     """A line of the benchmark: model, mean fit on training and held-out records, free parameters, cost of a step.
 
-    bic: Bayesian information criterion; seconds: of the fit; failed: why there are no figures. Without held-out records
-    `test_fit_percent` is NaN.
+    bic: Bayesian information criterion; seconds: of the fit; failed: why there are no figures; confidence: a word of
+    `seatsim.dampers.base.CONFIDENCE`. Without held-out records `test_fit_percent` is NaN.
     """
 
     model: str
@@ -40,31 +44,33 @@ class BenchmarkEntry(NamedTuple):
     bic: float
     seconds: float
     failed: str = ""
+    confidence: str = ""
 
 
 def benchmark_models(
     records: Sequence[BenchRecord],
+    models: Sequence[str],
     settings: IdentificationSettings,
     data: PredictionData,
     folder: Path,
     progress: Progress,
     keep: Callable[[Identification], object],
 ) -> list[BenchmarkEntry]:
-    """Identify every registered model and return their entries, the best first.
+    """Identify several models and return their entries, the best first.
 
-    data: records that every model predicts besides. folder: what stands in it of the same data, settings and models is
-    not done again. keep: called with every new identification, before its entry is written. A model that fails has an
-    entry that says why.
+    models: their names, or `all` for every registered one. data: records that every model predicts besides. folder:
+    what stands in it of the same data, settings and models is not done again. keep: called with every new
+    identification, before its entry is written. A model that fails has an entry that says why.
 
     Raises:
         InputError: the settings do not fit the records, or name a parameter that no model has.
     """
+    models = names("damper") if ALL in models else models
     split_records(records, settings)  # what cannot be held out is refused before the first fit
-    models = names("damper")
     _check_fixed(settings.fix, models)
     entries = []
     for model, key in zip(models, _keys(models, records, settings, data), strict=True):
-        path = folder / "league" / f"{model}-{key}.json"
+        path = folder / "league" / f"{model.rpartition(':')[2]}-{key}.json"
         if path.exists():
             entries.append(_read_entry(path))
             continue
@@ -88,7 +94,8 @@ def _benchmark_model(
     try:
         found = identify_records(records, model, own, lambda text: progress(f"{model}: {text}"))
     except SeatsimError as error:
-        return BenchmarkEntry(model, math.nan, math.nan, 0, math.nan, math.nan, math.nan, str(error))
+        nothing = (math.nan, math.nan, 0, math.nan, math.nan, math.nan)
+        return BenchmarkEntry(model, *nothing, str(error), find_confidence(find_model(model)))
     keep(predict_records(found, data))
     return summarise(found)
 
@@ -104,6 +111,7 @@ def summarise(found: Identification) -> BenchmarkEntry:
         found.ns_per_step,
         found.bic,
         found.seconds,
+        confidence=find_confidence(type(found.bench.damper)),
     )
 
 

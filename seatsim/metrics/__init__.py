@@ -10,12 +10,17 @@ from seatsim.metrics.comfort import (
     daily_vdv,
     dose,
     estimated_vdv,
+    find_shocks,
+    join_doses,
+    motion_sickness_dose,
     mtvv,
     running_rms,
     seat_factor,
     vdv,
     weighted_rms,
 )
+from seatsim.metrics.directions import DIRECTIONS, Direction, direction
+from seatsim.metrics.exposure import Exposure, assess_exposure
 from seatsim.metrics.motion import (
     TrackingError,
     electrical_energy,
@@ -25,37 +30,48 @@ from seatsim.metrics.motion import (
     peak,
     rms,
 )
+from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmission
 from seatsim.metrics.spectra import cross_spectral_density, power_spectral_density
 from seatsim.metrics.table import METRICS, Metric, MetricSpecification, summarise
 from seatsim.metrics.transmissibility import Transmissibility, transmissibility
 from seatsim.metrics.weighting import WEIGHTINGS, Weighting, frequency_response, weight
 
 __all__ = [
+    "DIRECTIONS",
     "METRICS",
     "WEIGHTINGS",
+    "Direction",
     "Dose",
+    "Exposure",
     "Metric",
     "MetricSpecification",
+    "SeatTransmission",
     "TrackingError",
     "Transmissibility",
     "Weighting",
+    "assess_exposure",
     "crest_factor",
     "cross_spectral_density",
     "daily_exposure",
     "daily_vdv",
+    "direction",
     "dose",
     "electrical_energy",
     "end_stop_hits",
     "energy_residual",
     "estimated_vdv",
+    "find_shocks",
     "force_tracking_error",
     "frequency_response",
+    "join_doses",
+    "motion_sickness_dose",
     "mtvv",
     "peak",
     "power_spectral_density",
     "rms",
     "running_rms",
     "seat_factor",
+    "seat_transmission",
     "summarise",
     "transmissibility",
     "vdv",

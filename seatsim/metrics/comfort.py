@@ -1,4 +1,4 @@
-"""How a person feels vertical vibration: figures of ISO 2631-1:1997 (clause 6) and the SEAT factor.
+"""How a person feels vibration: figures of ISO 2631-1:1997 (clause 6) and the SEAT factor.
 
 `weighted` is a frequency-weighted acceleration in m/s^2, shape (N,), as `weight` returns it. Each sample
 stands for one sampling interval, so a record of N samples lasts T = N / sample_rate. All functions raise
@@ -8,6 +8,7 @@ stands for one sampling interval, so a record of N samples lasts T = N / sample_
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -30,7 +31,7 @@ def weighted_rms(acceleration: ArrayLike, sample_rate: float, weighting: str = "
     Args:
         acceleration: not yet weighted, in m/s^2, shape (N,).
         sample_rate: in Hz, at least 200.
-        weighting: "Wk" for vertical, "Wd" for horizontal vibration; no axis factor (z: 1) is applied.
+        weighting: such as "Wk" for vertical, "Wd" for horizontal vibration; no axis factor (z: 1) is applied.
     """
     return rms(weight(acceleration, sample_rate, weighting))
 
@@ -96,12 +97,15 @@ def seat_factor(driver: ArrayLike, floor: ArrayLike, sample_rate: float) -> floa
     return ratio(weighted_rms(seat, sample_rate), weighted_rms(base, sample_rate))
 
 
+CREST_FACTOR, MTVV_RATIO, VDV_RATIO = 9.0, 1.5, 1.75
+"""Thresholds of the additional evaluation (ISO 2631-1:1997, 6.2.2 and 6.3.3)."""
+
+
 class Dose(NamedTuple):
     """Whether a_w alone describes a record: doses, and ratios that grow with shocks (ISO 2631-1, 6.2, 6.3).
 
-    Thresholds in common use, beyond which shocks matter, are 9 for the crest factor, 1.5 for `mtvv_ratio` and
-    1.75 for `vdv_ratio`; they are not checked against the standard's text and none is applied here. A steady
-    sine has 1.414, 1 and 1.107; stationary Gaussian motion has a `vdv_ratio` of 1.316.
+    A steady sine has a crest factor of 1.414 and ratios of 1 and 1.107; stationary Gaussian motion has a `vdv_ratio`
+    of 1.316. `find_shocks` compares them with the standard's thresholds.
     """
 
     duration: float
@@ -131,17 +135,60 @@ def dose(weighted: ArrayLike, sample_rate: float) -> Dose:
     """
     x = as_signal(weighted, "weighted")
     duration = x.size / require_positive(sample_rate, "sample_rate")
-    a_w, value, transient = rms(x), vdv(x, sample_rate), mtvv(x, sample_rate)
+    return _dose(duration, rms(x), vdv(x, sample_rate), mtvv(x, sample_rate), peak(x))
+
+
+def _dose(duration: float, a_w: float, value: float, transient: float, highest: float) -> Dose:
     return Dose(
         duration=duration,
         rms=a_w,
         vdv=value,
         estimated_vdv=estimated_vdv(a_w, duration),
         mtvv=transient,
-        crest_factor=ratio(peak(x), a_w),
+        crest_factor=ratio(highest, a_w),
         mtvv_ratio=ratio(transient, a_w),
         vdv_ratio=ratio(value, a_w * duration**0.25),
     )
+
+
+def join_doses(doses: Sequence[Dose]) -> Dose:
+    """Return the dose of several stretches of one vibration, as if one followed the other; at least one.
+
+    a_w is energy-equivalent, sqrt(sum a_w^2 T / sum T) (ISO 2631-1:1997, equation B.3), the VDV the fourth root of the
+    sum of fourth powers, the MTVV and the peak the largest.
+    """
+    duration = sum(dose.duration for dose in doses)
+    a_w = math.sqrt(sum(dose.rms**2 * dose.duration for dose in doses) / duration)
+    highest = max(dose.rms * dose.crest_factor if dose.rms else 0.0 for dose in doses)
+    value = math.pow(sum(dose.vdv**4 for dose in doses), 0.25)
+    return _dose(duration, a_w, value, max(dose.mtvv for dose in doses), highest)
+
+
+def find_shocks(dose: Dose) -> list[str]:
+    """Return why the basic method, a_w alone, does not suffice for a record; empty where it does.
+
+    A crest factor above 9 asks for the additional evaluation by MTVV or VDV (ISO 2631-1:1997, 6.2.2); these matter for
+    the judgement where MTVV / a_w exceeds 1.5 or VDV / (a_w T^(1/4)) exceeds 1.75 (6.3.3; both recalled).
+    """
+    ratios = {
+        "the crest factor": (dose.crest_factor, CREST_FACTOR),
+        "MTVV / a_w": (dose.mtvv_ratio, MTVV_RATIO),
+        "VDV / (a_w T^(1/4))": (dose.vdv_ratio, VDV_RATIO),
+    }
+    return [
+        f"{name} of {value:.3g} is above {threshold:g}"
+        for name, (value, threshold) in ratios.items()
+        if value > threshold
+    ]
+
+
+def motion_sickness_dose(weighted: ArrayLike, sample_rate: float) -> float:
+    """Return MSDV_z = sqrt(integral a_w(t)^2 dt) in m/s^1.5 of vertical motion weighted with Wf.
+
+    Source: ISO 2631-1:1997, clause 9 and annex D (recalled).
+    """
+    x = as_signal(weighted, "weighted")
+    return rms(x) * math.sqrt(x.size / require_positive(sample_rate, "sample_rate"))
 
 
 def daily_exposure(rms_weighted: float, exposure: float) -> float:

@@ -1,12 +1,12 @@
-"""Frequency weightings of ISO 2631-1:1997, Annex A.
+"""Frequency weightings of ISO 2631-1:1997, Annex A, and the others of ISO 8041-1:2017.
 
 With s = 2j pi f and w_k = 2 pi f_k, a weighting is the product of a high-pass, a low-pass, an
-acceleration-velocity transition and (Wk only) an upward step:
+acceleration-velocity transition and an upward step; a corner at infinity makes its factor 1:
 
     H(s)  = Hh(s) Hl(s) Ht(s) Hs(s)
     Hh(s) = s^2 / (s^2 + sqrt(2) w1 s + w1^2)
     Hl(s) = 1 / (1 + sqrt(2) s/w2 + (s/w2)^2)
-    Ht(s) = (1 + s/w3) / (1 + s/(Q4 w4) + (s/w4)^2)
+    Ht(s) = K (1 + s/w3) / (1 + s/(Q4 w4) + (s/w4)^2)
     Hs(s) = (w5/w6)^2 (1 + s/(Q5 w5) + (s/w5)^2) / (1 + s/(Q6 w6) + (s/w6)^2)
 
 A sampled record is weighted by multiplying its spectrum with H itself. The usual bilinear filter squeezes all
@@ -29,11 +29,8 @@ from seatsim.schema.errors import InputError, nearest
 
 ComplexArray = NDArray[np.complex128]
 
-MINIMUM_RATE = 200.0
-"""Lowest sample rate in Hz: the weightings reach up to 80 Hz, and the Nyquist frequency must lie above."""
-
-_DECAY = 12.0
-"""Zeros in s behind a record: the slowest poles, of the 0.4 Hz high-pass, have died down to 1e-9 by then."""
+_DECAY = 4.8
+"""Zeros behind a record in periods of the high-pass: its poles, the slowest, have died down to 1e-9 by then."""
 
 
 class UpwardStep(NamedTuple):
@@ -46,7 +43,7 @@ class UpwardStep(NamedTuple):
 
 
 class Weighting(NamedTuple):
-    """Constants of one weighting (ISO 2631-1:1997, Annex A; ISO 8041): frequencies in Hz, quality factor."""
+    """Constants of one weighting (ISO 8041-1:2017, Table 3): frequencies in Hz, quality factor, gain K."""
 
     f1: float
     f2: float
@@ -54,13 +51,28 @@ class Weighting(NamedTuple):
     f4: float
     Q4: float
     step: UpwardStep | None = None
+    K: float = 1.0
+
+    @property
+    def minimum_rate(self) -> float:
+        """Lowest sample rate in Hz: the band, which ends at the corner f2, must lie below half of it."""
+        return 2 * self.f2
 
 
 WEIGHTINGS: Mapping[str, Weighting] = {
     "Wk": Weighting(0.4, 100.0, 12.5, 12.5, 0.63, UpwardStep(2.37, 0.91, 3.35, 0.91)),
     "Wd": Weighting(0.4, 100.0, 2.0, 2.0, 0.63),
+    "Wc": Weighting(0.4, 100.0, 8.0, 8.0, 0.63),
+    "We": Weighting(0.4, 100.0, 1.0, 1.0, 0.63),
+    "Wj": Weighting(0.4, 100.0, math.inf, math.inf, 1.0, UpwardStep(3.75, 0.91, 5.32, 0.91)),
+    "Wf": Weighting(0.08, 0.63, math.inf, 0.25, 0.86, UpwardStep(0.0625, 0.80, 0.10, 0.80)),
+    "Wb": Weighting(0.4, 100.0, 16.0, 16.0, 0.55, UpwardStep(2.5, 0.9, 4.0, 0.95), 1.024),
+    "Wm": Weighting(10**-0.1, 100.0, 1 / (0.056 * math.pi), 1 / (0.056 * math.pi), 0.5),
+    "Wh": Weighting(10**0.8, 10**3.1, 50 / math.pi, 50 / math.pi, 0.64),
 }
-"""Wk: vertical, on the seat and under the feet. Wd: fore-and-aft and lateral, on the seat."""
+"""ISO 2631-1: Wk (vertical on the seat, all axes of the feet), Wd (horizontal on the seat, y and z of the back), Wc (x
+of the back), We (rotation), Wj (head of a recumbent person), Wf (motion sickness). ISO 2631-4: Wb (trains). ISO 2631-2:
+Wm (buildings). ISO 5349-1: Wh (hand and arm)."""
 
 
 class SecondOrderSection(NamedTuple):
@@ -71,7 +83,7 @@ class SecondOrderSection(NamedTuple):
 
 
 def sections(weighting: str = "Wk") -> tuple[SecondOrderSection, ...]:
-    """Return the factors Hh, Hl, Ht and (Wk only) Hs, for filters with states.
+    """Return the factors Hh, Hl, Ht and, where the weighting has one, Hs, for filters with states.
 
     Raises:
         InputError: no weighting has this name.
@@ -79,7 +91,7 @@ def sections(weighting: str = "Wk") -> tuple[SecondOrderSection, ...]:
     c = _constants(weighting)
     high_pass = SecondOrderSection((0.0, 0.0, (2 * math.pi * c.f1) ** -2), _coefficients(c.f1, math.sqrt(0.5)))
     low_pass = SecondOrderSection((1.0, 0.0, 0.0), _coefficients(c.f2, math.sqrt(0.5)))
-    transition = SecondOrderSection((1.0, 1 / (2 * math.pi * c.f3), 0.0), _coefficients(c.f4, c.Q4))
+    transition = SecondOrderSection((c.K, c.K / (2 * math.pi * c.f3), 0.0), _coefficients(c.f4, c.Q4))
     if c.step is None:
         return high_pass, low_pass, transition
     rise = (c.step.f5 / c.step.f6) ** 2
@@ -110,7 +122,7 @@ def frequency_response(frequency: ArrayLike, weighting: str = "Wk") -> ComplexAr
     low_pass = 1 / _quadratic(jf, c.f2, math.sqrt(0.5))
     transition = (1 + jf / c.f3) / _quadratic(jf, c.f4, c.Q4)
     step = _upward_step(jf, c.step) if c.step else 1.0
-    h: ComplexArray = high_pass * low_pass * transition * step
+    h: ComplexArray = high_pass * low_pass * transition * step * c.K
     return h
 
 
@@ -141,32 +153,34 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
     nothing wraps round. Gain and phase are those of `frequency_response` at every frequency below `sample_rate / 2`.
 
     Being band-limited, the filter is causal but for a faint ringing: for a few samples ahead of a one-sample
-    pulse the output reaches 0.2 % of its peak at 1 kHz, 0.5 % at 500 Hz, 2.6 % at 200 Hz. It suits finished
-    records, not control. Like the analog filter it takes about 2 s to forget an offset at the start of the
-    record.
+    pulse the output of Wk reaches 0.2 % of its peak at 1 kHz, 0.5 % at 500 Hz, 2.6 % at 200 Hz. It suits finished
+    records, not control. Like the analog filter it takes about one period of its high-pass (2 s; Wf 12 s) to forget an
+    offset at the start of the record.
 
     Args:
         signal: acceleration, shape (N,), finite.
-        sample_rate: in Hz, at least 200.
-        weighting: "Wk" or "Wd".
+        sample_rate: in Hz, at least twice the upper corner of the weighting: 200, for Wf 1.26, for Wh 2518.
+        weighting: a name of `WEIGHTINGS`.
 
     Raises:
         InputError: a sample is not finite, the sample rate is too low, or no weighting has this name.
     """
     x = require_finite(as_signal(signal), "signal")
-    if not can_weight(sample_rate):
+    constants = _constants(weighting)
+    if not can_weight(sample_rate, weighting):
         raise InputError(
-            f"sample_rate: is {sample_rate} Hz; weightings reach 80 Hz and need {MINIMUM_RATE:g} Hz or more"
+            f"sample_rate: is {sample_rate} Hz; weighting {weighting} reaches {constants.f2:.4g} Hz and needs "
+            f"{constants.minimum_rate:.4g} Hz or more"
         )
     # The product of transforms is a circular convolution: zeros behind the record keep its end out of its start.
-    size = fft.next_fast_len(x.size + math.ceil(_DECAY * sample_rate), real=True)
+    size = fft.next_fast_len(x.size + math.ceil(_DECAY / constants.f1 * sample_rate), real=True)
     weighted: Array = fft.irfft(fft.rfft(x, size) * _response_at_bins(size, float(sample_rate), weighting), size)
     return weighted[: x.size]
 
 
-def can_weight(sample_rate: float) -> bool:
+def can_weight(sample_rate: float, weighting: str = "Wk") -> bool:
     """Tell whether a record at this `sample_rate` (Hz) can be weighted; rounding of the rate is forgiven."""
-    return require_positive(sample_rate, "sample_rate") >= MINIMUM_RATE * (1 - 1e-6)
+    return require_positive(sample_rate, "sample_rate") >= _constants(weighting).minimum_rate * (1 - 1e-6)
 
 
 @lru_cache(maxsize=4)

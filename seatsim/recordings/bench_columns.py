@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.units import conversion
 from seatsim.schema.yaml_source import Source
 
 if TYPE_CHECKING:
@@ -23,24 +24,23 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-LENGTHS, CURRENTS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}, {"A": 1.0, "mA": 1e-3}
-QUANTITIES: dict[str, tuple[tuple[str, ...], dict[str, float]]] = {
-    "time": (("time", "t"), {"s": 1.0, "ms": 1e-3}),
+LENGTHS, CURRENTS = ("m", "cm", "mm"), ("A", "mA")
+QUANTITIES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "time": (("time", "t"), ("s", "ms")),
     "displacement": (("displacement", "stroke", "position", "x"), LENGTHS),
-    "velocity": (("velocity", "speed", "v"), {f"{unit}_s": size for unit, size in LENGTHS.items()}),
-    "force": (("force", "damper_force", "f"), {"N": 1.0, "kN": 1e3}),
+    "velocity": (("velocity", "speed", "v"), tuple(f"{unit}_s" for unit in LENGTHS)),
+    "force": (("force", "damper_force", "f"), ("N", "kN")),
     "current": (("current", "coil_current", "i"), CURRENTS),
     "command": (("current_command", "current_cmd", "command"), CURRENTS),
-    "voltage": (("voltage", "command_voltage"), {"V": 1.0, "mV": 1e-3}),
-    "temperature": (("temperature", "damper_temperature"), {"C": 1.0, "degC": 1.0, "K": 1.0}),
-    "segment": (("segment",), {}),
-    "valid": (("valid",), {}),
+    "voltage": (("voltage", "command_voltage"), ("V", "mV")),
+    "temperature": (("temperature", "damper_temperature"), ("degC", "C", "K", "degF")),
+    "segment": (("segment",), ()),
+    "valid": (("valid",), ()),
 }
-"""Names of every quantity, and its units with their size; a bare name is in the first of them."""
+"""Names of every quantity, and units that may follow them; a bare name is in the first of them."""
 DRIVES = ("current", "command", "voltage")
 """Quantities that state the damper's input, in the order of preference."""
 NEEDED = ("time", "displacement", "force")
-KELVIN = 273.15
 FORCE_AT = re.compile(r"(?:damper_)?force_(\d+(?:[p.]\d+)?)a(?:_(k?n))?")
 MISSPELT = 0.9
 """Similarity to a known name (by difflib) above which an unknown column is taken for a misspelling."""
@@ -50,12 +50,18 @@ RATES = ("sample_rate_Hz", "sample_rate")
 
 
 class Meaning(NamedTuple):
-    """What a column holds: `factor` value + `zero` in SI units (degC); `at`, the current in A that its name states."""
+    """What a column holds: a quantity in a unit, that of SI where it is empty; `at`, the current in A that it names."""
 
     quantity: str
-    factor: float = 1.0
-    zero: float = 0.0
+    unit: str = ""
     at: float | None = None
+
+    def in_si(self, values: Array) -> Array:
+        """Return values of the column in SI units (degC)."""
+        if not self.unit:
+            return values
+        found = conversion(self.unit, QUANTITIES[self.quantity][1][0].replace("_", "/"))
+        return values * found.factor + found.zero
 
 
 def _known() -> dict[str, Meaning]:
@@ -63,8 +69,7 @@ def _known() -> dict[str, Meaning]:
     for quantity, (names, units) in QUANTITIES.items():
         for name in names:
             known[name] = Meaning(quantity)
-            for unit, size in units.items():
-                known[f"{name}_{unit.lower()}"] = Meaning(quantity, size, -KELVIN if unit == "K" else 0.0)
+            known |= {f"{name}_{unit.lower()}": Meaning(quantity, unit if unit != units[0] else "") for unit in units}
     return known
 
 
@@ -85,7 +90,7 @@ def meaning(column: str) -> Meaning | None:
     plain = re.sub(r"[^0-9a-z.]+", "_", column.lower()).strip("_")
     at = FORCE_AT.fullmatch(plain)
     if at:
-        return Meaning("force", 1e3 if at[2] == "kn" else 1.0, at=float(at[1].replace("p", ".")))
+        return Meaning("force", "kN" if at[2] == "kn" else "", float(at[1].replace("p", ".")))
     return KNOWN.get(plain)
 
 
@@ -135,7 +140,7 @@ def numbers(frame: pd.DataFrame, column: str, file: Path) -> Array:
             f"{file}, line {frame.index[bad[0]] + 2}, {column}: '{frame[column].iloc[bad[0]]}'{more} is not a finite"
             " number; correct it, or mark such rows by 0 in a column 'valid'"
         )
-    return values * known.factor + known.zero if known else values
+    return known.in_si(values) if known else values
 
 
 def check_needed(there: Iterable[str], columns: Sequence[str], file: Path) -> None:
@@ -174,5 +179,5 @@ def constants(sidecar: Source) -> dict[str, float]:
         if key in RATES:
             found.setdefault("rate", float(value))
         elif known and known.quantity in (*DRIVES, "temperature"):
-            found[known.quantity] = value * known.factor + known.zero
+            found[known.quantity] = float(known.in_si(np.asarray(value, dtype=float)))
     return found

@@ -118,7 +118,7 @@ def unused_columns(records: Sequence[BenchRecord]) -> list[str]:
 
 
 def _records(file: Path) -> Iterator[BenchRecord]:
-    frame = _frame(file)
+    frame = read_frame(file)
     columns = columns_of(map(str, frame), file)
     sidecar = file.with_name(stem(file.name) + ".yaml")
     stated = constants(Source(sidecar)) if sidecar.exists() else {}
@@ -140,7 +140,12 @@ def _records(file: Path) -> Iterator[BenchRecord]:
             yield record._replace(unused=columns.unused)
 
 
-def _frame(file: Path) -> pd.DataFrame:
+def read_frame(file: Path) -> pd.DataFrame:
+    """Return a CSV table with its columns called by text.
+
+    Raises:
+        InputError: it cannot be read.
+    """
     import pandas as pd
 
     try:

@@ -17,8 +17,10 @@ from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import replay
 from seatsim.scenario.loading import single
+from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
+from seatsim.schema.notebook import Pictures, draw, html_table
 
 Array = NDArray[np.float64]
 Signals = Mapping[str, Array]
@@ -48,6 +50,15 @@ class Gap:
         """Return the gap as it stands in `gap.json`."""
         return {"overall": self.overall, "channels": self.channels, "floor": self.floor, "notes": list(self.notes)}
 
+    def plot(self, *names: str) -> Pictures:
+        """Return its picture, which a notebook shows."""
+        return draw(self, names)
+
+    def _repr_html_(self) -> str:
+        rows = [(name, value, self.floor["channels"][name]) for name, value in self.channels.items()]
+        overall = ("overall", self.overall, self.floor["overall"])
+        return html_table("Gap in standard deviations", ("channel", "gap", "noise floor"), [*rows, overall])
+
 
 def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:
     """Replay a scenario against the runs of a recording (all of them where none are named) and return their gap.
@@ -63,7 +74,8 @@ def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs
     scenario, recording = _load(scenario, recording)
     examination = examine(recording)
     refuse(examination)
-    return replace(measure_gap(scenario, without_gravity(recording), runs), notes=tuple(examination.sentences))
+    notes = dict.fromkeys([*list_doubts(scenario), *examination.sentences])
+    return replace(measure_gap(scenario, without_gravity(recording), runs), notes=tuple(notes))
 
 
 def measure_gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:

@@ -41,6 +41,11 @@ def _check_alike(first: Recording, second: Recording) -> None:
     if first.voltage_gain != second.voltage_gain and {"command_voltage"} <= set(first.channels) & set(second.channels):
         gains = f"{second.voltage_gain:g} A/V is not permitted beside {first.voltage_gain:g} A/V"
         raise InputError(f"{place}, actuator.gain: {gains} of {first.folder / HEADER}")
+    for name in first.channels:
+        if name in second.channels and first.conversions.get(name) != second.conversions.get(name):
+            raise InputError(
+                f"{place}, channels.{name}.unit: is another one than in {first.folder / HEADER}; use one unit"
+            )
     _check_nominals(first, second)
     driven = [{name for name in CURRENTS if name in each.channels} for each in (first, second)]
     if any(driven) and not driven[0] & driven[1]:

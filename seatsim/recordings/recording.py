@@ -14,37 +14,19 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.header import Header, RunEntry, check_against, read_runs, read_tolerances
 from seatsim.scenario.loading import single
 from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
+from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import build, check_keys, mapping
 from seatsim.schema.yaml_source import Source
 
 Array = NDArray[np.float64]
 
-SEAT_CHANNELS = {
-    "floor_acceleration": "m/s^2",
-    "frame_acceleration": "m/s^2",
-    "driver_acceleration": "m/s^2",
-    "suspension_displacement": "m",
-    "damper_force": "N",
-    "current_command": "A",
-    "coil_current": "A",
-    "damper_temperature": "degC",
-}
-BENCH_CHANNELS = {
-    "displacement": "m",
-    "velocity": "m/s",
-    "damper_force": "N",
-    "current_command": "A",
-    "command_voltage": "V",
-    "coil_current": "A",
-    "damper_temperature": "degC",
-}
-"""Channels that a recording of each rig may have, with the unit they are in."""
 HEADER = "recording.yaml"
 KEYS = (*Header._fields, "runs", "channels", "actuator", "note")
 
@@ -70,7 +52,8 @@ class VoltageGain(NamedTuple):
 class Recording:
     """Content of `recording.yaml`; the tables are read run by run with `table`.
 
-    `removed` holds constants by channel that the tables are without, in the channel's unit.
+    `conversions` holds the channels whose tables are in another unit than the SI one, in which everything here is;
+    `removed` holds constants by channel that the tables are without.
     """
 
     folder: Path
@@ -78,6 +61,7 @@ class Recording:
     runs: dict[str, RunEntry]
     channels: dict[str, ChannelEntry]
     voltage_gain: float | None
+    conversions: Mapping[str, Conversion] = field(default_factory=dict, kw_only=True)
     removed: Mapping[str, float] = field(default_factory=dict, kw_only=True)
 
     @property
@@ -86,7 +70,7 @@ class Recording:
         return self.folder / self.header.nominal
 
     def table(self, run: str) -> dict[str, Array]:
-        """Return the recorded channels of a run, shape (N,) each, not to be written into.
+        """Return the recorded channels of a run in SI units, shape (N,) each, not to be written into.
 
         Raises:
             InputError: there is no such run, or its table is missing, empty, short of a channel, or not numeric.
@@ -98,6 +82,7 @@ class Recording:
             )
         path = self.folder / self.runs[run].file
         table = dict(_read_table(path, tuple(self.channels), _stamp(path)))
+        table |= {name: table[name] * factor + zero for name, (factor, zero) in self.conversions.items()}
         return table | {name: table[name] - constant for name, constant in self.removed.items()}
 
     def scenario_of(self, run: str, scenario: Scenario) -> Scenario:
@@ -154,26 +139,34 @@ def _load(folder: Path, stamp: Stamp) -> tuple[Recording, Source]:
         stated["parameter_tolerance"] = read_tolerances(stated["parameter_tolerance"], source)
     header = build(Header, stated, source, ())
     gain = build(VoltageGain, data["actuator"], source, ("actuator",)).gain if "actuator" in data else None
-    channels = _channels(data, source, header.rig)
+    channels, conversions = _channels(data, source, header.rig)
     if "command_voltage" in channels and gain is None:
         raise source.error((), "key 'actuator' is missing; a command_voltage needs 'actuator: {gain: A/V}'")
-    return Recording(folder, header, read_runs(data.get("runs"), source), channels, gain), source
+    runs = read_runs(data.get("runs"), source)
+    return Recording(folder, header, runs, channels, gain, conversions=conversions), source
 
 
-def _channels(data: Mapping[str, object], source: Source, rig: str) -> dict[str, ChannelEntry]:
+def _channels(
+    data: Mapping[str, object], source: Source, rig: str
+) -> tuple[dict[str, ChannelEntry], dict[str, Conversion]]:
+    """Return the channels with their noise in SI units, and conversions of those that are recorded in others."""
     known = SEAT_CHANNELS if rig == "seat" else BENCH_CHANNELS
     entries = mapping(data.get("channels", {}), source, ("channels",))
     check_keys(entries, known, source, ("channels",))
-    channels = {}
+    channels, conversions = {}, {}
     for name, entry in entries.items():
-        channels[name] = build(ChannelEntry, entry, source, ("channels", name))
-        if channels[name].unit != known[name]:
-            problem = f"'{channels[name].unit}' is not permitted; convert the channel to {known[name]}"
-            raise source.error(("channels", name, "unit"), problem)
+        stated: ChannelEntry = build(ChannelEntry, entry, source, ("channels", name))
+        try:
+            found = conversion(stated.unit, known[name])
+        except InputError as error:
+            raise source.error(("channels", name, "unit"), str(error)) from error
+        channels[name] = ChannelEntry(known[name], abs(found.factor) * stated.noise_rms)
+        if found != Conversion(1.0):
+            conversions[name] = found
     needed = "floor_acceleration" if rig == "seat" else "displacement"
     if needed not in channels:
         raise source.error(("channels",), f"channel '{needed}' is missing; it drives the simulation of this rig")
-    return channels
+    return channels, conversions
 
 
 @lru_cache(maxsize=KEPT)

@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 from ruamel.yaml import YAML
 
+from seatsim.recordings.channel_units import SEAT_CHANNELS
 from seatsim.recordings.header import USUAL, Tolerances
-from seatsim.recordings.recording import SEAT_CHANNELS
 from seatsim.scenario.numbers import PARAMETERS, TEMPERATURE, list_numbers
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.files import write_whole
@@ -82,6 +82,6 @@ def _nominal(run: Run, recorded: set[str]) -> dict[str, object]:
         if np.ptp(commands) > 0.0:
             raise InputError("a current that changes must be recorded: add the channel current_command or coil_current")
         law["current"] = float(commands[0])
-    kept = ("plant", "damper", "actuator", "temperature", "effects", "solver")
+    kept = ("plant", "driver", "damper", "actuator", "temperature", "effects", "solver")
     nominal = {key: values[key] for key in kept if key in values}
     return nominal | {"controller": law, "excitation": {"kind": "recording"}}

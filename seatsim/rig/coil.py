@@ -16,12 +16,14 @@ class Coil(NamedTuple):
     RD-1005-3, from which 176 and 70 1/s are derived); coil resistance 5 ohm there.
     """
 
-    rate: Annotated[float, param("1/s", "rate of the current when it rises", above=0, high=1e5)] = 130.0
-    max_current: Annotated[float, param("A", "largest current of the driver", above=0, high=100)] = 1.0
+    rate: Annotated[float, param("1/s", "rate of the current when it rises", above=0, high=1e5, usual=(1, 1e4))] = 130.0
+    max_current: Annotated[float, param("A", "largest current of the driver", above=0, high=100, usual=(0.05, 20))] = (
+        1.0
+    )
     rate_fall: Annotated[
         float, param("1/s", "rate of the current when it falls; 0 means as `rate`", low=0, high=1e5)
     ] = 0.0
-    delay: Annotated[float, param("s", "transport delay from command to coil", low=0, high=1.0)] = 0.0
+    delay: Annotated[float, param("s", "transport delay from command to coil", low=0, high=1.0, usual=(0, 0.2))] = 0.0
     resistance: Annotated[float, param("ohm", "coil resistance, for heat and electrical energy", low=0)] = 5.0
 
 

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     import control
 
 Array = NDArray[np.float64]
+USUAL_TRAVEL = (0.01, 0.12)
+"""m; how far from mid-stroke the end stops of seats are."""
 
 
 class Plant(NamedTuple):
@@ -25,20 +27,28 @@ class Plant(NamedTuple):
     Upward positive about static equilibrium; the damper force Fd is positive when it opposes extension.
     """
 
-    frame_mass: Annotated[float, param("kg", "mass ms of seat frame and moving suspension", above=0, high=1e4)]
-    driver_mass: Annotated[float, param("kg", "mass m of the driver on the cushion", above=0, high=1e4)]
-    suspension_stiffness: Annotated[float, param("N/m", "spring and gas stiffness kf", low=0, high=1e8)]
-    suspension_damping: Annotated[float, param("N s/m", "uncontrolled damping cf", low=0, high=1e7)]
-    cushion_stiffness: Annotated[float, param("N/m", "cushion stiffness kc", above=0, high=1e8)]
-    cushion_damping: Annotated[float, param("N s/m", "cushion damping cc", low=0, high=1e7)]
+    frame_mass: Annotated[
+        float, param("kg", "mass ms of seat frame and moving suspension", above=0, high=1e4, usual=(2, 200))
+    ]
+    driver_mass: Annotated[
+        float, param("kg", "mass m of the driver on the cushion", above=0, high=1e4, usual=(20, 250))
+    ]
+    suspension_stiffness: Annotated[
+        float, param("N/m", "spring and gas stiffness kf", low=0, high=1e8, usual=(200, 1e6))
+    ]
+    suspension_damping: Annotated[float, param("N s/m", "uncontrolled damping cf", low=0, high=1e7, usual=(2, 2e4))]
+    cushion_stiffness: Annotated[float, param("N/m", "cushion stiffness kc", above=0, high=1e8, usual=(1e3, 1e6))]
+    cushion_damping: Annotated[float, param("N s/m", "cushion damping cc", low=0, high=1e7, usual=(10, 5e4))]
     travel: Annotated[
         tuple[
-            Annotated[float, param("m", "lower stop", high=0, low=-10)],
-            Annotated[float, param("m", "upper stop", low=0, high=10)],
+            Annotated[float, param("m", "lower stop", high=0, low=-10, usual=USUAL_TRAVEL)],
+            Annotated[float, param("m", "upper stop", low=0, high=10, usual=USUAL_TRAVEL)],
         ],
-        param("m", "travel between the end stops; excursions beyond it are counted"),
+        param("m", "travel between the end stops; excursions beyond it are counted", usual=USUAL_TRAVEL),
     ] = (-10.0, 10.0)
-    damper_ratio: Annotated[float, param("-", "damper stroke per suspension displacement", above=0, high=10)] = 1.0
+    damper_ratio: Annotated[
+        float, param("-", "damper stroke per suspension displacement", above=0, high=10, usual=(0.1, 3))
+    ] = 1.0
 
 
 class PlantMatrices(NamedTuple):

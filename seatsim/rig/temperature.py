@@ -47,7 +47,9 @@ class Thermal(NamedTuple):
     defaults suit a 0.8 kg steel body with 50 ml of fluid in still air).
     """
 
-    start: Annotated[float, param("degC", "temperature at time zero", low=-50, high=200)] = 20.0
-    ambient: Annotated[float, param("degC", "temperature of the surroundings", low=-50, high=200)] = 20.0
+    start: Annotated[float, param("degC", "temperature at time zero", low=-50, high=200, usual=(-40, 130))] = 20.0
+    ambient: Annotated[float, param("degC", "temperature of the surroundings", low=-50, high=200, usual=(-40, 80))] = (
+        20.0
+    )
     heat_capacity: Annotated[float, param("J/K", "lumped heat capacity C of the damper", above=0)] = 500.0
     conductance: Annotated[float, param("W/K", "heat loss h to the surroundings", low=0)] = 1.0

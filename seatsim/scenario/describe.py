@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import inspect
+from collections.abc import Iterable
+from typing import NamedTuple
 
-from seatsim.dampers.base import CONFIDENCE
+from seatsim.dampers.base import CONFIDENCE, DamperSpecification, find_confidence
 from seatsim.rig.coil import Coil
+from seatsim.rig.drivers import Driver
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import TemperatureFactors, Thermal
@@ -18,6 +21,7 @@ from seatsim.schema.fields import describe as fields_of
 KINDS = ("damper", "law", "excitation", "effect")
 SECTIONS = {
     "plant": Plant,
+    "driver": Driver,
     "actuator": Coil,
     "temperature_factors": TemperatureFactors,
     "temperature": Thermal,
@@ -28,39 +32,83 @@ SECTIONS = {
 """Sections of a scenario whose keys are always the same."""
 
 
+class Page(NamedTuple):
+    """What is known of one name; `own` where it is not part of seatsim, `facts` are lines on a damper."""
+
+    name: str
+    kind: str
+    title: str
+    text: str
+    source: str
+    own: bool
+    facts: list[str]
+    keys: list[FieldSpecification]
+
+
 def describe(name: str = "") -> str:
-    """Return the list of all names, or the page of one.
+    """Return the list of all names, a line for each, or the page of one.
 
     Raises:
         InputError: nothing has that name.
     """
-    if not name:
-        lines = [f"{kind}: {', '.join(registry.names(kind))}" for kind in KINDS]
-        return "\n".join(
-            [*lines, f"section: {', '.join(SECTIONS)}", "", "seatsim describe NAME shows the keys of one."]
-        )
-    if name in SECTIONS:
-        return _page(name, "section", SECTIONS[name])
-    for kind in KINDS:
-        if name in registry.names(kind):
-            return _page(name, kind, registry.find(kind, name))
-    known = [known for kind in KINDS for known in registry.names(kind)] + list(SECTIONS)
-    raise InputError(f"nothing is called '{name}'{nearest(name, known)}; 'seatsim describe' lists all names")
+    return _format_page(find_page(name)) if name else _format_list(list_pages())
 
 
-def _page(name: str, kind: str, cls: type) -> str:
-    specification = None if kind == "section" else registry.specification_of(cls)
-    lines = [f"{name} ({kind})", "", inspect.getdoc(cls) or ""]
-    if specification is not None and specification.source:
-        lines += ["", f"Source: {specification.source}"]
-    if specification is not None and kind == "damper":
-        low, high = specification.temperatures
-        speed, current = specification.max_speed, specification.max_current
-        lines += [f"Range of the data: |v| <= {speed:g} m/s, 0 to {current:g} A, {low:g} to {high:g} degC"]
-        lines += [f"State: {specification.state}"] if specification.state else []
-        lines += [f"Confidence: {specification.confidence}; {CONFIDENCE[specification.confidence]}"]
-        lines += [f"Not fitted by an identification: {', '.join(specification.fixed)}"] if specification.fixed else []
-    return "\n".join([*lines, "", "Keys:", *(_line(field) for field in fields_of(cls))])
+def list_pages() -> list[Page]:
+    """Return what is known of every name, by kind."""
+    named = [_make_page(name, kind) for kind in KINDS for name in registry.names(kind)]
+    return [*named, *(_make_page(name, "section") for name in SECTIONS)]
+
+
+def find_page(name: str) -> Page:
+    """Return what is known of a name.
+
+    Raises:
+        InputError: nothing has that name.
+    """
+    kind = next((kind for kind in KINDS if name in registry.names(kind)), "section")
+    if kind == "section" and name not in SECTIONS:
+        known = [known for kind in KINDS for known in registry.names(kind)] + list(SECTIONS)
+        raise InputError(f"nothing is called '{name}'{nearest(name, known)}; 'seatsim describe' lists all names")
+    return _make_page(name, kind)
+
+
+def _make_page(name: str, kind: str) -> Page:
+    cls: type = SECTIONS[name] if kind == "section" else registry.find(kind, name)
+    text, specification = inspect.getdoc(cls) or "", None if kind == "section" else registry.specification_of(cls)
+    facts = list(_state_facts(cls, specification)) if isinstance(specification, DamperSpecification) else []
+    source = specification.source if specification else ""
+    title = " ".join(text.partition("\n\n")[0].partition(": `")[0].split()).rstrip(".")
+    return Page(name, kind, title, text, source, registry.is_own(cls), facts, fields_of(cls))
+
+
+def _state_facts(cls: type, specification: DamperSpecification) -> Iterable[str]:
+    low, high = specification.temperatures
+    speed, current = specification.max_speed, specification.max_current
+    yield f"Range of the data: |v| <= {speed:g} m/s, 0 to {current:g} A, {low:g} to {high:g} degC"
+    if specification.state:
+        yield f"State: {specification.state}"
+    yield f"Confidence: {find_confidence(cls)}; {CONFIDENCE[find_confidence(cls)]}"
+    if specification.fixed:
+        yield f"Not fitted by an identification: {', '.join(specification.fixed)}"
+
+
+def _format_list(pages: list[Page]) -> str:
+    wide = max(len(page.name) for page in pages)
+    lines = []
+    for kind in (*KINDS, "section"):
+        lines += [f"{kind}s"]
+        lines += [
+            f"  {page.name:{wide}}  {'(own) ' * page.own}{page.title}".rstrip() for page in pages if page.kind == kind
+        ]
+        lines += [""]
+    return "\n".join([*lines, "seatsim describe NAME shows the keys of one."])
+
+
+def _format_page(page: Page) -> str:
+    lines = [f"{page.name} ({page.kind}{', own' * page.own})", "", page.text]
+    lines += ["", f"Source: {page.source}"] if page.source else []
+    return "\n".join([*lines, *page.facts, "", "Keys:", *map(_line, page.keys)])
 
 
 def _line(field: FieldSpecification) -> str:

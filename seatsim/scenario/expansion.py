@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import copy
 import itertools
+import json
 from collections.abc import Iterator, Mapping
 
-from seatsim.schema.errors import nearest
+from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.validation import mapping
 from seatsim.schema.yaml_source import KeyPath, Source
 
@@ -22,9 +23,10 @@ def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Sou
     """Yield the content of every run with the label that sets it apart."""
     base = copy.deepcopy(source)
     for key, value in settings.items():
-        _replace(base, key, value, ())
+        _set(base, key, value)
     variants = mapping(base.data.pop("variants", {}), base, ("variants",))
-    sweep = dict(mapping(base.data.pop("sweep", {}), base, ("sweep",)))
+    stated = mapping(base.data.pop("sweep", {}), base, ("sweep",))
+    sweep = dict(stated)
     if isinstance(base.data.get("temperature"), list):
         sweep["temperature"] = base.data["temperature"]
     lists = {key: _swept_values(values, base, key) for key, values in sweep.items()}
@@ -35,7 +37,8 @@ def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Sou
                 _replace(run, key, value, ("variants", str(name)))
             swept = dict(zip(lists, chosen, strict=True))
             for key, value in swept.items():
-                _replace(run, key, value, ("sweep",))
+                # A list under `temperature` stands where it is.
+                _replace(run, key, value, ("sweep",) if key in stated else ())
             yield run, ({} if name is None else {"variant": name}) | swept
 
 
@@ -45,20 +48,29 @@ def _swept_values(values: object, source: Source, key: str) -> list[object]:
     return values
 
 
+def _set(source: Source, dotted: str, value: object) -> None:
+    """Put a value that an option states under a dotted key; its place is then that option, not a line of the file."""
+    shown = value if isinstance(value, str) else json.dumps(value, default=str)
+    # Where a value leads into one without keys, the option is the place as well.
+    source.places[("--set", dotted)] = f"--set {dotted}={shown if len(shown) <= 60 else shown[:57] + '...'}"
+    _replace(source, dotted, value, ("--set",))
+    del source.places[("--set", dotted)]
+
+
 def _replace(source: Source, dotted: str, value: object, origin: KeyPath) -> None:
-    """Put a value under a dotted key; its place in the file is then that of the variant or sweep it comes from."""
+    """Put a value under a dotted key; its place is then that of the variant, sweep or option it comes from."""
     keys = tuple(str(dotted).split("."))
+    place = source.nearest_place((*origin, dotted))
     node = source.data
-    for depth, key in enumerate(keys[:-1]):
+    for key in keys[:-1]:
         below = node.setdefault(key, {})
         if not isinstance(below, dict):
-            raise source.error(keys[: depth + 1], f"'{dotted}' leads into a value that has no keys{nearest(key, node)}")
+            raise InputError(f"{place}: '{dotted}' leads into '{key}', which has no keys{nearest(key, node)}")
         node = below
     node[keys[-1]] = value
-    line = source.lines.get((*origin, dotted), source.lines.get(origin, 1))
-    for known in [known for known in source.lines if known[: len(keys)] == keys]:
-        del source.lines[known]
-    source.lines[keys] = line
-    for known, at in list(source.lines.items()):
+    for known in [known for known in source.places if known[: len(keys)] == keys]:
+        del source.places[known]
+    source.places[keys] = place
+    for known, at in list(source.places.items()):
         if known[: len(origin) + 1] == (*origin, dotted):
-            source.lines[(*keys, *known[len(origin) + 1 :])] = at
+            source.places[(*keys, *known[len(origin) + 1 :])] = at

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeGuard, cast
 from seatsim.effects.base import EFFECTS
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import LAWS, Law
+from seatsim.rig.drivers import Driver
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import Thermal
@@ -17,16 +18,16 @@ from seatsim.scenario.damper import stated_damper
 from seatsim.scenario.expansion import expand
 from seatsim.scenario.published import check_published
 from seatsim.scenario.scenario import Control, DamperChoice, Inverse, Scenario, Solver, Start
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.registry import Record, Registry
-from seatsim.schema.validation import build, check_keys, chosen_class, mapping
+from seatsim.schema.validation import build, check_keys, chosen_class, mapping, sweep_hint
 from seatsim.schema.yaml_source import KeyPath, Source
 
 if TYPE_CHECKING:
     from seatsim.excitations.base import Excitation
 
 BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
-SEAT_KEYS = (*BENCH_KEYS, "plant", "controller", "excitation", "start", "sweep", "variants", "published")
+SEAT_KEYS = (*BENCH_KEYS, "plant", "driver", "controller", "excitation", "start", "sweep", "variants", "published")
 CONTROL_KEYS = ("law", "sample_time", "inverse", "sensors")
 # An excitation may read a recording, whose nominal is a scenario: their package builds on this one.
 EXCITATIONS: Registry[Excitation, object] = Registry("excitation")
@@ -64,8 +65,9 @@ def _located(path: Path) -> Path:
                 if (folder / name).is_file():
                     return folder / name
     found = {path.relative_to(folder) for folder in EXAMPLES if folder.is_dir() for path in folder.rglob("*.yaml")}
-    known = sorted(str(path) for path in found if "data" not in path.parts)
-    raise InputError(f"{path}: no such file; give the path of a scenario, or an example: {', '.join(known)}")
+    known = sorted(str(path.with_suffix("")) for path in found if "data" not in path.parts)
+    near = nearest(path, [*known, *(str(file) for file in path.parent.glob("*.yaml"))])
+    raise InputError(f"{path}: no such file{near}; give the path of a scenario, or an example: {', '.join(known)}")
 
 
 def _scenario(source: Source, label: Mapping[str, object]) -> Scenario:
@@ -84,6 +86,7 @@ def _scenario(source: Source, label: Mapping[str, object]) -> Scenario:
         coil=build(Coil, data["actuator"], source, ("actuator",), required=("rate", "max_current")),
         temperature=_temperature(data["temperature"], source),
         plant=None if bench else build(Plant, data["plant"], source, ("plant",)),
+        driver=build(Driver, data.get("driver", {}), source, ("driver",)),
         control=None if bench else _control(data["controller"], source),
         excitation=None if bench else _excitation(data["excitation"], source),
         effects=_effects(data.get("effects", []), source),
@@ -119,7 +122,10 @@ def _control(values: object, source: Source) -> Control:
     if sample_time is None:
         return Control(law, None, inverse, sensors)
     if not (_is_number(sample_time) and 0 < sample_time <= 1):
-        raise source.error((*keys, "sample_time"), f"{sample_time!r} is not permitted; it must be 0 to 1 s")
+        raise source.error(
+            (*keys, "sample_time"),
+            f"{sample_time!r} is not permitted; it must be 0 to 1 s{sweep_hint(sample_time, (*keys, 'sample_time'))}",
+        )
     return Control(law, sample_time, inverse, sensors)
 
 
@@ -169,5 +175,8 @@ def _effects(values: object, source: Source) -> tuple[Record, ...]:
 
 def _seed(value: object, source: Source) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise source.error(("seed",), f"{value!r} is not permitted; it must be a whole number of at least 0")
+        raise source.error(
+            ("seed",),
+            f"{value!r} is not permitted; it must be a whole number of at least 0{sweep_hint(value, ('seed',))}",
+        )
     return value

@@ -10,6 +10,7 @@ from typing import Annotated, Any, NamedTuple
 from seatsim.dampers.base import Damper
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Law
+from seatsim.rig.drivers import Driver
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import TemperatureFactors, Thermal
@@ -29,7 +30,7 @@ class Solver(NamedTuple):
 class Start(NamedTuple):
     """Where the suspension is at time zero, for release tests; the cushion is at rest and unstrained."""
 
-    displacement: Annotated[float, param("m", "suspension displacement", low=-10, high=10)] = 0.0
+    displacement: Annotated[float, param("m", "suspension displacement", low=-10, high=10, usual=(0.0005, 0.12))] = 0.0
     velocity: Annotated[float, param("m/s", "suspension velocity", low=-100, high=100)] = 0.0
 
 
@@ -74,6 +75,7 @@ class Scenario:
     coil: Coil
     temperature: float | Thermal
     plant: Plant | None = None
+    driver: Driver = field(default_factory=Driver)
     control: Control | None = None
     excitation: Any = None  # an `Excitation` of the package above, or None on a bench
     effects: tuple[Record, ...] = ()
@@ -93,7 +95,7 @@ class Scenario:
     def rig(self) -> str:
         """Rig and excitation without the control: runs of one rig are alternatives to each other."""
         damper, drive = (self.damper, self.coil.max_current, self.temperature), (self.excitation, self.seed, self.start)
-        return repr((self.plant, damper, drive, self.effects, self.solver))
+        return repr((self.plant, self.driver, damper, drive, self.effects, self.solver))
 
     @contextmanager
     def placed(self, *keys: str) -> Iterator[None]:

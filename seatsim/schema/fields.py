@@ -11,12 +11,12 @@ Pydantic validates it from a mapping, numba compiles it as a typed record.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le
-from pydantic import Field, TypeAdapter
+from pydantic import Field, JsonValue, TypeAdapter
 from pydantic.fields import FieldInfo
 
 from seatsim.schema.registry import Record
@@ -33,9 +33,14 @@ def param(
     low: float | None = None,
     high: float | None = None,
     above: float | None = None,
+    usual: tuple[float, float] | None = None,
 ) -> Any:  # what stands in `Annotated` is no type to a checker
-    """Describe one field: SI `unit`, `meaning`, and bounds (`low <= value <= high`, `value > above`)."""
-    return Field(description=meaning, json_schema_extra={"unit": unit}, ge=low, le=high, gt=above, strict=True)
+    """Describe one field: SI `unit`, `meaning`, and bounds (`low <= value <= high`, `value > above`).
+
+    `usual` is the range of seats that are built; a value beyond it is permitted, and asked about.
+    """
+    extra: dict[str, JsonValue] = {"unit": unit} | ({"usual": list(usual)} if usual else {})
+    return Field(description=meaning, json_schema_extra=extra, ge=low, le=high, gt=above, strict=True)
 
 
 class FieldSpecification(NamedTuple):
@@ -46,6 +51,7 @@ class FieldSpecification(NamedTuple):
     meaning: str
     default: object
     required: bool
+    usual: Sequence[float] | None = None
 
 
 def field_names(record: type) -> tuple[str, ...]:
@@ -79,9 +85,11 @@ def describe(record: type) -> list[FieldSpecification]:
     for name, hint in _hints(record).items():
         info = _field_info(hint)
         extra = info.json_schema_extra if info else None
-        unit = str(extra.get("unit", "")) if isinstance(extra, dict) else ""
+        known = extra if isinstance(extra, dict) else {}
+        unit, usual = str(known.get("unit", "")), cast("list[float] | None", known.get("usual"))
         meaning = (info.description or "") if info else ""
-        specifications.append(FieldSpecification(name, unit, meaning, defaults.get(name), name not in defaults))
+        required, default = name not in defaults, defaults.get(name)
+        specifications.append(FieldSpecification(name, unit, meaning, default, required, usual))
     return specifications
 
 

@@ -18,12 +18,14 @@ import traceback
 from collections.abc import Iterable
 from functools import cache
 from importlib.machinery import ModuleSpec
-from importlib.metadata import entry_points
 from pathlib import Path
 from types import ModuleType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.schema.errors import InputError
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoints
 
 
 class MissingModuleError(InputError):
@@ -39,6 +41,8 @@ class _UsedFile(NamedTuple):
     content: bytes
 
 
+HOME = Path(__file__).resolve().parents[2]
+"""The folder that seatsim lies in."""
 _used: dict[str, _UsedFile] = {}
 """What `use` has loaded, by module name, in the order in which it was named."""
 
@@ -46,10 +50,23 @@ _used: dict[str, _UsedFile] = {}
 @cache
 def load_plugins() -> None:
     """Import every plug-in, once."""
-    for point in entry_points(group="seatsim.plugins"):
+    for point in _plugins():
         package = import_named(point.value)
         for module in pkgutil.iter_modules(getattr(package, "__path__", ())):
             importlib.import_module(f"{point.value}.{module.name}")
+
+
+@cache
+def shipped_packages() -> frozenset[str]:
+    """Return the top-level packages that are part of seatsim."""
+    own = (point for point in _plugins() if point.dist is not None and point.dist.name == "seatsim")
+    return frozenset(point.value.partition(".")[0] for point in own)
+
+
+def _plugins() -> EntryPoints:
+    from importlib.metadata import entry_points
+
+    return entry_points(group="seatsim.plugins")
 
 
 def use(path: str | Path) -> ModuleType:
@@ -175,7 +192,8 @@ def _find_installed(name: str) -> ModuleSpec | None:
     lies there was not named by anyone.
     """
     script = getattr(sys.modules["__main__"], "__file__", None)
-    started = {_folder("")} | ({Path(script).resolve().parent} if script else set())
+    # The folder that this package itself was imported from is one that was chosen, wherever Python was started.
+    started = ({_folder("")} | ({Path(script).resolve().parent} if script else set())) - {HOME}
     first_is_start = bool(sys.path) and not sys.flags.safe_path and _folder(sys.path[0]) in started
     path = [entry for entry in sys.path[1 if first_is_start else 0 :] if entry not in ("", ".")]
     found = (finder.find_spec(name, path) for finder in sys.meta_path)

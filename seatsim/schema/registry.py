@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Generic, Protocol, Self, TypeVar, cast
 
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.modules import import_named, load_plugins
+from seatsim.schema.modules import import_named, load_plugins, shipped_packages
 
 T = TypeVar("T", bound=type)
 P = TypeVar("P")
@@ -107,6 +107,11 @@ def initial_state(cls: type) -> tuple[float, ...]:
 def name_of(kind: str, cls: type) -> str:
     """Return the name under which a class is registered."""
     return next(name for name, known in _classes[kind].items() if known is cls)
+
+
+def is_own(cls: type) -> bool:
+    """Return whether a class is from a file or package of the user's own, not part of seatsim."""
+    return cls.__module__.partition(".")[0] not in shipped_packages()
 
 
 def names(kind: str) -> list[str]:

@@ -11,6 +11,7 @@ from pydantic_core import ErrorDetails
 
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import describe, validated
+from seatsim.schema.plausible import guess
 from seatsim.schema.registry import Record, Registry
 from seatsim.schema.yaml_source import KeyPath, Source
 
@@ -39,7 +40,16 @@ def build(
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = (*keys, *(part for part in first["loc"] if not str(part).startswith("function-")))
-        raise source.error(where, _problem(record, first) + (hint if first["type"] == "missing" else "")) from None
+        added = hint if first["type"] == "missing" else sweep_hint(first["input"], where)
+        raise source.error(where, _problem(record, first) + added) from None
+
+
+def sweep_hint(value: object, keys: KeyPath) -> str:
+    """Return how several values of a key are stated, where a list stands for a single one."""
+    if not isinstance(value, list | tuple) or not keys or isinstance(keys[-1], int):
+        return ""
+    dotted, values = ".".join(map(str, keys)), ", ".join(map(str, value))
+    return f"; several values are a sweep, which stands in the file: 'sweep: {{{dotted}: [{values}]}}'"
 
 
 def check_value(record: Record, name: str, value: object, source: Source, keys: KeyPath) -> None:
@@ -100,13 +110,15 @@ def _problem(record: type, error: ErrorDetails) -> str:
     """Translate pydantic's finding into what is wrong, what is permitted, and in which unit."""
     context, value = error.get("ctx") or {}, _shown(error["input"])
     name = error["loc"][0] if error["loc"] else ""
-    unit = next((specification.unit for specification in describe(record) if specification.name == name), "")
+    field = next((specification for specification in describe(record) if specification.name == name), None)
+    unit = field.unit if field else ""
     suffix = f" {unit}" if unit and unit != "-" else ""
+    meant = guess(error["input"], field) if field else ""
     bounds = {"greater_than_equal": ("at least", "ge"), "less_than_equal": ("at most", "le")}
     bounds |= {"greater_than": ("greater than", "gt"), "less_than": ("less than", "lt")}
     if error["type"] in bounds:
         word, bound = bounds[error["type"]]
-        return f"{value} is not permitted; it must be {word} {context[bound]:g}{suffix}"
+        return f"{value} is not permitted; it must be {word} {context[bound]:g}{suffix}{meant}"
     if error["type"] == "missing":
         return "this key is missing"
     if error["type"] == "literal_error":
@@ -118,7 +130,7 @@ def _problem(record: type, error: ErrorDetails) -> str:
 
 
 def _shown(value: object) -> str:
-    text = f"'{value}'" if isinstance(value, str) else str(value)
+    text = f"'{value}'" if isinstance(value, str) else str(list(value) if isinstance(value, tuple) else value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 

@@ -13,9 +13,12 @@ from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.chain import Effects, state_at_rest
 from seatsim.kernel.protocols import DamperModel
+from seatsim.kernel.seated_body import MASSES, Matrix, SeatedBody, Vector
 from seatsim.rig.coil import Coil
+from seatsim.rig.drivers import BODIES, SINGLE_MASS, Driver, body_matrices
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.effect_hooks import COIL, FACTORS, FRAME_FORCE, PLANT, READING, TEMPERATURE, TRUTH
 
@@ -76,20 +79,55 @@ def sum_frame_forces(effects: Sequence[object], time: Array, seed: int) -> Array
     return np.asarray(np.sum(forces, axis=0)) if forces else NONE
 
 
-def select_in_loop(effects: Sequence[object], carry_all: bool = False) -> tuple[Effects, Effects]:
+def select_in_loop(effects: Sequence[object], carry_all: bool | None = None) -> tuple[Effects, Effects]:
     """Return the effects on the damper and on the seat that the time loop is compiled with.
 
-    Where any is at work, or with `carry_all`, all registered ones are carried, off where they are not chosen, so that
-    every subset shares one compiled loop; otherwise none are.
+    With `carry_all` all registered ones are carried, off where they are not chosen, so that every subset shares one
+    compiled loop; where it is None those on the damper are if any of them is at work, likewise those on the seat. Where
+    it is False only those at work are: a loop that is compiled sooner, for them alone.
     """
-    if not carry_all and not any(acts_on(type(effect), ON_DAMPER + ON_SEAT) for effect in effects):
-        return (), ()
-    return _carried(effects, ON_DAMPER), _carried(effects, ON_SEAT)
+
+    def select(hooks: tuple[str, ...]) -> Effects:
+        chosen = _chosen(effects, hooks)
+        return _carried(chosen, hooks) if carry_all or (carry_all is None and chosen) else chosen
+
+    return select(ON_DAMPER), select(ON_SEAT)
 
 
-def _carried(effects: Sequence[object], hooks: tuple[str, ...]) -> Effects:
+def seat_driver(driver: Driver, plant: Plant, effects: Sequence[object]) -> Effects:
+    """Return the body that rests on the seat as a record of the time loop; none where the driver is a single mass.
+
+    Raises:
+        InputError: an effect gives the driver another body.
+    """
+    if driver.model == SINGLE_MASS:
+        return ()
+    if any(acts_on(type(effect), ("inner_mass",)) for effect in effects):
+        raise InputError(
+            f"driver.model '{driver.model}' is a body, and so is 'driver.biodynamics'; leave one of them out"
+        )
+    found = body_matrices(BODIES[driver.model], plant.driver_mass)
+    room = (0, MASSES - len(found.masses))
+    masses, stiffness, damping = (np.pad(each, room) for each in found)
+    return (SeatedBody(_as_vector(masses), _as_matrix(stiffness), _as_matrix(damping)),)
+
+
+def _as_vector(values: Array) -> Vector:
+    a, b, c, d = values.tolist()
+    return a, b, c, d
+
+
+def _as_matrix(rows: Array) -> Matrix:
+    a, b, c, d = map(_as_vector, rows)
+    return a, b, c, d
+
+
+def _chosen(effects: Sequence[object], hooks: tuple[str, ...]) -> Effects:
+    return cast(Effects, tuple(effect for effect in effects if acts_on(type(effect), hooks)))
+
+
+def _carried(chosen: Effects, hooks: tuple[str, ...]) -> Effects:
     registered = _acting(tuple(EFFECTS.find(name) for name in EFFECTS.names()), hooks)
-    chosen = [effect for effect in effects if acts_on(type(effect), hooks)]
     first = {type(effect): effect for effect in reversed(chosen)}
     carried = [first.get(cls) or off(cls) for cls in registered]
     further = [effect for effect in chosen if not any(effect is kept for kept in carried)]

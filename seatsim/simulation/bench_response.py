@@ -51,16 +51,11 @@ def simulate_bench(scenario: Scenario, inputs: BenchInputs, carry_all_effects: b
     if true.velocity is not None:
         velocity = CubicSpline(rows, true.velocity)(fine)
     current = _coil_current(scenario, true, rows, fine)
-    damper, state = augment_damper(scenario.damper.record, select_in_loop(effects, carry_all_effects)[0])
+    damper, state = augment_damper(scenario.damper.record, select_in_loop(effects, carry_all_effects or None)[0])
     temperature = augment_temperature(effects, 0.5 * interval, _temperature(scenario, true, rows, fine))
     factors = augment_factors(effects, scenario.damper.factors)
     force = bench_force(damper, position, velocity, current, temperature, interval, factors, state)
     return read_sensors(effects, interval, {"damper_force": force, "coil_current": current[::2]})
-
-
-def smooth_motion(inputs: BenchInputs) -> Array:
-    """Return the displacement in m that a simulation follows, at the rows of its inputs, shape (N,)."""
-    return _follow_motion(inputs.interval, inputs.displacement.tobytes(), inputs.displacement_noise)[0][::2]
 
 
 def _check_effects(scenario: Scenario) -> None:

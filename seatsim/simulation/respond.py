@@ -44,6 +44,6 @@ def respond(scenario: Scenario, inputs: RigInputs, carry_all_effects: bool = Fal
 def _respond_seat(scenario: Scenario, inputs: SeatInputs, carry_all_effects: bool) -> dict[str, Array]:
     solver = scenario.solver._replace(step=inputs.floor.step)
     at_rest = dataclasses.replace(scenario, solver=solver, start=Start())
-    history = simulate(at_rest, inputs.floor, inputs.forces, carry_all_effects)
+    history = simulate(at_rest, inputs.floor, inputs.forces, carry_all_effects or None)
     steps = round(inputs.interval / inputs.floor.step)
     return read_sensors(scenario.effects, inputs.interval, {name: history[name][::steps] for name in SEAT_OUTPUTS})

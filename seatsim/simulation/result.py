@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from seatsim.metrics import Metric
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.notebook import Pictures, draw
 from seatsim.simulation.simulate import History
 
 if TYPE_CHECKING:
@@ -93,3 +94,10 @@ class Result:
             row: dict[str, object] = {"scenario": run.scenario.name, **run.scenario.label}
             rows.append(row | {name: metric.value for name, metric in run.metrics.items()})
         return pd.DataFrame(rows)
+
+    def plot(self, *names: str) -> Pictures:
+        """Return its pictures, or those that are named, such as `pareto`; a notebook shows them."""
+        return draw(self, names)
+
+    def _repr_html_(self) -> str:
+        return str(self.table.to_html(index=False, float_format="{:.4g}".format))

@@ -19,6 +19,7 @@ from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.control import LawWithNotes, prepare_law
+from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, at_rest
 from seatsim.rig.temperature import Thermal
@@ -31,6 +32,7 @@ from seatsim.simulation.augment import (
     augment_factors,
     augment_plant,
     augment_temperature,
+    seat_driver,
     select_in_loop,
     sum_frame_forces,
     undo_reading,
@@ -61,12 +63,15 @@ class History:
 
 
 def simulate(
-    scenario: Scenario, floor: Floor | None = None, forces: Forces | None = None, carry_all_effects: bool = False
+    scenario: Scenario,
+    floor: Floor | None = None,
+    forces: Forces | None = None,
+    carry_all_effects: bool | None = None,
 ) -> History:
     """Simulate one run, excited as the scenario says, or by a `floor` that is at hand.
 
     `forces` are added to those of the effects. With `carry_all_effects` the loop is compiled with every registered
-    effect, off where it is not chosen, so that runs with different effects share it.
+    effect, off where it is not chosen, so that runs with different effects share it; see `select_in_loop`.
 
     Raises:
         InputError: the scenario has no plant, or its times do not fit each other.
@@ -95,16 +100,19 @@ def simulate(
             " of gains and stiffnesses, and the damper's parameters"
         )
     notes = setup.law.notes() if isinstance(setup.law, LawWithNotes) else ()
-    return _history(setup.rig.plant, step, out, notes)
+    history = _history(setup.rig.plant, step, out, notes)
+    return history if scenario.driver.model == SINGLE_MASS else _without_balance(history)
 
 
 def _setup(
-    scenario: Scenario, plant: Plant, control: Control, is_recorded: bool, carry_all_effects: bool
+    scenario: Scenario, plant: Plant, control: Control, is_recorded: bool, carry_all_effects: bool | None
 ) -> tuple[LoopSetup, tuple[float, ...]]:
     """Return the constant parts and the rig's state at rest; where its temperature is recorded none is simulated."""
     on_damper, on_seat = select_in_loop(scenario.effects, carry_all_effects)
     damper, initial = augment_damper(scenario.damper.record, on_damper)
-    rig = Rig(augment_plant(scenario.effects, plant), damper, on_seat)
+    augmented = augment_plant(scenario.effects, plant)
+    carried = (*on_seat, *seat_driver(scenario.driver, augmented, scenario.effects))
+    rig = Rig(augmented, damper, carried)
     with scenario.placed("controller"):
         sample_every = _count_steps(scenario.solver.step, control)
         period = sample_every * scenario.solver.step
@@ -118,10 +126,10 @@ def _setup(
     sensors = control.sensors.instruments(scenario.solver.step, period) if control.sensors else Direct()
     model = _assume_damper(scenario, control, carry_all_effects)
     setup = LoopSetup(rig, coil, factors, thermal, law, model, timing, scenario.coil.max_current, sensors)
-    return setup, initial + state_at_rest([type(effect) for effect in on_seat])
+    return setup, initial + state_at_rest([type(record) for record in carried])
 
 
-def _assume_damper(scenario: Scenario, control: Control, carry_all_effects: bool) -> InverseModel:
+def _assume_damper(scenario: Scenario, control: Control, carry_all_effects: bool | None) -> InverseModel:
     """Return the damper that the inverse assumes: the plant's without its effects, unless stated otherwise."""
     if control.inverse is None:
         record = scenario.damper.record
@@ -182,6 +190,13 @@ def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) 
         start,
         *scenario.start,
     )
+
+
+def _without_balance(history: History) -> History:
+    """Return the history without the energies that miss what moves within a driver's body."""
+    unknown = np.full(len(history["time"]), np.nan)
+    channels = {**history.channels, "energy_floor": unknown, "energy_stored": unknown}
+    return History(history.step, channels, history.notes)
 
 
 def _history(plant: Plant, step: float, out: Array, notes: tuple[str, ...]) -> History:

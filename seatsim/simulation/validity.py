@@ -1,10 +1,13 @@
-"""What the user of a run is warned of: a model used outside the range of the data behind it."""
+"""What the user of a run is warned of: doubtful values, and a model used outside the range of the data behind it."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from seatsim.rig.plant import USUAL_TRAVEL, Plant
+from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.fields import default_values
 from seatsim.schema.registry import name_of, specification_of
 from seatsim.simulation.damper_bench import centring
 from seatsim.simulation.simulate import History
@@ -14,7 +17,10 @@ SHARE = 0.01
 
 
 def list_warnings(scenario: Scenario, history: History) -> tuple[str, ...]:
-    """Return a sentence for every range of the damper that the run leaves for more than 1 % of its time."""
+    """Return the doubts about a scenario, and a sentence for every range that its run leaves.
+
+    The ranges of the damper are left where that is so for more than 1 % of the time.
+    """
     cls = type(scenario.damper.record)
     specification, model = specification_of(cls), name_of("damper", cls)
     ratio = scenario.plant.damper_ratio if scenario.plant else 1.0
@@ -39,4 +45,16 @@ def list_warnings(scenario: Scenario, history: History) -> tuple[str, ...]:
     drift = (
         centring(history["suspension_displacement"], history["suspension_velocity"]) if specification.centred else ""
     )
-    return (*found, f"{model}: {drift}") if drift else tuple(found)
+    found += [f"{model}: {drift}"] if drift else []
+    return (*list_doubts(scenario), *_doubt_travel(scenario.plant, history), *found)
+
+
+def _doubt_travel(plant: Plant | None, history: History) -> tuple[str, ...]:
+    """Return what is to be said where the suspension moves further than any seat does and no end stop is stated."""
+    peak = float(np.max(np.abs(history["suspension_displacement"])))
+    if plant is None or plant.travel != default_values(Plant)["travel"] or peak <= USUAL_TRAVEL[1]:
+        return ()
+    return (
+        f"the suspension moves {1e3 * peak:.0f} mm from its mid-stroke, and seats have {1e3 * USUAL_TRAVEL[1]:.0f} mm"
+        " at most; state plant.travel, and suspension.end_stop under effects",
+    )

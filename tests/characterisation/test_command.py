@@ -37,7 +37,7 @@ def test_a_bench_table_gives_files_and_a_table(record, sine, tmp_path):
         table_of(record(motion, seconds, lambda t, i=current: i + 0.0 * t), tmp_path / f"{name}.csv")
     done = command(tmp_path, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
-    assert max(map(len, done.stdout.splitlines())) <= 110
+    assert "rebound [N]" in done.stdout.splitlines()[1]
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "cycles.csv", "characterisation.json", "loops.png", "energy.png", "asymmetry.png",
     }  # fmt: skip

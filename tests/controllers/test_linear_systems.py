@@ -32,7 +32,7 @@ def test_weighting_with_states_is_that_of_the_standard(name):
 
 def test_unknown_weighting():
     with pytest.raises(InputError, match="Wk"):
-        frequency_weighting("Wm")
+        frequency_weighting("Wz")
 
 
 def test_a_section_is_its_quotient_and_its_states_are_of_one_size():

@@ -112,7 +112,8 @@ def test_the_card_is_complete(cls, specification):
     assert isinstance(specification.factors, TemperatureFactors)
     assert bool(specification.initial) == bool(specification.state) == hasattr(cls, "rates")
     assert len([part for part in specification.state.split(";") if part]) == len(specification.initial)
-    assert specification.confidence in get_args(Confidence) == tuple(CONFIDENCE)
+    assert specification.confidence in get_args(Confidence)
+    assert set(CONFIDENCE) == {*get_args(Confidence), "own"}
     assert set(specification.fixed) <= set(cls._fields)
 
 

@@ -46,7 +46,7 @@ def test_every_command_and_option_has_an_example():
     text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
     examples = "\n".join(re.findall(r"```sh\n(.*?)```", text, re.DOTALL))
     for command in app.registered_commands:
-        assert f"seatsim {command.callback.__name__} " in examples
+        assert f"seatsim {command.name or command.callback.__name__.replace('_', '-')} " in examples
     for command in ("make", "score", "power"):
         assert f"seatsim blind {command} " in examples
     for option in (
@@ -63,6 +63,12 @@ def test_every_command_and_option_has_an_example():
         "--key",
         "--bracket",
         "--with",
+        "--map",
+        "--nominal",
+        "--json",
+        "--picture",
+        "--version",
+        "--show-completion",
         *BENCH,
     ):
         assert option in examples

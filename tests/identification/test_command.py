@@ -179,6 +179,7 @@ def test_an_interrupted_league_goes_on_where_it_was(two, tmp_path, monkeypatch):
     def run(seed=0, more=()):
         return benchmark_models(
             records,
+            ["all"],
             Settings(seed=seed),
             PredictionData(list(more)),
             tmp_path,

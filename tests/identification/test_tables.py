@@ -39,7 +39,7 @@ def loaded(folder, table, name="one.csv", sidecar=None):
 )  # fmt: skip
 def test_a_name_tells_quantity_and_unit(name, quantity, value):
     known = meaning(name)
-    assert known.quantity == quantity and known.factor * 3.0 + known.zero == pytest.approx(value)
+    assert known.quantity == quantity and known.in_si(3.0) == pytest.approx(value)
 
 
 @pytest.mark.parametrize("name", ["f_Hz", "displacement_N", "displacement_cmd_m", "force_cmd_N", "amplitude_m", ""])
@@ -48,7 +48,11 @@ def test_other_names_mean_nothing(name):
 
 
 def test_a_force_names_its_current():
-    assert (meaning("force_0p4A_N").at, meaning("force_0.4A_N").at, meaning("force_1A_kN").factor) == (0.4, 0.4, 1e3)
+    assert (meaning("force_0p4A_N").at, meaning("force_0.4A_N").at, meaning("force_1A_kN").in_si(1.0)) == (
+        0.4,
+        0.4,
+        1e3,
+    )
 
 
 def test_units_are_turned_into_si(tmp_path):
@@ -181,7 +185,7 @@ def jumping():
          "no column holds the force (did you mean 'force_filtered'?); name it 'force_N' or 'force_kN'"),
         (plain().drop(columns="time_s"), None, "or give 'sample_rate_Hz' in one.yaml"),
         (plain(curent_A=1.0), None, "column 'curent_A' is not known; name it 'current_A' or 'current_mA'"),
-        (plain(temperature_F=70.0), None, "column 'temperature_F' is not known; name it 'temperature_C' or"),
+        (plain(temperature_F=70.0), None, "column 'temperature_F' is not known; name it 'temperature_degC' or"),
         (plain(stroke_mm=1.0), None, "'displacement_m' and 'stroke_mm' both hold the displacement"),
         (plain(damper_force_kN=1.0), None, "'force_N' and 'damper_force_kN' both hold the force"),
         (plain(temperature_C=["warm"] * 100), None, "line 2, temperature_C: 'warm' (and 99 more rows) is not"),

@@ -1,4 +1,4 @@
-"""Every registered law, with the keys it must have, in the compiled form of the quickstart seat."""
+"""Every registered law, with the keys it must have, in the compiled form of one seat."""
 
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import prepare_law

@@ -84,7 +84,7 @@ def break_header(folder, old, new):
         ("rig: seat", "rig: chair", "permitted: seat, damper_bench"),
         ("sample_rate", "sample_rat", "did you mean 'sample_rate'"),
         ("driver_acceleration:", "driver_accel:", "did you mean 'driver_acceleration'"),
-        ("unit: N", "unit: kN", "convert the channel to N"),
+        ("unit: N", "unit: mm", "'mm' is no unit of a value in N"),
         ("file: run-1.csv.gz", "file: run-9.csv.gz", "cannot be read as a table"),
         ("nominal: nominal.yaml", "nominal: 3", "nominal"),
         ("name: run-2", "name: run-1", "name of two runs"),

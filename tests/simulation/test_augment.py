@@ -123,18 +123,25 @@ ALL_ON_DAMPER = {find("effect", name) for name in names("effect") if acts_on(fin
 ALL_ON_SEAT = {find("effect", name) for name in names("effect") if acts_on(find("effect", name), ON_SEAT)}
 
 
-def test_the_loop_carries_all_effects_where_one_is_at_work_or_where_it_is_asked():
+def test_the_loop_carries_all_effects_of_a_side_where_one_is_at_work_or_all_where_it_is_asked():
     none = [effect("driver.mass", change=5.0)]
     assert select_in_loop(none) == ((), ())
-    friction = effect("suspension.friction", force=20.0)
-    for effects, carry_all in (([friction], False), (none, True), ([friction], True)):
+    friction, seal = effect("suspension.friction", force=20.0), effect("damper.seal_friction", force=20.0)
+    assert select_in_loop([friction])[0] == () == select_in_loop([seal])[1]
+    for effects, carry_all in (([friction, seal], None), (none, True), ([friction], True)):
         on_damper, on_seat = select_in_loop(effects, carry_all)
         assert {type(each) for each in on_damper} == ALL_ON_DAMPER
         assert {type(each) for each in on_seat} == ALL_ON_SEAT
-        assert all(each == off(type(each)) for each in (*on_damper, *on_seat) if each is not friction)
+        assert all(each == off(type(each)) for each in (*on_damper, *on_seat) if each not in (friction, seal))
         assert (friction in on_seat) is (friction in effects)
     kinds = [tuple(map(type, side)) for side in select_in_loop(none, True)]
-    assert kinds == [tuple(map(type, side)) for side in select_in_loop([friction])]
+    assert kinds == [tuple(map(type, side)) for side in select_in_loop([friction, seal])]
+    assert kinds[1] == tuple(map(type, select_in_loop([friction])[1]))
+
+
+def test_the_loop_carries_only_those_at_work_where_it_is_asked():
+    at_work = [effect("damper.seal_friction", force=9.0), effect("driver.mass", change=5.0)]
+    assert select_in_loop(at_work, False) == ((at_work[0],), ())
 
 
 def test_a_second_effect_of_a_kind_is_carried_beside_the_first():

@@ -86,7 +86,10 @@ def read_carrier(folder: Path) -> Carrier:
         if len(next(iter(table.values()))) < least:
             raise InputError(f"{folder}, run {run}: shorter than {least} rows; its first second is left out; drop it")
     yaml = YAML(typ="safe")
-    return Carrier(yaml.load(folder / HEADER), yaml.load(recording.nominal), tables)
+    header: Content = yaml.load(folder / HEADER)
+    if recording.conversions:  # tables are read in SI units, whatever the header states
+        header["channels"] = {name: entry._asdict() for name, entry in recording.channels.items()}
+    return Carrier(header, yaml.load(recording.nominal), tables)
 
 
 def encode_carrier(carrier: Carrier, runs: tuple[str, ...]) -> dict[str, bytes]:

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import Out, OwnCode
-from seatsim.cli.terminal import count_progress, out, say, wrote_one
+from seatsim.cli.options import Json, Out, OwnCode
+from seatsim.cli.terminal import answer, count_progress, out, say, wrote_one
 from seatsim.schema.errors import InputError
 
 blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed.", no_args_is_help=True)
@@ -27,6 +27,7 @@ def blind_make(
         Path | None, typer.Option("--carrier", help="A measured recording into which the effects are put instead.")
     ] = None,
     own_code: OwnCode = None,
+    as_json: Json = False,
 ) -> None:
     """Draw rigs with hidden effects, write recordings of them and seal the labels; the key is printed once."""
     from seatsim.blind.carrier.make import make_on_carrier
@@ -41,6 +42,7 @@ def blind_make(
             key = make(cases, seed, out_folder, sealed, count, kinds)
     out.print(f"written: {cases} recordings in {out_folder}, labels sealed in {sealed}", markup=False, highlight=False)
     say(f"key (shown once): {key}")
+    answer({"cases": cases, "folder": str(out_folder), "sealed": str(sealed), "key": key})
 
 
 @blind.command("score")
@@ -48,14 +50,16 @@ def blind_score(
     folder: Annotated[Path, typer.Argument(help="Folder of `blind make`; undiagnosed cases are diagnosed first.")],
     sealed: Annotated[Path, typer.Option("--sealed", help="File of the encrypted labels.")],
     key: Annotated[str, typer.Option("--key", help="The key that `blind make` printed.")],
-    out_folder: Out = None,
+    out_folder: Annotated[Path | None, typer.Option("--out", help="Folder for score.json, FOLDER by default.")] = None,
     own_code: OwnCode = None,
+    as_json: Json = False,
 ) -> None:
     """Diagnose every recording of a sealed set and score the verdicts against the labels."""
     from seatsim.blind.score.score import score
     from seatsim.blind.score.tables import tables
     from seatsim.blind.sealed import unseal
     from seatsim.cli.outputs.diagnosis import diagnose_all
+    from seatsim.cli.show_table import show_table
     from seatsim.schema.files import write_json
 
     # A wrong key is an error at once, not after hours of diagnoses.
@@ -65,8 +69,10 @@ def blind_score(
     with count_progress("scoring") as count:
         found = score(folder, sealed, key, progress=count)
     for table in tables(found):
-        out.print(table)
-    wrote_one(write_json((out_folder or folder) / "score.json", found.as_dict()))
+        show_table(table)
+    path = write_json((out_folder or folder) / "score.json", found.as_dict())
+    wrote_one(path)
+    answer(found.as_dict(), [path])
 
 
 @blind.command("power")
@@ -79,11 +85,13 @@ def blind_power(
     seed: Annotated[int, typer.Option("--seed", help="Seed of the draws.")] = 0,
     out_folder: Out = None,
     own_code: OwnCode = None,
+    as_json: Json = False,
 ) -> None:
     """Put effects of ever smaller size into a recording, and print the smallest found in nine of ten draws."""
     from seatsim.blind.carrier.power import SIZES, Power, measure_power
     from seatsim.cli.outputs.diagnosis import diagnose_one
     from seatsim.cli.outputs.power import make_power_table
+    from seatsim.cli.show_table import show_table
     from seatsim.schema.files import write_json
 
     folder = out_folder or Path("out") / f"{recording.resolve().name}-power"
@@ -95,5 +103,8 @@ def blind_power(
             say(f"{power.effect}: {size} (of {', '.join(f'{s:g}' for s in SIZES)})")
 
         found = measure_power(recording, folder, diagnose_one, tuple(effects or ()), draws, seed, progress=tell)
-    out.print(make_power_table(found))
-    wrote_one(write_json(folder / "power.json", {"draws": draws, "effects": [power.as_dict() for power in found]}))
+    show_table(make_power_table(found))
+    content = {"draws": draws, "effects": [power.as_dict() for power in found]}
+    path = write_json(folder / "power.json", content)
+    wrote_one(path)
+    answer(content, [path])

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from seatsim.cli.options import Out, OwnCode, pairs
-from seatsim.cli.terminal import complain, out, show_progress, warn, wide, wrote
+from seatsim.cli.options import Json, Out, OwnCode, pairs
+from seatsim.cli.terminal import answer, complain, show_progress, warn, wrote
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,13 +30,16 @@ def characterise(
     amplitudes: Annotated[str, typer.Option("--amplitudes", metavar="M,M", help="Amplitudes in m.")] = "",
     frequencies: Annotated[str, typer.Option("--frequencies", metavar="HZ,HZ", help="Frequencies.")] = "",
     own_code: OwnCode = None,
+    as_json: Json = False,
 ) -> None:
     """Show what a bench shows of a damper: loops, energy, asymmetry, offset and response times."""
     from seatsim.characterisation.model_tests import characterise_model
     from seatsim.characterisation.settings import choose_settings
     from seatsim.characterisation.specimen import load_specimen
     from seatsim.characterisation.summary import characterise as of_records
-    from seatsim.cli.outputs.characterisation import WIDEST_TABLE, collect_remarks, make_tables, write_characterisation
+    from seatsim.characterisation.summary import contents
+    from seatsim.cli.outputs.characterisation import collect_remarks, make_tables, write_characterisation
+    from seatsim.cli.show_table import show_table
     from seatsim.recordings.bench_tables import load_bench
 
     grid = (currents, temperatures, amplitudes, frequencies)
@@ -49,15 +52,20 @@ def characterise(
         tested = load_specimen(model, parameters)
         found = characterise_model(tested, choose_settings(tested, *grid))
     for table in make_tables(found):
-        wide(WIDEST_TABLE).print(table)
+        show_table(table)
     warn(collect_remarks(found))
     folder = out_folder or Path("out") / f"characterise-{found.name}"
-    wrote(folder, write_characterisation(found, folder))
+    paths = write_characterisation(found, folder)
+    wrote(folder, paths)
+    answer(contents(found), paths)
 
 
 def identify(
     data: Annotated[Path, typer.Argument(help="A bench table, or a folder of them.", show_default=False)],
-    model: Annotated[str, typer.Option("--model", help="A damper model, or all to compare them.", show_default=False)],
+    models: Annotated[
+        list[str],
+        typer.Option("--model", help="A damper model, several, or all, to compare them.", show_default=False),
+    ],
     test: Annotated[
         list[str] | None, typer.Option("--test", metavar="GLOB", help="Hold out the files whose names match.")
     ] = None,
@@ -78,6 +86,7 @@ def identify(
     seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the global search.")] = 0,
     out_folder: Out = None,
     own_code: OwnCode = None,
+    as_json: Json = False,
 ) -> None:
     """Fit a damper model, or every model, to bench records and assess it on records held out."""
     from seatsim.identification.assessment import load_prediction_data
@@ -87,45 +96,57 @@ def identify(
     # That each value is a number is checked with the bounds of its field, once the model is known.
     fixed = cast("Mapping[str, float]", pairs(fix, "--fix", "v_ref=0.005"))
     request = IdentificationSettings(tuple(test or ()), test_fraction, fixed, ignore_temperature, seed)
-    folder = out_folder or Path("out") / f"identify-{_title(data)}-{model.rpartition(':')[2]}"
+    several = len(models) > 1 or models == ["all"]
+    name = "league" if len(models) > 1 else models[0].rpartition(":")[2]
+    folder = out_folder or Path("out") / f"identify-{_title(data)}-{name}"
     records, beside = load_bench(data), load_prediction_data(more or [], moving_average, centred)
-    if model == "all":
-        _benchmark_models(records, request, beside, folder)
+    if several:
+        _benchmark_models(records, models, request, beside, folder)
     else:
-        _identify(records, model, request, beside, folder)
+        _identify(records, models[0], request, beside, folder)
 
 
 def _identify(
     records: list[BenchRecord], model: str, request: IdentificationSettings, beside: PredictionData, folder: Path
 ) -> None:
-    from seatsim.cli.outputs.identification import make_tables, write_identification
+    from seatsim.cli.outputs.identification import encode_identification, make_tables, write_identification
+    from seatsim.cli.show_table import show_table
     from seatsim.identification.identify import identify_records, predict_records
 
     with show_progress() as progress:
         found = predict_records(identify_records(records, model, request, progress), beside)
         paths = write_identification(found, folder)
     for table in make_tables(found):
-        out.print(table)
+        show_table(table)
     warn(found.notes)
     wrote(folder, paths)
+    answer(encode_identification(found), paths)
 
 
 def _benchmark_models(
-    records: list[BenchRecord], request: IdentificationSettings, beside: PredictionData, folder: Path
+    records: list[BenchRecord],
+    models: list[str],
+    request: IdentificationSettings,
+    beside: PredictionData,
+    folder: Path,
 ) -> None:
-    """Identify every model, print and write the table; exit 1 where one failed."""
+    """Identify several models, print and write the table; exit 1 where one failed."""
     from seatsim.cli.outputs.identification import make_league_table, write_identification, write_league
+    from seatsim.cli.show_table import show_table
     from seatsim.identification.model_benchmark import benchmark_models
 
     with show_progress() as progress:
         places = benchmark_models(
-            records, request, beside, folder, progress, lambda found: write_identification(found, folder / found.model)
-        )
-    out.print(make_league_table(places))
+            records, models, request, beside, folder, progress,
+            lambda found: write_identification(found, folder / found.model.rpartition(":")[2]),
+        )  # fmt: skip
+    show_table(make_league_table(places))
     failed = [place for place in places if place.failed]
     for place in failed:
         complain(f"failed: {place.failed}")
-    wrote(folder, [write_league(places, folder)])
+    path = write_league(places, folder)
+    wrote(folder, [path])
+    answer({"league": places}, [path])
     if failed:
         raise typer.Exit(1)
 

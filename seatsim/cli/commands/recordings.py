@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import OneScenario, Out, OwnCode
-from seatsim.cli.terminal import out, say, show_progress, warn, wide, wrote, wrote_one
+from seatsim.cli.options import Json, OneScenario, Out, OwnCode
+from seatsim.cli.terminal import answer, say, show_progress, warn, wrote, wrote_one
 
 
 def gap(
@@ -20,9 +20,11 @@ def gap(
         typer.Option("--predict", metavar="DIAGNOSIS.json", help="Predict the gap from the recording's inputs alone."),
     ] = None,
     own_code: OwnCode = None,
+    as_json: Json = False,
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
-    from seatsim.cli.gap_table import FORECAST_LETTERS, forecast_table, gap_table
+    from seatsim.cli.gap_table import forecast_table, gap_table
+    from seatsim.cli.show_table import show_table
     from seatsim.recordings.forecast import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
     from seatsim.schema.files import write_json
@@ -33,9 +35,11 @@ def gap(
     else:
         forecast = forecast_gap(scenario, recording, predict)
         table, notes, content = forecast_table(forecast), forecast.notes, forecast.as_dict()
-    (out if predict is None else wide(FORECAST_LETTERS)).print(table)
+    show_table(table)
     warn(notes)
-    wrote_one(write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", content))
+    path = write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", content)
+    wrote_one(path)
+    answer(content, [path])
 
 
 def diagnose(
@@ -57,9 +61,11 @@ def diagnose(
         ),
     ] = None,
     own_code: OwnCode = None,
+    as_json: Json = False,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
-    from seatsim.cli.outputs.diagnosis import make_tables, write_diagnosis
+    from seatsim.cli.outputs.diagnosis import encode_diagnosis, make_tables, write_diagnosis
+    from seatsim.cli.show_table import show_table
     from seatsim.diagnosis.diagnose import diagnose as find_cause
     from seatsim.effects.base import EFFECTS
 
@@ -70,8 +76,10 @@ def diagnose(
     with show_progress() as progress:
         diagnosis = find_cause(recording, withheld, progress, budget=budget, damper_forms=damper_forms, after=after)
     for table in make_tables(diagnosis):
-        out.print(table)
+        show_table(table)
     warn(diagnosis.notes)
     say(diagnosis.sentence)
     folder = out_folder or Path("out") / f"diagnosis-{Path(recording).resolve().name}"
-    wrote(folder, write_diagnosis(diagnosis, folder))
+    paths = write_diagnosis(diagnosis, folder)
+    wrote(folder, paths)
+    answer(encode_diagnosis(diagnosis), paths)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from pathlib import Path
+from threading import Thread
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from seatsim.cli.options import Out, OwnCode, Scenarios, Settings, scenario_settings
-from seatsim.cli.terminal import complain, count_progress, out, show_progress, warn, wrote
+from seatsim.cli.options import Json, Out, OwnCode, Scenarios, Settings, scenario_settings
+from seatsim.cli.terminal import answer, complain, count_progress, show_progress, warn, wrote
 from seatsim.schema.errors import InputError, SeatsimError
 
 if TYPE_CHECKING:
@@ -26,7 +27,21 @@ class _Group(NamedTuple):
     folder: Path
 
 
-def run(scenarios: Scenarios, out_folder: Out = None, settings: Settings = None, own_code: OwnCode = None) -> None:
+class _Simulated(NamedTuple):
+    """The runs that were carried to their end, by the id of their scenario, and why the others were not."""
+
+    runs: dict[int, Run]
+    failures: list[str]
+    interrupted: bool
+
+
+def run(
+    scenarios: Scenarios,
+    out_folder: Out = None,
+    settings: Settings = None,
+    own_code: OwnCode = None,
+    as_json: Json = False,
+) -> None:
     """Simulate scenarios and print a table for each."""
     several = out_folder is not None and len(scenarios) > 1
     folders = [out_folder / Path(path).stem if several and out_folder else out_folder for path in scenarios]
@@ -41,6 +56,7 @@ def compare(
     bracket: Annotated[
         bool, typer.Option("--bracket", help="Add what the best damper could have done; takes minutes for each floor.")
     ] = False,
+    as_json: Json = False,
 ) -> None:
     """Simulate scenarios and print one table over all of them."""
     _execute([scenarios], [out_folder], scenario_settings(settings), bracket)
@@ -55,14 +71,18 @@ def _execute(
     """Run every group of files as one result, then print its table and write its files; exit 1 where a run failed."""
     groups = _load_groups(files, folders, settings)
     scenarios = [scenario for group in groups for scenario in group.scenarios]
-    done, interrupted = _simulate(scenarios)
+    simulated = _simulate(scenarios)
+    encoded, paths = [], []
     for group in groups:
-        runs = [done[id(scenario)] for scenario in group.scenarios if id(scenario) in done]
+        runs = [simulated.runs[id(scenario)] for scenario in group.scenarios if id(scenario) in simulated.runs]
         if runs:
-            _present(runs, group.folder, bracket and not interrupted)
-    if interrupted:
+            content, written = _present(runs, group.folder, bracket and not simulated.interrupted)
+            encoded.append(content)
+            paths += written
+    if simulated.interrupted:
         raise KeyboardInterrupt
-    if len(done) < len(scenarios):
+    answer({"results": encoded, "failed": simulated.failures}, paths)
+    if simulated.failures:
         raise typer.Exit(1)
 
 
@@ -82,22 +102,36 @@ def _load_groups(
     return groups
 
 
-def _simulate(scenarios: list[Scenario]) -> tuple[dict[int, Run], bool]:
-    """Return the runs that were carried to their end by the id of their scenario, and whether they were interrupted."""
+def _simulate(scenarios: list[Scenario]) -> _Simulated:
+    """Run the scenarios side by side; an interrupt keeps what is done."""
     from seatsim.simulation.runs import run_many
 
     done: dict[int, Run] = {}
+    failures: list[str] = []
     finished = itertools.count(1)
+    loading = Thread(target=_load_writers)
+    loading.start()
     with count_progress("simulating", len(scenarios)) as count:
         try:
-            for scenario, answer in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
-                if isinstance(answer, SeatsimError):
-                    complain(f"failed: {answer}")
+            for scenario, found in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
+                if isinstance(found, SeatsimError):
+                    complain(f"failed: {found}")
+                    failures.append(str(found))
                 else:
-                    done[id(scenario)] = answer
+                    done[id(scenario)] = found
         except KeyboardInterrupt:
-            return done, True
-    return done, False
+            return _Simulated(done, failures, interrupted=True)
+        finally:
+            loading.join()
+    return _Simulated(done, failures, interrupted=False)
+
+
+def _load_writers() -> None:
+    """Load what writes tables and draws pictures: it takes as long as many runs, and can be done beside them."""
+    import pandas  # noqa: F401
+    import pyarrow.parquet  # noqa: F401
+
+    import seatsim.plots.runs.draw  # noqa: F401
 
 
 def _title(scenarios: Sequence[Scenario]) -> str:
@@ -105,23 +139,27 @@ def _title(scenarios: Sequence[Scenario]) -> str:
     return names[0] if len(names) == 1 else "comparison"
 
 
-def _present(runs: list[Run], folder: Path, bracket: bool) -> None:
-    """Print the table of some runs, their bounds where wanted, the warnings, and the paths of the files written."""
-    from seatsim.cli.outputs.runs import write_result
+def _present(runs: list[Run], folder: Path, bracket: bool) -> tuple[dict[str, object], list[Path]]:
+    """Print the table of some runs, their bounds where wanted and the warnings; return their content and files."""
+    from seatsim.cli.outputs.runs import encode_result, write_result
     from seatsim.cli.published_tables import published_tables
+    from seatsim.cli.show_table import show_table
     from seatsim.cli.tables import comparison
     from seatsim.simulation.result import Result
 
     for table in [comparison(runs, _title([run.scenario for run in runs])), *published_tables(runs)]:
-        out.print(table)
+        show_table(table)
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
     result = Result(runs, _performance_bounds(runs) if bracket else {})
-    wrote(folder, write_result(result, folder))
+    paths = write_result(result, folder)
+    wrote(folder, paths)
+    return encode_result(result), paths
 
 
 def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:
     """Work out the bounds and print how far from them each run is; an interrupt keeps what there is."""
+    from seatsim.cli.show_table import show_table
     from seatsim.cli.tables import distances
     from seatsim.simulation.performance_bounds import compute_performance_bounds, explain_runs_below_bound
 
@@ -136,6 +174,6 @@ def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:
         except KeyboardInterrupt:
             warn(["interrupted: the brackets that were not finished are left out"])
     if found:
-        out.print(distances(runs, found))
+        show_table(distances(runs, found))
     warn(explain_runs_below_bound(runs, found))
     return found

@@ -24,8 +24,6 @@ CROWDED = 14
 """Columns from which on they stand closer."""
 WIDEST = 16
 """Letters of a record's name."""
-WIDEST_TABLE = 110
-"""Letters of a table, which a file has room for."""
 
 
 class RowColumn(NamedTuple):
@@ -70,7 +68,7 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
 
 
 def make_tables(found: Characterisation) -> list[Table]:
-    """Return the table of the records, and that of the responses to steps where there are any; 110 letters at most."""
+    """Return the table of the records, and that of the responses to steps where there are any."""
     answer = [_make_row_table(found)]
     return [*answer, _make_step_table(found.responses)] if found.responses else answer
 

@@ -13,10 +13,12 @@ from ruamel.yaml import YAML
 from seatsim.blind.processes import run_jobs
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.result import Diagnosis, GapFigures, RunGaps
+from seatsim.effects.base import EFFECTS
 from seatsim.report import write_report
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import plain, write_json, write_whole
+from seatsim.schema.registry import is_own
 
 PROCESSES = 2
 """Recordings of a set that are diagnosed at once."""
@@ -87,10 +89,15 @@ def make_tables(diagnosis: Diagnosis) -> list[Table]:
     for heading in ("effect", "probability", "own shrink"):
         ranked.add_column(heading, justify="left" if heading == "effect" else "right")
     for cause in diagnosis.causes[:LISTED]:
-        ranked.add_row(cause.effect, f"{cause.probability:.2f}", f"{cause.shrink:.2f}")
+        ranked.add_row(_label(cause.effect), f"{cause.probability:.2f}", f"{cause.shrink:.2f}")
     ranked.add_row("none", f"{diagnosis.probability_none:.2f}", "")
     ranked.add_row("unknown", f"{diagnosis.probability_unknown:.2f}", "")
     return [gaps, ranked, *([_make_forms_table(diagnosis)] if diagnosis.alternatives else [])]
+
+
+def _label(effect: str) -> str:
+    """Return the name of an effect, marked where it is the user's own."""
+    return f"{effect} (own)" if effect in EFFECTS.names() and is_own(EFFECTS.find(effect)) else effect
 
 
 def _make_forms_table(diagnosis: Diagnosis) -> Table:

@@ -15,6 +15,7 @@ from rich.table import Table
 from ruamel.yaml import YAML
 
 from seatsim.cli.outputs.runs import write_pictures
+from seatsim.dampers.base import OWN, find_confidence
 from seatsim.identification.agreement import Agreement
 from seatsim.identification.identify import Identification
 from seatsim.identification.model_benchmark import BenchmarkEntry
@@ -74,6 +75,7 @@ def encode_identification(found: Identification) -> dict[str, object]:
     further = {"predicted": found.mean("predicted")} if found.mean("predicted") else {}
     return {
         "model": found.model,
+        "confidence": find_confidence(type(found.bench.damper)),
         "train": found.mean("train"),
         "test": found.mean("test"),
         **further,
@@ -134,14 +136,15 @@ def make_league_table(places: Sequence[BenchmarkEntry]) -> Table:
     """Return the benchmark of models as a table."""
     table = _make_table("league", ("model", "train [%]", "test [%]", "parameters", "ns a step", "BIC", "s"))
     for place in places:
+        name = f"{place.model} ({OWN})" if place.confidence == OWN else place.model
         if place.failed:
-            table.add_row(place.model, *["-"] * 6)
+            table.add_row(name, *["-"] * 6)
             continue
         fits = [
             f"{fit:.1f}" if math.isfinite(fit) else "-" for fit in (place.train_fit_percent, place.test_fit_percent)
         ]
         rest = (place.ns_per_step, place.bic, place.seconds)
-        table.add_row(place.model, *fits, str(place.parameters), *(f"{value:.0f}" for value in rest))
+        table.add_row(name, *fits, str(place.parameters), *(f"{value:.0f}" for value in rest))
     return table
 
 

@@ -32,12 +32,21 @@ def write_result(result: Result, folder: Path) -> list[Path]:
 
         paths = [
             write_whole(folder / "summary.csv", partial(result.table.to_csv, index=False)),
-            write_json(folder / "summary.json", {"runs": [_encode_summary(run) for run in result.runs]}),
+            write_json(folder / "summary.json", _encode_runs(result)),
         ]
         pictures = write_pictures(plot_result(result), folder)
         if result.brackets:
             paths.append(write_json(folder / "brackets.json", {"rigs": _encode_brackets(result)}))
         return [*paths, history.result(), *pictures]
+
+
+def encode_result(result: Result) -> dict[str, object]:
+    """Return what `summary.json` holds of a result, with what `brackets.json` holds where there are bounds."""
+    return _encode_runs(result) | ({"rigs": _encode_brackets(result)} if result.brackets else {})
+
+
+def _encode_runs(result: Result) -> dict[str, object]:
+    return {"runs": [_encode_summary(run) for run in result.runs]}
 
 
 def write_pictures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:

@@ -7,6 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
@@ -14,6 +15,7 @@ from seatsim.diagnosis.result import Cause, Diagnosis, Gaps
 from seatsim.plots import style
 from seatsim.plots.diagnosis.frame import FONT, Picture, draw_bars, make_frame, name_rows
 from seatsim.plots.style import COLOURS, Grid
+from seatsim.recordings.gap import Gap
 
 MOST = 10
 """Causes that are shown."""
@@ -58,23 +60,36 @@ def plot_gaps(diagnosis: Diagnosis) -> Picture | None:
     channels = list(diagnosis.gap.before.channels)
     if not channels:
         return None
-    names = ["overall", *channels]
+    names, stages = ["overall", *channels], select_stages(diagnosis)
+    rows = [[read_gap(diagnosis.gap, stage.key, name) or 0.0 for stage in stages] for name in names]
+    figure = _draw_gaps(names, stages, rows)
+    return Picture("Gap of each channel, on a logarithmic scale", "Held-out runs. Left is better.", figure)
+
+
+def plot_gap(found: Gap) -> Figure:
+    """Return the gap of each channel beside its noise floor."""
+    floor = [found.floor["overall"], *(found.floor["channels"][name] for name in found.channels)]
+    rows = list(zip(floor, [found.overall, *found.channels.values()], strict=True))
+    return _draw_gaps(["overall", *found.channels], [STAGES[0], STAGES[1]._replace(words="gap")], rows)
+
+
+def _draw_gaps(names: Sequence[str], stages: Sequence[Stage], rows: Sequence[Sequence[float]]) -> Figure:
+    """Return a figure with the gaps of each name, one for each stage."""
     page = make_frame(Grid((ROW * len(names) + 0.15,), left=1.95, top=0.4, bottom=0.55))
     axes = page.rows[0][0]
     name_rows(axes, [name.replace("_", " ") for name in names])
     axes.set_xscale("log")
-    for row, name in enumerate(names):
-        known = [(stage, 100 * (read_gap(diagnosis.gap, stage.key, name) or 0.0)) for stage in select_stages(diagnosis)]
-        _draw_stages(axes, row, known)
+    for row, values in enumerate(rows):
+        _draw_stages(axes, row, [(stage, 100 * value) for stage, value in zip(stages, values, strict=True)])
     axes.axhline(0.5, color="0.8", linewidth=0.8)
     style.set_plain_log_ticks(axes.xaxis, LogLocator(subs=TICKS))
     axes.set_xlabel("gap [% of the signal's standard deviation]", fontsize=FONT)
-    handles = [_make_marker(stage, stage.words) for stage in select_stages(diagnosis)]
+    handles = [_make_marker(stage, stage.words) for stage in stages]
     page.figure.legend(
         handles=handles, ncols=4, loc="upper left", bbox_to_anchor=(0.02, 0.995), frameon=False, fontsize=FONT,
         columnspacing=1.2, handletextpad=0.2, borderpad=0.2, borderaxespad=0.2,
     )  # fmt: skip
-    return Picture("Gap of each channel, on a logarithmic scale", "Held-out runs. Left is better.", page.figure)
+    return page.figure
 
 
 def plot_location(diagnosis: Diagnosis) -> Picture | None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.quality.run_under_test import MOTION, Array, RunUnderTest
+from seatsim.recordings.quality.run_under_test import MOTION, RunUnderTest
+from seatsim.recordings.quality.shapes import flat_tops, plateaus, quantum
 
 STUCK = 0.5
 """s; a noisy channel without any change for this long is stuck."""
@@ -64,8 +64,8 @@ def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
     for channel, values in run.table.items():
         if channel in ("current_command", "command_voltage", "damper_temperature") or np.ptp(values) == 0.0:
             continue
-        is_fine = run.noise(channel) > _quantum(values)
-        for extreme, rows in _flat_tops(values):
+        is_fine = run.noise(channel) > quantum(values)
+        for extreme, rows in flat_tops(values):
             is_sure = is_fine and rows > CLIPPED * len(values)
             text = f"{rows} rows stand at its extreme {extreme:.4g}; it is clipped: widen its range"
             yield run.issue("error" if is_sure else "warning", "clipped", text, channel)
@@ -74,7 +74,7 @@ def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
 
 
 def _held(run: RunUnderTest, channel: str) -> Iterator[Issue]:
-    lengths, starts = _plateaus(run.table[channel])
+    lengths, starts = plateaus(run.table[channel])
     longest = int(np.argmax(lengths))
     if lengths[longest] > max(STUCK * run.rate, 20):
         begin, end = starts[longest] / run.rate, (starts[longest] + lengths[longest]) / run.rate
@@ -83,27 +83,3 @@ def _held(run: RunUnderTest, channel: str) -> Iterator[Issue]:
     elif np.median(lengths) >= 2:
         text = f"holds each value for {int(np.median(lengths))} rows; its own rate is lower: interpolate it"
         yield run.issue("warning", "held", text, channel)
-
-
-def _plateaus(values: Array) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
-    """Return length and first row of each stretch of equal values."""
-    starts = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
-    return np.diff(np.append(starts, len(values))), starts
-
-
-def _flat_tops(values: Array) -> Iterator[tuple[float, int]]:
-    """Yield each extreme other than zero at which more rows stand than in the 2 % of the range beside it."""
-    near = 0.02 * float(np.ptp(values))
-    lengths, starts = _plateaus(values)
-    usual = float(np.median(lengths))
-    for extreme in (float(np.max(values)), float(np.min(values))):
-        at = values == extreme
-        rows = int(np.sum(at))
-        beside = int(np.sum(np.abs(values - extreme) <= near)) - rows
-        if extreme != 0.0 and rows >= max(5 * usual, beside) and np.max(lengths[at[starts]]) >= 3 * usual:
-            yield extreme, rows
-
-
-def _quantum(values: Array) -> float:
-    """Return the smallest step between two values."""
-    return float(np.min(np.diff(np.unique(values)), initial=np.inf))

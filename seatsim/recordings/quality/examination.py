@@ -19,6 +19,7 @@ from seatsim.recordings.quality.run_under_test import RunUnderTest
 from seatsim.recordings.quality.runs import check_all_runs, check_clock
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.loading import single
+from seatsim.scenario.plausibility import list_doubts
 from seatsim.schema.errors import InputError
 
 ORDER = ("error", "warning", "note")
@@ -53,7 +54,7 @@ def examine(recording: Recording) -> Examination:
     if not select_errors(issues):
         issues += check_all_runs(runs)
     if not select_errors(issues):
-        issues += _merged([issue for run in runs for issue in _each(run)], len(runs))
+        issues += merge_issues([issue for run in runs for issue in _each(run)], len(runs))
     return Examination(sorted(issues, key=lambda issue: ORDER.index(issue.severity)))
 
 
@@ -72,7 +73,7 @@ def refuse(examination: Examination) -> None:
 def _read(recording: Recording) -> tuple[list[RunUnderTest], list[Issue]]:
     """Return the runs that can be read, and the issues of their clocks and of the runs that cannot be read."""
     nominal = single(recording.nominal)
-    runs, issues = [], []
+    runs, issues = [], [Issue("warning", "implausible", sentence) for sentence in list_doubts(nominal)]
     for name in recording.runs:
         try:
             run = RunUnderTest(name, recording.table(name), recording, recording.scenario_of(name, nominal))
@@ -94,7 +95,7 @@ def _each(run: RunUnderTest) -> list[Issue]:
     return issues
 
 
-def _merged(issues: Sequence[Issue], runs: int) -> list[Issue]:
+def merge_issues(issues: Sequence[Issue], runs: int) -> list[Issue]:
     """Return the issues; one that all runs share is stated once."""
     groups: dict[tuple[str, str, str | None], list[Issue]] = {}
     for issue in issues:

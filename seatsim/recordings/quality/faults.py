@@ -11,14 +11,15 @@ import numpy as np
 from seatsim.recordings.compared import LEFT_OUT
 from seatsim.recordings.quality.residual import filter_band, find_delay
 from seatsim.recordings.quality.run_under_test import LATE, MOTION, Array, RunUnderTest, Table
+from seatsim.schema.units import conversion
 
-UNITS: dict[str, dict[str, float]] = {
-    "acceleration": {"g": 1 / 9.81, "ft/s^2": 1 / 0.3048, "cm/s^2": 100.0, "mm/s^2": 1000.0},
-    "displacement": {"inch": 1 / 0.0254, "cm": 100.0, "mm": 1000.0},
-    "velocity": {"cm/s": 100.0, "mm/s": 1000.0},
-    "force": {"kN": 0.001},
+UNITS = {
+    "acceleration": ("m/s^2", ("g", "ft/s^2", "cm/s^2", "mm/s^2")),
+    "displacement": ("m", ("inch", "cm", "mm")),
+    "velocity": ("m/s", ("cm/s", "mm/s")),
+    "force": ("N", ("kN",)),
 }
-"""What a channel of motion or force reads in another unit, per SI unit, by the last word of its name."""
+"""SI unit and other units of channels of motion and force, by the last word of their names."""
 LONGEST_DELAY = 0.5
 """s; largest delay that is sought: half a period of the slowest motion considered."""
 ALIKE = 0.8
@@ -48,8 +49,10 @@ def _scales(channel: str) -> Iterator[DataFault]:
     quantity = channel.rpartition("_")[2]
     if channel in MOTION or channel == "coil_current":
         yield DataFault("sign", (channel,), "its sign is swapped", _scaled(channel, -1.0))
-    for unit, factor in UNITS.get(quantity, {}).items():
-        yield DataFault("unit", (channel,), f"reads as if in {unit}", _scaled(channel, 1.0 / factor))
+    wanted, others = UNITS.get(quantity, ("", ()))
+    for unit in others:
+        factor = conversion(unit, wanted).factor
+        yield DataFault("unit", (channel,), f"reads as if in {unit}", _scaled(channel, factor))
 
 
 def _scaled(channel: str, factor: float) -> Callable[[Table], Table]:

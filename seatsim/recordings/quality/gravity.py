@@ -17,9 +17,8 @@ from seatsim.recordings.quality.issue import Issue, issue_in_all_runs
 from seatsim.recordings.quality.run_under_test import RunUnderTest
 from seatsim.recordings.recording import Recording
 from seatsim.schema.errors import InputError
+from seatsim.schema.units import STANDARD_GRAVITY
 
-GRAVITY = 9.80665
-"""m/s^2, standard gravity."""
 NEAR = 0.05
 """Share by which a mean may differ from gravity: tilt of the sensor, error of its scale, and its own offset."""
 OFFSET = 0.5
@@ -40,7 +39,7 @@ def without_gravity(recording: Recording) -> Recording:
         name: float(np.mean(np.concatenate([table[name] for table in tables])))
         for name in ACCELEROMETERS if name in recording.channels
     }  # fmt: skip
-    found = {name: mean for name, mean in means.items() if abs(abs(mean) / GRAVITY - 1.0) <= NEAR}
+    found = {name: mean for name, mean in means.items() if abs(abs(mean) / STANDARD_GRAVITY - 1.0) <= NEAR}
     return dataclasses.replace(recording, removed=MappingProxyType(found)) if found else recording
 
 

@@ -9,17 +9,15 @@ the high frequencies from; the difference of two repeats shows all of it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.recordings.quality.issue import Issue, issue_in_all_runs
 from seatsim.recordings.quality.run_under_test import Array, RunUnderTest
+from seatsim.recordings.quality.shapes import Level, measure_level
 
 NOISE_OFF = 3.0
 """Factor by which the noise may differ from what is stated."""
-WINDOW, FEWEST, LEAST_WINDOWS = 0.5, 50, 4
-"""Seconds of a window, its least rows, and least windows of a run."""
 WHITE = 0.9
 """Share of the level of third differences that fourth ones have at least where both are of white noise."""
 GROWS = 1.5
@@ -28,20 +26,11 @@ REPEATS = 0.67
 """Share of the level seen that the difference of two repeats has at most where what is seen repeats itself."""
 
 
-class Level(NamedTuple):
-    """RMS of a channel's noise from third and fourth differences, and from fourth ones in calm and lively windows."""
-
-    third: float
-    fourth: float
-    calm: float
-    lively: float
-
-
 def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Compare the stated noise with the least white noise seen in any run."""
     for channel, entry in runs[0].recording.channels.items():
         stated = entry.noise_rms
-        seen = min((_measure_level(run.table[channel], run.rate) for run in runs), key=lambda level: level.fourth)
+        seen = min((measure_level(run.table[channel], run.rate) for run in runs), key=lambda level: level.fourth)
         if channel == "current_command" or stated == 0.0 or not 0.0 < seen.fourth < np.inf:
             continue
         text = f"noise_rms is stated as {stated:g}, but about {seen.fourth:.2g} is seen"
@@ -74,22 +63,6 @@ def _not_of_the_sensor(seen: Level, repeated: Sequence[Array], rate: float) -> s
     """Return why what is seen is not the sensor's noise, an empty string where it may be."""
     if seen.lively > GROWS * seen.calm:
         return "grows with the motion"
-    if any(_measure_level(values, rate).fourth < REPEATS * seen.fourth for values in repeated):
+    if any(measure_level(values, rate).fourth < REPEATS * seen.fourth for values in repeated):
         return "comes again when the excitation is repeated"
     return ""
-
-
-def _measure_level(values: Array, rate: float) -> Level:
-    """Return the level in the quietest fifth of windows, infinite where there are too few."""
-    rows = max(round(WINDOW * rate), FEWEST)
-    windows = len(values) // rows
-    if windows < LEAST_WINDOWS:
-        return Level(np.inf, np.inf, np.inf, np.inf)
-    pieces = values[: windows * rows].reshape(windows, rows)
-    third, fourth = (
-        np.median(np.abs(np.diff(pieces, n, axis=1)), axis=1) / (0.6745 * norm)
-        for n, norm in ((3, 20**0.5), (4, 70**0.5))
-    )
-    quiet, spread = fourth <= np.quantile(fourth, 0.2), np.std(pieces, axis=1)
-    calm, lively = spread <= np.quantile(spread, 0.2), spread >= np.quantile(spread, 0.8)
-    return Level(*(float(np.mean(each)) for each in (third[quiet], fourth[quiet], fourth[calm], fourth[lively])))

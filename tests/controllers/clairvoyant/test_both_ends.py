@@ -146,6 +146,7 @@ def test_bound_is_the_highest_of_all_weights():
     ("settings", "said"),
     [
         ({"effects": [{"effect": "suspension.friction", "parameters": {"force": 45.0}}]}, "without effects; leave out"),
+        ({"driver.model": "iso5982"}, "driver of one mass"),
         ({"damper.parameters.f0": 100.0}, "drives instead of damping"),
         ({"excitation": {"kind": "rest", "duration": 1.0}}, "nothing moves"),
         ({"temperature": {"start": 20.0, "ambient": 20.0}}, "one temperature"),

@@ -17,7 +17,7 @@ def table_of(*channels):
 
 @pytest.mark.parametrize(
     ("channel", "unit", "per_si"),
-    [("frame_acceleration", "g", 1 / 9.81), ("frame_acceleration", "mm/s^2", 1000.0),
+    [("frame_acceleration", "g", 1 / 9.80665), ("frame_acceleration", "mm/s^2", 1000.0),
      ("suspension_displacement", "mm", 1000.0), ("suspension_displacement", "inch", 1 / 0.0254),
      ("damper_force", "kN", 1e-3)],
 )  # fmt: skip

@@ -1,0 +1,66 @@
+"""What `seatsim check` does with a file: it is read as the commands would read it, and nothing is simulated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from seatsim.characterisation.specimen import load_specimen
+from seatsim.excitations.recording import RecordedRun
+from seatsim.recordings.quality.examination import examine, refuse
+from seatsim.recordings.recording import HEADER, load_recording
+from seatsim.scenario.describe import KINDS
+from seatsim.scenario.loading import load
+from seatsim.scenario.plausibility import list_doubts
+from seatsim.schema.modules import use
+from seatsim.schema.registry import find, names
+from seatsim.schema.yaml_source import Source
+
+
+class Checked(NamedTuple):
+    """A file without errors: what it is, what it holds by name, and what is doubtful about it."""
+
+    kind: str
+    holds: list[str]
+    warnings: list[str]
+
+
+def check_file(path: Path) -> Checked:
+    """Read a scenario, a recording (or its folder), a damper with its parameters, or a Python file.
+
+    Raises:
+        InputError: there is an error in it.
+    """
+    if path.is_dir() or path.name == HEADER:
+        return _check_recording(path if path.is_dir() else path.parent)
+    if path.suffix == ".py":
+        return _check_code(path)
+    if path.exists() and {"model", "bench"} & set(Source(path).data):
+        return Checked("parameters", [load_specimen(None, path).name], [])
+    return _check_scenario(path)
+
+
+def _check_scenario(path: Path) -> Checked:
+    scenarios = load(path)
+    # Floors may come from files, which are read when they are asked for.
+    for scenario in {repr((each.excitation, each.seed)): each for each in scenarios}.values():
+        # That of a recording's nominal scenario is filled in when it is replayed.
+        if scenario.excitation not in (None, RecordedRun()):
+            with scenario.placed("excitation"):
+                scenario.excitation.floor(scenario.solver.step, scenario.seed)
+    doubts = dict.fromkeys(sentence for scenario in scenarios for sentence in list_doubts(scenario))
+    return Checked("scenario", [scenario.title for scenario in scenarios], list(doubts))
+
+
+def _check_recording(folder: Path) -> Checked:
+    recording = load_recording(folder)
+    examination = examine(recording)
+    refuse(examination)
+    return Checked("recording", list(recording.runs), examination.sentences)
+
+
+def _check_code(path: Path) -> Checked:
+    module = use(path).__name__
+    own = [f"{kind} {name}" for kind in KINDS for name in names(kind) if find(kind, name).__module__ == module]
+    warnings = [] if own else ["no class is registered: put a decorator such as @damper(...) before it"]
+    return Checked("own code", own, warnings)

@@ -1,0 +1,94 @@
+"""The commands that judge vibration by standards: comfort, seat-test."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from seatsim.cli.options import Json, Out, OwnCode, Settings, scenario_settings
+from seatsim.cli.terminal import answer, count_progress, say, warn, wrote_one
+from seatsim.schema.errors import InputError
+
+
+def comfort(
+    file: Annotated[Path, typer.Argument(help="A CSV table of accelerations, or a recording.", show_default=False)],
+    channel: Annotated[
+        list[str] | None,
+        typer.Option("--channel", metavar="AXIS=COLUMN", help="x, y, z, rx .. on the seat, back.x .. feet.z, floor.z."),
+    ] = None,
+    hours: Annotated[float, typer.Option("--hours", help="Hours of such vibration in a day.")] = 8.0,
+    run: Annotated[
+        list[str] | None, typer.Option("--run", help="A run of a recording; all together where none is named.")
+    ] = None,
+    block: Annotated[
+        list[str] | None,
+        typer.Option("--block", metavar="FROM:TO", help="Only this stretch, in s; several count as one."),
+    ] = None,
+    rate: Annotated[float | None, typer.Option("--rate", help="Sample rate in Hz of a table without times.")] = None,
+    unit: Annotated[str | None, typer.Option("--unit", help="Of columns whose names state none, such as g.")] = None,
+    out_folder: Out = None,
+    as_json: Json = False,
+) -> None:
+    """Work out the ISO 2631-1 figures of measured accelerations, a day's exposure and SEAT factors."""
+    from seatsim.cli.outputs.comfort import encode, list_sentences, make_tables
+    from seatsim.cli.show_table import show_table
+    from seatsim.schema.files import write_json
+    from seatsim.standards.comfort import comfort as assess
+
+    channels = dict(_split(text, "=", "--channel", "z=acc_z") for text in channel or [])
+    blocks = [_stretch(text) for text in block or []]
+    found = assess(file, channels, hours=hours, runs=run or (), blocks=blocks, rate=rate, unit=unit)
+    for table in make_tables(found):
+        show_table(table)
+    for sentence in list_sentences(found):
+        say(sentence)
+    warn(found.notes)
+    folder = out_folder or Path("out") / f"comfort-{file.resolve().name.partition('.')[0]}"
+    path = write_json(folder / "comfort.json", encode(found))
+    wrote_one(path)
+    answer(encode(found), [path])
+
+
+def _split(text: str, sign: str, option: str, example: str) -> tuple[str, str]:
+    left, found, right = text.partition(sign)
+    if not (left and found and right):
+        raise InputError(f"{option} {text}: write it like {option} {example}")
+    return left.strip(), right.strip()
+
+
+def _stretch(text: str) -> tuple[float, float]:
+    try:
+        start, end = (float(part) for part in _split(text, ":", "--block", "10:70"))
+    except ValueError as error:
+        raise InputError(f"--block {text}: write seconds from the record's start, like --block 10:70") from error
+    return start, end
+
+
+def seat_test(
+    source: Annotated[str, typer.Argument(help="The scenario of a seat, or a recording of one.", show_default=False)],
+    spectral_class: Annotated[
+        list[str] | None, typer.Option("--class", metavar="EM1", help="Only this class; may be given several times.")
+    ] = None,
+    out_folder: Out = None,
+    settings: Settings = None,
+    own_code: OwnCode = None,
+    as_json: Json = False,
+) -> None:
+    """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops."""
+    from seatsim.cli.outputs.seat_test import encode, make_tables, summarise
+    from seatsim.cli.show_table import show_table
+    from seatsim.schema.files import write_json
+    from seatsim.standards.seat_test import seat_test as test
+
+    with count_progress("simulating") as count:
+        found = test(source, spectral_class or (), scenario_settings(settings), count)
+    content = encode(found, source)
+    for table in make_tables(found):
+        show_table(table)
+    say(summarise(found))
+    warn(found.notes)
+    path = write_json((out_folder or Path("out") / f"seat-test-{Path(source).stem}") / "seat_test.json", content)
+    wrote_one(path)
+    answer(content, [path])

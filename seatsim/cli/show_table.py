@@ -1,0 +1,99 @@
+"""How a table is shown: with lines on a terminal, as plain aligned text in a file or another program.
+
+Names are never cut. Where a terminal is too narrow, columns of figures go, from the last on, and a note names them; a
+file or a program has room for all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from rich.cells import cell_len
+from rich.measure import Measurement
+from rich.table import Column, Table
+from rich.text import Text
+
+from seatsim.cli.terminal import out, say
+
+WIDEST = 10_000
+"""Letters that no table has in a line."""
+
+
+def show_table(table: Table) -> None:
+    """Print a table, whose columns of figures are those that stand to the right."""
+    if out.is_terminal:
+        left_out = _fit(table)
+        out.print(table)
+        if left_out:
+            say(f"left out, as the terminal is narrow: {', '.join(left_out)}")
+    else:
+        say(make_plain(table))
+
+
+def make_plain(table: Table) -> str:
+    """Return a table as text: a line of headings, then a line for each row, two spaces between aligned columns."""
+    columns = [_pad(column, table.show_header) for column in table.columns]
+    lines = ["  ".join(cells).rstrip() for cells in zip(*columns, strict=True)]
+    return "\n".join([*_lines(table.title), *lines, *_lines(table.caption)])
+
+
+def _fit(table: Table) -> list[str]:
+    """Drop columns of figures until the others have room, and return the headings of those that went."""
+    names = [column for column in table.columns if column.justify != "right"]
+    for column in table.columns:
+        column.overflow, column.no_wrap = "fold", column.justify == "right"
+        column.min_width = _longest(column, str.split)
+    left_out: list[str] = []
+    while (spare := out.width - _measure_least(table)) < 0:
+        last = next((column for column in reversed(table.columns) if column.justify == "right"), None)
+        if last is None:
+            return left_out
+        table.columns.remove(last)
+        left_out.insert(0, _plain(last.header))
+    _widen(names, spare)
+    return left_out
+
+
+def _measure_least(table: Table) -> int:
+    # Rich measures a table within the width of its options: these have more than any table needs.
+    return Measurement.get(out, out.options.update(width=WIDEST), table).minimum
+
+
+def _widen(names: Sequence[Column], spare: int) -> None:
+    """Give columns of names the room that is left, as far as they need it; what is longer breaks between words."""
+    widths = {id(column): column.min_width or 1 for column in names}
+    full = {id(column): _longest(column, str.splitlines) for column in names}
+    for _ in range(spare):
+        tight = [key for key, width in widths.items() if width < full[key]]
+        if not tight:
+            break
+        widths[min(tight, key=lambda key: widths[key])] += 1
+    for column in names:
+        column.width = widths[id(column)]
+
+
+def _longest(column: Column, divide: Callable[[str], list[str]]) -> int:
+    """Return the letters of the longest part of a column, its heading included; the least is 1."""
+    texts = [_unmarked(column.header), *map(_unmarked, column.cells)]
+    return max((cell_len(part) for text in texts for part in divide(text)), default=1)
+
+
+def _pad(column: Column, with_heading: bool) -> list[str]:
+    cells = [_plain(cell) for cell in ([column.header] if with_heading else []) + list(column.cells)]
+    width = max(map(cell_len, cells), default=0)
+    gaps = [" " * (width - cell_len(cell)) for cell in cells]
+    at_right = column.justify == "right"
+    return [gap + cell if at_right else cell + gap for gap, cell in zip(gaps, cells, strict=True)]
+
+
+def _lines(title: object) -> list[str]:
+    return [_plain(title)] if title else []
+
+
+def _plain(cell: object) -> str:
+    """Return what a cell says in one line, without the marks of its style; a word divided over lines is whole again."""
+    return " ".join(_unmarked(cell).replace("-\n", "").split())
+
+
+def _unmarked(cell: object) -> str:
+    return (cell if isinstance(cell, Text) else Text.from_markup(str(cell))).plain

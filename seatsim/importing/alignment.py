@@ -1,0 +1,139 @@
+"""How much later the clock of one file started than that of another, by cross-correlation of what both measured.
+
+The offset is where the correlation of two channels is greatest, between rows by a parabola. Its uncertainty is the
+standard error of the offsets that parts of the record show by themselves, and at least a tenth of a row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.importing.relations import band_passed
+from seatsim.importing.resampling import resample
+from seatsim.importing.signals import Array
+
+PARTS, SHORTEST = 6, 2.0
+"""Parts of a record in which the offset is estimated again, and their least length in s."""
+LEAST = 0.5
+"""Correlation below which two channels do not tell an offset."""
+AHEAD = 0.2
+"""s by which the offset of a part may differ from that of the whole."""
+DRIFT = 4.0
+"""Standard errors by which the last part may differ from the first, before the clocks run apart."""
+RELATED = (
+    ("current_command", "coil_current"), ("floor_acceleration", "frame_acceleration"),
+    ("frame_acceleration", "driver_acceleration"), ("floor_acceleration", "driver_acceleration"),
+)  # fmt: skip
+"""Channels that follow each other, though not at once: their own lag is taken into the offset."""
+OWN_LAG, UNCLEAR = 0.01, 0.05
+"""s of uncertainty that a lag between related channels adds, and up to which it may be all that there is."""
+
+
+class Channel(NamedTuple):
+    """A channel on its own time base."""
+
+    values: Array
+    start: float
+    rate: float
+
+
+class Offset(NamedTuple):
+    """Seconds to add to the times of the second file, with a standard error; by which channels, and how alike."""
+
+    seconds: float
+    error: float
+    first: str
+    second: str
+    correlation: float
+    drift: float | None = None
+
+    @property
+    def is_clear(self) -> bool:
+        """Say whether this is an offset of clocks, and not the lag of a channel behind another one."""
+        return self.first == self.second or abs(self.seconds) > UNCLEAR
+
+
+def estimate_offset(first: Mapping[str, Channel], second: Mapping[str, Channel]) -> Offset | None:
+    """Return the offset of the second group's clock, by the pair of channels that are most alike; None without any."""
+    pairs = [(name, name, 0.0) for name in first if name in second]
+    if not pairs:
+        pairs = [(a, b, OWN_LAG) for one, other in RELATED for a, b in ((one, other), (other, one))
+                 if a in first and b in second]  # fmt: skip
+    found = [offset for pair in pairs if (offset := _of_pair(first[pair[0]], second[pair[1]], pair)) is not None]
+    best = max(found, key=lambda offset: abs(offset.correlation), default=None)
+    return best if best is not None and abs(best.correlation) >= LEAST else None
+
+
+def describe_offset(label: str, reference: str, found: Offset | None) -> str:
+    """Return a sentence on the offset of a group against another one."""
+    if found is None:
+        return f"{label}: shares no channel with {reference} that shows an offset; its times are taken as they are"
+    by = found.first if found.first == found.second else f"{found.second} and {found.first}"
+    seen = f"{found.seconds:+.5g} s (+- {found.error:.2g} s), by cross-correlation of {by} ({found.correlation:.3f})"
+    if not found.is_clear:
+        return f"{label}: {seen} may be the lag between the two; its times are taken as they are, or state align"
+    drift = "" if found.drift is None else f"; the clocks run apart by {found.drift:.2g} s over the record"
+    return f"{label}: moved against {reference} by {seen}{drift}"
+
+
+def _of_pair(one: Channel, other: Channel, pair: tuple[str, str, float]) -> Offset | None:
+    """Return the offset between two channels, on a time base of the slower one that is fine enough."""
+    rate = min(one.rate, other.rate)
+    a, b = (_even(channel, rate) for channel in (one, other))
+    if min(len(a), len(b)) < SHORTEST * rate or not a.std() or not b.std():
+        return None
+    lag, correlation = _lag(a, b, rate, None)
+    # Values that are `lag` later in the second are at the same instant as those of the first.
+    seconds = one.start - other.start - lag
+    parts = _parts(a, b, rate, lag)
+    error = max(float(np.std(parts)) / np.sqrt(len(parts)) if len(parts) > 1 else 0.5 / rate, 0.1 / rate, pair[2])
+    drift = float(np.polyfit(np.arange(len(parts)), parts, 1)[0]) * (len(parts) - 1) if len(parts) > 3 else 0.0
+    apart = drift if abs(drift) > DRIFT * max(error, 0.2 / rate) else None
+    return Offset(seconds, error, pair[0], pair[1], correlation, apart)
+
+
+def _even(channel: Channel, rate: float) -> Array:
+    rows = int((len(channel.values) - 1) / channel.rate * rate) + 1
+    times = channel.start + np.arange(rows) / rate
+    values = resample(channel.values, channel.start, channel.rate, times, rate)
+    return band_passed(values - float(np.mean(values)), rate, 0.2, 0.4 * rate)
+
+
+def _lag(a: Array, b: Array, rate: float, about: float | None) -> tuple[float, float]:
+    """Return by how many s the second is later, near a given lag where there is one, and their correlation there."""
+    size = 1 << (len(a) + len(b)).bit_length()
+    product = np.fft.irfft(np.conj(np.fft.rfft(a, size)) * np.fft.rfft(b, size), size)
+    rows = np.concatenate([np.arange(len(b)), np.arange(-len(a) + 1, 0)])
+    values = np.concatenate([product[: len(b)], product[size - len(a) + 1 :]])
+    order = np.argsort(rows)
+    rows, values = rows[order], values[order]
+    if about is not None:
+        near = np.abs(rows / rate - about) <= AHEAD
+        rows, values = rows[near], values[near]
+    at = int(np.argmax(values))
+    return (rows[at] + _vertex(values, at)) / rate, float(values[at] / (np.linalg.norm(a) * np.linalg.norm(b)))
+
+
+def _vertex(values: Array, at: int) -> float:
+    """Return the vertex of the parabola through a peak and its neighbours, in rows from the peak."""
+    if not 0 < at < len(values) - 1:
+        return 0.0
+    before, peak, after = values[at - 1 : at + 2]
+    bend = before - 2.0 * peak + after
+    return float(0.5 * (before - after) / bend) if bend else 0.0
+
+
+def _parts(a: Array, b: Array, rate: float, lag: float) -> Array:
+    """Return the lags of parts of the overlap, each by itself."""
+    shift = round(lag * rate)
+    begin, end = max(0, -shift), min(len(a), len(b) - shift)
+    count = min(PARTS, int((end - begin) / (SHORTEST * rate)))
+    found = []
+    for edges in np.array_split(np.arange(begin, max(begin, end)), max(count, 1)):
+        one, other = a[edges], b[edges + shift] if len(edges) else a[:0]
+        if len(edges) > SHORTEST * rate * 0.9 and one.std() > 0.1 * a.std() and other.std() > 0.1 * b.std():
+            found.append(_lag(one, other, rate, 0.0)[0] + shift / rate)
+    return np.array(found)

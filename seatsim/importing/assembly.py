@@ -1,0 +1,166 @@
+"""From files and a map to runs: groups on their clocks, channels in SI units, and one time base for all of them."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.importing.alignment import Channel, describe_offset, estimate_offset
+from seatsim.importing.channels import make_channel, no_column
+from seatsim.importing.clocks import SHORTEST_RUN, Clocked, clock_groups, split_at_gaps
+from seatsim.importing.import_map import ImportMap
+from seatsim.importing.relations import doubt_rig
+from seatsim.importing.resampling import resample
+from seatsim.importing.signals import Array, DataFile
+from seatsim.recordings.channel_units import CHANNELS
+from seatsim.recordings.quality.issue import Issue
+from seatsim.schema.errors import InputError
+from seatsim.schema.units import conversion
+
+
+class Run(NamedTuple):
+    """A run on one time base: channels in SI units, shape (N,) each."""
+
+    name: str
+    table: dict[str, Array]
+
+
+class Assembled(NamedTuple):
+    """The runs at one rate in Hz, the map as it was used, what was done in sentences, and doubts about the data."""
+
+    runs: list[Run]
+    rate: float
+    map: ImportMap
+    notes: list[str]
+    doubts: list[Issue]
+
+
+class _Used(NamedTuple):
+    """Channels of a run by group and name, the file of each group, and the group that each channel is taken from."""
+
+    by_group: dict[str, dict[str, Channel]]
+    file_of: dict[str, str]
+    taken_from: dict[str, str]
+
+    @property
+    def reference(self) -> str:
+        """The group whose clock counts: that of the first channel."""
+        return next(iter(self.taken_from.values()))
+
+
+def assemble(files: Sequence[DataFile], stated: ImportMap) -> Assembled:
+    """Return the runs that a map makes of files.
+
+    Raises:
+        InputError: a column is not there, a unit is not one of its channel, there is no time, rows are missing and the
+            map says nothing about them, or nothing is left.
+    """
+    if "command_voltage" in stated.channels and stated.actuator is None:
+        raise InputError("channels.command_voltage: needs actuator: {gain: 1.0}, the commanded current per volt in A/V")
+    doubts: list[Issue] = []
+    notes: list[str] = []
+    parts: list[tuple[str, list[Clocked]]] = []
+    for name, members in _group_runs(files, stated):
+        parts += split_at_gaps(name, clock_groups(members, stated, doubts), stated)
+    rate = stated.resample or max(each.axis.rate for _, clocked in parts for each in clocked)
+    runs, align = [], dict(stated.align)
+    for name, clocked in parts:
+        used = _use_channels(name, clocked, stated, doubts, notes)
+        moved = _align(used, align, notes)
+        table = _tabulate(name, used, moved, stated, rate, notes)
+        doubts += _of_run(name, doubt_rig(table, rate))
+        runs.append(Run(name, table))
+    return Assembled(runs, rate, dataclasses.replace(stated, align=align), list(dict.fromkeys(notes)), doubts)
+
+
+def _group_runs(files: Sequence[DataFile], stated: ImportMap) -> list[tuple[str, list[DataFile]]]:
+    """Return the files of every run: as the map states them, else each by itself, or all where none is complete."""
+    by_name = {file.path.name: file for file in files}
+    if stated.runs:
+        return [(run, [by_name[name] for name in names]) for run, names in stated.runs.items()]
+    if len(files) > 1 and not all(_has_all(file, stated) for file in files):
+        return [("run-a", list(files))]
+    return [(_run_name(file, files), [file]) for file in files]
+
+
+def _has_all(file: DataFile, stated: ImportMap) -> bool:
+    columns = {signal.name for group in file.groups for signal in group.signals}
+    return all(channel.column in columns for channel in stated.channels.values() if channel.column is not None)
+
+
+def _run_name(file: DataFile, files: Sequence[DataFile]) -> str:
+    return file.path.name.split(".")[0] if len(files) > 1 else "run-a"
+
+
+def _of_run(run: str, issues: Iterable[Issue]) -> list[Issue]:
+    """Return issues with the name of their run."""
+    return [issue._replace(sentence=f"{run}, {issue.sentence}", run=run) for issue in issues]
+
+
+def _use_channels(
+    run: str, clocked: Sequence[Clocked], stated: ImportMap, doubts: list[Issue], notes: list[str]
+) -> _Used:
+    """Return the channels of a run, each taken from the first group that has its column."""
+    used = _Used({each.label: {} for each in clocked}, {each.label: each.file for each in clocked}, {})
+    for name, entry in stated.channels.items():
+        if entry.column is None:
+            continue
+        holders = [each for each in clocked if each.group.find(entry.column) and (entry.group or "") in each.label]
+        if not holders:
+            raise no_column(name, entry.column, entry.group, clocked)
+        for each in holders:
+            is_taken = each is holders[0]
+            channel, found = make_channel(name, entry, each, CHANNELS[stated.rig][name], notes if is_taken else [])
+            used.by_group[each.label][name] = channel
+            doubts += _of_run(run, found) if is_taken else []
+        used.taken_from[name] = holders[0].label
+    return used
+
+
+def _tabulate(
+    run: str, used: _Used, moved: Mapping[str, float], stated: ImportMap, rate: float, notes: list[str]
+) -> dict[str, Array]:
+    """Return the table of a run on one time base, over the time that all its channels have in common."""
+    held = {name: _moved(used.by_group[label][name], moved.get(label, 0.0)) for name, label in used.taken_from.items()}
+    begin = max(each.start for each in held.values())
+    end = min(each.start + (len(each.values) - 1) / each.rate for each in held.values())
+    if end - begin < SHORTEST_RUN:
+        raise InputError(
+            f"{run}: its files have less than {SHORTEST_RUN:g} s in common; check their times, or state align"
+        )
+    times = begin + np.arange(int((end - begin) * rate + 1e-6) + 1) / rate
+    table = {}
+    for name, entry in stated.channels.items():
+        unit = CHANNELS[stated.rig][name]
+        if entry.value is not None:
+            found = conversion(entry.unit or unit, unit)
+            table[name] = np.full(len(times), found.factor * entry.value + found.zero)
+            continue
+        each = held[name]
+        if abs(each.rate / rate - 1.0) > 1e-9:
+            notes.append(f"{name}: resampled from {each.rate:.6g} to {rate:.6g} Hz, band-limited")
+        table[name] = resample(each.values, each.start - entry.delay, each.rate, times, rate)
+    return table
+
+
+def _moved(channel: Channel, seconds: float) -> Channel:
+    return channel._replace(start=channel.start + seconds)
+
+
+def _align(used: _Used, align: dict[str, float], notes: list[str]) -> dict[str, float]:
+    """Return by how much the times of each group move, in s: as stated, as estimated (put into `align`), or 0.
+
+    Groups of one file share its clock, so that what one of them lags behind another is not taken for an offset.
+    """
+    moved: dict[str, float] = {}
+    for label in dict.fromkeys(used.taken_from.values()):
+        if label not in align and used.file_of[label] != used.file_of[used.reference]:
+            found = estimate_offset(used.by_group[used.reference], used.by_group[label])
+            notes.append(describe_offset(label, used.reference, found))
+            if found is not None and found.is_clear:
+                align[label] = found.seconds
+        moved[label] = align.get(label, 0.0)
+    return moved

@@ -1,0 +1,136 @@
+"""Groups on their own clocks: the time of each, and runs between its gaps or across them, as the map says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.importing.axis_doubts import doubt_time
+from seatsim.importing.import_map import AxisMap, ImportMap
+from seatsim.importing.names import read_name
+from seatsim.importing.signals import DataFile, Group
+from seatsim.importing.time_axis import Axis, even_axis, measured_axis, unbroken
+from seatsim.recordings.quality.issue import Issue
+from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.units import DIMENSIONS, conversion
+
+LONGEST_FILL = 0.1
+"""s; longest gap that `gaps: fill` interpolates."""
+SHORTEST_RUN = 1.0
+"""s; parts between gaps that are shorter make no run."""
+
+
+class Clocked(NamedTuple):
+    """A group on its own time base: the name of its file, its own label, and its axis in s."""
+
+    file: str
+    label: str
+    group: Group
+    axis: Axis
+
+
+def clock_groups(files: Sequence[DataFile], stated: ImportMap, doubts: list[Issue]) -> list[Clocked]:
+    """Return the groups of some files that hold a column of the map, each with its time.
+
+    Raises:
+        InputError: the time of a group is neither stated nor to be found.
+    """
+    columns = {name for entry in stated.channels.values() for name in (entry.column, entry.minus)}
+    every = [(file, group) for file in files for group in file.groups]
+    used = [each for each in every if any(signal.name in columns for signal in each[1].signals)]
+    return [_clock(file, group, stated, doubts) for file, group in used or every]
+
+
+def _clock(file: DataFile, group: Group, stated: ImportMap, doubts: list[Issue]) -> Clocked:
+    """Return a group with its time: of the column that the map names, of the format, or at the stated rate."""
+    label = f"{file.path.name}, {group.name}" if group.name and len(file.groups) > 1 else file.path.name
+    rate = stated.sample_rate or group.rate
+    time = _time_column(group, stated)
+    if time is not None and (stated.sample_rate is None or stated.time is not None):
+        group, axis = _timed(label, group, time, doubts)
+        return Clocked(file.path.name, label, group, axis)
+    if rate is not None:
+        return Clocked(file.path.name, label, group, even_axis(group.rows, rate, group.start or 0.0))
+    names = [signal.name for signal in group.signals]
+    lacking = f"no column '{stated.time.column}'{nearest(stated.time.column, names)}" if stated.time else "no rate"
+    raise InputError(
+        f"{file.path}: states {lacking}; write sample_rate: or time: {{column: ...}} in the map; columns are"
+        f" {list_names(names)}"
+    )
+
+
+def _time_column(group: Group, stated: ImportMap) -> AxisMap | None:
+    """Return the column of time that the map names, else the one that is called so: other loggers name it otherwise."""
+    if stated.time is not None and group.find(stated.time.column) is not None:
+        return stated.time
+    meanings = ((signal.name, read_name(signal.name, signal.unit)) for signal in group.signals)
+    return next((AxisMap(name, meaning.unit) for name, meaning in meanings if meaning.quantity == "time"), None)
+
+
+def _timed(label: str, group: Group, time: AxisMap, doubts: list[Issue]) -> tuple[Group, Axis]:
+    """Return a group without the rows that have no time, and the times of the others."""
+    times = next(signal.values for signal in group.signals if signal.name == time.column)
+    there = np.isfinite(times)
+    signals = tuple(signal._replace(values=signal.values[there]) for signal in group.signals)
+    axis = measured_axis(conversion(time.unit or "s", DIMENSIONS["time"]).factor * times[there])
+    if axis is None:
+        raise InputError(f"{label}: column '{time.column}' does not rise as a time does; name another one under time")
+    doubts += doubt_time(axis, f"{label}, {time.column}")
+    return group._replace(signals=signals), axis
+
+
+def list_names(names: Sequence[str], most: int = 12) -> str:
+    """Return the first names as they stand in an error."""
+    return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
+
+
+def split_at_gaps(name: str, clocked: list[Clocked], stated: ImportMap) -> list[tuple[str, list[Clocked]]]:
+    """Return a run, or the runs between its gaps, as the map says."""
+    broken = next((each for each in clocked if len(each.axis.breaks)), None)
+    if broken is None:
+        return [(name, clocked)]
+    if stated.gaps == "fill":
+        return [(name, [_without_repeats(each) for each in clocked])]
+    if stated.gaps is None or len(clocked) > 1:
+        said = next(doubt_time(broken.axis, broken.label)).sentence
+        allowed = "gaps: fill" if len(clocked) > 1 else "gaps: split (runs of the parts) or gaps: fill (interpolate)"
+        raise InputError(f"{said}; say in the map what to do: {allowed}")
+    return _parts(name, broken)
+
+
+def _parts(name: str, broken: Clocked) -> list[tuple[str, list[Clocked]]]:
+    """Return the runs between the gaps of a group."""
+    parts: list[tuple[str, list[Clocked]]] = []
+    for begin, end in pairwise([0, *broken.axis.breaks.tolist(), len(broken.axis.times)]):
+        if (end - begin) / broken.axis.rate >= SHORTEST_RUN:
+            signals = tuple(signal._replace(values=signal.values[begin:end]) for signal in broken.group.signals)
+            axis = unbroken(broken.axis.times[begin:end], broken.axis.rate, broken.axis.is_even)
+            part = broken._replace(group=broken.group._replace(signals=signals), axis=axis)
+            parts.append((f"{name}-{len(parts) + 1}", [part]))
+    if not parts:
+        raise InputError(f"{broken.label}: no part between its gaps lasts {SHORTEST_RUN:g} s; nothing is left")
+    return parts
+
+
+def _without_repeats(clocked: Clocked) -> Clocked:
+    """Return a group without rows that repeat a time, its gaps to be interpolated.
+
+    Raises:
+        InputError: time runs back, or a gap is too long to be filled.
+    """
+    times = clocked.axis.times
+    steps = np.diff(times)
+    if (steps < 0.0).any():
+        raise InputError(f"{clocked.label}: time runs back, which cannot be filled; write gaps: split")
+    longest = float(np.max(steps))
+    if longest > LONGEST_FILL + 1.0 / clocked.axis.rate:
+        raise InputError(
+            f"{clocked.label}: a gap of {longest:.3g} s is not filled, {LONGEST_FILL} s at most are; write gaps: split"
+        )
+    kept = np.concatenate([[True], steps > 0.0])
+    signals = tuple(signal._replace(values=signal.values[kept]) for signal in clocked.group.signals)
+    axis = unbroken(times[kept], clocked.axis.rate, is_even=False)
+    return clocked._replace(group=clocked.group._replace(signals=signals), axis=axis)

@@ -1,0 +1,136 @@
+"""What the shape of a channel's values shows, whatever they are: clipping, dropouts, spikes, and noise that is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.importing.signals import Array
+from seatsim.recordings.quality.issue import Issue, Severity
+from seatsim.recordings.quality.shapes import Level, flat_tops, measure_level
+
+SPIKE, AROUND, ALONE = 8.0, 25, 4.0
+"""A spike bends so many times as much as usual, and so many times as much as anything within so many rows."""
+FEWEST = 5
+"""Rows below which nothing is a spike."""
+NOTABLE = 0.5
+"""Size of a spike that is said, in standard deviations of its channel."""
+MOST_CANDIDATES = 20_000
+"""Rows that bend much, above which a channel is rough and has no spikes."""
+DROPOUT, JUMP = 10, 5.0
+"""Least rows of a dropout, and the jump before or after it, in usual steps between rows."""
+SMOOTH = 0.7
+"""Ratio of the noise in fourth to that in third differences below which it is not white: a filter took it."""
+SILENT = 3e-5
+"""Noise as a share of the swing below which no sensor is."""
+QUIET = ("smooth", "resolution")
+"""Kinds of doubts because of which the floor at high frequencies is not the noise of a sensor."""
+COARSE, LEVELLED = 1.2, 0.3
+"""Share of its step below which noise is hidden by the resolution; ratio of small to usual gaps of what has steps."""
+MOST_ROWS = 200_000
+"""Rows that the slower checks look at."""
+
+
+class Doubter:
+    """The doubts about one channel, gathered while it is looked at."""
+
+    def __init__(self, channel: str, rate: float | None) -> None:
+        self.channel, self.rate = channel, rate
+
+    def say(self, severity: Severity, kind: str, text: str) -> Issue:
+        """Return a doubt."""
+        return Issue(severity, kind, f"{self.channel}: {text}", self.channel)
+
+    def at(self, row: int) -> str:
+        """Return where a row is."""
+        return f"row {row}" if self.rate is None else f"{row / self.rate:.4g} s"
+
+
+def doubt_shape(doubter: Doubter, values: Array, lengths: NDArray[np.int_]) -> Iterator[Issue]:
+    """Yield clipping, spikes, held values and the floor of a channel that varies."""
+    for extreme, rows in flat_tops(values):
+        yield doubter.say("warning", "clipped", f"{rows} rows stand at its extreme {extreme:.5g}; it is clipped")
+    yield from _spikes(doubter, values)
+    if doubter.rate is None:
+        return
+    level, step = measure_level(values[:MOST_ROWS], doubter.rate), find_resolution(values[:MOST_ROWS])
+    usual = float(np.median(lengths[:MOST_ROWS]))
+    if usual >= 2.0 and np.mean(lengths == usual) > 0.8:
+        yield doubter.say("warning", "held", f"holds each value for {usual:.0f} rows; its own rate is lower")
+    if np.isfinite(level.fourth):
+        yield from _floor(doubter, level, step, 0.5 * float(np.ptp(values)))
+
+
+def doubt_dropouts(
+    doubter: Doubter, values: Array, lengths: NDArray[np.int_], starts: NDArray[np.int_]
+) -> Iterator[Issue]:
+    """Yield stretches in which a channel stands still that it came to, or left, by a jump."""
+    usual = float(np.quantile(lengths[:: max(1, len(lengths) // MOST_ROWS)], 0.999))
+    long = np.flatnonzero(lengths >= max(DROPOUT, 3.0 * usual))
+    jumps = np.abs(np.diff(values))
+    least = JUMP * float(np.median(jumps[jumps > 0.0][:MOST_ROWS]))
+    found = [k for k in long if max(_jump(jumps, starts[k] - 1), _jump(jumps, starts[k] + lengths[k] - 1)) > least]
+    if found:
+        first, rows = int(starts[found[0]]), int(np.sum(lengths[found]))
+        places = f"{rows} rows in {len(found)} places" if len(found) > 1 else f"{rows} rows"
+        text = f"stands still at {values[first]:.5g} for {places}, from {doubter.at(first)} on; a dropout"
+        yield doubter.say("warning", "dropout", text)
+
+
+def _jump(jumps: Array, row: int) -> float:
+    return float(jumps[row]) if 0 <= row < len(jumps) else 0.0
+
+
+def _spikes(doubter: Doubter, values: Array) -> Iterator[Issue]:
+    rows = find_spikes(values)
+    rows = rows[np.abs(values[rows] - 0.5 * (values[rows - 1] + values[rows + 1])) > NOTABLE * np.std(values)]
+    if len(rows):
+        size = float(np.max(np.abs(values[rows] - 0.5 * (values[rows - 1] + values[rows + 1]))))
+        text = f"{len(rows)} spikes of up to {size:.3g}, the first at {doubter.at(int(rows[0]))}"
+        yield doubter.say("warning", "spikes", f"{text}; despike: true interpolates them")
+
+
+def find_spikes(values: Array) -> NDArray[np.int_]:
+    """Return the rows that jump away from both neighbours, by far more than anything around them bends."""
+    if len(values) < FEWEST:
+        return np.empty(0, dtype=np.int_)
+    bend = np.abs(values[1:-1] - 0.5 * (values[:-2] + values[2:]))
+    usual = 1.4826 * float(np.median(bend[:MOST_ROWS])) + 1e-9 * float(np.ptp(values))
+    rows = np.flatnonzero(bend > SPIKE * usual)
+    if len(rows) > MOST_CANDIDATES:
+        return np.empty(0, dtype=np.int_)
+    return np.array([row + 1 for row in rows if _stands_alone(values, bend, int(row))], dtype=np.int_)
+
+
+def _stands_alone(values: Array, bend: Array, row: int) -> bool:
+    """Say whether one row is a spike: its neighbours agree, and nothing near bends nearly as much."""
+    before, at, after = values[row : row + 3]
+    agree = abs(after - before) < 0.3 * min(abs(at - before), abs(at - after))
+    near = np.concatenate([bend[max(0, row - AROUND) : max(0, row - 1)], bend[row + 2 : row + AROUND]])
+    return bool(agree and bend[row] > ALONE * float(np.max(near, initial=0.0)))
+
+
+def _floor(doubter: Doubter, level: Level, step: float, swing: float) -> Iterator[Issue]:
+    """Yield that the floor at high frequencies is none of a sensor: it falls, or is that of the resolution."""
+    if level.fourth < COARSE * step:
+        text = f"shows no noise beyond its resolution of {step:.2g}: it was smoothed, or is coarser than its noise"
+        yield doubter.say("note", "resolution", text)
+    elif level.fourth < max(SMOOTH * level.third, SILENT * swing):
+        text = "has hardly any noise at high frequencies: filtered, smoothed or computed, it shows no sensor's noise"
+        yield doubter.say("note", "smooth", text)
+
+
+def find_resolution(values: Array) -> float:
+    """Return the step between the levels that values come in, 0 where they come in none."""
+    gaps = np.diff(np.unique(values))
+    low, usual = (float(np.quantile(gaps, share)) for share in (0.1, 0.5))
+    return low if low > LEVELLED * usual else 0.0
+
+
+def noise_of(values: Array, rate: float | None) -> float | None:
+    """Return the RMS of white noise that the floor at high frequencies shows, None where it is too short to tell."""
+    finite = values[np.isfinite(values)]
+    level: Level = measure_level(finite[:MOST_ROWS], rate or 100.0)
+    return float(level.fourth) if np.isfinite(level.fourth) else None

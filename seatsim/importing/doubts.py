@@ -1,0 +1,153 @@
+"""What one channel shows of its own faults: rows without a value, gravity, offsets, clipping, dropouts, spikes, units.
+
+`values` are in SI units where the unit is known. Nothing is corrected here; each doubt names its place and what would.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.importing.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape
+from seatsim.importing.names import DIMENSION
+from seatsim.importing.signals import Array
+from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.quality.shapes import plateaus
+from seatsim.schema.units import DIMENSIONS, STANDARD_GRAVITY, find_conversion
+
+NEAR = 0.08
+"""Share by which a mean may differ from gravity: tilt, scale and offset of the sensor."""
+OFFSET = 0.5
+"""m/s^2; mean of an accelerometer from which it has an offset."""
+ZERO = {
+    "force": "gas force, preload or the zero of the load cell", "displacement": "the zero of the sensor",
+    "elevation": "an absolute elevation",
+}  # fmt: skip
+"""What the mean of a quantity that swings may be."""
+OFF_CENTRE, CENTRED, ABSOLUTE = 0.02, 1e-4, 5.0
+"""Mean as a share of the swing: from which an offset is said, below which one was removed, and of a height."""
+FEW_LEVELS, MOST_CHANGES = 12, 20_000
+"""Most values that a channel has which was typed in, or switches, among so many changes."""
+HOT = (50.0, 110.0)
+"""degC between which a first temperature is a usual one in degF."""
+WARMING = 2.0
+"""K/s; a damper's body does not warm faster."""
+SWITCHED = ("current", "voltage")
+"""Quantities that rest and jump by themselves."""
+PLAUSIBLE = {
+    "acceleration": (0.0, 500.0), "displacement": (0.0, 1.0), "velocity": (0.0, 5.0), "force": (0.0, 30_000.0),
+    "current": (0.0, 30.0), "voltage": (0.0, 60.0), "temperature": (-50.0, 200.0),
+}  # fmt: skip
+"""Range of the size of a quantity of a seat or damper in SI units; outside it another unit is meant."""
+ALTERNATIVES = {
+    "acceleration": ("mm/s^2", "cm/s^2"), "displacement": ("mm", "cm"), "velocity": ("mm/s",), "force": ("mN",),
+    "current": ("mA",), "voltage": ("mV",), "temperature": ("K", "degF"),
+}  # fmt: skip
+"""Units to which values outside the range point, the likeliest first."""
+
+
+def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | None) -> Iterator[Issue]:
+    """Yield the doubts about one channel; `quantity` says what it holds, in SI units, None where that is not known."""
+    doubter = Doubter(channel, rate)
+    missing = np.isnan(raw)
+    if missing.any():
+        yield _missing(doubter, missing)
+    values = raw[~missing] if missing.any() else raw
+    if not len(values):
+        return
+    if np.ptp(values) == 0.0:
+        yield doubter.say("warning", "constant", f"is {values[0]:.6g} throughout; a dead sensor, or a stated value")
+        return
+    yield from _of_quantity(doubter, values, quantity)
+    lengths, starts = plateaus(values)
+    if len(np.unique(values[starts[:MOST_CHANGES]])) <= FEW_LEVELS:
+        if len(lengths) < 0.2 * len(values):
+            text = (
+                f"has {len(np.unique(values[starts]))} levels and no noise; a command or a nominal value, not measured"
+            )
+            yield doubter.say("note", "levels", text)
+        return
+    yield from doubt_shape(doubter, values, lengths)
+    if rate is not None and quantity not in SWITCHED:
+        yield from doubt_dropouts(doubter, values, lengths, starts)
+
+
+def _missing(doubter: Doubter, missing: NDArray[np.bool_]) -> Issue:
+    rows = np.flatnonzero(missing)
+    text = f"{len(rows)} rows hold no number, the first at {doubter.at(int(rows[0]))}; fill: true interpolates them"
+    return doubter.say("warning", "missing", text)
+
+
+def _of_quantity(doubter: Doubter, values: Array, quantity: str | None) -> Iterator[Issue]:
+    """Yield what the size and the mean of a known quantity show."""
+    mean, size = float(np.mean(values)), float(np.max(np.abs(values)))
+    if quantity == "acceleration":
+        yield from _constant_part(doubter, values, mean)
+    elif quantity in ZERO:
+        yield from _rest(doubter, values, mean, quantity)
+    elif quantity == "temperature":
+        yield from _warming(doubter, values)
+    if quantity in PLAUSIBLE:
+        low, high = PLAUSIBLE[quantity]
+        extreme = size if low == 0.0 else float(values[np.argmax(np.abs(values))])
+        if not low <= extreme <= high:
+            units = _other_units(quantity, values)
+            guess = f"; is it in {' or '.join(units)}?" if units else ""
+            yield doubter.say("warning", "unit", f"reaches {extreme:.4g} in SI units, more than a seat does{guess}")
+
+
+def _warming(doubter: Doubter, values: Array) -> Iterator[Issue]:
+    """Yield a temperature that begins warm, or changes faster than a damper does, in means over half a second."""
+    first, rate = float(values[0]), doubter.rate
+    if HOT[0] < first < HOT[1]:
+        text = f"begins at {first:.3g} degC; read as degF that is {(first - 32.0) / 1.8:.3g} degC: check its unit"
+        yield doubter.say("note", "unit", text)
+    if rate is None:
+        return
+    rows = max(1, round(0.5 * rate))
+    means = values[: len(values) // rows * rows].reshape(-1, rows).mean(axis=1)
+    fastest = float(np.max(np.abs(np.diff(means)), initial=0.0)) * rate / rows
+    if fastest > WARMING:
+        text = f"changes by up to {fastest:.2g} K/s, faster than a damper warms: a disturbed or a surface reading"
+        yield doubter.say("warning", "warming", text)
+
+
+def _other_units(quantity: str, values: Array) -> list[str]:
+    """Return the units in which all values would be plausible."""
+    low, high = PLAUSIBLE[quantity]
+    fitting = []
+    for unit in ALTERNATIVES[quantity]:
+        found = find_conversion(unit, DIMENSIONS[DIMENSION[quantity]])
+        other = values if found is None else found.factor * values + found.zero
+        if found is not None and float(np.max(np.abs(other))) <= high and (low == 0.0 or float(np.min(other)) >= low):
+            fitting.append(unit)
+    return fitting
+
+
+def _constant_part(doubter: Doubter, values: Array, mean: float) -> Iterator[Issue]:
+    """Yield gravity, an offset, or the mean of one that gravity in g has."""
+    spread = float(np.std(values))
+    if abs(abs(mean) / STANDARD_GRAVITY - 1.0) <= NEAR:
+        text = f"its mean of {mean:.4g} m/s^2 is gravity ({abs(mean) - STANDARD_GRAVITY:+.2g} is offset or tilt); "
+        yield doubter.say("warning", "gravity", f"{text}remove_mean: true takes it out")
+    elif abs(abs(mean) - 1.0) <= NEAR and spread < 0.5:
+        text = f"its mean of {mean:.4g} is gravity in g, but m/s^2 is stated; state unit: g, and remove_mean: true"
+        yield doubter.say("warning", "unit", text)
+    elif abs(mean) > OFFSET:
+        yield doubter.say(
+            "warning", "offset", f"its mean is {mean:.4g} m/s^2, an offset; remove_mean: true takes it out"
+        )
+
+
+def _rest(doubter: Doubter, values: Array, mean: float, quantity: str) -> Iterator[Issue]:
+    """Yield the offset of a channel that swings about another value than zero."""
+    low, high = np.quantile(values[:: max(1, len(values) // MOST_ROWS)], (0.01, 0.99))
+    swing = 0.5 * float(high - low)
+    unit = DIMENSIONS[DIMENSION[quantity]]
+    if swing > 0.0 and abs(mean) > (ABSOLUTE if quantity == "elevation" else OFF_CENTRE) * swing:
+        text = f"its mean is {mean:.4g} {unit}, {abs(mean) / swing:.0%} of its swing: {ZERO[quantity]}"
+        yield doubter.say("note", "offset", text)
+    elif quantity != "elevation" and abs(mean) < CENTRED * swing:
+        yield doubter.say("note", "centred", "its mean is zero: an offset was removed, and with it what it would show")

@@ -1,0 +1,181 @@
+"""`map.yaml`: which column is which channel, in which unit, and what is to be corrected; read, and written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Literal, NamedTuple, cast
+
+from seatsim.importing.readers.reading import TextLayout
+from seatsim.recordings.channel_units import CHANNELS
+from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.fields import param
+from seatsim.schema.validation import build, check_keys, mapping
+from seatsim.schema.yaml_source import Source
+
+Rig = Literal["seat", "damper_bench", "road"]
+Gaps = Literal["split", "fill"]
+AS_FOUND = TextLayout()
+"""Layout of a text table that is left to be found."""
+FILE = "map.yaml"
+
+
+class ChannelMap(NamedTuple):
+    """Where a channel comes from and how it becomes SI: `sign * scale * column` is in `unit`.
+
+    `group` names the file or the group where several have the column. `minus` is a second column that is subtracted,
+    `differentiate` how often the result is differentiated by time, `value` a constant in place of a column. `delay` is
+    how much too late the channel is, in s; `remove_mean`, `fill` (rows that hold no number) and `despike` correct.
+    """
+
+    column: str | None = None
+    unit: str | None = None
+    sign: Literal[1, -1] = 1
+    scale: Annotated[float, param("-", "factor before the unit")] = 1.0
+    remove_mean: bool = False
+    delay: Annotated[float, param("s", "how much too late the channel is", low=-60, high=60)] = 0.0
+    group: str | None = None
+    minus: str | None = None
+    differentiate: Literal[0, 1, 2] = 0
+    value: Annotated[float | None, param("", "constant in place of a column")] = None
+    fill: bool = False
+    despike: bool = False
+    noise_rms: Annotated[float | None, param("", "noise of the sensor in SI units", low=0)] = None
+
+
+class AxisMap(NamedTuple):
+    """The column that rows are counted along: the time, or the distance of a road."""
+
+    column: str
+    unit: str = ""
+
+
+class Actuator(NamedTuple):
+    """Commanded current per volt of `command_voltage`."""
+
+    gain: Annotated[float, param("A/V", "commanded current per volt")]
+
+
+class _Numbers(NamedTuple):
+    """The numbers at the top of a map."""
+
+    sample_rate: Annotated[
+        float | None, param("Hz", "rows per second of files that have no time", above=0, high=1e6)
+    ] = None
+    resample: Annotated[float | None, param("Hz", "rows per second of the recording", above=0, high=1e6)] = None
+    rig: Rig = "seat"
+    gaps: Gaps | None = None
+
+
+@dataclass(frozen=True)
+class ImportMap:
+    """The content of `map.yaml`.
+
+    `runs` lists the files of each run, none where every file is one. `align` holds by file what is added to its times
+    in s. `repeats` names by run the one that it repeats. `comments` stand behind the channels of a proposal.
+    """
+
+    channels: dict[str, ChannelMap]
+    rig: Rig = "seat"
+    time: AxisMap | None = None
+    sample_rate: float | None = None
+    distance: AxisMap | None = None
+    csv: TextLayout = AS_FOUND
+    resample: float | None = None
+    runs: dict[str, list[str]] = field(default_factory=dict)
+    gaps: Gaps | None = None
+    align: dict[str, float] = field(default_factory=dict)
+    actuator: Actuator | None = None
+    repeats: dict[str, str] = field(default_factory=dict)
+    comments: Mapping[str, str] = field(default_factory=dict)
+
+
+KEYS = (
+    "rig",
+    "channels",
+    "time",
+    "sample_rate",
+    "distance",
+    "csv",
+    "resample",
+    "runs",
+    "gaps",
+    "align",
+    "actuator",
+    "repeats",
+)
+
+
+def read_map(path: Path) -> ImportMap:
+    """Read and check a map.
+
+    Raises:
+        InputError: a key, a channel or a value is not permitted.
+    """
+    source = Source(path)
+    data = source.data
+    check_keys(data, KEYS, source, ())
+    numbers: _Numbers = build(_Numbers, {key: data[key] for key in _Numbers._fields if key in data}, source, ())
+    rig = numbers.rig if "rig" in data else _rig_of(mapping(data.get("channels", {}), source, ("channels",)), data)
+    return ImportMap(
+        _channels(data, rig, source),
+        rig,
+        build(AxisMap, data["time"], source, ("time",)) if "time" in data else None,
+        numbers.sample_rate,
+        build(AxisMap, data["distance"], source, ("distance",)) if "distance" in data else None,
+        build(TextLayout, data["csv"], source, ("csv",)) if "csv" in data else AS_FOUND,
+        numbers.resample,
+        _runs(data, source),
+        numbers.gaps,
+        _align(data, source),
+        build(Actuator, data["actuator"], source, ("actuator",)) if "actuator" in data else None,
+        {run: str(repeated) for run, repeated in mapping(data.get("repeats", {}), source, ("repeats",)).items()},
+    )
+
+
+def _rig_of(channels: Mapping[str, object], data: Mapping[str, object]) -> Rig:
+    """Return the rig that a map without `rig` is of."""
+    if "distance" in data:
+        return "road"
+    return "damper_bench" if "displacement" in channels else "seat"
+
+
+def _channels(data: Mapping[str, object], rig: Rig, source: Source) -> dict[str, ChannelMap]:
+    entries = mapping(data.get("channels", {}), source, ("channels",))
+    if not entries:
+        raise source.error((), "key 'channels' is missing; write channels: {floor_acceleration: {column: a, unit: g}}")
+    if rig in CHANNELS:
+        check_keys(entries, CHANNELS[rig], source, ("channels",))
+    channels: dict[str, ChannelMap] = {}
+    for name, entry in entries.items():
+        channels[name] = build(ChannelMap, entry, source, ("channels", name))
+        if (channels[name].column is None) == (channels[name].value is None):
+            raise source.error(("channels", name), "give either the name of its column, or value for a constant")
+    return channels
+
+
+def _runs(data: Mapping[str, object], source: Source) -> dict[str, list[str]]:
+    runs = mapping(data.get("runs", {}), source, ("runs",))
+    for name, files in runs.items():
+        if not isinstance(files, list) or not files or not all(isinstance(file, str) for file in files):
+            raise source.error(("runs", name), "is no list of files; write run-a: [file1.csv, file2.csv]")
+    return cast("dict[str, list[str]]", dict(runs))
+
+
+def _align(data: Mapping[str, object], source: Source) -> dict[str, float]:
+    stated = mapping(data.get("align", {}), source, ("align",))
+    for name, value in stated.items():
+        if not isinstance(value, int | float) or isinstance(value, bool):
+            raise source.error(("align", name), f"{value} is no number; write seconds, such as 0.25")
+    return {name: float(cast("float", value)) for name, value in stated.items()}
+
+
+def check_files(runs: Mapping[str, Sequence[str]], files: Sequence[str], path: Path) -> None:
+    """Raise InputError at a file of a map's runs that was not given."""
+    for run, names in runs.items():
+        for name in names:
+            if name not in files:
+                raise InputError(
+                    f"{path}, runs.{run}: '{name}' was not given{nearest(name, files)}; given: {', '.join(files)}"
+                )

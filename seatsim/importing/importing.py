@@ -1,0 +1,151 @@
+"""The way in: files and a map, or the map that is proposed for them, become a recording or a road."""
+
+from __future__ import annotations
+
+import dataclasses
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from seatsim.importing.assembly import Assembled, assemble
+from seatsim.importing.damage import QUIET, noise_of
+from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map
+from seatsim.importing.map_text import write_map
+from seatsim.importing.matching import propose
+from seatsim.importing.nominal import make_nominal
+from seatsim.importing.readers.reading import read_file
+from seatsim.importing.road import assemble_road
+from seatsim.importing.signals import DataFile
+from seatsim.importing.writing import write_recording, write_road
+from seatsim.recordings.channel_units import CHANNELS
+from seatsim.recordings.quality.examination import examine, merge_issues
+from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.recording import load_recording
+from seatsim.schema.errors import InputError
+
+OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
+"""Endings of files that lie beside data and hold none."""
+
+
+class Import(NamedTuple):
+    """What was imported: the map as used, whether it was proposed, the files written, sentences, and doubts.
+
+    `rate` in Hz and the names of the `runs` are those of a recording; a road has none.
+    """
+
+    folder: Path
+    map: ImportMap
+    is_proposed: bool
+    written: list[Path]
+    notes: list[str]
+    doubts: list[Issue]
+    rate: float | None = None
+    runs: tuple[str, ...] = ()
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the import as JSON has it."""
+        channels = {name: {key: value for key, value in entry._asdict().items() if value is not None}
+                    for name, entry in self.map.channels.items()}  # fmt: skip
+        return {
+            "folder": str(self.folder), "rig": self.map.rig, "sample_rate": self.rate, "runs": list(self.runs),
+            "channels": channels, "proposed": self.is_proposed, "align": self.map.align,
+            "written": [path.name for path in self.written], "notes": self.notes,
+            "doubts": [issue._asdict() for issue in self.doubts],
+        }  # fmt: skip
+
+
+def import_files(
+    paths: Sequence[Path], folder: Path, map_file: Path | None = None, nominal: str | None = None
+) -> Import:
+    """Write a recording, or a road, made of files.
+
+    Without `map_file` the map is proposed from names and units. Where it cannot be used as it is, it is written to the
+    folder to be completed, and nothing else is.
+
+    Raises:
+        InputError: a file or the map is wrong, the proposal is incomplete, or the data contradict the map.
+    """
+    stated = read_map(map_file) if map_file else None
+    files = [read_file(path, stated.csv if stated else None) for path in _data_files(paths)]
+    notes = [f"{file.path.name}: {note}" for file in files for note in file.notes]
+    if stated is None:
+        used = _proposed(files, folder)
+    else:
+        used = stated
+        check_files(used.runs, [file.path.name for file in files], map_file or Path(FILE))
+    if used.rig == "road":
+        road, doubts = assemble_road(files, used)
+        return Import(folder, used, stated is None, write_road(folder, road, used), notes, doubts)
+    assembled = _assembled(files, used, folder, stated is None)
+    scenario = make_nominal(nominal, used.rig, assembled.runs[0].table) if nominal else None
+    doubts = merge_issues(assembled.doubts, len(assembled.runs)) + (_examined(assembled, scenario) if scenario else [])
+    written = write_recording(folder, assembled, scenario)
+    runs = tuple(run.name for run in assembled.runs)
+    notes += assembled.notes
+    return Import(folder, assembled.map, stated is None, written, notes, doubts, assembled.rate, runs)
+
+
+def _data_files(paths: Sequence[Path]) -> list[Path]:
+    """Return the files, those of a folder in the order of their names."""
+    found = []
+    for path in paths:
+        if path.is_dir():
+            inside = sorted(each for each in path.iterdir() if each.is_file() and not each.name.startswith("."))
+            found += [each for each in inside if not each.name.lower().endswith(OWN_FILES)]
+        else:
+            found.append(path)
+    if not found:
+        raise InputError(f"{paths[0]}: holds no data file; give files, or a folder of them")
+    return found
+
+
+def _proposed(files: Sequence[DataFile], folder: Path) -> ImportMap:
+    """Return the proposed map.
+
+    Raises:
+        InputError: something is open in it; it was written to the folder to be completed.
+    """
+    proposal = propose(files)
+    if proposal.open:
+        raise _to_be_completed(f"{files[0].path}: {'; '.join(proposal.open)}", proposal.map, folder)
+    return proposal.map
+
+
+def _to_be_completed(problem: str, proposed: ImportMap, folder: Path) -> InputError:
+    """Write a proposed map that cannot be used as it is, and return the error that asks to complete it."""
+    path = write_map(folder / FILE, proposed)
+    return InputError(f"{problem}; the map so far is in {path}: complete it and give it by --map {path}")
+
+
+def _assembled(files: Sequence[DataFile], used: ImportMap, folder: Path, is_proposed: bool) -> Assembled:
+    """Return the runs of a map; one that was proposed is kept where it does not work, and commented where it does."""
+    if not is_proposed:
+        return assemble(files, used)
+    try:
+        assembled = assemble(files, used)
+    except InputError as error:
+        raise _to_be_completed(str(error), used, folder) from error
+    return assembled._replace(map=_commented(assembled))
+
+
+def _commented(assembled: Assembled) -> ImportMap:
+    """Return the proposed map with the noise floor and the doubts of each channel behind it."""
+    comments: dict[str, str] = {}
+    for name in assembled.map.channels:
+        kinds = {issue.kind: issue.severity for issue in assembled.doubts if issue.channel == name}
+        noise = noise_of(assembled.runs[0].table[name], assembled.rate)
+        unit = CHANNELS[assembled.map.rig][name]
+        said = [kind for kind, severity in kinds.items() if severity == "warning"]
+        if noise and not any(kind in kinds for kind in QUIET):
+            said.append(f"floor at high frequencies {noise:.2g} {unit}: noise_rms, if it is the sensor's")
+        if said:
+            comments[name] = "; ".join(said)
+    return dataclasses.replace(assembled.map, comments=comments)
+
+
+def _examined(assembled: Assembled, scenario: Mapping[str, object]) -> list[Issue]:
+    """Return the issues that `gap` and `diagnose` will name, from a copy in a temporary folder."""
+    with tempfile.TemporaryDirectory() as place:
+        write_recording(Path(place), assembled, scenario)
+        return examine(load_recording(place)).issues

@@ -1,0 +1,83 @@
+"""What a recording holds: its channels, the issues that `gap` and `diagnose` name, and noise that it does not state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from seatsim.importing.damage import QUIET
+from seatsim.importing.doubts import doubt_channel
+from seatsim.importing.inspection import ChannelSummary, Inspection, summarise
+from seatsim.importing.names import quantity_of
+from seatsim.importing.relations import doubt_rig
+from seatsim.importing.signals import Signal
+from seatsim.recordings.quality.examination import examine, merge_issues
+from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.recording import Recording, load_recording
+
+SWITCHED = ("current_command", "command_voltage")
+"""Channels that are logged and not measured, so that they have no noise."""
+
+
+def inspect_recording(folder: Path) -> Inspection:
+    """Return what a recording holds.
+
+    Raises:
+        InputError: its header, a table or its nominal scenario cannot be read.
+    """
+    recording = load_recording(folder)
+    rate = recording.header.sample_rate
+    channels: dict[str, list[ChannelSummary]] = {}
+    doubts: list[Issue] = []
+    for run in recording.runs:
+        table = recording.table(run)
+        signals = [Signal(name, recording.channels[name].unit, values) for name, values in table.items()]
+        channels[run] = [summarise(signal, signal.unit, signal.name, rate) for signal in signals]
+        found = [
+            issue for name, values in table.items() for issue in doubt_channel(name, values, rate, quantity_of(name))
+        ]
+        found += doubt_rig(table, rate)
+        doubts += [issue._replace(sentence=f"{run}, {issue.sentence}", run=run) for issue in found]
+    doubts = merge_issues(doubts, len(recording.runs))
+    doubts += _offered(recording, channels, doubts)
+    if recording.nominal.exists():
+        doubts += examine(recording).issues
+    else:
+        text = f"{recording.header.nominal} is missing; signs, units and delays are not compared with a simulation"
+        doubts.append(Issue("warning", "nominal", text))
+    return Inspection(str(folder), "recording", channels, doubts)
+
+
+def _offered(
+    recording: Recording, channels: dict[str, list[ChannelSummary]], doubts: Sequence[Issue]
+) -> Iterator[Issue]:
+    """Yield the noise of each measured channel that states none: of its floor, or of repeats, which show all of it."""
+    for name, entry in recording.channels.items():
+        if entry.noise_rms > 0.0 or name in SWITCHED:
+            continue
+        repeated = _of_repeats(recording, name)
+        floor = min(
+            (each.noise for held in channels.values() for each in held if each.name == name and each.noise), default=0.0
+        )
+        is_quiet = any(issue.channel == name and issue.kind in QUIET for issue in doubts)
+        if repeated:
+            text = (
+                f"repeats of one excitation differ by noise_rms: {repeated:.2g}, with {floor:.2g} at high frequencies"
+            )
+            yield Issue("note", "noise", f"{name}: states no noise; {text}", name)
+        elif floor and not is_quiet:
+            text = f"states no noise; its floor at high frequencies shows noise_rms: {floor:.2g}"
+            yield Issue("note", "noise", f"{name}: {text}", name)
+
+
+def _of_repeats(recording: Recording, channel: str) -> float:
+    """Return the RMS of what does not come again in a repeat, over the root of 2; 0 without repeats."""
+    found = []
+    for run, entry in recording.runs.items():
+        if entry.repeat_of is not None:
+            first, second = (recording.table(name)[channel] for name in (entry.repeat_of, run))
+            rows = min(len(first), len(second))
+            found.append(float(np.std(first[:rows] - second[:rows])) / 2**0.5)
+    return min(found, default=0.0)

@@ -1,0 +1,177 @@
+"""What a file or a recording holds: every channel with unit, rate, range, RMS and noise, and every doubt about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.importing.axis_doubts import doubt_distance, doubt_time
+from seatsim.importing.damage import noise_of
+from seatsim.importing.doubts import doubt_channel
+from seatsim.importing.import_map import Rig
+from seatsim.importing.matching import Column, channel_of
+from seatsim.importing.names import DIMENSION, is_of, read_name, without_unit
+from seatsim.importing.readers.reading import TextLayout, read_file
+from seatsim.importing.relations import doubt_pairs
+from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.importing.time_axis import Axis, measured_axis
+from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
+from seatsim.recordings.quality.issue import Issue
+from seatsim.schema.units import DIMENSIONS, conversion
+
+BLOCKS = "▁▂▃▄▅▆▇█"
+SPARKS = 24
+"""Letters of a sparkline."""
+RARE = 0.01
+"""Share of rows in which a channel repeats itself, above which it is too coarse to show rows written twice."""
+
+
+class ChannelSummary(NamedTuple):
+    """One channel: figures in the unit that stands there; `noise` is the RMS that the high-frequency floor shows.
+
+    `channel` is the channel of a recording that its name means, None where it means none.
+    """
+
+    name: str
+    unit: str
+    channel: str | None
+    rate: float | None
+    rows: int
+    low: float
+    high: float
+    mean: float
+    rms: float
+    noise: float | None
+    spark: str
+
+
+class Inspection(NamedTuple):
+    """The channels of a file or a recording, by group, and the doubts about them."""
+
+    source: str
+    format: str
+    channels: dict[str, list[ChannelSummary]]
+    doubts: list[Issue]
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the inspection as JSON has it."""
+        channels = [{"group": group, **each._asdict()} for group, held in self.channels.items() for each in held]
+        doubts = [issue._asdict() for issue in self.doubts]
+        return {"source": self.source, "format": self.format, "channels": channels, "doubts": doubts}
+
+
+def inspect_file(path: Path, layout: TextLayout | None = None) -> Inspection:
+    """Return what a file holds.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    file = read_file(path, layout)
+    channels: dict[str, list[ChannelSummary]] = {}
+    doubts = [Issue("note", "left_out", note) for note in file.notes]
+    for group in file.groups:
+        summaries, found = _group(group)
+        channels[group.name] = summaries
+        doubts += found
+    return Inspection(str(path), file.format, channels, [*doubts, *_repeated_rows(file)])
+
+
+def _group(group: Group) -> tuple[list[ChannelSummary], list[Issue]]:
+    """Return the channels of a group, and the doubts about them, their time and what they are to each other."""
+    columns = [Column(group, signal, read_name(signal.name, signal.unit)) for signal in group.signals]
+    clock = next((column for column in columns if column.meaning.quantity == "time"), None)
+    axis = _axis(clock) if clock else None
+    rate = axis.rate if axis else group.rate
+    found = list(doubt_time(axis, clock.signal.name)) if axis and clock else []
+    rig: Rig = "seat" if any(column.meaning.place for column in columns) else "damper_bench"
+    found += [
+        issue
+        for c in columns
+        if c.meaning.quantity == "distance"
+        for issue in doubt_distance(_in_si(c)[0], c.signal.name)
+    ]
+    known: dict[str, Array] = {}
+    quantities: dict[str, str | None] = {}
+    summaries = []
+    for column in columns:
+        if column is clock or column.meaning.quantity == "distance":
+            continue
+        values, quantity = _in_si(column)
+        if column.meaning.quantity != "mark":
+            found += doubt_channel(column.signal.name, values, None if group.is_road else rate, quantity)
+        known[column.signal.name], quantities[column.signal.name] = values, quantity
+        summaries.append(summarise(column.signal, column.meaning.unit, channel_of(column, rig), rate))
+    parts = _longest_part(axis, known) if axis else known
+    commands = {column.signal.name for column in columns if column.meaning.is_command}
+    return summaries, [*found, *doubt_pairs(parts, rate, quantities, commands)]
+
+
+def _axis(clock: Column) -> Axis | None:
+    unit = clock.meaning.unit if clock.meaning.unit and is_of(clock.meaning.unit, "time") else "s"
+    values = clock.signal.values[np.isfinite(clock.signal.values)]
+    return measured_axis(conversion(unit, "s").factor * values) if len(values) > 2 else None
+
+
+def _longest_part(axis: Axis, channels: Mapping[str, Array]) -> dict[str, Array]:
+    """Return the channels between two gaps that are furthest apart: a derivative across a gap means nothing."""
+    edges = np.concatenate([[0], axis.breaks, [len(axis.times)]])
+    longest = int(np.argmax(np.diff(edges)))
+    return {name: values[edges[longest] : edges[longest + 1]] for name, values in channels.items()}
+
+
+def _in_si(column: Column) -> tuple[Array, str | None]:
+    """Return values in SI units with what they are, or as they stand and None where the unit is not known."""
+    quantity, unit = column.meaning.quantity, column.meaning.unit
+    if quantity not in DIMENSION:
+        return column.signal.values, None
+    wanted = DIMENSIONS[DIMENSION[quantity]]
+    is_own_name = without_unit(column.signal.name, "") in {*SEAT_CHANNELS, *BENCH_CHANNELS}
+    if not unit and is_own_name:
+        return column.signal.values, quantity
+    if not unit or not is_of(unit, quantity):
+        # Without a unit its size is no reason for a doubt, but its shape is.
+        return column.signal.values, quantity if quantity in ("displacement", "velocity") else None
+    found = conversion(unit, wanted)
+    return (column.signal.values if found == (1.0, 0.0) else found.factor * column.signal.values + found.zero), quantity
+
+
+def summarise(signal: Signal, unit: str, channel: str | None, rate: float | None) -> ChannelSummary:
+    """Return the figures of one channel."""
+    values = signal.values[np.isfinite(signal.values)] if np.isnan(signal.values).any() else signal.values
+    if not len(values):
+        return ChannelSummary(signal.name, unit, channel, rate, 0, np.nan, np.nan, np.nan, np.nan, None, "")
+    noise = noise_of(values, rate) if np.ptp(values) > 0.0 else None
+    low, high, mean = float(np.min(values)), float(np.max(values)), float(np.mean(values))
+    rms = float(np.sqrt(values @ values / len(values)))
+    return ChannelSummary(
+        signal.name, unit, channel, rate, len(signal.values), low, high, mean, rms, noise, spark_of(values)
+    )
+
+
+def spark_of(values: Array) -> str:
+    """Return the range of a channel over its length, as a line of blocks: each is as high as the swing there."""
+    edges = np.unique(np.linspace(0, len(values), SPARKS + 1).astype(int))
+    pieces = [values[a:b] for a, b in pairwise(edges)]
+    swing = np.array([float(np.ptp(piece)) if len(piece) > 1 else 0.0 for piece in pieces])
+    if swing.max() == 0.0:
+        return BLOCKS[0] * len(pieces)
+    return "".join(BLOCKS[round(float(each) / float(swing.max()) * (len(BLOCKS) - 1))] for each in swing)
+
+
+def _repeated_rows(file: DataFile) -> Iterator[Issue]:
+    """Yield rows that repeat the row before in every channel that varies, of which there are at least three."""
+    for group in file.groups:
+        steps = [np.diff(s.values) == 0.0 for s in group.signals if read_name(s.name).quantity != "time"]
+        varying = [same for same in steps if np.mean(same) < RARE]
+        if len(varying) < 3:
+            continue
+        rows = np.flatnonzero(np.all(varying, axis=0)) + 1
+        if len(rows):
+            text = (
+                f"{len(rows)} rows repeat the row before in all channels, first row {rows[0]}; they were written twice"
+            )
+            yield Issue("warning", "repeated_rows", text)

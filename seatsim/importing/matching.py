@@ -1,0 +1,203 @@
+"""Which column is which channel: a map proposed from names and units, and what could not be matched.
+
+A sign is never guessed. Where two columns fit a channel equally well, or a unit is not stated, the proposal leaves it
+open and says what to write.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.importing.import_map import AxisMap, ChannelMap, Gaps, ImportMap, Rig
+from seatsim.importing.names import DIMENSION, Meaning, is_of, read_name, without_unit
+from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.importing.time_axis import measured_axis
+from seatsim.recordings.channel_units import CHANNELS
+from seatsim.schema.units import DIMENSIONS
+
+NEEDED = {"seat": ("floor_acceleration",), "damper_bench": ("displacement", "damper_force"), "road": ()}
+BENCH_ONLY = ("displacement", "velocity", "command_voltage")
+SLOWEST, FASTEST = 20.0, 50_000.0
+"""Hz; a column of time without unit is in s where its rows are between these rates, else its unit is asked for."""
+LISTED = 12
+
+
+class Column(NamedTuple):
+    """A column with what its name says."""
+
+    group: Group
+    signal: Signal
+    meaning: Meaning
+
+
+class Proposal(NamedTuple):
+    """A map, and sentences on what is open in it: without any it can be used."""
+
+    map: ImportMap
+    open: tuple[str, ...]
+
+
+def propose(files: Sequence[DataFile], rig: Rig | None = None) -> Proposal:
+    """Return the map of some files that belong to one rig."""
+    columns = [
+        Column(group, signal, read_name(signal.name, signal.unit))
+        for file in files for group in file.groups for signal in group.signals
+    ]  # fmt: skip
+    if rig == "road" or (rig is None and _is_road(columns)):
+        return _propose_road(columns)
+    chosen = rig or _rig_of(columns)
+    candidates = _candidates(columns, chosen)
+    channels, open_ends = {}, []
+    for name in CHANNELS[chosen]:
+        if name in candidates:
+            entry, problem = _entry(name, candidates[name], CHANNELS[chosen][name])
+            channels[name] = entry
+            open_ends += [problem] if problem else []
+        elif name in NEEDED[chosen]:
+            open_ends.append(_missing(name, columns, channels))
+            channels[name] = ChannelMap()
+    if "command_voltage" in channels:
+        open_ends.append("command_voltage: write actuator: {gain: 1.0}, with the commanded current per volt in A/V")
+    holding = [column.group for held in candidates.values() for column in held]
+    time, problem, gaps = _time([c for c in columns if any(c.group is group for group in holding)], len(files) == 1)
+    open_ends += [problem] if problem else []
+    return Proposal(ImportMap(channels, chosen, time, gaps=gaps), tuple(open_ends))
+
+
+def _rig_of(columns: Sequence[Column]) -> Rig:
+    """Return the rig that the columns are of: a bench has force and displacement, and no acceleration of a floor."""
+    quantities = {column.meaning.quantity for column in columns}
+    names = {without_unit(column.signal.name, column.meaning.unit) for column in columns}
+    if "floor_acceleration" in names or any(_seat_channel(c.meaning) == "floor_acceleration" for c in columns):
+        return "seat"
+    return "damper_bench" if {"displacement", "force"} <= quantities else "seat"
+
+
+def _is_road(columns: Sequence[Column]) -> bool:
+    if any(column.group.is_road for column in columns):
+        return True
+    quantities = [column.meaning.quantity for column in columns]
+    return "distance" in quantities and "elevation" in quantities and "acceleration" not in quantities
+
+
+def channel_of(column: Column, rig: Rig) -> str | None:
+    """Return the channel that a column may be, None where its name does not say so."""
+    exact = without_unit(column.signal.name, column.meaning.unit)
+    if exact in CHANNELS[rig]:
+        return exact
+    return _seat_channel(column.meaning) if rig == "seat" else _bench_channel(column.meaning)
+
+
+def _seat_channel(meaning: Meaning) -> str | None:
+    if meaning.quantity == "acceleration":
+        return f"{meaning.place}_acceleration" if meaning.place and not meaning.is_lateral else None
+    if meaning.quantity == "displacement" and not meaning.is_command and meaning.place != "floor":
+        return "suspension_displacement"
+    return None if meaning.quantity in BENCH_ONLY or meaning.quantity == "voltage" else _damper_channel(meaning)
+
+
+def _bench_channel(meaning: Meaning) -> str | None:
+    if meaning.quantity in ("displacement", "velocity"):
+        return None if meaning.is_command else meaning.quantity
+    return "command_voltage" if meaning.quantity == "voltage" else _damper_channel(meaning)
+
+
+def _damper_channel(meaning: Meaning) -> str | None:
+    # A force or a temperature of the seat or the floor is not the damper's, unless it says so.
+    is_there = meaning.is_damper or meaning.place is None
+    if meaning.quantity == "current":
+        return "current_command" if meaning.is_command else "coil_current"
+    if meaning.quantity == "force":
+        return "damper_force" if is_there and not meaning.is_command else None
+    return "damper_temperature" if meaning.quantity == "temperature" and is_there else None
+
+
+def _candidates(columns: Sequence[Column], rig: Rig) -> dict[str, list[Column]]:
+    found: dict[str, list[Column]] = {}
+    for column in columns:
+        channel = channel_of(column, rig)
+        if channel is not None:
+            found.setdefault(channel, []).append(column)
+    return found
+
+
+def _entry(name: str, candidates: Sequence[Column], unit: str) -> tuple[ChannelMap, str]:
+    """Return the entry of a channel, and what is open in it."""
+    exact = [each for each in candidates if without_unit(each.signal.name, each.meaning.unit) == name]
+    fitting = exact or list(candidates)
+    names = list(dict.fromkeys(each.signal.name for each in fitting))
+    first = fitting[0]
+    quantity = _quantity(unit)
+    stated = first.meaning.unit if first.meaning.unit and is_of(first.meaning.unit, quantity) else ""
+    if not stated and without_unit(first.signal.name, "") == name:
+        stated = unit
+    entry = ChannelMap(first.signal.name, stated or None)
+    if len(names) > 1 and not exact:
+        return entry, f"{name}: {' and '.join(names[:LISTED])} fit equally well; keep one as its column"
+    if not stated:
+        return (
+            entry,
+            f"{name}: the file states no unit of '{first.signal.name}'; write it as unit, such as {_examples(unit)}",
+        )
+    return entry, ""
+
+
+def _quantity(unit: str) -> str:
+    dimension = next(name for name, each in DIMENSIONS.items() if each == unit)
+    return next(name for name, each in DIMENSION.items() if each == dimension)
+
+
+def _examples(unit: str) -> str:
+    from seatsim.schema.units import USUAL
+
+    return " or ".join(USUAL[unit][:3])
+
+
+def _missing(name: str, columns: Sequence[Column], channels: dict[str, ChannelMap]) -> str:
+    taken = {entry.column for entry in channels.values()}
+    left = list(
+        dict.fromkeys(c.signal.name for c in columns if c.signal.name not in taken and c.meaning.quantity != "time")
+    )
+    listed = ", ".join(left[:LISTED]) + (", ..." if len(left) > LISTED else "")
+    return f"{name}: no column is it by name; write channels: {{{name}: {{column: ..., unit: ...}}}}; left are {listed}"
+
+
+def _time(columns: Sequence[Column], is_one_file: bool) -> tuple[AxisMap | None, str, Gaps | None]:
+    """Return the column of time, what is open about it, and `split` where it has gaps.
+
+    Formats that state their rate need no column.
+    """
+    named = [column for column in columns if column.meaning.quantity == "time"]
+    if not named:
+        if all(column.group.rate for column in columns):
+            return None, "", None
+        return None, "time: no column holds the time; write sample_rate: in Hz, or time: {column: ..., unit: s}", None
+    first = named[0]
+    unit = first.meaning.unit if first.meaning.unit and is_of(first.meaning.unit, "time") else ""
+    axis = measured_axis(first.signal.values[np.isfinite(first.signal.values)])
+    gaps: Gaps | None = "split" if axis is not None and len(axis.breaks) and is_one_file else None
+    if not unit:
+        if axis is None or not SLOWEST <= axis.rate <= FASTEST:
+            seen = f"{1.0 / axis.rate:.4g} apart" if axis else "not rising"
+            name = first.signal.name
+            problem = (
+                f"time: '{name}' has no unit, and its rows are {seen}; write time: {{column: {name}, unit: ms}} or s"
+            )
+            return AxisMap(first.signal.name, ""), problem, gaps
+        unit = "s"
+    return AxisMap(first.signal.name, unit), "", gaps
+
+
+def _propose_road(columns: Sequence[Column]) -> Proposal:
+    along = next((c for c in columns if c.meaning.quantity == "distance"), None)
+    tracks = [c for c in columns if c is not along and (c.meaning.quantity == "elevation" or c.group.is_road)]
+    channels = {c.signal.name: ChannelMap(c.signal.name, c.meaning.unit or "m") for c in tracks}
+    if along is None or not tracks:
+        return Proposal(
+            ImportMap(channels, "road"), ("distance: no column holds it; write distance: {column: ..., unit: m}",)
+        )
+    axis = AxisMap(along.signal.name, along.meaning.unit or "m")
+    return Proposal(ImportMap(channels, "road", distance=axis), ())

@@ -1,0 +1,39 @@
+"""MDF files of versions 3 and 4, read by asammdf; every channel group has its own time."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+
+from seatsim.importing.optional import need
+from seatsim.importing.readers.reading import TextLayout
+from seatsim.importing.signals import Array, DataFile, Group, Signal
+
+TIME = "time"
+
+
+def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
+    """Return the channel groups; groups of the same time are one."""
+    asammdf = need("asammdf", "MDF")
+    groups: list[Group] = []
+    with asammdf.MDF(io.BytesIO(content)) as file:
+        for index, group in enumerate(file.groups):
+            master = file.masters_db.get(index)
+            wanted = [(None, index, number) for number in range(len(group.channels)) if number != master]
+            chosen = file.select(wanted, ignore_value2text_conversions=True) if wanted else []
+            found = [each for each in chosen if each.samples.dtype.kind in "fiu" and each.samples.ndim == 1]
+            if found:
+                signals = [Signal(each.name, each.unit or "", each.samples.astype(np.float64)) for each in found]
+                _add(groups, f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
+    return DataFile(path, "", tuple(groups))
+
+
+def _add(groups: list[Group], name: str, time: Array, signals: list[Signal]) -> None:
+    """Add channels to the group that has the same time, or as a group of their own."""
+    for number, group in enumerate(groups):
+        if len(time) == group.rows and np.array_equal(group.signals[0].values, time):
+            groups[number] = group._replace(signals=(*group.signals, *signals))
+            return
+    groups.append(Group(name, (Signal(TIME, "s", time), *signals)))

@@ -1,0 +1,154 @@
+"""Which reader a file needs, chosen by its first bytes and else by its ending, and one error where it fails."""
+
+from __future__ import annotations
+
+import bz2
+import gzip
+import lzma
+import zipfile
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.importing.signals import DataFile, Group
+from seatsim.schema.errors import InputError, nearest
+
+SNIFFED = 4096
+"""Bytes from which a format is recognised."""
+LEAST_ROWS = 2
+
+
+class TextLayout(NamedTuple):
+    """What `map.yaml` states of a text table; None and 0 leave it to be found.
+
+    `header` counts the lines above the first row of numbers.
+    """
+
+    delimiter: str | None = None
+    decimal: str | None = None
+    header: int | None = None
+    encoding: str | None = None
+
+
+class Format(NamedTuple):
+    """A format: the module that reads it, how its files begin, and how they may end."""
+
+    name: str
+    module: str
+    begins: tuple[bytes, ...]
+    endings: tuple[str, ...]
+
+
+FORMATS = (
+    Format("Parquet", "arrow", (b"PAR1",), (".parquet", ".pq")),
+    Format("Feather", "arrow", (b"ARROW1", b"FEA1"), (".feather", ".arrow")),
+    Format("XLSX", "xlsx", (), (".xlsx", ".xlsm")),
+    Format("MAT v7.3", "hdf5", (b"MATLAB 7.3 MAT-file",), ()),
+    Format("MAT v5", "matlab", (b"MATLAB 5.0 MAT-file",), (".mat",)),
+    Format("HDF5", "hdf5", (b"\x89HDF\r\n\x1a\n",), (".h5", ".hdf5", ".hdf")),
+    Format("MDF", "mdf", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
+    Format("TDMS", "tdms", (b"TDSm",), (".tdms",)),
+    Format("UFF", "uff", (b"    -1",), (".uff", ".unv")),
+    Format("RPC III", "rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
+    Format("OpenCRG", "opencrg", (b"$CT", b"$ROAD_CRG", b"* "), (".crg",)),
+    Format("CSV", "text", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
+)
+"""Formats in the order in which they are tried."""
+KNOWN = ", ".join(each.name for each in FORMATS)
+NOT_TABLES = {
+    b"%PDF": "a PDF", b"\x89PNG": "a picture", b"\xff\xd8\xff": "a picture", b"\x7fELF": "a program",
+    b"\xd0\xcf\x11\xe0": "an Excel file of the old kind (.xls): save it as .xlsx",
+}  # fmt: skip
+PACKED: dict[bytes, Callable[[bytes], bytes]] = {
+    b"\x1f\x8b": gzip.decompress, b"BZh": bz2.decompress, b"\xfd7zXZ": lzma.decompress,
+}  # fmt: skip
+
+
+def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
+    """Return the channels of a file.
+
+    Raises:
+        InputError: there is no such file, its format is none of those known, its library is not installed, or it is
+            empty, truncated or damaged.
+    """
+    content = _content(path)
+    found = _recognise(path, content)
+    reader = import_module(f"seatsim.importing.readers.{found.module}")
+    try:
+        file: DataFile = reader.read(path, content, layout or TextLayout())
+    except InputError:
+        raise
+    except Exception as error:  # libraries raise whatever a damaged file makes them stumble over
+        reason = str(error).strip().split("\n")[0] or type(error).__name__
+        problem = f"cannot be read as {found.name} ({reason}); it is truncated or damaged: export it again"
+        raise InputError(f"{path}: {problem}") from error
+    return _checked(file._replace(format=found.name))
+
+
+def _content(path: Path) -> bytes:
+    """Return the bytes of a file, unpacked where it is packed."""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        beside = [each.name for each in path.parent.iterdir()] if path.parent.is_dir() else []
+        raise InputError(f"{path}: cannot be read: {error.strerror}{nearest(path.name, beside)}") from error
+    for magic, unpack in PACKED.items():
+        if content.startswith(magic):
+            try:
+                content = unpack(content)
+            except (OSError, EOFError, ValueError, lzma.LZMAError, zipfile.BadZipFile) as error:
+                raise InputError(f"{path}: cannot be unpacked ({error}); it is truncated: copy it again") from error
+    if not content.strip(b"\0 \r\n\t"):
+        raise InputError(f"{path}: is empty; export it again")
+    return content
+
+
+def _recognise(path: Path, content: bytes) -> Format:
+    head, names = content[:SNIFFED], {each.name: each for each in FORMATS}
+    for magic, what in NOT_TABLES.items():
+        if head.startswith(magic):
+            raise InputError(f"{path}: is {what}; permitted: {KNOWN}")
+    if head.startswith(b"PK\x03\x04"):
+        return names["XLSX"]
+    if b"$ROAD_CRG" in head.upper() or b"$KD_DEFINITION" in head.upper():
+        return names["OpenCRG"]
+    for each in FORMATS:
+        if head.startswith(each.begins) and each.name != "OpenCRG":
+            return each
+    ending = next((each for each in FORMATS if path.name.lower().endswith(each.endings)), None)
+    if ending is not None and ending.name != "CSV":
+        raise InputError(f"{path}: does not begin as {ending.name} does; it is damaged, or has a wrong ending")
+    if not _is_text(head):
+        raise InputError(f"{path}: is no table in a known format; permitted: {KNOWN}")
+    return names["CSV"]
+
+
+def _is_text(head: bytes) -> bool:
+    """Say whether bytes are text: without control characters, or UTF-16."""
+    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return True
+    control = sum(byte < 9 or 13 < byte < 32 for byte in head)
+    return control == 0
+
+
+def _checked(file: DataFile) -> DataFile:
+    """Return a file whose groups all hold rows and numbers."""
+    groups = tuple(group for group in file.groups if group.signals and group.rows >= LEAST_ROWS)
+    if not groups:
+        raise InputError(f"{file.path}: holds no channel with at least {LEAST_ROWS} rows of numbers; export it again")
+    return file._replace(groups=tuple(_named_once(group) for group in groups))
+
+
+def _named_once(group: Group) -> Group:
+    """Return a group whose channels have distinct names: a second `force` is `force#2`."""
+    seen: dict[str, int] = {}
+    signals = []
+    for signal in group.signals:
+        seen[signal.name] = seen.get(signal.name, 0) + 1
+        number = seen[signal.name]
+        values = np.ascontiguousarray(signal.values, dtype=np.float64)
+        signals.append(signal._replace(name=f"{signal.name}#{number}" if number > 1 else signal.name, values=values))
+    return group._replace(signals=tuple(signals))

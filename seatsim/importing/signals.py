@@ -1,0 +1,60 @@
+"""What every reader returns: a file's channels, in groups that share a time base, as they stand there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Signal(NamedTuple):
+    """One channel as a file has it: `values` of shape (N,), NaN where nothing stands; `unit` is empty if not stated."""
+
+    name: str
+    unit: str
+    values: Array
+
+
+class Group(NamedTuple):
+    """Channels of equal length on one time base.
+
+    `rate` in Hz and `start` in s are what the format itself states beside the channels, None where it states nothing.
+    `is_road` tells that rows follow each other in distance.
+    """
+
+    name: str
+    signals: tuple[Signal, ...]
+    rate: float | None = None
+    start: float | None = None
+    is_road: bool = False
+
+    @property
+    def rows(self) -> int:
+        """Values of each channel."""
+        return len(self.signals[0].values)
+
+    def find(self, name: str) -> Signal | None:
+        """Return the channel of this name."""
+        return next((signal for signal in self.signals if signal.name == name), None)
+
+
+class DataFile(NamedTuple):
+    """A file's groups, the name of its format, and sentences on what of it was not taken."""
+
+    path: Path
+    format: str
+    groups: tuple[Group, ...]
+    notes: tuple[str, ...] = ()
+
+
+def groups_by_length(name: str, signals: list[Signal], rate: float | None = None) -> list[Group]:
+    """Return channels as groups of equal length, in the order in which the lengths come."""
+    lengths = dict.fromkeys(len(signal.values) for signal in signals)
+    parts = [tuple(signal for signal in signals if len(signal.values) == length) for length in lengths]
+    if len(parts) == 1:
+        return [Group(name, parts[0], rate)]
+    return [Group(f"{name}, {part[0].name}" if name else part[0].name, part, rate) for part in parts]

@@ -1,0 +1,82 @@
+"""An import as files: a recording of section 3 with its map, or a road with an excitation that drives on it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from ruamel.yaml import YAML
+
+from seatsim.importing.assembly import Assembled
+from seatsim.importing.import_map import FILE, ImportMap
+from seatsim.importing.map_text import write_map
+from seatsim.importing.nominal import NOMINAL
+from seatsim.importing.road import DISTANCE
+from seatsim.importing.signals import Array
+from seatsim.recordings.channel_units import CHANNELS
+from seatsim.schema.files import write_whole
+
+HEADER = "recording.yaml"
+ROAD, EXCITATION = "road.csv.gz", "excitation.yaml"
+SPEED = 12.0
+"""m/s at which the excitation drives on an imported road until another is stated."""
+
+
+def write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
+    """Write tables, nominal scenario, map and last the header of a recording, each whole."""
+    paths = [_write_table(folder / f"{run.name}.csv.gz", run.table, assembled.rate) for run in assembled.runs]
+    if nominal is not None:
+        paths.append(_write_yaml(folder / NOMINAL, nominal))
+    paths.append(write_map(folder / FILE, assembled.map))
+    return [*paths, _write_yaml(folder / HEADER, _header(assembled))]
+
+
+def _header(assembled: Assembled) -> dict[str, object]:
+    used = assembled.map
+    channels: dict[str, dict[str, object]] = {}
+    for name, entry in used.channels.items():
+        channels[name] = {"unit": CHANNELS[used.rig][name]}
+        if entry.noise_rms is not None:
+            channels[name]["noise_rms"] = entry.noise_rms
+    header: dict[str, object] = {
+        "rig": used.rig, "sample_rate": assembled.rate, "nominal": NOMINAL,
+        "runs": [{"name": run.name, "file": f"{run.name}.csv.gz", **_repeat(run.name, used)} for run in assembled.runs],
+        "channels": channels,
+    }  # fmt: skip
+    return header | ({"actuator": {"gain": used.actuator.gain}} if used.actuator else {})
+
+
+def _repeat(run: str, used: ImportMap) -> dict[str, str]:
+    return {"repeat_of": used.repeats[run]} if run in used.repeats else {}
+
+
+def _write_table(path: Path, table: Mapping[str, Array], rate: float) -> Path:
+    import pandas as pd
+
+    rows = len(next(iter(table.values())))
+    frame = pd.DataFrame({"time": np.arange(rows) / rate, **table})
+    compression = {"method": "gzip", "compresslevel": 3}
+    return write_whole(path, lambda part: frame.to_csv(part, index=False, float_format="%.9g", compression=compression))
+
+
+def write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> list[Path]:
+    """Write a road as a table over distance, and a scenario's `excitation` that drives on its middle track."""
+    import pandas as pd
+
+    frame = pd.DataFrame(road)
+    tracks = [name for name in road if name != DISTANCE]
+    excitation = {"excitation": {"kind": "table", "path": ROAD, "distance_column": DISTANCE,
+                                 "column": tracks[len(tracks) // 2], "speed": SPEED}}  # fmt: skip
+    return [
+        write_whole(
+            folder / ROAD, lambda part: frame.to_csv(part, index=False, float_format="%.9g", compression="gzip")
+        ),
+        write_map(folder / FILE, stated),
+        _write_yaml(folder / EXCITATION, excitation),
+    ]
+
+
+def _write_yaml(path: Path, content: Mapping[str, object]) -> Path:
+    return write_whole(path, partial(YAML(typ="safe").dump, content))

@@ -1,0 +1,62 @@
+"""Doubts about a scenario that is valid: values that no seat has, and a sweep that changes nothing."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from seatsim.effects.base import acts_on
+from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.fields import describe, field_names
+from seatsim.schema.plausible import doubt
+from seatsim.schema.registry import Record, is_own
+
+TEMPERATURE = "temperature"
+
+
+def list_doubts(scenario: Scenario) -> list[str]:
+    """Return a sentence for each value that is unusual for a seat, and for a temperature that nothing depends on."""
+    doubts = []
+    for section, record in _list_records(scenario).items():
+        for field in describe(type(record)):
+            problem = doubt(field, getattr(record, field.name))
+            if problem:
+                keys = (section, field.name) if section != TEMPERATURE or _is_thermal(scenario) else (section,)
+                doubts.append(f"{_place(scenario, keys)}: {problem}")
+    if TEMPERATURE in scenario.label and not _depends_on_temperature(scenario):
+        doubts.append(
+            f"{_place(scenario, (TEMPERATURE,))}: nothing depends on the temperature that is varied, so that all runs"
+            " are the same; state damper.temperature_factors, or damper.thermal_fade under effects"
+        )
+    return doubts
+
+
+def _list_records(scenario: Scenario) -> dict[str, Record]:
+    temperature = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal(scenario.temperature)
+    found = {"plant": scenario.plant, "actuator": scenario.coil, TEMPERATURE: temperature,
+             "excitation": cast("Record | None", scenario.excitation), "start": scenario.start}  # fmt: skip
+    return {section: record for section, record in found.items() if record is not None}
+
+
+def _is_thermal(scenario: Scenario) -> bool:
+    return isinstance(scenario.temperature, Thermal)
+
+
+def _place(scenario: Scenario, keys: tuple[str, ...]) -> str:
+    return scenario.source.place(keys) if scenario.source else f"{scenario.name}, {'.'.join(keys)}"
+
+
+def _depends_on_temperature(scenario: Scenario) -> bool:
+    """Return whether damper, effects, law or the damper that an inverse assumes change with the temperature."""
+    inverse, law = (scenario.control.inverse, type(scenario.control.law)) if scenario.control else (None, None)
+    # What a law of the user's own reads is not known.
+    if law is not None and (is_own(law) or any(TEMPERATURE in name for name in field_names(law))):
+        return True
+    factors = [scenario.damper.factors, *([inverse.damper.factors] if inverse else [])]
+    return any(map(_act, factors)) or any(
+        acts_on(type(effect), ("factors", TEMPERATURE)) for effect in scenario.effects
+    )
+
+
+def _act(factors: TemperatureFactors) -> bool:
+    return any((factors.viscous, factors.stiffness, factors.yield_force))

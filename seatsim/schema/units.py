@@ -1,0 +1,105 @@
+"""The unit table of the whole project: what a unit's name means, and how its values become those of another unit.
+
+Units are those of `pint`, in the spellings that loggers and tables use: `m/s2`, `m/s²`, `m_s2`, `g` of an acceleration,
+`degF`, `°C`, `lbf`, `daN`, `kp`. Pint is loaded only where a unit is not spelt as the one that is wanted.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+from seatsim.schema.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    import pint
+
+DIMENSIONS = {
+    "acceleration": "m/s^2", "length": "m", "velocity": "m/s", "force": "N", "current": "A", "voltage": "V",
+    "temperature": "degC", "time": "s",
+}  # fmt: skip
+"""The unit of every kind of quantity that a measured channel may hold."""
+STANDARD_GRAVITY = 9.80665
+"""m/s^2."""
+USUAL = {
+    "m/s^2": ("m/s^2", "g", "mm/s^2", "ft/s^2"), "m": ("m", "cm", "mm", "um", "inch"), "m/s": ("m/s", "mm/s", "km/h"),
+    "N": ("N", "kN", "daN", "lbf", "kgf"), "A": ("A", "mA"), "V": ("V", "mV"), "degC": ("degC", "degF", "K"),
+    "s": ("s", "ms", "us", "min"),
+}  # fmt: skip
+"""Units in which a quantity is usually recorded, by its SI unit; errors list them, doubts compare with them."""
+OWN_SPELLINGS = {
+    "m/s^2": {"g": "standard_gravity", "gn": "standard_gravity", "g_n": "standard_gravity", "gal": "cm/s^2"},
+    "degC": {"c": "degC", "f": "degF", "celsius": "degC", "fahrenheit": "degF", "k": "kelvin", "deg c": "degC",
+             "deg f": "degF", "grad c": "degC"},
+    "N": {"lb": "lbf", "lbs": "lbf", "kg": "kgf", "kp": "kgf"},
+    "A": {"amp": "A", "amps": "A"},
+    "V": {"volt": "V", "volts": "V"},
+    "s": {"sec": "s", "msec": "ms", "usec": "us", "sek": "s"},
+    "m": {'"': "inch", "in": "inch", "zoll": "inch"},
+}  # fmt: skip
+"""Spellings that mean something else, or nothing, to pint, by the unit that is wanted: `g` of a mass is a gram."""
+SIGNS = {"²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF", "µ": "u", "μ": "u", "·": "*", "⋅": "*"}
+
+
+class Conversion(NamedTuple):
+    """`factor` value + `zero` is the value in the wanted unit."""
+
+    factor: float
+    zero: float = 0.0
+
+
+def conversion(unit: str, wanted: str) -> Conversion:
+    """Return how values in a unit become values in the wanted one, such as `g` in `m/s^2`.
+
+    Raises:
+        InputError: there is no such unit, or it is one of another quantity.
+    """
+    if unit == wanted:
+        return Conversion(1.0)
+    found = find_conversion(unit, wanted)
+    if found is None:
+        usual = USUAL.get(wanted, (wanted,))
+        hint = nearest(unit, [each for each in usual if each != unit])
+        raise InputError(f"'{unit}' is no unit of a value in {wanted}{hint}; such are {', '.join(usual)}")
+    return found
+
+
+@functools.lru_cache(maxsize=256)
+def find_conversion(unit: str, wanted: str) -> Conversion | None:
+    """Return the conversion, None where there is none."""
+    text, target = _spelt(unit, wanted), _spelt(wanted, wanted)
+    if text == target:
+        return Conversion(1.0)
+    import pint
+
+    registry = _registry()
+    try:
+        source = registry.Unit(text)
+        at_zero = float(registry.Quantity(0.0, source).to(target).magnitude)
+        at_one = float(registry.Quantity(1.0, source).to(target).magnitude)
+    except (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, SyntaxError, KeyError):
+        # Pint parses an expression, and a text that is none fails in many ways.
+        return None
+    # The difference of two temperatures in degC is exact to 1e-13 only; factors of units have far fewer digits.
+    return Conversion(float(f"{at_one - at_zero:.13g}"), float(f"{at_zero:.13g}"))
+
+
+def _spelt(unit: str, wanted: str) -> str:
+    """Return a unit as pint spells it: `m_s2`, `m/s²` and `m/s2` are `m/s**2`."""
+    plain = unit.strip().strip("[]()")
+    own = OWN_SPELLINGS.get(wanted, {}).get(plain.lower())
+    if own is not None:
+        plain = own
+    for sign, ascii_sign in SIGNS.items():
+        plain = plain.replace(sign, ascii_sign)
+    plain = re.sub(r"^([A-Za-z]+)_([A-Za-z]+\d?)$", r"\1/\2", plain) if plain != "standard_gravity" else plain
+    plain = re.sub(r"\bsec\b", "s", plain)
+    return re.sub(r"([A-Za-z])\^?(-?\d)", r"\1**\2", plain)
+
+
+@functools.cache
+def _registry() -> pint.UnitRegistry[float]:
+    import pint
+
+    return pint.UnitRegistry()

@@ -1,0 +1,248 @@
+"""ISO 2631-1 figures of measured accelerations: each axis, their sum, a day's exposure, and what the seat passes on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.metrics.arrays import Array
+from seatsim.metrics.comfort import Dose, dose, find_shocks, join_doses, motion_sickness_dose
+from seatsim.metrics.directions import DIRECTIONS, POINTS, Direction, direction, point_of
+from seatsim.metrics.exposure import Exposure, assess_exposure
+from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmission
+from seatsim.metrics.weighting import weight
+from seatsim.recordings.acceleration_tables import STANDARD_GRAVITY, AccelerationRecord, load_accelerations, split_unit
+from seatsim.schema.errors import InputError, nearest
+
+FLOOR = {"floor.x": "x", "floor.y": "y", "floor.z": "z"}
+"""Axes at the base of the seat, and the axis of the seat whose weighting and SEAT factor they belong to."""
+AXES = (*DIRECTIONS, *FLOOR)
+ALIASES = {
+    **{axis: (axis, *(f"{a}_{axis}" for a in ("acc", "acceleration", "seat"))) for axis in ("x", "y", "z")},
+    "floor.z": ("floor_acceleration", "floor_z"),
+}
+"""Columns that are taken for an axis where no channel is named, without the unit at their end."""
+DRIVER = "driver_acceleration"
+"""Channel of a recording that stands for z on the seat."""
+
+OFFSET = 0.05
+"""Smallest mean in m/s^2 that is said to have been taken out."""
+SHORTEST = 108.0
+"""s; duration that ISO 2631-1:1997, 5.5, asks for random vibration from 1 Hz on (recalled)."""
+
+Blocks = Sequence[tuple[float, float]]
+
+
+class AxisAssessment(NamedTuple):
+    """Figures of one axis, weighted but without multiplying factors."""
+
+    column: str
+    direction: Direction
+    dose: Dose
+    shocks: tuple[str, ...]
+    """Why the basic method does not suffice (`seatsim.metrics.find_shocks`)."""
+    removed: float
+    """Mean that was taken out of the record before weighting, in its unit: an offset of the sensor, or gravity."""
+
+    @property
+    def method(self) -> str:
+        """`basic` (a_w) or `additional` (MTVV and VDV beside it; ISO 2631-1:1997, 6.3)."""
+        return "additional" if self.shocks else "basic"
+
+
+class MotionSickness(NamedTuple):
+    """Vertical motion weighted with Wf (ISO 2631-1:1997, clause 9): a_w in m/s^2 and MSDV_z in m/s^1.5."""
+
+    rms: float
+    msdv: float
+
+
+class Comfort(NamedTuple):
+    """What ISO 2631-1 says of a record, or of chosen blocks of its runs taken together."""
+
+    source: str
+    runs: tuple[str, ...]
+    duration: float
+    sample_rate: float
+    axes: Mapping[str, AxisAssessment]
+    totals: Mapping[str, float]
+    """Vibration total value a_v in m/s^2 by point of contact, and `overall` (ISO 2631-1:1997, 8.2.2 and 8.2.3)."""
+    exposure: Exposure | None
+    """None where neither x, y nor z on the seat was recorded."""
+    seat: Mapping[str, SeatTransmission]
+    """SEAT factors by axis, where seat and floor were recorded."""
+    motion_sickness: MotionSickness | None
+    notes: tuple[str, ...]
+
+
+def comfort(
+    source: str | Path,
+    channels: Mapping[str, str] | None = None,
+    *,
+    hours: float = 8.0,
+    runs: Sequence[str] = (),
+    blocks: Blocks = (),
+    rate: float | None = None,
+    unit: str | None = None,
+) -> Comfort:
+    """Assess the accelerations of a CSV table, or of the runs of a recording, by ISO 2631-1:1997.
+
+    The mean of every channel is removed, the whole record weighted, and the blocks cut out of what results.
+
+    Args:
+        source: the table, or the folder of the recording.
+        channels: column by axis: `x`, `y`, `z`, `rx`, `ry`, `rz` on the seat, `back.x` .. `feet.z`, and `floor.x` ..
+            `floor.z` at its base; None takes columns with usual names.
+        hours: duration of such vibration in a day.
+        runs: names of the runs of a recording, all of them where empty; they count as one vibration.
+        blocks: stretches (from, to) in s of every run, the whole run where empty.
+        rate: sample rate in Hz of a table without times.
+        unit: of the columns whose names state none, m/s^2 where it is None.
+
+    Raises:
+        InputError: a file, column, axis, run or block is not there, or the record cannot be weighted.
+    """
+    records = _chosen(load_accelerations(source, rate, unit), runs, source)
+    named = {axis.lower(): column for axis, column in channels.items()} if channels else usual_channels(records[0])
+    _check_axes(named)
+    doses = {axis: _doses(records, axis, column, blocks) for axis, column in named.items()}
+    axes = {axis: _assess(axis, named[axis], doses[axis], records) for axis in DIRECTIONS if axis in named}
+    if not axes:
+        raise InputError(f"{source}: no axis of the person is named; give one of {', '.join(DIRECTIONS)}")
+    joined = {axis: found.dose for axis, found in axes.items()}
+    return Comfort(
+        source=str(source),
+        runs=tuple(record.name for record in records),
+        duration=next(iter(joined.values())).duration,
+        sample_rate=records[0].sample_rate,
+        axes=axes,
+        totals=total_values(joined),
+        exposure=assess_exposure(joined, hours),
+        seat={
+            axis: seat_transmission(doses[axis], doses[base])
+            for base, axis in FLOOR.items()
+            if {base, axis} <= {*named}
+        },
+        motion_sickness=_motion_sickness(records, named.get("z"), blocks),
+        notes=tuple(_notes(records, named, axes)),
+    )
+
+
+def total_values(doses: Mapping[str, Dose]) -> dict[str, float]:
+    """Return a_v = sqrt(sum over axes of k^2 a_w^2) in m/s^2 by point of contact, and of all points as `overall`.
+
+    Source: ISO 2631-1:1997, equation 10 in 8.2.2, and 8.2.3 for several points; k as in `seatsim.metrics.DIRECTIONS`.
+    """
+    squares = {axis: (direction(axis).comfort * found.rms) ** 2 for axis, found in doses.items()}
+    by_point = {point: sum(square for axis, square in squares.items() if point_of(axis) == point) for point in POINTS}
+    present = {point: float(np.sqrt(by_point[point])) for point in POINTS if any(point_of(a) == point for a in squares)}
+    return present | {"overall": float(np.sqrt(sum(squares.values())))}
+
+
+def usual_channels(record: AccelerationRecord) -> dict[str, str]:
+    """Return the columns of a record that have usual names, by axis.
+
+    Raises:
+        InputError: there are none.
+    """
+    plain = {split_unit(column)[0]: column for column in record.columns}
+    found = {axis: plain[name] for axis, names in ALIASES.items() for name in names if name in plain}
+    if DRIVER in plain:
+        found.setdefault("z", plain[DRIVER])
+    if not found:
+        there = ", ".join(record.columns)
+        raise InputError(
+            f"{record.name}: no column has a usual name; name them with --channel AXIS=COLUMN; columns: {there}"
+        )
+    return found
+
+
+def _chosen(records: list[AccelerationRecord], runs: Sequence[str], source: str | Path) -> list[AccelerationRecord]:
+    known = [record.name for record in records]
+    for name in runs:
+        if name not in known:
+            raise InputError(
+                f"{source}: no run is called '{name}'{nearest(name, known)}; permitted: {', '.join(known)}"
+            )
+    return [record for record in records if not runs or record.name in runs]
+
+
+def _check_axes(named: Mapping[str, str]) -> None:
+    for axis in named:
+        if axis not in AXES:
+            raise InputError(f"no axis is called '{axis}'{nearest(axis, AXES)}; permitted: {', '.join(AXES)}")
+
+
+def _doses(records: Sequence[AccelerationRecord], axis: str, column: str, blocks: Blocks) -> list[Dose]:
+    """Return the dose of each block of each record."""
+    weighting = direction(FLOOR.get(axis, axis)).weighting
+    return [
+        dose(part, record.sample_rate) for record in records for part in _weighted(record, column, weighting, blocks)
+    ]
+
+
+def _weighted(record: AccelerationRecord, column: str, weighting: str, blocks: Blocks) -> list[Array]:
+    # The high-pass would take seconds to forget a constant, and gravity in a sensor would be the largest "vibration".
+    x = record.column(column)
+    try:
+        whole = weight(x - x.mean(), record.sample_rate, weighting)
+    except InputError as error:
+        raise InputError(f"{record.name}, {column}: {error}") from error
+    return [whole[cut] for cut in _cuts(record, len(whole), blocks)]
+
+
+def _cuts(record: AccelerationRecord, samples: int, blocks: Blocks) -> list[slice]:
+    for start, end in blocks:
+        if not 0 <= start < end or round(end * record.sample_rate) > samples:
+            lasts = samples / record.sample_rate
+            raise InputError(
+                f"block {start:g}:{end:g}: {record.name} lasts from 0 to {lasts:g} s; give FROM:TO within it"
+            )
+    ends = blocks or [(0.0, samples / record.sample_rate)]
+    return [slice(round(start * record.sample_rate), round(end * record.sample_rate)) for start, end in ends]
+
+
+def _assess(axis: str, column: str, doses: Sequence[Dose], records: Sequence[AccelerationRecord]) -> AxisAssessment:
+    joined = join_doses(doses)
+    means = [float(np.mean(record.column(column))) for record in records]
+    return AxisAssessment(column, direction(axis), joined, tuple(find_shocks(joined)), max(means, key=abs))
+
+
+def _motion_sickness(
+    records: Sequence[AccelerationRecord], column: str | None, blocks: Blocks
+) -> MotionSickness | None:
+    if column is None:
+        return None
+    parts = [(part, record.sample_rate) for record in records for part in _weighted(record, column, "Wf", blocks)]
+    energy = sum(motion_sickness_dose(part, rate) ** 2 for part, rate in parts)
+    return MotionSickness(
+        float(np.sqrt(energy / sum(len(part) / rate for part, rate in parts))), float(np.sqrt(energy))
+    )
+
+
+def _notes(
+    records: Sequence[AccelerationRecord], named: Mapping[str, str], axes: Mapping[str, AxisAssessment]
+) -> Iterator[str]:
+    if len(records) > 1:
+        yield f"{len(records)} runs count as one vibration: {', '.join(record.name for record in records)}"
+    for axis, found in axes.items():
+        size = abs(found.removed)
+        if size > OFFSET:
+            cause = "gravity" if abs(size - STANDARD_GRAVITY) < 0.05 * STANDARD_GRAVITY else "an offset of the sensor"
+            mean = f"{found.removed:.3g} {found.direction.unit}"
+            yield f"{axis}: a mean of {mean}, {cause}, was taken out of {found.column}"
+    unitless = [column for column in named.values() if column in records[0].unitless]
+    if unitless:
+        yield f"{', '.join(unitless)}: no unit is stated, so m/s^2 (rad/s^2) is taken; another one by --unit"
+    for found in axes.values():
+        if found.column in unitless and abs(abs(found.removed) - 1.0) < 0.05:
+            yield f"{found.column} has a mean of {found.removed:.3g}, as gravity has in g: then give --unit g"
+    duration = next(iter(axes.values())).dose.duration
+    if duration < SHORTEST:
+        yield (
+            f"the record lasts {duration:.3g} s; ISO 2631-1:1997, 5.5, takes {SHORTEST:g} s for random vibration from"
+            " 1 Hz on (recalled)"
+        )

@@ -1,0 +1,114 @@
+"""The lines of a seat test: what was measured or simulated, and whether it is within the limits of ISO 7096."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, cast
+
+from seatsim.excitations.iso7096 import SpectralClass
+from seatsim.metrics.comfort import Dose
+from seatsim.metrics.seat_transmission import SPREAD, seat_transmission
+from seatsim.rig.plant import Plant
+from seatsim.schema.text import join_names
+from seatsim.standards.damping_test import DampingTest
+from seatsim.standards.iso7096 import ACCEPTANCE, DAMPING, LIMITS, PERSONS
+
+SETTLE = 2.0
+"""s; beginning of a run that is left out, while the floor fades in."""
+DEFAULT_TRAVEL = cast(tuple[float, float], Plant._field_defaults["travel"])
+
+
+class Trial(NamedTuple):
+    """One simulated run: doses at driver and floor, hits of the end stops (None where no travel is stated)."""
+
+    driver: Dose
+    floor: Dose
+    hits: int | None
+
+
+class SeatRow(NamedTuple):
+    """One line of the table: a class with one driver, simulated or measured."""
+
+    run: str
+    spectral_class: SpectralClass
+    person: str
+    mass: float
+    """Mass of the test person in kg, of which 73.6 % rest on the seat."""
+    seat: float
+    limit: float
+    passed: bool
+    clause: str
+    platform: float
+    """Mean weighted acceleration of the floor in m/s^2."""
+    spread: float
+    """Largest deviation of a run from the mean of the runs, as a share of it."""
+    within_spread: bool | None
+    end_stop_hits: int | None
+    """Excursions beyond the travel; None where it is not stated. No acceptance value of ISO 7096 depends on it."""
+
+
+class DampingRow(NamedTuple):
+    """One line of the table: the damping test of a seat, against the limit of a class."""
+
+    run: str
+    spectral_class: SpectralClass
+    transmissibility: float
+    resonance: float
+    limit: float
+    passed: bool
+    clause: str
+
+
+class SeatTest(NamedTuple):
+    """Result of a test: lines by class and driver, lines of the damping test, the damping tests behind them by run."""
+
+    rows: tuple[SeatRow, ...]
+    damping_rows: tuple[DampingRow, ...]
+    damping: dict[str, DampingTest]
+    notes: tuple[str, ...]
+
+
+def state_row(run: str, spectral_class: SpectralClass, person: str, trials: Sequence[Trial]) -> SeatRow:
+    """Return the line of a class and driver from its runs, at least one."""
+    found = seat_transmission([trial.driver for trial in trials], [trial.floor for trial in trials])
+    limit = LIMITS[spectral_class].seat
+    hits = [trial.hits for trial in trials if trial.hits is not None]
+    return SeatRow(
+        run=run,
+        spectral_class=spectral_class,
+        person=person,
+        mass=PERSONS[person],
+        seat=found.rms,
+        limit=limit,
+        passed=bool(found.rms <= limit),
+        clause=ACCEPTANCE,
+        platform=sum(trial.floor.rms for trial in trials) / len(trials),
+        spread=found.spread,
+        within_spread=found.within_spread,
+        end_stop_hits=sum(hits) if hits else None,
+    )
+
+
+def state_damping_row(run: str, spectral_class: SpectralClass, found: DampingTest) -> DampingRow:
+    """Return the line of the damping test of a seat against the limit of a class."""
+    limit = LIMITS[spectral_class].transmissibility
+    passed = bool(found.transmissibility <= limit)
+    return DampingRow(run, spectral_class, found.transmissibility, found.resonance, limit, passed, DAMPING)
+
+
+def doubt_runs(rows: Sequence[SeatRow]) -> list[str]:
+    """Return a sentence on the lines whose runs are too few, or too far apart, for a result."""
+    few = [_name(row) for row in rows if row.within_spread is None]
+    apart = [_name(row) for row in rows if row.within_spread is False]
+    found = [f"fewer than three runs of {join_names(few)}"] if few else []
+    found += [f"runs of {join_names(apart)} differ from their mean by more than {SPREAD:.0%}"] if apart else []
+    return [f"{sentence}: ISO 10326-1, 10.2.1, asks for three within {SPREAD:.0%}" for sentence in found]
+
+
+def _name(row: SeatRow) -> str:
+    return f"{row.run}, {row.spectral_class}, {row.mass:g} kg"
+
+
+def has_travel(plant: Plant) -> bool:
+    """Whether a plant states where its end stops are."""
+    return plant.travel != DEFAULT_TRAVEL

@@ -1,0 +1,118 @@
+"""The seat test of ISO 7096 on simulated seats: two drivers in nine classes, three runs each, and the damping test."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from typing import NamedTuple
+
+from seatsim.effects.driver import Mass
+from seatsim.excitations.iso7096 import Iso7096, SpectralClass
+from seatsim.metrics.comfort import dose
+from seatsim.metrics.motion import end_stop_hits
+from seatsim.metrics.seat_transmission import RUNS
+from seatsim.metrics.weighting import weight
+from seatsim.rig.plant import Plant
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.errors import InputError
+from seatsim.schema.registry import specification_of
+from seatsim.schema.text import join_names
+from seatsim.simulation.simulate import simulate
+from seatsim.standards.damping_test import DampingTest, run_damping_test
+from seatsim.standards.iso7096 import PERSONS, RECALLED, SEATED_SHARE
+from seatsim.standards.seat_rows import SETTLE, SeatTest, Trial, doubt_runs, has_travel, state_damping_row, state_row
+
+DURATION = 60.0
+"""s; length of each run that is evaluated."""
+
+Count = Callable[[int, int], None]
+
+
+def assess_simulated_seats(
+    scenarios: Sequence[Scenario],
+    classes: Sequence[SpectralClass],
+    progress: Count = lambda done, of: None,
+) -> SeatTest:
+    """Put the seats of scenarios to the test of ISO 7096, each in three runs a class and driver.
+
+    Drivers differ from the scenario's by an effect on the mass, so that a law stays designed for the mass that its file
+    states. The three runs differ in the random phases of the floor.
+
+    Args:
+        scenarios: seats with their control; their excitation is replaced.
+        classes: spectral classes.
+        progress: is called with the simulations done and all.
+
+    Raises:
+        InputError: a scenario has no seat, or a law that only replays.
+        RunError: a simulation could not be carried to its end.
+    """
+    seats = {scenario.title: _seat_of(scenario) for scenario in scenarios}
+    with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
+        trials = {
+            (title, each, person): [pool.submit(_run_trial, seat, each, person, seed) for seed in range(RUNS)]
+            for title, seat in seats.items()
+            for each in classes
+            for person in PERSONS
+        }
+        damping = {title: pool.submit(run_damping_test, seat.scenario, seat.plant) for title, seat in seats.items()}
+        _count([*(future for futures in trials.values() for future in futures), *damping.values()], progress)
+    tested = {title: future.result() for title, future in damping.items()}
+    rows = tuple(state_row(*key, [future.result() for future in runs]) for key, runs in trials.items())
+    return SeatTest(
+        rows=rows,
+        damping_rows=tuple(
+            state_damping_row(title, each, found) for title, found in tested.items() for each in classes
+        ),
+        damping=tested,
+        notes=(*_notes(seats), *doubt_runs(rows)),
+    )
+
+
+class _Seat(NamedTuple):
+    scenario: Scenario
+    plant: Plant
+
+
+def _seat_of(scenario: Scenario) -> _Seat:
+    if scenario.plant is None or scenario.control is None:
+        raise InputError(f"{scenario.title}: a damper bench has no seat to test; give the scenario of a seat")
+    if specification_of(type(scenario.control.law)).replays:
+        raise InputError(
+            f"{scenario.title}: its law replays a recording; state the law of the seat, or test the recording"
+        )
+    # The test has drivers of its own.
+    effects = tuple(effect for effect in scenario.effects if not isinstance(effect, Mass))
+    return _Seat(dataclasses.replace(scenario, effects=effects), scenario.plant)
+
+
+def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: int) -> Trial:
+    change = SEATED_SHARE * PERSONS[person] - seat.plant.driver_mass
+    history = simulate(
+        dataclasses.replace(
+            seat.scenario,
+            excitation=Iso7096(spectral_class, SETTLE + DURATION),
+            seed=seed,
+            effects=(*seat.scenario.effects, Mass(change)),
+        )
+    )
+    rate, settled = 1 / history.step, round(SETTLE / history.step)
+    driver, floor = (
+        dose(weight(history[name], rate)[settled:], rate) for name in ("driver_acceleration", "floor_acceleration")
+    )
+    hits = end_stop_hits(history["suspension_displacement"], seat.plant.travel) if has_travel(seat.plant) else None
+    return Trial(driver, floor, hits)
+
+
+def _count(futures: Sequence[Future[Trial] | Future[DampingTest]], progress: Count) -> None:
+    for done, _ in enumerate(as_completed(futures), 1):
+        progress(done, len(futures))
+
+
+def _notes(seats: Mapping[str, _Seat]) -> Iterator[str]:
+    yield RECALLED
+    without = [title for title, seat in seats.items() if not has_travel(seat.plant)]
+    if without:
+        yield f"no travel is stated for {join_names(without)}: end stops are not checked; state plant.travel"

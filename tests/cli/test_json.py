@@ -1,0 +1,90 @@
+"""`--json`: one object on standard output and nothing else there, of the form that is documented."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pydantic import TypeAdapter
+from typer.main import get_command
+
+from seatsim.cli.app import app
+from seatsim.cli.outputs.answers import ANSWERS
+from seatsim.cli.outputs.diagnosis import encode_diagnosis
+from seatsim.schema.files import plain
+
+from ..diagnosis.test_report import CASES
+
+ROOT = Path(__file__).resolve().parents[2]
+RECORDING = ROOT / "scenarios" / "data" / "recording"
+BENCH = ROOT / "scenarios" / "data" / "bench"
+SHORT = ("--set", "excitation.duration=2")
+ONE_TEST = ("--currents", "0", "--amplitudes", "0.005", "--frequencies", "1")
+COMMANDS = {
+    "run": ("run", "em5", *SHORT),
+    "compare": ("compare", "em5", "em6", *SHORT),
+    "gap": ("gap", RECORDING / "nominal.yaml", RECORDING),
+    "characterise": ("characterise", "--model", "bouc_wen", *ONE_TEST),
+    "describe": ("describe", "road"),
+    "check": ("check", RECORDING),
+    "synthesise": ("synthesise", "h-infinity"),
+    "new": ("new", "damper"),
+}
+
+
+def check(name, text):
+    """Return the object, which is of the documented form."""
+    found = json.loads(text)
+    TypeAdapter(ANSWERS[name]).validate_python(found)
+    return found
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_standard_output_is_one_object(name, seatsim_command, undrawn, tmp_path, monkeypatch):
+    monkeypatch.setattr("seatsim.plots.bench.characterisation.plot_characterisation", lambda found: {})
+    place = [] if name in ("describe", "check") else [tmp_path / "my_own"] if name == "new" else ["--out", tmp_path]
+    status, out, _ = seatsim_command(*COMMANDS[name], *place, "--json")
+    assert status == 0
+    found = check(name, out)
+    assert all(Path(file).is_file() for file in found["files"])
+    assert bool(found["files"]) == bool(place)
+
+
+def test_an_identification_and_a_league(seatsim_command, tmp_path):
+    data = (BENCH / "sine_4mm_4Hz.csv", "--json", "--fix", "v_ref=0.01", "--out", tmp_path)
+    status, out, _ = seatsim_command("identify", *data, "--model", "bingham")
+    assert status == 0 and check("identify", out)["confidence"] == "published"
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_diagnosis_is_of_the_documented_form(case):
+    content = plain(encode_diagnosis(CASES[case]()))
+    TypeAdapter(ANSWERS["diagnose"]).validate_python({**content, "files": []})
+
+
+def test_an_error_is_an_object_too(seatsim_command):
+    status, out, err = seatsim_command("run", "quickstrat", "--json")
+    assert status == 2
+    assert "did you mean 'quickstart'" in check("error", out)["error"] and "did you mean" in err
+
+
+def test_the_next_command_prints_again(seatsim_command):
+    seatsim_command("describe", "road", "--json")
+    assert seatsim_command("describe", "road")[1].startswith("road (excitation)")
+
+
+def test_every_command_has_it_and_a_documented_form():
+    commands = get_command(app).commands
+    blind = {f"blind-{name}": command for name, command in commands.pop("blind").commands.items()}
+    for name, command in {**commands, **blind}.items():
+        assert any("--json" in option.opts for option in command.params), name
+        assert name == "schema" or name in ANSWERS, name
+
+
+def test_the_schemas_in_the_documentation_are_up_to_date():
+    # In a process of its own: other tests register models that are none of the package's.
+    code = "import json, runpy; print(json.dumps(runpy.run_path('docs/build_schemas.py')['schemas']()))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, encoding="utf-8", check=True)
+    for path, text in json.loads(done.stdout).items():
+        assert (ROOT / path).read_text(encoding="utf-8") == text, "run python docs/build_schemas.py"

@@ -1,0 +1,167 @@
+"""Several files of one run: unequal rates, offsets between clocks, gaps, and the way onto one time base."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from seatsim.importing.importing import import_files
+from seatsim.importing.resampling import resample
+from seatsim.schema.errors import InputError
+
+from .helpers import read_run, write_csv
+
+OFFSET = 0.3137
+
+
+def sines(times, frequencies=(1.3, 4.1, 11.0)):
+    return sum(np.sin(2 * np.pi * f * times + f) for f in frequencies)
+
+
+@pytest.mark.parametrize(("rate", "new"), [(1000.0, 500.0), (200.0, 500.0), (512.0, 300.0)])
+def test_what_lies_in_the_band_survives_a_change_of_rate(rate, new):
+    times = np.arange(0.0, 20.0, 1 / rate)
+    grid = np.arange(1.0, 19.0, 1 / new) + 0.00037
+    assert np.max(np.abs(resample(sines(times), 0.0, rate, grid, new) - sines(grid))) < 2e-4
+
+
+def test_what_lies_above_the_new_band_is_not_folded():
+    times, grid = np.arange(0.0, 20.0, 1e-3), np.arange(1.0, 19.0, 0.01)
+    assert np.max(np.abs(resample(sines(times, (70.0,)), 0.0, 1000.0, grid, 100.0))) < 1e-3
+
+
+def band_limited(seed, times, highest=20.0):
+    generator = np.random.default_rng(seed)
+    frequencies = generator.uniform(0.4, highest, 60)
+    return sum(np.sin(2 * np.pi * f * times + p) for f, p in zip(frequencies, generator.uniform(0, 6, 60), strict=True))
+
+
+@pytest.fixture
+def two_files(tmp_path):
+    """Write a fast file of accelerations and a slower one whose clock started later; both have the current."""
+    fast, slow = np.arange(0.0, 30.0, 0.001), np.arange(0.0, 28.0, 0.004)
+    at = slow + OFFSET
+    generator = np.random.default_rng(3)
+    write_csv(
+        tmp_path / "fast.csv",
+        {"time": fast, "floor_acceleration": band_limited(1, fast), "coil_current": 0.5 + 0.05 * band_limited(2, fast)},
+    )
+    current = 0.5 + 0.05 * band_limited(2, at) + 0.01 * generator.standard_normal(len(slow))
+    write_csv(
+        tmp_path / "slow.csv",
+        {"time": slow, "suspension_displacement": 0.002 * band_limited(4, at), "coil_current": current},
+    )
+    return [tmp_path / "fast.csv", tmp_path / "slow.csv"]
+
+
+def test_a_shared_channel_shows_the_offset_with_its_uncertainty(two_files, tmp_path):
+    found = import_files(two_files, tmp_path / "out")
+    assert found.map.align["slow.csv"] == pytest.approx(OFFSET, abs=5e-4)
+    said = next(note for note in found.notes if "moved against fast.csv" in note)
+    assert "coil_current" in said
+    assert "+-" in said
+    table = read_run(tmp_path / "out")
+    assert found.rate == 1000.0
+    start = OFFSET  # the run begins where the later file does
+    expected = 0.002 * band_limited(4, start + table["time"])
+    inner = slice(200, -200)
+    error = np.std((table["suspension_displacement"] - expected)[inner]) / np.std(expected)
+    assert error < 0.01
+
+
+def test_loggers_name_the_time_otherwise(two_files, tmp_path):
+    table = pd.read_csv(two_files[1])
+    two_files[1].write_text(
+        table.rename(columns={"time": "Zeit [ms]"}).assign(**{"Zeit [ms]": 1e3 * table["time"]}).to_csv(index=False)
+    )
+    assert import_files(two_files, tmp_path / "out").map.align["slow.csv"] == pytest.approx(OFFSET, abs=5e-4)
+
+
+def test_a_stated_offset_is_used_as_it_is(two_files, tmp_path):
+    import_files(two_files, tmp_path / "first")
+    text = (tmp_path / "first" / "map.yaml").read_text()
+    assert "align: {slow.csv: 0.313" in text
+    stated = tmp_path / "map.yaml"
+    stated.write_text(text.replace("align: {slow.csv: 0.313", "align: {slow.csv: 0.213"))
+    found = import_files(two_files, tmp_path / "out", stated)
+    assert found.map.align["slow.csv"] == pytest.approx(0.2137, abs=1e-3)
+    assert not any("moved against" in note for note in found.notes)
+
+
+def test_files_without_anything_in_common_are_said(two_files, tmp_path):
+    write_csv(
+        two_files[1],
+        {"time": np.arange(0, 20, 0.004), "suspension_displacement": np.random.default_rng(1).standard_normal(5000)},
+    )
+    found = import_files(two_files, tmp_path / "out")
+    assert any("shares no channel" in note for note in found.notes)
+
+
+def test_the_lag_of_a_coil_behind_its_command_is_no_offset_of_clocks(tmp_path):
+    times = np.arange(0.0, 20.0, 0.002)
+    command, coil = band_limited(2, times), band_limited(2, times - 0.008)
+    first = write_csv(
+        tmp_path / "a.csv", {"time": times, "floor_acceleration": band_limited(1, times), "current_command": command}
+    )
+    second = write_csv(tmp_path / "b.csv", {"time": times, "coil_current": coil})
+    found = import_files([first, second], tmp_path / "out")
+    assert found.map.align == {}
+    assert any("may be the lag between the two" in note for note in found.notes)
+    np.testing.assert_allclose(read_run(tmp_path / "out")["coil_current"], coil, rtol=1e-6, atol=1e-6)
+    late = write_csv(tmp_path / "b.csv", {"time": times, "coil_current": band_limited(2, times + 0.5)})
+    assert import_files([first, late], tmp_path / "late").map.align["b.csv"] == pytest.approx(0.5, abs=0.002)
+
+
+def test_runs_that_are_complete_stay_runs(noisy_table, tmp_path):
+    files = [write_csv(tmp_path / f"{name}.csv", noisy_table) for name in ("first", "second")]
+    assert import_files(files, tmp_path / "out").runs == ("first", "second")
+
+
+def test_gaps_are_named_and_left_to_the_map(noisy_table, tmp_path):
+    kept = np.ones(5001, dtype=bool)
+    kept[2000:2010] = False
+    path = write_csv(tmp_path / "a.csv", {name: values[kept] for name, values in noisy_table.items()})
+    stated = tmp_path / "map.yaml"
+    text = "time: {column: time, unit: s}\nchannels: {floor_acceleration: {column: floor_acceleration}}\n"
+    stated.write_text(text)
+    with pytest.raises(InputError, match=r"10 rows are missing, the first at 3\.998 s.*gaps: split.*gaps: fill"):
+        import_files([path], tmp_path / "out", stated)
+    assert not (tmp_path / "out").exists()
+    stated.write_text(text + "gaps: split\n")
+    assert import_files([path], tmp_path / "out", stated).runs == ("run-a-1", "run-a-2")
+    stated.write_text(text + "gaps: fill\n")
+    import_files([path], tmp_path / "filled", stated)
+    filled = read_run(tmp_path / "filled")["floor_acceleration"].to_numpy()
+    assert len(filled) == 5001
+    np.testing.assert_allclose(filled[:1990], noisy_table["floor_acceleration"][:1990], rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(filled[2020:], noisy_table["floor_acceleration"][2020:], rtol=1e-6, atol=1e-6)
+
+
+def test_a_proposed_map_cuts_at_gaps(noisy_table, tmp_path):
+    kept = np.ones(5001, dtype=bool)
+    kept[2000:2100] = False
+    path = write_csv(tmp_path / "a.csv", {name: values[kept] for name, values in noisy_table.items()})
+    found = import_files([path], tmp_path / "out")
+    assert found.runs == ("run-a-1", "run-a-2")
+    assert found.map.gaps == "split"
+    assert any("100 rows are missing" in issue.sentence for issue in found.doubts)
+
+
+def test_a_slow_channel_in_a_fast_table_keeps_its_own_rate(noisy_table, tmp_path):
+    temperature = np.full(5001, np.nan)
+    temperature[::50] = 20.0 + np.sin(np.arange(101) / 20.0)
+    path = write_csv(tmp_path / "a.csv", noisy_table, **{"Temperatur Dämpfer [°C]": temperature})
+    import_files([path], tmp_path / "out")
+    table = read_run(tmp_path / "out")
+    expected = 20.0 + np.sin(table["time"] / 0.1 / 20.0)
+    assert np.max(np.abs(table["damper_temperature"] - expected)) < 2e-3
+
+
+def test_unevenly_spaced_rows_are_evened(tmp_path):
+    generator = np.random.default_rng(2)
+    times = np.cumsum(0.002 * (1.0 + 0.4 * generator.uniform(-1, 1, 8000)))
+    path = write_csv(tmp_path / "a.csv", {"time": times, "floor_acceleration": sines(times)})
+    found = import_files([path], tmp_path / "out")
+    assert any(issue.kind == "uneven" for issue in found.doubts)
+    table = read_run(tmp_path / "out")
+    error = table["floor_acceleration"] - sines(times[0] + table["time"])
+    assert np.max(np.abs(error[50:-50])) < 1e-3

@@ -1,0 +1,95 @@
+"""The same recording in every format becomes the same numbers, and a damaged file one clear error."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from seatsim.importing.importing import import_files
+from seatsim.importing.readers.reading import read_file
+from seatsim.schema.errors import InputError
+
+from . import exports
+from .helpers import read_run
+
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::ResourceWarning",
+    "ignore::pytest.PytestUnraisableExceptionWarning",  # of libraries that write
+)
+
+
+@pytest.fixture(params=exports.FORMATS, scope="module")
+def exported(request, tmp_path_factory, seat_table):
+    path = tmp_path_factory.mktemp("formats") / request.param
+    exports.FORMATS[request.param](path, seat_table)
+    return path
+
+
+def test_every_format_gives_the_same_numbers(exported, tmp_path, seat_table):
+    found = import_files([exported], tmp_path / "out")
+    assert found.rate == 500.0
+    assert set(found.map.channels) == set(exports.UNITS)
+    got = read_run(tmp_path / "out")
+    assert len(got) == len(seat_table["time"])
+    for name in exports.UNITS:
+        assert np.max(np.abs(got[name] - seat_table[name])) <= 1e-6 * np.std(seat_table[name]), name
+
+
+def test_a_truncated_file_is_one_clear_error(exported, tmp_path):
+    content = exported.read_bytes()
+    cut = tmp_path / exported.name
+    # A reader has all of the header and lacks some of the numbers; a text is cut in the middle of a line.
+    end = int(0.9 * len(content))
+    if exported.suffix == ".csv":
+        end = content.rindex(b"," if exported.name == "a.csv" else b";", 0, end)
+    cut.write_bytes(content[:end])
+    with pytest.raises(InputError, match="truncated") as raised:
+        read_file(cut)
+    assert str(cut) in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_an_empty_file_is_one_clear_error(exported, tmp_path):
+    empty = tmp_path / exported.name
+    empty.write_bytes(b"")
+    with pytest.raises(InputError, match="is empty"):
+        read_file(empty)
+
+
+def test_a_wrong_ending_does_not_matter_where_the_content_is_clear(exported, tmp_path, seat_table):
+    renamed = tmp_path / "data.bin"
+    renamed.write_bytes(exported.read_bytes())
+    file = read_file(renamed)
+    assert sum(len(group.signals) for group in file.groups) >= len(exports.UNITS)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "expected"),
+    [
+        ("a.pdf", b"%PDF-1.7 and more", "is a PDF; permitted: Parquet"),
+        ("a.xls", b"\xd0\xcf\x11\xe0" + b"\1" * 600, "save it as .xlsx"),
+        ("a.mat", b"time,force\n1,2\n", "does not begin as MAT v5 does"),
+        ("a.csv", b"\x00\x01\x02\x03" * 50, "no table in a known format"),
+        ("a.csv", b"a letter to nobody\nwith two lines\n", "no row of numbers"),
+        ("a.csv", b"a,b\n", "no row of numbers"),
+    ],
+)
+def test_a_file_of_another_kind_is_one_clear_error(tmp_path, name, content, expected):
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=expected):
+        read_file(path)
+
+
+def test_a_file_that_is_not_there_names_its_neighbour(tmp_path):
+    (tmp_path / "run-1.csv").write_text("a,b\n1,2\n3,4\n")
+    with pytest.raises(InputError, match=r"did you mean 'run-1\.csv'"):
+        read_file(tmp_path / "run-l.csv")
+
+
+def test_a_missing_library_is_one_sentence_with_the_command(tmp_path, monkeypatch):
+    path = tmp_path / "a.tdms"
+    path.write_bytes(b"TDSm" + b"\0" * 60)
+    monkeypatch.setitem(sys.modules, "nptdms", None)
+    with pytest.raises(InputError, match=r'pip install "seatsim\[formats\]"'):
+        read_file(path)

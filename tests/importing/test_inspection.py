@@ -1,0 +1,122 @@
+"""What inspect says of one file or a recording."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+from seatsim.importing.importing import import_files
+from seatsim.importing.inspected_recording import inspect_recording
+from seatsim.importing.inspection import inspect_file
+
+from .helpers import kinds, write_csv
+
+
+def test_figures_of_a_channel(noisy_table, tmp_path):
+    found = inspect_file(write_csv(tmp_path / "a.csv", noisy_table))
+    channels = {each.name: each for each in found.channels[""]}
+    force = channels["damper_force"]
+    assert force.channel == "damper_force"
+    assert force.rate == 500.0
+    assert force.rows == 5001
+    assert force.low == pytest.approx(np.min(noisy_table["damper_force"]))
+    assert force.rms == pytest.approx(np.sqrt(np.mean(noisy_table["damper_force"] ** 2)))
+    assert force.noise == pytest.approx(2.5, rel=0.15)
+    assert channels["floor_acceleration"].noise == pytest.approx(0.01, rel=0.15)
+    assert len(force.spark) == 24
+    json.dumps(found.as_dict())
+
+
+def damaged(values, kind):
+    values = values.copy()
+    if kind == "spikes":
+        values[[700, 2200]] += 8.0 * np.std(values)
+    elif kind == "dropout":
+        values[1000:1060] = 0.0
+    elif kind == "clipped":
+        values = np.clip(values, -0.8 * np.std(values), 0.8 * np.std(values))
+    elif kind == "constant":
+        values[:] = 3.0
+    elif kind == "missing":
+        values[500:520] = np.nan
+    elif kind == "held":
+        values = np.repeat(values[::5], 5)[: len(values)]
+    elif kind == "resolution":
+        values = np.round(values / (0.1 * np.std(values))) * 0.1 * np.std(values)
+    elif kind == "smooth":
+        values = np.convolve(values, np.hanning(41) / np.sum(np.hanning(41)), "same")
+    return values
+
+
+@pytest.mark.parametrize(
+    "kind", ["spikes", "dropout", "clipped", "constant", "missing", "held", "resolution", "smooth"]
+)
+@pytest.mark.parametrize("channel", ["driver_acceleration", "damper_force"])
+def test_a_damaged_channel_is_doubted(noisy_table, tmp_path, channel, kind):
+    path = write_csv(tmp_path / "a.csv", {**noisy_table, channel: damaged(noisy_table[channel], kind)})
+    assert kind in kinds(inspect_file(path).doubts, channel)
+
+
+def test_a_sound_file_is_not_doubted(noisy_table, tmp_path):
+    found = inspect_file(write_csv(tmp_path / "a.csv", noisy_table))
+    assert kinds(found.doubts) <= {"held", "offset"}
+
+
+def test_rows_written_twice_copies_and_derived_velocities(noisy_table, tmp_path):
+    rows = np.sort(np.append(np.arange(5001), [800, 801, 1500]))
+    table = {name: values[rows] for name, values in noisy_table.items() if name != "time"}
+    table["time"] = np.arange(5004) / 500.0
+    table["frame_acceleration_2"] = table["frame_acceleration"]
+    travel = np.convolve(noisy_table["suspension_displacement"], np.ones(9) / 9, "same")
+    table |= {"stroke_m": travel[rows], "velocity_m_s": np.gradient(travel, 0.002)[rows]}
+    found = kinds(inspect_file(write_csv(tmp_path / "a.csv", table)).doubts)
+    assert {"repeated_rows", "duplicate", "derived"} <= found
+
+
+def test_a_recording_is_examined_and_its_noise_is_offered(tmp_path, sound):
+    found = inspect_recording(sound)
+    header = YAML(typ="safe").load(sound / "recording.yaml")
+    assert list(found.channels) == [run["name"] for run in header["runs"]]
+    offered = {issue.channel for issue in found.doubts if "noise_rms:" in issue.sentence}
+    assert not offered & {name for name, entry in header["channels"].items() if entry.get("noise_rms")}
+    assert all(each.channel == each.name for held in found.channels.values() for each in held)
+
+
+def test_the_noise_of_a_recording_that_states_none_is_offered_from_its_floor_and_from_repeats(noisy_table, tmp_path):
+    generator = np.random.default_rng(11)
+    again = {**noisy_table, "damper_force": noisy_table["damper_force"] + 2.0 * generator.standard_normal(5001)}
+    files = [write_csv(tmp_path / "a.csv", noisy_table), write_csv(tmp_path / "b.csv", again)]
+    stated = tmp_path / "map.yaml"
+    text = "time: {column: time, unit: s}\nchannels:\n" + "".join(
+        f"  {name}: {{column: {name}}}\n" for name in ("floor_acceleration", "driver_acceleration", "damper_force")
+    )
+    stated.write_text(text)
+    import_files(files, tmp_path / "once", stated)
+    said = {
+        issue.channel: issue.sentence for issue in inspect_recording(tmp_path / "once").doubts if issue.kind == "noise"
+    }
+    offered = {name: float(sentence.rpartition(" ")[2]) for name, sentence in said.items()}
+    assert offered["floor_acceleration"] == pytest.approx(0.01, rel=0.2)
+    assert offered["damper_force"] == pytest.approx(2.5, rel=0.2)
+    stated.write_text(text + "repeats: {b: a}\n")
+    import_files(files, tmp_path / "repeated", stated)
+    said = {
+        issue.channel: issue.sentence
+        for issue in inspect_recording(tmp_path / "repeated").doubts
+        if issue.kind == "noise"
+    }
+    assert "repeats of one excitation differ by noise_rms: 1.4" in said["damper_force"]
+
+
+def test_a_large_file_is_inspected_quickly(tmp_path):
+    """100 MB take less than 2 s of a core at rest; here a tenth of them, with room for a busy machine."""
+    generator = np.random.default_rng(1)
+    rows = 150_000
+    text = tmp_path / "large.csv"
+    columns = {f"acc_{k}": np.cumsum(generator.standard_normal(rows)) for k in range(7)}
+    write_csv(text, {"time": np.arange(rows) / 1000.0, **{k: np.round(v, 5) for k, v in columns.items()}})
+    start = time.process_time()
+    inspect_file(text)
+    assert time.process_time() - start < 2.0

@@ -1,0 +1,109 @@
+"""Files whose channels stand in groups, structures or matrices, with units and rates beside them."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.io import savemat
+
+from seatsim.importing.importing import import_files
+from seatsim.importing.readers.reading import read_file
+
+from .helpers import read_run
+from .test_alignment import band_limited
+
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::ResourceWarning",
+    "ignore::pytest.PytestUnraisableExceptionWarning",  # of libraries that write
+)
+FAST, SLOW = np.arange(0.0, 20.0, 0.002), np.arange(0.0, 20.0, 0.01)
+
+
+def found_in(file):
+    return {(group.name, signal.name): (signal.unit, group.rate) for group in file.groups for signal in group.signals}
+
+
+def test_a_mat_structure_states_units_and_rate(tmp_path):
+    acceleration = {"values": band_limited(1, FAST), "unit": "g"}
+    data = {"a_floor": acceleration, "force": band_limited(2, FAST), "units": {"force": "kN"}, "fs": 500.0}
+    savemat(tmp_path / "a.mat", {"daq": data, "note": "run 3", "matrix": np.eye(3)})
+    found = found_in(read_file(tmp_path / "a.mat"))
+    assert found["daq", "a_floor"] == ("g", 500.0)
+    assert found["daq", "force"] == ("kN", 500.0)
+    recorded = import_files([tmp_path / "a.mat"], tmp_path / "out")
+    assert recorded.rate == 500.0
+    assert set(recorded.map.channels) == {"floor_acceleration", "damper_force"}
+
+
+def test_a_matrix_of_hdf5_has_names_and_units_in_attributes(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        matrix = file.create_dataset("run/data", data=np.column_stack([FAST, band_limited(1, FAST)]))
+        matrix.attrs["columns"] = ["time", "acc floor"]
+        matrix.attrs["units"] = ["s", "m/s^2"]
+        file["table"] = np.array(list(zip(SLOW, SLOW, strict=True)), dtype=[("t", "f8"), ("x", "f4")])
+    found = found_in(read_file(tmp_path / "a.h5"))
+    assert found["run", "time"] == ("s", None)
+    assert found["run", "acc floor"] == ("m/s^2", None)
+    assert any(name == "x" for _, name in found)
+
+
+def test_groups_of_other_rates_and_starts_share_the_clock_of_their_file(tmp_path):
+    asammdf = pytest.importorskip("asammdf")
+    slow = SLOW[:1500] + 0.25
+    with asammdf.MDF(version="4.10") as file:
+        file.append([asammdf.Signal(band_limited(1, FAST), FAST, name="floor_acceleration", unit="m/s^2"),
+                     asammdf.Signal(band_limited(2, FAST), FAST, name="current_command", unit="A")])  # fmt: skip
+        file.append([asammdf.Signal(1e3 * band_limited(3, slow), slow, name="Federweg", unit="mm"),
+                     asammdf.Signal(band_limited(2, slow - 0.02), slow, name="coil_current", unit="A")])  # fmt: skip
+        file.save(tmp_path / "a.mf4")
+    found = import_files([tmp_path / "a.mf4"], tmp_path / "out")
+    assert found.rate == 500.0
+    assert found.map.align == {}
+    table = read_run(tmp_path / "out")
+    expected = band_limited(3, 0.25 + table["time"])
+    inner = slice(400, -400)
+    assert np.std((table["suspension_displacement"] - expected)[inner]) < 0.01 * np.std(expected)
+    lagging = band_limited(2, 0.25 + table["time"] - 0.02)
+    assert np.std((table["coil_current"] - lagging)[inner]) < 0.01 * np.std(lagging)
+
+
+def test_channels_of_tdms_with_other_increments_are_groups(tmp_path):
+    nptdms = pytest.importorskip("nptdms")
+    with nptdms.TdmsWriter(tmp_path / "a.tdms") as writer:
+        fast = {"unit_string": "g", "wf_increment": 0.002, "wf_start_offset": 0.0}
+        slow = {"unit_string": "degF", "wf_increment": 0.01, "wf_start_offset": 0.5}
+        writer.write_segment([
+            nptdms.ChannelObject("daq", "acc_floor", band_limited(1, FAST), fast),
+            nptdms.ChannelObject("daq", "temp_damper", 68.0 + SLOW[:1800], slow),
+        ])  # fmt: skip
+    found = import_files([tmp_path / "a.tdms"], tmp_path / "out")
+    assert found.rate == 500.0
+    table = read_run(tmp_path / "out")
+    assert table["damper_temperature"].iloc[1000] == pytest.approx((68.0 + 2.0 - 32.0) / 1.8, abs=1e-3)
+
+
+def test_every_sheet_of_a_workbook_with_numbers_is_a_group(tmp_path):
+    pytest.importorskip("openpyxl")
+    frame = pd.DataFrame({"time": FAST[:500], "floor_acceleration": band_limited(1, FAST[:500])})
+    with pd.ExcelWriter(tmp_path / "a.xlsx") as book:
+        pd.DataFrame({"remark": ["a", "b"]}).to_excel(book, sheet_name="notes", index=False)
+        frame.to_excel(book, sheet_name="run 1", index=False, startrow=3)
+    file = read_file(tmp_path / "a.xlsx")
+    assert [group.name for group in file.groups] == ["run 1"]
+    assert file.groups[0].rows == 500
+    assert [signal.name for signal in file.groups[0].signals] == ["time", "floor_acceleration"]
+
+
+def test_units_stand_in_the_metadata_of_parquet(tmp_path):
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    fields = [
+        pa.field("t", pa.float64(), metadata={"unit": "ms"}),
+        pa.field("acc floor", pa.float32(), metadata={"unit": "g"}),
+    ]
+    pq.write_table(
+        pa.table([1e3 * FAST, band_limited(1, FAST).astype("f4")], schema=pa.schema(fields)), tmp_path / "a.parquet"
+    )
+    assert found_in(read_file(tmp_path / "a.parquet")) == {("", "t"): ("ms", None), ("", "acc floor"): ("g", None)}
+    assert import_files([tmp_path / "a.parquet"], tmp_path / "out").rate == 500.0

@@ -1,0 +1,54 @@
+"""Recordings whose tables are in other units than SI."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import seatsim
+from seatsim.recordings.joined import join_recordings
+from seatsim.recordings.recording import load_recording
+from seatsim.schema.errors import InputError
+from seatsim.schema.units import STANDARD_GRAVITY
+
+RECORDING = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "recording"
+
+
+@pytest.fixture
+def in_other_units(tmp_path):
+    """Copy a recording whose driver's acceleration is in g, and its travel in mm."""
+    folder = tmp_path / "recorded"
+    shutil.copytree(RECORDING, folder)
+    for path in folder.glob("*.csv.gz"):
+        frame = pd.read_csv(path)
+        frame["driver_acceleration"] /= STANDARD_GRAVITY
+        frame["suspension_displacement"] *= 1e3
+        frame.to_csv(path, index=False, float_format="%.12g")
+    header = folder / "recording.yaml"
+    text = header.read_text().replace(
+        "driver_acceleration: {unit: m/s^2}", "driver_acceleration: {unit: g, noise_rms: 0.01}"
+    )
+    header.write_text(text.replace("suspension_displacement: {unit: m}", "suspension_displacement: {unit: mm}"))
+    return folder
+
+
+def test_tables_and_noise_are_converted_on_reading(in_other_units):
+    found, expected = load_recording(in_other_units), load_recording(RECORDING)
+    for run in expected.runs:
+        for name, values in expected.table(run).items():
+            np.testing.assert_allclose(found.table(run)[name], values, rtol=1e-9, atol=1e-12)
+    entry = found.channels["driver_acceleration"]
+    assert entry.unit == "m/s^2"
+    assert entry.noise_rms == pytest.approx(0.01 * STANDARD_GRAVITY)
+
+
+def test_the_gap_is_the_same_in_any_unit(in_other_units):
+    gaps = [seatsim.gap(RECORDING / "nominal.yaml", folder).overall for folder in (RECORDING, in_other_units)]
+    assert gaps[1] == pytest.approx(gaps[0], rel=1e-6, abs=1e-9)
+
+
+def test_recordings_in_other_units_are_not_joined(in_other_units):
+    with pytest.raises(InputError, match=r"driver_acceleration\.unit: is another one"):
+        join_recordings(load_recording(RECORDING), load_recording(in_other_units))

@@ -1,0 +1,146 @@
+"""Comfort of tables and recordings: units, gravity, blocks, runs, and what is refused."""
+
+import json
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+from seatsim import comfort
+from seatsim.cli.app import app
+from seatsim.recordings.acceleration_tables import split_unit
+from seatsim.schema.errors import InputError
+
+RATE = 500.0
+TIME = np.arange(int(120 * RATE)) / RATE
+WK_AT_5_HZ = 1.039  # ISO 2631-1:1997, Table 3
+
+
+def write(folder, name="ride.csv", **columns):
+    path = folder / name
+    pd.DataFrame({"time_s": TIME} | columns).to_csv(path, index=False)
+    return path
+
+
+def tone(a_w=1.0, frequency=5.0, mean=0.0):
+    return mean + a_w * math.sqrt(2) / WK_AT_5_HZ * np.sin(2 * np.pi * frequency * TIME)
+
+
+def test_a_tone_has_the_published_factor_whatever_its_unit_and_mean(tmp_path):
+    path = write(tmp_path, acc_z_g=tone(mean=9.80665) / 9.80665)
+    found = comfort(path)
+    assert found.axes["z"].dose.rms == pytest.approx(1.0, rel=5e-3)
+    assert found.axes["z"].method == "basic"
+    assert any("gravity" in note for note in found.notes)
+    plain = comfort(write(tmp_path, "plain.csv", a=tone()), {"Z": "a"})
+    assert plain.axes["z"].dose.rms == pytest.approx(found.axes["z"].dose.rms, rel=1e-9)
+    assert any("no unit is stated" in note for note in plain.notes)
+
+
+def test_a_mean_of_one_without_a_unit_is_doubted(tmp_path):
+    found = comfort(write(tmp_path, acc_z=tone(0.1) / 9.80665 + 1.0))
+    assert any("--unit g" in note for note in found.notes)
+    in_g = comfort(write(tmp_path, acc_z=tone(0.1) / 9.80665 + 1.0), unit="g")
+    assert in_g.axes["z"].dose.rms == pytest.approx(0.1, rel=5e-3)
+
+
+def test_totals_add_axes_and_points_with_their_factors(tmp_path):
+    names = {"x": "a", "y": "a", "z": "a", "back.x": "a", "feet.z": "a"}
+    found = comfort(write(tmp_path, a=tone()), names)
+    squares = {axis: (each.direction.comfort * each.dose.rms) ** 2 for axis, each in found.axes.items()}
+    assert found.totals["seat"] == pytest.approx(math.sqrt(squares["x"] + squares["y"] + squares["z"]))
+    assert found.totals["overall"] == pytest.approx(math.sqrt(sum(squares.values())))
+    assert list(found.totals) == ["seat", "back", "feet", "overall"]
+    assert found.exposure.a8_axis == "z"
+
+
+def test_blocks_are_cut_after_the_weighting_and_count_as_one(tmp_path):
+    loud = np.where((TIME > 60) & (TIME < 80), 3.0, 1.0)
+    path = write(tmp_path, acc_z=loud * tone())
+    quiet = comfort(path, blocks=[(10, 55), (85, 115)])
+    assert quiet.duration == pytest.approx(75)
+    assert quiet.axes["z"].dose.rms == pytest.approx(1.0, rel=5e-3)
+    assert comfort(path, blocks=[(62, 78)]).axes["z"].dose.rms == pytest.approx(3.0, rel=5e-3)
+    with pytest.raises(InputError, match="lasts from 0 to 120 s"):
+        comfort(path, blocks=[(100, 130)])
+
+
+def test_seat_factors_come_from_pairs_of_axes():
+    found = comfort("scenarios/data/recording")
+    assert found.seat["z"].rms < 1.0 and len(found.seat["z"].runs) == 2
+    assert found.runs == ("run-1", "run-2")
+    one = comfort("scenarios/data/recording", runs=["run-2"])
+    assert one.seat["z"].rms == pytest.approx(found.seat["z"].runs[1])
+
+
+@pytest.mark.parametrize(
+    ("channels", "message"),
+    [
+        ({"z": "acc_zz"}, r"no column 'acc_zz' \(did you mean 'acc_z'\?\)"),
+        ({"zz": "acc_z"}, r"no axis is called 'zz'.*permitted: x, y, z"),
+        ({"floor.z": "acc_z"}, "no axis of the person"),
+    ],
+)
+def test_a_wrong_channel_is_named(tmp_path, channels, message):
+    with pytest.raises(InputError, match=message):
+        comfort(write(tmp_path, acc_z=tone()), channels)
+
+
+def test_wrong_files_are_one_error_each(tmp_path):
+    with pytest.raises(InputError, match=r"no such file.*did you mean 'ride\.csv'"):
+        comfort(write(tmp_path, acc_z=tone()).with_name("rode.csv"))
+    with pytest.raises(InputError, match="no column has a usual name"):
+        comfort(write(tmp_path, "odd.csv", a=tone()))
+    (tmp_path / "text.csv").write_text("a;b\n1;2\n")
+    with pytest.raises(InputError, match="holds no column of numbers"):
+        comfort(tmp_path / "text.csv")
+    broken = tone()
+    broken[100] = math.nan
+    with pytest.raises(InputError, match="line 102, acc_z: not a finite number"):
+        comfort(write(tmp_path, "hole.csv", acc_z=broken))
+    pd.DataFrame({"acc_z": tone()}).to_csv(tmp_path / "timeless.csv", index=False)
+    with pytest.raises(InputError, match="no column holds the time"):
+        comfort(tmp_path / "timeless.csv")
+    assert comfort(tmp_path / "timeless.csv", rate=RATE).sample_rate == RATE
+    for wrong in ({"rate": 0.0}, {"hours": 25.0}, {"hours": math.nan}):
+        with pytest.raises(InputError, match="above 0"):
+            comfort(tmp_path / "timeless.csv", **({"rate": RATE} | wrong))
+    clock = pd.date_range("2026-11-23", periods=len(TIME), freq="2ms").astype(str)
+    with pytest.raises(InputError, match="time_s: '2026-11-23"):
+        comfort(write(tmp_path, "clock.csv", time_s=clock, acc_z=tone()))
+    with pytest.raises(InputError, match=r"timeless\.csv, acc_z: .*needs 200 Hz or more"):
+        comfort(tmp_path / "timeless.csv", rate=100.0)
+    with pytest.raises(InputError, match="does not rise in even steps"):
+        comfort(write(tmp_path, "jump.csv", time_s=TIME + 0.5 * (TIME > 6), acc_z=tone()))
+
+
+@pytest.mark.parametrize(
+    ("column", "name", "unit"),
+    [
+        ("acc_z_m_s2", "acc_z", "m_s2"),
+        ("a_Sitz [g]", "a_sitz", "g"),
+        ("acc (m/s^2)", "acc", "m/s^2"),
+        ("acc_z", "acc_z", None),
+    ],
+)
+def test_units_end_the_names_of_columns(column, name, unit):
+    assert split_unit(column) == (name, unit)
+
+
+def test_the_command_prints_one_object_and_writes_only_where_asked(tmp_path):
+    path = write(tmp_path, acc_z=tone())
+    done = CliRunner().invoke(app, ["comfort", str(path), "--json", "--hours", "4"])
+    found = json.loads(done.stdout)
+    assert done.exit_code == 0 and found["hours"] == 4.0
+    assert {"weighting", "rms", "vdv", "mtvv", "crest_factor", "method"} <= set(found["axes"]["z"])
+    assert found["a8"] == pytest.approx(math.sqrt(0.5), rel=5e-3)
+    assert found["action_value"]["exceeded_by_a8"] and not found["limit_value"]["exceeded_by_a8"]
+    done = CliRunner().invoke(app, ["comfort", str(path), "--channel", "z=acc_z", "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0 and "A(8) 1.0" in done.stdout
+    assert (
+        json.loads((tmp_path / "out/comfort.json").read_text())["axes"]["z"]
+        == json.loads(CliRunner().invoke(app, ["comfort", str(path), "--json"]).stdout)["axes"]["z"]
+    )
+    assert isinstance(CliRunner().invoke(app, ["comfort", str(path), "--block", "1"]).exception, InputError)

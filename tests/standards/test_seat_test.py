@@ -1,0 +1,115 @@
+"""The seat test against the response of a linear seat, on recordings, and what it refuses."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from seatsim import load, run, seat_test
+from seatsim.cli.app import app
+from seatsim.excitations.iso7096 import acceleration_density
+from seatsim.metrics import frequency_response
+from seatsim.recordings.writer import save_recording
+from seatsim.rig.plant import control_system
+from seatsim.schema.errors import InputError
+from seatsim.standards.iso7096 import INERT_MASS, LIMITS, SEATED_SHARE
+from seatsim.standards.recorded_seat import weighted_input
+
+DAMPING = 600.0
+SEAT = f"""
+plant: {{frame_mass: 20.0, driver_mass: 60.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
+        cushion_stiffness: 60000.0, cushion_damping: 1500.0, travel: [-0.05, 0.05]}}
+damper:
+  model: bingham
+  parameters: {{c_a: {DAMPING}, c_b: 0.0, fc_a: 0.0, fc_b: 0.0, v_ref: 0.01, f0: 0.0}}
+actuator: {{rate: 130.0, max_current: 1.0}}
+temperature: 20.0
+controller: {{law: constant, current: 0.0}}
+excitation: {{kind: iso7096, spectral_class: EM5, duration: 62.0}}
+"""
+
+
+@pytest.fixture(scope="module")
+def scenario(tmp_path_factory):
+    path = tmp_path_factory.mktemp("seat") / "seat.yaml"
+    path.write_text(SEAT)
+    return path
+
+
+def gain(scenario, mass, frequency):
+    """Transmissibility of the linear seat, its damper as a part of the suspension's damping."""
+    plant = load(scenario)[0].plant
+    system = control_system(plant._replace(driver_mass=mass, suspension_damping=plant.suspension_damping + DAMPING))
+    return np.abs(system(2j * np.pi * frequency)[3, 0])
+
+
+def test_seat_factors_are_those_of_the_frequency_response(scenario):
+    found = seat_test(scenario, ["em5"])
+    frequency = np.linspace(0.01, 20, 4000)
+    power = acceleration_density(frequency, "EM5") * np.abs(frequency_response(frequency)) ** 2
+    for row in found.rows:
+        expected = np.sqrt(np.sum(power * gain(scenario, SEATED_SHARE * row.mass, frequency) ** 2) / np.sum(power))
+        assert row.seat == pytest.approx(expected, rel=0.01)
+        assert row.platform == pytest.approx(weighted_input("EM5"), rel=0.02)
+        assert row.limit == 0.7 and row.passed == (row.seat <= 0.7) and "recalled" in row.clause
+        assert row.within_spread and row.end_stop_hits == 0
+    assert [row.person for row in found.rows] == ["light", "heavy"]
+
+
+def test_damping_test_finds_the_resonance_under_the_inert_mass(scenario):
+    found = seat_test(scenario, ["EM1", "EM5"])
+    [test] = found.damping.values()
+    analytic = gain(scenario, INERT_MASS, np.array(test.frequencies))
+    assert test.transmissibilities == pytest.approx(analytic, rel=5e-3)
+    assert test.transmissibility == max(test.transmissibilities)
+    assert test.stroke == pytest.approx(0.04)
+    assert [(row.limit, row.passed) for row in found.damping_rows] == [
+        (limit, test.transmissibility <= limit) for limit in (1.5, 2.0)
+    ]
+
+
+def test_every_class_and_driver_has_a_line(scenario, tmp_path):
+    done = CliRunner().invoke(app, ["seat-test", str(scenario), "--out", str(tmp_path), "--json"])
+    found = json.loads(done.stdout)
+    assert [(row["class"], row["mass"]) for row in found["classes"]] == [
+        (each, m) for each in LIMITS for m in (55.0, 98.0)
+    ]
+    assert all({"seat", "limit", "pass", "clause"} <= set(row) for row in found["classes"])
+    path = tmp_path / "seat_test.json"
+    assert found == json.loads(path.read_text()) | {"files": [str(path)]}
+
+
+def test_measured_runs_are_put_to_their_class(scenario, tmp_path):
+    channels = ["floor_acceleration", "driver_acceleration", "suspension_displacement"]
+    settings = {"plant.driver_mass": SEATED_SHARE * 98, "sweep": {"seed": [1, 2, 3]}}
+    folder = save_recording(run(scenario, settings), tmp_path / "recorded", channels)
+    [row] = seat_test(folder).rows
+    assert (row.spectral_class, row.person, row.within_spread) == ("EM5", "heavy", True)
+    simulated = next(each for each in seat_test(scenario, ["EM5"]).rows if each.person == "heavy")
+    assert row.seat == pytest.approx(simulated.seat, rel=0.02)
+    with pytest.raises(InputError, match="no run is of a class"):
+        seat_test(folder, ["EM6"])
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"controller": {"law": "replay"}}, "replays a recording"),
+        ({"plant.travel": [0.05, -0.05]}, "travel"),
+    ],
+)
+def test_what_cannot_be_tested_is_refused(scenario, settings, message):
+    with pytest.raises(InputError, match=message):
+        seat_test(scenario, ["EM5"], settings)
+
+
+def test_a_class_is_looked_up_by_name(scenario):
+    with pytest.raises(InputError, match=r"no class is called 'EM10' \(did you mean 'EM1'\?\)"):
+        seat_test(scenario, ["EM10"])
+
+
+def test_a_travel_that_is_not_stated_is_said(scenario):
+    found = seat_test(scenario, ["EM6"], {"plant.travel": [-10.0, 10.0]})
+    assert found.rows[0].end_stop_hits is None
+    assert any("no travel is stated" in note for note in found.notes)
