@@ -125,21 +125,28 @@ def _reachable(modules: Iterable[ModuleType]) -> set[ModuleType]:
     return found
 
 
-def _imported(module: ModuleType) -> Iterator[str]:
-    """Yield the full names of what the module's source imports, outside functions and not for type checkers only."""
-    waiting: list[ast.AST] = [ast.parse(Path(str(module.__file__)).read_bytes())]
+def _imported(module: ModuleType) -> tuple[str, ...]:
+    """Return the full names of what the module's source imports, outside functions and not for type checkers only."""
+    return _imports(Path(str(module.__file__)).read_bytes(), module.__package__)
+
+
+@cache
+def _imports(source: bytes, package: str | None) -> tuple[str, ...]:
+    """Return the same for a source, which is parsed once: most modules are part of every combination."""
+    found: list[str] = []
+    waiting: list[ast.AST] = [ast.parse(source)]
     while waiting:
         node = waiting.pop()
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            origin = resolve_name("." * node.level + (node.module or ""), module.__package__)
-            yield origin
-            yield from (f"{origin}.{alias.name}" for alias in node.names)
+            origin = resolve_name("." * node.level + (node.module or ""), package)
+            found += [origin, *(f"{origin}.{alias.name}" for alias in node.names)]
         elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
             waiting += node.orelse
         elif isinstance(node, ast.Module | ast.stmt | ast.ExceptHandler) and not isinstance(node, ast.FunctionDef):
             waiting += ast.iter_child_nodes(node)
+    return tuple(found)
 
 
 def _loaded(module: ModuleType) -> Iterator[bytes]:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import csv
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatsim.schema.files import write_json, write_whole
 from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import UNITS, Result, Run
 
 if TYPE_CHECKING:
+    import pyarrow as pa
     from matplotlib.figure import Figure
 
 DPI = 110
@@ -31,7 +34,7 @@ def write_result(result: Result, folder: Path) -> list[Path]:
         from seatsim.plots.runs.draw import plot_result
 
         paths = [
-            write_whole(folder / "summary.csv", partial(result.table.to_csv, index=False)),
+            write_whole(folder / "summary.csv", partial(_write_table, result.rows)),
             write_json(folder / "summary.json", _encode_runs(result)),
         ]
         pictures = write_pictures(plot_result(result), folder)
@@ -83,6 +86,15 @@ def _encode_summary(run: Run) -> dict[str, object]:
     }
 
 
+def _write_table(rows: Sequence[Mapping[str, object]], path: Path) -> None:
+    """Write rows below each other, with a column for every name; what is absent or NaN stays empty."""
+    names = dict.fromkeys(name for row in rows for name in row)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(names), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({name: "" if value != value else value for name, value in row.items()} for row in rows)
+
+
 def _write_history(result: Result, path: Path) -> None:
     """Write all runs below each other, a column a channel in single precision, units in the columns' metadata."""
     import pyarrow as pa
@@ -97,6 +109,23 @@ def _write_history(result: Result, path: Path) -> None:
     with pq.ParquetWriter(path, schema, compression="zstd", compression_level=1) as writer:
         for run in result.runs:
             length = len(run.history["time"])
-            titles = pa.DictionaryArray.from_arrays(np.zeros(length, dtype=np.int32), [run.scenario.title])
-            columns = [pa.array(run.history[name], type=schema.field(name).type) for name in UNITS]
+            titles = pa.DictionaryArray.from_arrays(_array(np.zeros(length), pa.int32()), _text(run.scenario.title))
+            columns = [_array(run.history[name], schema.field(name).type) for name in UNITS]
             writer.write_table(pa.Table.from_arrays([titles, *columns], schema=schema))
+
+
+def _array(values: NDArray[np.float64], kind: pa.DataType) -> pa.Array:
+    """Return numbers as pyarrow holds them. Its own conversion imports pandas, which takes longer than writing."""
+    import pyarrow as pa
+
+    stored = np.ascontiguousarray(values, dtype=kind.to_pandas_dtype())
+    return pa.Array.from_buffers(kind, len(stored), [None, pa.py_buffer(stored)])
+
+
+def _text(text: str) -> pa.Array:
+    """Return an array of one text."""
+    import pyarrow as pa
+
+    content = text.encode()
+    ends = np.array([0, len(content)], dtype=np.int32)
+    return pa.Array.from_buffers(pa.string(), 1, [None, pa.py_buffer(ends), pa.py_buffer(content)])
