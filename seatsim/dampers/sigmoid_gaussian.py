@@ -59,10 +59,13 @@ def table_row(test: int, current: float) -> Row:
     return _row(_cubics()[test - 1], current)
 
 
-@overload(table_row, strict=False, jit_options=INLINED)
-def _table_row(test: types.Type, current: types.Type) -> Callable[[int, float], Row]:
+def _compile_table_row(test: types.Type, current: types.Type) -> Callable[[int, float], Row]:
+    """Return `table_row` for compiled code, of which the cubics are constants."""
     cubics = _cubics()
     return lambda test, current: _row(cubics[test - 1], current)
+
+
+overload(table_row, strict=False, jit_options=INLINED)(_compile_table_row)
 
 
 @jit

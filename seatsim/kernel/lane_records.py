@@ -99,22 +99,22 @@ def _scatter(record: types.Type, rows: types.Type, lane: types.Type) -> Callable
 
 
 def _expression(kind: types.Type, places: Iterator[int], namespace: dict[str, object]) -> str:
-    """Return the source that builds a value of a type out of the rows; the classes that it names enter the namespace."""
-    if isinstance(kind, types.BaseTuple):
-        cls = getattr(kind, "instance_class", None)
-        place = f"{next(places) * LANES}" if cls in SHARED else ""
-        if place:
-            return repr(SHARED[cast("type", cls)])
-        parts = "".join(f"{_expression(part, places, namespace)}, " for part in kind.types)
-        if cls is None:
-            return f"({parts})"
-        name = f"{cls.__name__}_{len(namespace)}"
-        namespace[name] = cls
-        return f"{name}({parts})"
-    value = f"rows[{next(places) * LANES} + lane]"
-    if isinstance(kind, types.Boolean):
-        return f"{value} != 0.0"
-    return f"int({value})" if isinstance(kind, types.Integer) else value
+    """Return the source that builds a value of a type out of the rows; classes that it names enter the namespace."""
+    if not isinstance(kind, types.BaseTuple):
+        value = f"rows[{next(places) * LANES} + lane]"
+        if isinstance(kind, types.Boolean):
+            return f"{value} != 0.0"
+        return f"int({value})" if isinstance(kind, types.Integer) else value
+    cls = kind.instance_class if isinstance(kind, types.BaseNamedTuple) else None
+    if cls in SHARED:
+        next(places)
+        return repr(SHARED[cls])
+    parts = "".join(f"{_expression(part, places, namespace)}, " for part in kind.types)
+    if cls is None:
+        return f"({parts})"
+    name = f"{cls.__name__}_{len(namespace)}"
+    namespace[name] = cls
+    return f"{name}({parts})"
 
 
 def _leaves(kind: types.Type, path: str) -> Iterator[str]:

@@ -44,8 +44,7 @@ Array = NDArray[np.float64]
 class LaneSetup(NamedTuple):
     """The constant parts of one lane: the fields of `seatsim.kernel.loop_inputs.LoopSetup` that lanes may have.
 
-    `factors` are those of the lane's `temperature` in degC, `kept` as in `StepInputs`; commands act `late` steps later,
-    and before the first does the coil's `start_current` in A stands.
+    `factors` are those of the lane's `temperature` in degC, `kept` as in `StepInputs`; commands act `late` steps later.
     """
 
     rig: Rig
@@ -56,7 +55,6 @@ class LaneSetup(NamedTuple):
     factors: TemperatureScaling
     kept: tuple[float, float]
     late: float
-    start_current: float
     temperature: float
 
 
@@ -132,8 +130,8 @@ def run_lanes(
 ) -> None:
     """Simulate a block of lanes from rest.
 
-    `setup`, `state`, `memory` and `sums` are templates of what `rows` holds; only their form counts, and the numbers that all
-    lanes share. A lane that diverges stays at its last valid state.
+    `setup`, `state`, `memory` and `sums` are templates of what `rows` holds; only their form counts, and the numbers
+    that all lanes share. A lane that diverges stays at its last valid state.
     """
     samples, states, next_states = len(inputs.floor_acceleration), rows.states, np.empty_like(rows.states)
     floor, driver = inputs.floor_acceleration.reshape(-1), rows.driver.reshape(-1)
@@ -158,8 +156,8 @@ def _start(setup: LaneSetup, state: Lane, inputs: LaneInputs, rows: LaneRows, st
     for lane in range(LANES):
         own, rest = gather(setup, rows.setups, lane), gather(state, rows.states, lane)
         disturbance = Disturbance(inputs.floor_acceleration[0, lane], 0.0, 0.0)
-        now = start(own.rig, rest.now.state, disturbance, own.start_current, own.factors, step)
-        scatter(Lane(now, own.start_current, 0.0), rows.states, lane)
+        now = start(own.rig, rest.now.state, disturbance, 0.0, own.factors, step)
+        scatter(Lane(now, 0.0, 0.0), rows.states, lane)
 
 
 @jit
@@ -193,7 +191,7 @@ def _hold_commands(setup: LaneSetup, rows: LaneRows, acting: Array, k: int) -> N
         own = gather(setup, rows.setups, lane)
         rows.commands[k % depth, lane] = rows.demands[lane]
         late = int(own.late)
-        command = rows.commands[(k - late) % depth, lane] if k >= late else own.start_current
+        command = rows.commands[(k - late) % depth, lane] if k >= late else 0.0
         acting[lane] = min(command, own.coil.max_current)
 
 
@@ -245,9 +243,7 @@ def _added(own: LaneSetup, lane: Lane, demand: Demand, frame: float, sums: Sums,
         current,
         at_rest,
         max(sums.imbalance, abs(s[FLOOR_WORK] - (used[0] + used[1] + used[2] + used[3]))),
-        max(
-            max(max(sums.energy, abs(s[FLOOR_WORK])), max(abs(used[0]), abs(used[1]))), max(abs(used[2]), abs(used[3]))
-        ),
+        max(sums.energy, abs(s[FLOOR_WORK]), abs(used[0]), abs(used[1]), abs(used[2]), abs(used[3])),
         s[DAMPER_WORK],
     )
 

@@ -13,8 +13,8 @@ from seatsim.kernel.assumed_model import follow_state, model_scaling, model_stat
 from seatsim.kernel.chain import leading_state
 from seatsim.kernel.generic import advance_filters, evaluate_law, read, scaling_at, update, wants_force
 from seatsim.kernel.inverse import CELLS, invert
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, sample_of, step_inputs
-from seatsim.kernel.rig import Disturbance, Rig
+from seatsim.kernel.loop_inputs import ControlledRig, LoopInputs, LoopSetup, sample_of, step_inputs
+from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import IntegratorState, advance, relaxed, start
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Measurement
@@ -109,7 +109,7 @@ def run_loop(
 
 @jit
 def decide(
-    setup: LoopSetup,
+    setup: ControlledRig,
     y: Measurement,
     now: IntegratorState,
     factors: TemperatureScaling,

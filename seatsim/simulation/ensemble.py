@@ -9,15 +9,13 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
-from itertools import islice
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.compilation.cached import compiled
-from seatsim.excitations.base import Floor
 from seatsim.kernel.assumed_model import TrueModel
 from seatsim.kernel.lane_records import LANES, fill, numbers, template_of
 from seatsim.kernel.lanes import Demand, Lane, LaneInputs, LaneRows, LaneSetup, Sums, run_lanes
@@ -28,10 +26,9 @@ from seatsim.kernel.step import IntegratorState
 from seatsim.metrics import METRICS, Metric, summarise
 from seatsim.metrics.arrays import ratio
 from seatsim.rig.coil import relax
-from seatsim.rig.sensors import Direct
 from seatsim.rig.state import MECHANICAL
-from seatsim.rig.temperature import scaling
-from seatsim.scenario.scenario import Scenario
+from seatsim.rig.temperature import Thermal, scaling
+from seatsim.scenario.scenario import Control, Scenario
 from seatsim.schema.errors import RunError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.inputs import Forces
@@ -42,8 +39,8 @@ Array = NDArray[np.float64]
 Row = dict[str, Metric] | RunError
 
 
-class _Prepared(NamedTuple):
-    """A scenario that can be a lane, with what drives it and its law's and its damper's state at rest."""
+class _Lane(NamedTuple):
+    """A scenario as a lane: its place among the others, its constant parts, its state and its law's memory at rest."""
 
     place: int
     scenario: Scenario
@@ -51,39 +48,39 @@ class _Prepared(NamedTuple):
     state: Lane
     memory: tuple[float, ...]
     timing: Timing
-    inputs: LoopInputs
 
     @property
     def combination(self) -> object:
-        """What lanes of a block must have in common; all else are numbers."""
+        """What lanes side by side must have in common beside their duration; all else are numbers."""
         models = type(self.setup.rig.damper), type(self.setup.law), self.setup.inverse_model.order
-        return models, self.timing, len(self.inputs.floor_acceleration), tuple(map(type, numbers(self.setup)))
+        return models, self.timing, tuple(map(type, numbers(self.setup)))
+
+
+Block = list[tuple[_Lane, LoopInputs]]
 
 
 def simulate_ensemble(scenarios: Sequence[Scenario]) -> list[Row]:
     """Return for every scenario its metrics by name, as `seatsim.metrics.summarise` does of its run, or why it failed.
 
-    Blocks of `LANES` scenarios with the same models, steps and duration run side by side, whatever their parameters,
+    Up to `LANES` scenarios with the same models, steps and duration run side by side, whatever their parameters,
     floors, seeds, temperatures and masses. What a lane has no room for runs by itself and gives the same row: effects,
     a seated body, sensors, an inverse of its own, a damper that warms up, a recorded temperature or current, a delay
-    that is no whole number of steps.
+    that is no whole number of steps. Floors are made block by block, so that memory does not grow with the scenarios.
 
     Raises:
         InputError: a scenario is wrong.
     """
-    rows: list[Row | None] = [None] * len(scenarios)
-    groups: dict[object, list[_Prepared]] = defaultdict(list)
+    rows: dict[int, Row] = {}
+    groups: dict[object, list[_Lane]] = defaultdict(list)
     for place, scenario in enumerate(scenarios):
-        prepared = _prepare(place, scenario)
-        if prepared is None:
+        lane = _as_lane(place, scenario)
+        if lane is None:
             rows[place] = _run_alone(scenario)
         else:
-            groups[prepared.combination].append(prepared)
+            groups[lane.combination].append(lane)
     for group in groups.values():
-        for block in _blocks(group):
-            for prepared, row in zip(block, _run_block(block, group), strict=True):
-                rows[prepared.place] = row
-    return [row for row in rows if row is not None]
+        rows |= _run_group(group)
+    return [rows[place] for place in range(len(scenarios))]
 
 
 def _run_alone(scenario: Scenario) -> Row:
@@ -93,94 +90,93 @@ def _run_alone(scenario: Scenario) -> Row:
         return error
 
 
-def _blocks(group: Sequence[_Prepared]) -> Iterator[list[_Prepared]]:
-    waiting = iter(group)
-    while block := list(islice(waiting, LANES)):
-        yield block
-
-
-def _prepare(place: int, scenario: Scenario) -> _Prepared | None:
+def _as_lane(place: int, scenario: Scenario) -> _Lane | None:
     """Return a scenario as a lane, None where a lane has no room for it."""
-    if scenario.plant is None or scenario.control is None or scenario.effects or scenario.control.sensors:
+    plant, control, temperature = scenario.plant, scenario.control, scenario.temperature
+    if plant is None or control is None or control.sensors or scenario.effects or isinstance(temperature, Thermal):
         return None
-    with scenario.placed("excitation"):
-        floor: Floor = scenario.excitation.floor(scenario.solver.step, scenario.seed)
-    setup, initial = set_up(scenario, scenario.plant, scenario.control, floor.temperature is not None, False)
-    inputs = prepare_inputs(scenario, scenario.control, floor, Forces())
+    setup, initial = set_up(scenario, plant, control, is_recorded=False, carry_all_effects=False)
     late = math.floor(setup.coil.delay / setup.timing.step + ROUNDING)
-    if not _has_room(setup, inputs, late):
+    if not _has_room(setup, late):
         return None
     start = (*scenario.start, *(0.0,) * (MECHANICAL - len(scenario.start)), *initial)
     rest = IntegratorState(start, (0.0,) * len(start), RigForces(0.0, 0.0, 0.0), 0.0, setup.timing.step)
-    memory = specification_of(type(scenario.control.law)).initial
-    lane = _lane_setup(setup, inputs, late)
-    return _Prepared(place, scenario, lane, Lane(rest, 0.0, 0.0), memory, setup.timing, inputs)
+    memory = specification_of(type(control.law)).initial
+    return _Lane(place, scenario, _lane_setup(setup, late, temperature), Lane(rest, 0.0, 0.0), memory, setup.timing)
 
 
-def _has_room(setup: LoopSetup, inputs: LoopInputs, late: int) -> bool:
-    """Whether a lane can hold all of a run."""
-    step, absent = setup.timing.step, (inputs.replayed, inputs.prescribed, inputs.frame_force, inputs.driver_force)
+def _has_room(setup: LoopSetup, late: int) -> bool:
+    """Whether the lanes' loop has all that a run needs."""
     try:
         list(numbers(setup.law))
     except TypeError:
         return False
-    return (
-        not setup.rig.effects
-        and isinstance(setup.sensors, Direct)
-        and isinstance(setup.inverse_model, TrueModel)
-        and not setup.timing.self_heating
-        and bool(np.all(inputs.temperature == inputs.temperature[0]))
-        and not any(map(len, absent))
-        and setup.coil.delay - late * step < ROUNDING * step
-    )
+    step = setup.timing.step
+    is_whole = setup.coil.delay - late * step < ROUNDING * step
+    return is_whole and not setup.rig.effects and isinstance(setup.inverse_model, TrueModel)
 
 
-def _lane_setup(setup: LoopSetup, inputs: LoopInputs, late: int) -> LaneSetup:
-    step, temperature = setup.timing.step, float(inputs.temperature[0])
-    rises, falls = relax(setup.coil, 0.0, 1.0, 0.5 * step), relax(setup.coil, 1.0, 0.0, 0.5 * step)
+def _lane_setup(setup: LoopSetup, late: int, temperature: float) -> LaneSetup:
+    half = 0.5 * setup.timing.step
+    kept = 1.0 - relax(setup.coil, 0.0, 1.0, half), relax(setup.coil, 1.0, 0.0, half)
+    factors, model = scaling(setup.factors, temperature), cast("TrueModel", setup.inverse_model)
     return LaneSetup(
-        setup.rig,
-        setup.coil,
-        setup.law,
-        setup.inverse_model,  # type: ignore[arg-type]  # `_has_room` has seen that it is the true one
-        setup.max_command,
-        scaling(setup.factors, temperature),
-        (1.0 - rises, falls),
-        float(late),
-        inputs.start_current,
-        temperature,
+        setup.rig, setup.coil, setup.law, model, setup.max_command, factors, kept, float(late), temperature
     )
 
 
-def _run_block(block: Sequence[_Prepared], group: Sequence[_Prepared]) -> Iterator[Row]:
-    """Run one block and yield the row of each of its lanes. The whole group tells which numbers its lanes share."""
-    samples, timing = len(block[0].inputs.floor_acceleration), block[0].timing
-    depth = 1 + int(max(lane.setup.late for lane in group))
-    empty = Demand(0.0, math.nan, math.nan)
+def _run_group(group: Sequence[_Lane]) -> dict[int, Row]:
+    """Return the rows of lanes of one combination by their places."""
+    rows: dict[int, Row] = {}
+    template = template_of([lane.setup for lane in group])
+    waiting: dict[int, Block] = defaultdict(list)
+    for lane in group:
+        with lane.scenario.placed("excitation"):
+            floor = lane.scenario.excitation.floor(lane.timing.step, lane.scenario.seed)
+        if floor.temperature is not None or floor.coil_current is not None or floor.command is not None:
+            rows[lane.place] = _run_alone(lane.scenario)
+            continue
+        inputs = prepare_inputs(lane.scenario, cast("Control", lane.scenario.control), floor, Forces())
+        block = waiting[len(floor.acceleration)]
+        block.append((lane, inputs))
+        if len(block) == LANES:
+            rows |= _run_block(block, template)
+            block.clear()
+    for block in filter(None, waiting.values()):
+        rows |= _run_block(block, template)
+    return rows
+
+
+def _run_block(block: Block, template: LaneSetup) -> dict[int, Row]:
+    """Run a block side by side and return the rows of its lanes by their places."""
+    lanes, inputs = zip(*block, strict=True)
+    first, samples = lanes[0], len(inputs[0].floor_acceleration)
+    depth = 1 + int(max(lane.setup.late for lane in lanes))
     rows = LaneRows(
-        fill([lane.setup for lane in block]),
-        fill([lane.state for lane in block]),
-        fill([lane.memory for lane in block]),
-        fill([empty]),
+        fill([lane.setup for lane in lanes]),
+        fill([lane.state for lane in lanes]),
+        fill([lane.memory for lane in lanes]),
+        fill([Demand(0.0, math.nan, math.nan)]),
         fill([Sums()]),
         np.zeros((depth, LANES)),
         np.empty((samples, LANES)),
         np.full(LANES, float(samples)),
     )
     driven = LaneInputs(
-        _side_by_side([lane.inputs.floor_acceleration for lane in block]),
-        _side_by_side([lane.inputs.floor_velocity for lane in block]),
+        _side_by_side([each.floor_acceleration for each in inputs]),
+        _side_by_side([each.floor_velocity for each in inputs]),
     )
-    first = block[0]
-    parts = type(first.setup.rig.damper), type(first.setup.law)
-    template = template_of([lane.setup for lane in group])
-    compiled(run_lanes, parts)(template, first.state, first.memory, Sums(), timing, driven, rows)
-    for index, lane in enumerate(block):
+    run = compiled(run_lanes, (type(first.setup.rig.damper), type(first.setup.law)))
+    run(template, first.state, first.memory, Sums(), first.timing, driven, rows)
+    sums = [Sums(*column) for column in rows.sums.reshape(-1, LANES).T.tolist()]
+    found: dict[int, Row] = {}
+    for index, (lane, each) in enumerate(block):
         if rows.reached[index] < samples:
-            yield diverged(lane.scenario, int(rows.reached[index]))
+            found[lane.place] = diverged(lane.scenario, int(rows.reached[index]))
         else:
-            sums = Sums(*rows.sums.reshape(-1, LANES)[:, index].tolist())
-            yield _metrics(lane, sums, np.ascontiguousarray(rows.driver[:, index]))
+            driver = np.ascontiguousarray(rows.driver[:, index])
+            found[lane.place] = _metrics(lane, each.floor_acceleration, sums[index], driver)
+    return found
 
 
 def _side_by_side(channels: Sequence[Array]) -> Array:
@@ -188,15 +184,14 @@ def _side_by_side(channels: Sequence[Array]) -> Array:
     return np.ascontiguousarray(np.array([*channels, *[channels[-1]] * (LANES - len(channels))]).T)
 
 
-def _metrics(lane: _Prepared, sums: Sums, driver: Array) -> dict[str, Metric]:
+def _metrics(lane: _Lane, floor: Array, sums: Sums, driver: Array) -> dict[str, Metric]:
     """Return the metrics of a lane in the order of `METRICS`."""
-    floor, step = lane.inputs.floor_acceleration, lane.timing.step
-    of_driver = summarise({"driver_acceleration": driver, "floor_acceleration": floor}, step)
+    of_driver = summarise({"driver_acceleration": driver, "floor_acceleration": floor}, lane.timing.step)
     found = {name: metric.value for name, metric in of_driver.items()} | _summed_metrics(lane, sums, len(floor))
     return {name: Metric(found[name], known.unit, known.meaning) for name, known in METRICS.items() if name in found}
 
 
-def _summed_metrics(lane: _Prepared, sums: Sums, samples: int) -> dict[str, float]:
+def _summed_metrics(lane: _Lane, sums: Sums, samples: int) -> dict[str, float]:
     """Return the metrics that the sums give; those of the wanted force only where there was one."""
     # Sum of squares less half of the first and the last one: the trapezoidal rule.
     heat = sums.current - 0.5 * (sums.first_current**2 + sums.last_current**2)
