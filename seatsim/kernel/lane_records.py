@@ -38,19 +38,21 @@ SHARED: dict[type, float] = {Zero: 0.0, One: 1.0, Two: 2.0}
 """Numbers that are compiled in where all lanes share them: the terms and powers that they take away cost most."""
 
 
-def numbers(record: object) -> Iterator[bool | int | float]:
-    """Yield the numbers of a record from the first field to the last, those of nested ones in their place.
+def numbers(record: tuple[object, ...]) -> list[float]:
+    """Return the numbers of a record from the first field to the last, those of nested ones in their place.
 
     Raises:
         TypeError: a field is neither a number nor a record.
     """
-    if isinstance(record, tuple):
-        for part in record:
-            yield from numbers(part)
-    elif isinstance(record, bool | int | float):
-        yield record
-    else:
-        raise TypeError(f"{type(record).__name__} is no number")
+    found: list[float] = []
+    for part in record:
+        if isinstance(part, tuple):
+            found += numbers(part)
+        elif isinstance(part, bool | int | float):
+            found.append(part)
+        else:
+            raise TypeError(f"{type(part).__name__} is no number")
+    return found
 
 
 def template_of(records: Sequence[T]) -> T:
@@ -64,9 +66,9 @@ def template_of(records: Sequence[T]) -> T:
     return first
 
 
-def fill(records: Sequence[object]) -> Array:
+def fill(records: Sequence[tuple[object, ...]]) -> Array:
     """Return the rows of up to `LANES` records of one form; lanes that are left over repeat the last one."""
-    columns = [list(numbers(record)) for record in records]
+    columns = [numbers(record) for record in records]
     columns += [columns[-1]] * (LANES - len(columns))
     return np.array(columns, dtype=float).T.ravel()
 

@@ -108,7 +108,7 @@ def _as_lane(place: int, scenario: Scenario) -> _Lane | None:
 def _has_room(setup: LoopSetup, late: int) -> bool:
     """Whether the lanes' loop has all that a run needs."""
     try:
-        list(numbers(setup.law))
+        numbers(cast("tuple[object, ...]", setup.law))
     except TypeError:
         return False
     step = setup.timing.step
