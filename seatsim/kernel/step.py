@@ -195,15 +195,6 @@ def estimate_error(state: State, rates: State, k4: State, h: float, tolerance: f
 def _advance_divided(
     rig: Rig, coil: Coil, inputs: StepInputs, scaling: TemperatureScaling, now: IntegratorState, tolerance: float
 ) -> tuple[IntegratorState, float, bool]:
-    """Advance by one step in as many sub-steps as it needs, with the set-valued friction."""
-    # numba compiles what is called once for each set of options of its callers: all but this frame shares one.
-    return _divide(rig, coil, inputs, scaling, now, tolerance)
-
-
-@jit
-def _divide(
-    rig: Rig, coil: Coil, inputs: StepInputs, scaling: TemperatureScaling, now: IntegratorState, tolerance: float
-) -> tuple[IntegratorState, float, bool]:
     """Return the same as `advance`."""
     time, current, h = 0.0, inputs.current, now.substep
     remaining = inputs.length
