@@ -195,7 +195,7 @@ def estimate_error(state: State, rates: State, k4: State, h: float, tolerance: f
 def _advance_divided(
     rig: Rig, coil: Coil, inputs: StepInputs, scaling: TemperatureScaling, now: IntegratorState, tolerance: float
 ) -> tuple[IntegratorState, float, bool]:
-    """Return the same as `advance`."""
+    """Advance by one step in as many sub-steps as it needs, with the set-valued friction."""
     time, current, h = 0.0, inputs.current, now.substep
     remaining = inputs.length
     for _ in range(MOST_SUBSTEPS):
