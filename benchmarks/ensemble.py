@@ -3,7 +3,7 @@
 Runs of 10 s at 1 kHz of a seat on a road of class C under static output feedback, sampled every 5 ms, with inverse and
 coil; mass, road and temperature differ. Of each damper at its defaults are printed: the compiled loops alone, per step
 of a lane and of a single run; the processor time of a whole run with its metrics; and the largest relative difference
-of a metric. Where that is above 1e-9 a single run differs as much from one that starts 1e-16 m away.
+of a metric. Where that is above 1e-9 a single run differs as much from one whose mass has another last digit.
 """
 
 from __future__ import annotations
