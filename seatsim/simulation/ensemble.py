@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from seatsim.compilation.cached import compiled
 from seatsim.kernel.assumed_model import TrueModel
 from seatsim.kernel.lane_records import LANES, fill, numbers, template_of
-from seatsim.kernel.lanes import Demand, Lane, LaneInputs, LaneRows, LaneSetup, Sums, run_lanes
+from seatsim.kernel.lane_state import Demand, Lane, LaneInputs, LaneRows, LaneSetup, Sums
+from seatsim.kernel.lanes import run_lanes
 from seatsim.kernel.loop import ROUNDING
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import RigForces
