@@ -8,13 +8,13 @@ import numpy as np
 
 from seatsim.importing.alignment import Channel
 from seatsim.importing.clocks import Clocked, list_names
-from seatsim.importing.damage import find_spikes
 from seatsim.importing.doubts import doubt_channel
 from seatsim.importing.import_map import ChannelMap
 from seatsim.importing.names import quantity_of
 from seatsim.importing.resampling import evened
 from seatsim.importing.signals import Array
 from seatsim.importing.time_axis import Axis
+from seatsim.recordings.quality.damage import find_spikes
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import conversion

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.importing.assembly import Assembled, assemble
-from seatsim.importing.damage import QUIET, noise_of
 from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map
 from seatsim.importing.map_text import write_map
 from seatsim.importing.matching import propose
@@ -19,8 +18,10 @@ from seatsim.importing.road import assemble_road
 from seatsim.importing.signals import DataFile
 from seatsim.importing.writing import write_recording, write_road
 from seatsim.recordings.channel_units import CHANNELS
+from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
-from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.quality.issue import Issue, place_in_run
+from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
 
@@ -79,7 +80,8 @@ def import_files(
         return Import(folder, used, stated is None, write_road(folder, road, used), notes, doubts)
     assembled = _assembled(files, used, folder, stated is None)
     scenario = make_nominal(nominal, used.rig, assembled.runs[0].table) if nominal else None
-    doubts = merge_issues(assembled.doubts, len(assembled.runs)) + (_examined(assembled, scenario) if scenario else [])
+    found = [*assembled.doubts, *([] if scenario else _related(assembled))]
+    doubts = merge_issues(found, len(assembled.runs)) + (_examined(assembled, scenario) if scenario else [])
     written = write_recording(folder, assembled, scenario)
     runs = tuple(run.name for run in assembled.runs)
     notes += assembled.notes
@@ -142,6 +144,12 @@ def _commented(assembled: Assembled) -> ImportMap:
         if said:
             comments[name] = "; ".join(said)
     return dataclasses.replace(assembled.map, comments=comments)
+
+
+def _related(assembled: Assembled) -> list[Issue]:
+    """Return what the channels of each run show of each other, which an examination would find too."""
+    runs = assembled.runs
+    return [each for run in runs for each in place_in_run(run.name, doubt_relations(run.table, assembled.rate))]
 
 
 def _examined(assembled: Assembled, scenario: Mapping[str, object]) -> list[Issue]:

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from seatsim.importing.damage import QUIET
 from seatsim.importing.doubts import doubt_channel
 from seatsim.importing.inspection import ChannelSummary, Inspection, summarise
 from seatsim.importing.names import quantity_of
-from seatsim.importing.relations import doubt_rig
 from seatsim.importing.signals import Signal
+from seatsim.recordings.quality.damage import QUIET
 from seatsim.recordings.quality.examination import examine, merge_issues
-from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.quality.issue import Issue, place_in_run
+from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.recording import Recording, load_recording
 
 SWITCHED = ("current_command", "command_voltage")
@@ -38,8 +38,8 @@ def inspect_recording(folder: Path) -> Inspection:
         found = [
             issue for name, values in table.items() for issue in doubt_channel(name, values, rate, quantity_of(name))
         ]
-        found += doubt_rig(table, rate)
-        doubts += [issue._replace(sentence=f"{run}, {issue.sentence}", run=run) for issue in found]
+        found += [] if recording.nominal.exists() else doubt_relations(table, rate)
+        doubts += place_in_run(run, found)
     doubts = merge_issues(doubts, len(recording.runs))
     doubts += _offered(recording, channels, doubts)
     if recording.nominal.exists():

@@ -11,7 +11,6 @@ import numpy as np
 
 from seatsim.importing.axis_doubts import doubt_distance, doubt_time
 from seatsim.importing.clocks import read_clock
-from seatsim.importing.damage import noise_of
 from seatsim.importing.doubts import doubt_channel
 from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of
@@ -21,6 +20,7 @@ from seatsim.importing.relations import doubt_pairs
 from seatsim.importing.signals import Array, DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis
 from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
+from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.units import DIMENSIONS, conversion
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +14,8 @@ from seatsim.recordings.quality.residual import filter_band, find_delay
 from seatsim.recordings.quality.run_under_test import LATE, MOTION, Array, RunUnderTest, Table
 from seatsim.schema.units import USUAL, conversion
 
+TOGETHER = (("floor_acceleration", "frame_acceleration", "driver_acceleration"), ("displacement", "velocity"))
+"""Channels whose axis may point down for all of them."""
 LONGEST_DELAY = 0.5
 """s; largest delay that is sought: half a period of the slowest motion considered."""
 ALIKE = 0.8
@@ -33,6 +35,10 @@ def list_faults(run: RunUnderTest, outputs: Table | None) -> Iterator[DataFault]
     """Yield every fault that a run may have; delays are relative to simulated outputs."""
     for channel in run.table:
         yield from _scales(channel)
+    for channels in TOGETHER:
+        swapped = tuple(channel for channel in channels if channel in run.table)
+        if len(swapped) > 1:
+            yield DataFault("sign", swapped, "all their signs are swapped", _swapped(swapped))
     for first, second in itertools.combinations(MOTION[:3], 2):
         if first in run.table and second in run.table:
             yield exchange_fault(first, second)
@@ -51,6 +57,10 @@ def _scales(channel: str) -> Iterator[DataFault]:
 
 def _scaled(channel: str, factor: float) -> Callable[[Table], Table]:
     return lambda table: {**table, channel: factor * table[channel]}
+
+
+def _swapped(channels: Sequence[str]) -> Callable[[Table], Table]:
+    return lambda table: {**table, **{channel: -table[channel] for channel in channels}}
 
 
 def exchange_fault(first: str, second: str) -> DataFault:
