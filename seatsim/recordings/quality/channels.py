@@ -24,8 +24,6 @@ def check_ranges(run: RunUnderTest) -> Iterator[Issue]:
     """Report constant channels, and currents and temperatures out of range."""
     for channel in run.table:
         yield from _constant(run, channel)
-        if channel in MOTION and (text := say_implausible(run.table[channel], run.recording.channels[channel].unit)):
-            yield run.issue("error", "unit", f"{text} convert it" if text.endswith("?") else text, channel)
     gains = {"current_command": 1.0, "coil_current": 1.0, "command_voltage": run.recording.voltage_gain}
     for channel, gain in gains.items():
         if channel in run.table and gain is not None:
@@ -80,6 +78,13 @@ def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
             yield run.issue("error" if is_sure else "warning", "clipped", text, channel)
         if is_fine:
             yield from _held(run, channel)
+
+
+def check_sizes(run: RunUnderTest) -> Iterator[Issue]:
+    """Report channels of motion with values that no seat reaches; only a comparison tells of which unit they are."""
+    for channel in MOTION:
+        if channel in run.table and (text := say_implausible(run.table[channel], run.recording.channels[channel].unit)):
+            yield run.issue("error", "unit", f"{text}; correct its unit", channel)
 
 
 def check_damage(run: RunUnderTest) -> Iterator[Issue]:

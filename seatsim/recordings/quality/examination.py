@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from seatsim.recordings.quality.channels import check_damage, check_ranges, check_shapes
+from seatsim.recordings.quality.channels import check_damage, check_ranges, check_shapes, check_sizes
 from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
 from seatsim.recordings.quality.floor_sensor import check_floor_sensor
 from seatsim.recordings.quality.gravity import without_gravity
@@ -103,7 +103,7 @@ def _check_relations(run: RunUnderTest) -> Iterator[Issue]:
 
 CHECKS = (
     check_ranges, check_exchanged_currents, check_shapes, check_damage, check_floor_sensor, check_consistency,
-    _check_relations,
+    check_sizes, _check_relations,
 )  # fmt: skip
 """Checks of one run, in their order."""
 
