@@ -16,6 +16,7 @@ from seatsim.importing.resampling import resample
 from seatsim.importing.signals import Array, DataFile
 from seatsim.recordings.channel_units import CHANNELS
 from seatsim.recordings.quality.issue import Issue, place_in_run
+from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import conversion
 
@@ -72,6 +73,12 @@ def assemble(files: Sequence[DataFile], stated: ImportMap) -> Assembled:
         table = _tabulate(name, used, moved, stated, rate, notes)
         runs.append(Run(name, table))
     return Assembled(runs, rate, dataclasses.replace(stated, align=align), list(dict.fromkeys(notes)), doubts)
+
+
+def doubt_runs(assembled: Assembled) -> list[Issue]:
+    """Return what the channels of each run show of each other, which an examination would find too."""
+    runs = assembled.runs
+    return [each for run in runs for each in place_in_run(run.name, doubt_relations(run.table, assembled.rate))]
 
 
 def _group_runs(files: Sequence[DataFile], stated: ImportMap) -> list[tuple[str, list[DataFile]]]:

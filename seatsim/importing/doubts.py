@@ -123,5 +123,7 @@ def _rest(doubter: Doubter, values: Array, mean: float, quantity: str) -> Iterat
     if swing > 0.0 and abs(mean) > (ABSOLUTE if quantity == "elevation" else OFF_CENTRE) * swing:
         text = f"its mean is {mean:.4g} {unit}, {abs(mean) / swing:.0%} of its swing: {ZERO[quantity]}"
         yield doubter.say("note", "offset", text)
-    elif quantity != "elevation" and abs(mean) < CENTRED * swing:
+    if quantity == "displacement" and values[0] == 0.0 and swing > 0.0:
+        yield doubter.say("note", "zeroed", "begins at exactly 0: counted from its start, its own zero is lost")
+    if quantity != "elevation" and abs(mean) < CENTRED * swing:
         yield doubter.say("note", "centred", "its mean is zero: an offset was removed, and with it what it would show")

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.importing.assembly import Assembled, assemble
+from seatsim.importing.assembly import Assembled, assemble, doubt_runs
 from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map
 from seatsim.importing.map_text import write_map
 from seatsim.importing.matching import propose
@@ -20,8 +20,7 @@ from seatsim.importing.writing import write_recording, write_road
 from seatsim.recordings.channel_units import CHANNELS
 from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
-from seatsim.recordings.quality.issue import Issue, place_in_run
-from seatsim.recordings.quality.relations import doubt_relations
+from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
 
@@ -80,7 +79,7 @@ def import_files(
         return Import(folder, used, stated is None, write_road(folder, road, used), notes, doubts)
     assembled = _assembled(files, used, folder, stated is None)
     scenario = make_nominal(nominal, used.rig, assembled.runs[0].table) if nominal else None
-    found = [*assembled.doubts, *([] if scenario else _related(assembled))]
+    found = [*assembled.doubts, *([] if scenario else doubt_runs(assembled))]
     doubts = merge_issues(found, len(assembled.runs)) + (_examined(assembled, scenario) if scenario else [])
     written = write_recording(folder, assembled, scenario)
     runs = tuple(run.name for run in assembled.runs)
@@ -144,12 +143,6 @@ def _commented(assembled: Assembled) -> ImportMap:
         if said:
             comments[name] = "; ".join(said)
     return dataclasses.replace(assembled.map, comments=comments)
-
-
-def _related(assembled: Assembled) -> list[Issue]:
-    """Return what the channels of each run show of each other, which an examination would find too."""
-    runs = assembled.runs
-    return [each for run in runs for each in place_in_run(run.name, doubt_relations(run.table, assembled.rate))]
 
 
 def _examined(assembled: Assembled, scenario: Mapping[str, object]) -> list[Issue]:

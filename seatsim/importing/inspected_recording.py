@@ -1,21 +1,27 @@
-"""What a recording holds: its channels, the issues that `gap` and `diagnose` name, and noise that it does not state."""
+"""What a recording holds, or a file by its map: channels, what `gap` and `diagnose` say, noise that is not stated."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from seatsim.importing.assembly import assemble, doubt_runs
 from seatsim.importing.doubts import doubt_channel
+from seatsim.importing.import_map import read_map
 from seatsim.importing.inspection import ChannelSummary, Inspection, summarise
 from seatsim.importing.names import quantity_of
+from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import Signal
+from seatsim.recordings.channel_units import CHANNELS
 from seatsim.recordings.quality.damage import QUIET
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.recording import Recording, load_recording
+from seatsim.schema.errors import InputError
 
 SWITCHED = ("current_command", "command_voltage")
 """Channels that are logged and not measured, so that they have no noise."""
@@ -48,6 +54,30 @@ def inspect_recording(folder: Path) -> Inspection:
         text = f"{recording.header.nominal} is missing; signs, units and delays are not compared with a simulation"
         doubts.append(Issue("warning", "nominal", text))
     return Inspection(str(folder), "recording", channels, doubts)
+
+
+def inspect_mapped(path: Path, map_file: Path) -> Inspection:
+    """Return what import would make of a file by a map: channels in SI units, with what is left to doubt.
+
+    Raises:
+        InputError: the file or the map is wrong, or the map is that of a road.
+    """
+    stated = read_map(map_file)
+    if stated.rig == "road":
+        raise InputError(f"{map_file}: is the map of a road; inspect {path.name} without --map")
+    file = read_file(path, stated.csv)
+    assembled = assemble([file], dataclasses.replace(stated, runs={}))
+    units = CHANNELS[stated.rig]
+    channels = {
+        run.name: [
+            summarise(Signal(name, units[name], values), units[name], name, assembled.rate)
+            for name, values in run.table.items()
+        ]
+        for run in assembled.runs
+    }
+    notes = [Issue("note", "mapped", note) for note in (*file.notes, *assembled.notes)]
+    doubts = merge_issues([*assembled.doubts, *doubt_runs(assembled)], len(assembled.runs))
+    return Inspection(str(path), f"{file.format} by {map_file.name}", channels, [*notes, *doubts])
 
 
 def _offered(

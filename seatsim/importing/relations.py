@@ -13,6 +13,8 @@ from seatsim.recordings.quality.relations import MOST_ROWS, kind_of, read_gain, 
 
 ALIKE = 0.9
 """Correlation from which a channel is the delayed copy of another one."""
+REST, STANDING, RELAXED = 0.5, 0.01, 0.01
+"""s for which a motion stands still, its swing there as a share of the whole, and the least change of a force there."""
 
 
 def doubt_pairs(
@@ -29,8 +31,10 @@ def doubt_pairs(
             yield Issue("warning", "duplicate", f"{second}: holds the same values as {first}", second)
         elif rate and same and (first in commands) != (second in commands):
             yield from _delayed(first, second, part[first], part[second], rate)
+    yield from _unconfirmed(channels, quantities, commands)
     if rate:
         yield from _derived(part, rate, quantities)
+        yield from _relaxed(part, rate, quantities)
 
 
 def _centred(values: Array) -> Array | None:
@@ -54,6 +58,44 @@ def _derived(part: Mapping[str, Array], rate: float, quantities: Mapping[str, st
                 text = f"{velocity}: is {gain:.4g} times the derivative of {name}: {said}"
                 yield Issue("warning", kind_of(gain), text, velocity)
                 break
+
+
+def _unconfirmed(
+    channels: Mapping[str, Array], quantities: Mapping[str, str | None], commands: Collection[str]
+) -> Iterator[Issue]:
+    """Yield commanded forces and motions of which nothing was measured: no data tell their sign and their size."""
+    measured = {quantities.get(name) for name in channels if name not in commands}
+    for name in channels:
+        quantity = quantities.get(name)
+        if name in commands and quantity in ("force", "velocity", "displacement") and quantity not in measured:
+            text = f"is a command by its name, and no {quantity} was measured: nothing here shows its sign or scale"
+            yield Issue("note", "command", f"{name}: {text}", name)
+
+
+def _relaxed(part: Mapping[str, Array], rate: float, quantities: Mapping[str, str | None]) -> Iterator[Issue]:
+    """Yield forces that change while the motion stands still after it has moved, as those that relax do."""
+    rows = round(REST * rate)
+    for name in (name for name in part if quantities.get(name) == "displacement"):
+        still = _still(part[name], rows)
+        for force in (each for each in part if quantities.get(each) == "force"):
+            piece = np.array([np.mean(part[force][at : at + rows // 4]) for at in still])
+            later = np.array([np.mean(part[force][at + rows - rows // 4 : at + rows]) for at in still])
+            change = np.abs(later - piece)
+            if len(change) and np.max(change) > RELAXED * np.ptp(part[force]):
+                at = still[int(np.argmax(change))] / rate
+                text = (
+                    f"{force}: changes by {np.max(change):.3g} N within {REST:g} s after {name} has come to rest"
+                    f" (row {at * rate:.0f}): it relaxes, its zero drifts, or its current changes"
+                )
+                yield Issue("note", "relaxation", text, force)
+
+
+def _still(motion: Array, rows: int) -> list[int]:
+    """Return the rows at which a motion comes to rest for so many rows."""
+    windows = len(motion) // rows
+    swing = np.ptp(motion[: windows * rows].reshape(windows, rows), axis=1) if windows else np.empty(0)
+    calm = swing < STANDING * float(np.ptp(motion))
+    return [int(k) * rows for k in np.flatnonzero(calm[1:] & ~calm[:-1]) + 1]
 
 
 def _delayed(first: str, second: str, one: Array, other: Array, rate: float) -> Iterator[Issue]:
