@@ -60,7 +60,9 @@ def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | 
             )
             yield doubter.say("note", "levels", text)
         return
-    yield from doubt_shape(doubter, values, lengths)
+    for issue in doubt_shape(doubter, values, lengths):
+        # A command is logged at the rate of its controller, and holds until the next.
+        yield issue._replace(severity="note") if issue.kind == "held" and quantity in SWITCHED else issue
     if rate is not None and quantity not in SWITCHED:
         yield from doubt_dropouts(doubter, values, lengths, starts)
 

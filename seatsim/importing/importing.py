@@ -17,7 +17,7 @@ from seatsim.importing.readers.reading import read_file
 from seatsim.importing.road import assemble_road
 from seatsim.importing.signals import DataFile
 from seatsim.importing.writing import write_recording, write_road
-from seatsim.recordings.channel_units import CHANNELS
+from seatsim.recordings.channel_units import CHANNELS, COMMANDS
 from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
@@ -138,7 +138,7 @@ def _commented(assembled: Assembled) -> ImportMap:
         noise = noise_of(assembled.runs[0].table[name], assembled.rate)
         unit = CHANNELS[assembled.map.rig][name]
         said = [kind for kind, severity in kinds.items() if severity == "warning"]
-        if noise and not any(kind in kinds for kind in QUIET):
+        if noise and name not in COMMANDS and not any(kind in kinds for kind in QUIET):
             said.append(f"floor at high frequencies {noise:.2g} {unit}: noise_rms, if it is the sensor's")
         if said:
             comments[name] = "; ".join(said)

@@ -15,16 +15,13 @@ from seatsim.importing.inspection import ChannelSummary, Inspection, summarise
 from seatsim.importing.names import quantity_of
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import Signal
-from seatsim.recordings.channel_units import CHANNELS
+from seatsim.recordings.channel_units import CHANNELS, COMMANDS
 from seatsim.recordings.quality.damage import QUIET
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.recording import Recording, load_recording
 from seatsim.schema.errors import InputError
-
-SWITCHED = ("current_command", "command_voltage")
-"""Channels that are logged and not measured, so that they have no noise."""
 
 
 def inspect_recording(folder: Path) -> Inspection:
@@ -85,7 +82,7 @@ def _offered(
 ) -> Iterator[Issue]:
     """Yield the noise of each measured channel that states none: of its floor, or of repeats, which show all of it."""
     for name, entry in recording.channels.items():
-        if entry.noise_rms > 0.0 or name in SWITCHED:
+        if entry.noise_rms > 0.0 or name in COMMANDS:
             continue
         repeated = _of_repeats(recording, name)
         floor = min(
