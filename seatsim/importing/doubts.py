@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.names import DIMENSION
+from seatsim.importing.names import BY_UNIT, DIMENSION
 from seatsim.importing.signals import Array
 from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape
 from seatsim.recordings.quality.issue import Issue
@@ -82,7 +82,7 @@ def _of_quantity(doubter: Doubter, values: Array, quantity: str | None) -> Itera
         yield from _rest(doubter, values, mean, quantity)
     elif quantity == "temperature":
         yield from _warming(doubter, values)
-    if quantity in DIMENSION and (text := say_implausible(values, DIMENSIONS[DIMENSION[quantity]])):
+    if quantity in BY_UNIT and (text := say_implausible(values, DIMENSIONS[DIMENSION[quantity]])):
         yield doubter.say("warning", "unit", text)
 
 

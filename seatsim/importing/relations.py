@@ -15,6 +15,8 @@ ALIKE = 0.9
 """Correlation from which a channel is the delayed copy of another one."""
 REST, STANDING, RELAXED = 0.5, 0.01, 0.01
 """s for which a motion stands still, its swing there as a share of the whole, and the least change of a force there."""
+FEWEST = 8
+"""Rows of such a stretch from which a change can be told."""
 
 
 def doubt_pairs(
@@ -75,6 +77,8 @@ def _unconfirmed(
 def _relaxed(part: Mapping[str, Array], rate: float, quantities: Mapping[str, str | None]) -> Iterator[Issue]:
     """Yield forces that change while the motion stands still after it has moved, as those that relax do."""
     rows = round(REST * rate)
+    if rows < FEWEST:
+        return
     for name in (name for name in part if quantities.get(name) == "displacement"):
         still = _still(part[name], rows)
         for force in (each for each in part if quantities.get(each) == "force"):
@@ -82,12 +86,9 @@ def _relaxed(part: Mapping[str, Array], rate: float, quantities: Mapping[str, st
             later = np.array([np.mean(part[force][at + rows - rows // 4 : at + rows]) for at in still])
             change = np.abs(later - piece)
             if len(change) and np.max(change) > RELAXED * np.ptp(part[force]):
-                at = still[int(np.argmax(change))] / rate
-                text = (
-                    f"{force}: changes by {np.max(change):.3g} N within {REST:g} s after {name} has come to rest"
-                    f" (row {at * rate:.0f}): it relaxes, its zero drifts, or its current changes"
-                )
-                yield Issue("note", "relaxation", text, force)
+                text = f"changes by up to {np.max(change):.3g} N in {REST:g} s after {name} has come to rest"
+                said = f"{force}: {text}: it relaxes, its zero drifts, or its current changes"
+                yield Issue("note", "relaxation", said, force)
 
 
 def _still(motion: Array, rows: int) -> list[int]:
