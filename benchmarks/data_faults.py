@@ -29,6 +29,7 @@ from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.importing.importing import import_files
 from seatsim.kernel.coil_current import simulate_current
 from seatsim.recordings.quality.examination import examine
+from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import load_recording
 from seatsim.rig.coil import Coil
 from seatsim.schema.errors import InputError
@@ -210,7 +211,7 @@ def say_diagnosis(recording: Path) -> list[str]:
         return [str(error)]
 
 
-def _doubts(folder: Path | None) -> Iterator[tuple[Path, seatsim.recordings.quality.issue.Issue]]:
+def _doubts(folder: Path | None) -> Iterator[tuple[Path, Issue]]:
     """Yield the issues of every recording of a folder, and of the one that is shipped."""
     shipped = Path(__file__).resolve().parents[1] / "scenarios" / "data" / "recording"
     for each in [shipped, *sorted(path.parent for path in (folder or shipped / "none").glob("*/recording.yaml"))]:
