@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from seatsim.characterisation.specimen import load_specimen
 from seatsim.excitations.recording import RecordedRun
+from seatsim.importing.import_map import read_map
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.scenario.describe import KINDS
@@ -26,7 +27,7 @@ class Checked(NamedTuple):
 
 
 def check_file(path: Path) -> Checked:
-    """Read a scenario, a recording (or its folder), a damper with its parameters, or a Python file.
+    """Read a scenario, a recording (or its folder), a damper with its parameters, a map of `import`, or a Python file.
 
     Raises:
         InputError: there is an error in it.
@@ -37,6 +38,9 @@ def check_file(path: Path) -> Checked:
         return _check_code(path)
     if path.exists() and {"model", "bench"} & set(Source(path).data):
         return Checked("parameters", [load_specimen(None, path).name], [])
+    if path.exists() and "channels" in Source(path).data:
+        stated = read_map(path)
+        return Checked(f"map of a {stated.rig}", list(stated.channels), [])
     return _check_scenario(path)
 
 

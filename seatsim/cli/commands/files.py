@@ -40,7 +40,7 @@ def new(
 
 
 def check(
-    file: Annotated[Path, typer.Argument(help="A scenario, recording, damper with parameters, or Python file.")],
+    file: Annotated[Path, typer.Argument(help="A scenario, recording, damper, map of import, or Python file.")],
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
