@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from seatsim.excitations.base import Floor
 from seatsim.metrics import summarise
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import Scenario
@@ -45,9 +46,9 @@ def share_a_loop(scenarios: Iterable[Scenario]) -> bool | None:
     return None if len(kinds) > 1 else False
 
 
-def run_one(scenario: Scenario, carry_all_effects: bool | None = False) -> Run:
-    """Simulate one scenario and work out its metrics; `carry_all_effects` as for `simulate`."""
-    history = simulate(scenario, carry_all_effects=carry_all_effects)
+def run_one(scenario: Scenario, carry_all_effects: bool | None = False, floor: Floor | None = None) -> Run:
+    """Simulate one scenario and work out its metrics; `carry_all_effects` and `floor` as for `simulate`."""
+    history = simulate(scenario, floor, carry_all_effects=carry_all_effects)
     plant = scenario.plant
     metrics = summarise(
         history.channels,

@@ -8,11 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from seatsim.schema.files import write_json, write_whole
+from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.performance_bounds import measure_distance
-from seatsim.simulation.result import UNITS, Result, Run
+from seatsim.simulation.result import Result, Run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,7 +26,7 @@ def write_result(result: Result, folder: Path) -> list[Path]:
     """Write `summary.csv`, `summary.json`, `history.parquet` and the pictures of a result; return their paths."""
     with ThreadPoolExecutor(max_workers=1) as pool:
         # Compressing the histories, in a thread of its own, releases Python's lock to the drawing of the pictures.
-        history = pool.submit(write_whole, folder / "history.parquet", partial(_write_history, result))
+        history = pool.submit(write_histories, result.runs, folder / "history.parquet")
         from seatsim.plots.runs.draw import plot_result
 
         paths = [
@@ -81,22 +80,3 @@ def _encode_summary(run: Run) -> dict[str, object]:
         "warnings": list(run.warnings),
         "notes": list(run.history.notes),
     }
-
-
-def _write_history(result: Result, path: Path) -> None:
-    """Write all runs below each other, a column a channel in single precision, units in the columns' metadata."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    fields = [pa.field("run", pa.dictionary(pa.int32(), pa.string()))]
-    fields += [
-        pa.field(name, pa.float64() if name == "time" else pa.float32(), metadata={"unit": unit})
-        for name, unit in UNITS.items()
-    ]
-    schema = pa.schema(fields)
-    with pq.ParquetWriter(path, schema, compression="zstd", compression_level=1) as writer:
-        for run in result.runs:
-            length = len(run.history["time"])
-            titles = pa.DictionaryArray.from_arrays(np.zeros(length, dtype=np.int32), [run.scenario.title])
-            columns = [pa.array(run.history[name], type=schema.field(name).type) for name in UNITS]
-            writer.write_table(pa.Table.from_arrays([titles, *columns], schema=schema))

@@ -1,0 +1,97 @@
+"""What becomes of one run of a sweep: its state, the reason for it, and its metrics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+from seatsim.excitations.base import Excitation, Floor
+from seatsim.metrics.table import METRICS
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.errors import SeatsimError
+from seatsim.simulation.history_table import write_histories
+from seatsim.simulation.result import Run
+from seatsim.simulation.runs import run_one
+
+DONE, FAILED, UNVERIFIED = "done", "failed", "unverified"
+STATES = (DONE, FAILED, UNVERIFIED)
+LARGEST_RESIDUAL = 0.01
+"""Share of the energy that may be unaccounted for before a run counts as unverified."""
+FLOORS_KEPT = 8
+"""Floors that are kept for the next runs; of 60 s at 1 kHz each takes 1.5 MB."""
+
+
+class Outcome(NamedTuple):
+    """The outcome of a run by its number.
+
+    `done` has metrics that can be used; `unverified` has metrics that nothing confirms, or that come from outside the
+    range of a model; `failed` has none. `metrics` are in the order of `METRICS`, None where there is no such figure.
+    """
+
+    run: int
+    state: str
+    reason: str
+    seed: int
+    metrics: tuple[float | None, ...]
+
+
+def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: Path | None) -> Outcome:
+    """Simulate one run and return its outcome; nothing that goes wrong in it ends the sweep.
+
+    `histories` is a folder in which the channels are kept, or None.
+    """
+    seed = 0
+    try:
+        scenario = make_scenario()
+        seed = scenario.seed
+        run = run_one(scenario, floor=_floor_of(scenario))
+        if histories is not None:
+            write_histories([run], history_path(histories, number))
+    except SeatsimError as error:
+        return Outcome(number, FAILED, str(error), seed, (None,) * len(METRICS))
+    except Exception as error:  # a model of the user's own may raise anything, and the other runs go on
+        return Outcome(number, FAILED, f"{type(error).__name__}: {error}", seed, (None,) * len(METRICS))
+    reason = "; ".join(_list_doubts(run))
+    found = {name: metric.value for name, metric in run.metrics.items()}
+    return Outcome(number, UNVERIFIED if reason else DONE, reason, seed, tuple(found.get(name) for name in METRICS))
+
+
+def history_path(folder: Path, number: int) -> Path:
+    """Return the file that keeps the channels of a run."""
+    return folder / f"run-{number:07d}.parquet"
+
+
+def _list_doubts(run: Run) -> Sequence[str]:
+    """Return why the metrics of a run cannot be relied on; nothing where they can."""
+    residual = run.metrics.get("energy_residual")
+    if residual is None:
+        balance = ["the energy balance cannot be formed, so that nothing confirms the solution"]
+    elif not residual.value <= LARGEST_RESIDUAL:
+        balance = [f"{residual.value:.2g} of the energy is unaccounted for; choose a smaller solver.step"]
+    else:
+        balance = []
+    return [*balance, *run.warnings]
+
+
+def _floor_of(scenario: Scenario) -> Floor | None:
+    """Return the floor of a scenario, from the floors kept where it is among them; None where it has none."""
+    if scenario.excitation is None:
+        return None
+    with scenario.placed("excitation"):
+        kind = type(scenario.excitation)
+        return _make_floor(kind, scenario.excitation, scenario.solver.step, scenario.seed)
+
+
+@lru_cache(maxsize=FLOORS_KEPT)
+def _make_floor(kind: type[Excitation], excitation: Excitation, step: float, seed: int) -> Floor:
+    # The class is part of the key, as records of two classes with the same values are equal.
+    assert isinstance(excitation, kind)
+    return excitation.floor(step, seed)
+
+
+def is_finite(value: float | None) -> bool:
+    """Tell whether a metric is there and is a number."""
+    return value is not None and math.isfinite(value)
