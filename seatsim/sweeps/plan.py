@@ -8,7 +8,7 @@ do more points where there is one replicate.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -110,11 +110,6 @@ class Selection(NamedTuple):
 
     plan: Plan
     runs: tuple[tuple[int, int], ...]
-
-    def scenarios(self) -> Iterator[tuple[int, Scenario]]:
-        """Yield the number and the scenario of each run."""
-        for number, inner in self.runs:
-            yield number, self.plan.scenario(inner)
 
 
 def make_plan(definition: SweepDefinition) -> Plan:
