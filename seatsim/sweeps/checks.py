@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from seatsim.excitations.base import Excitation
+from seatsim.scenario.plausibility import list_doubts
 from seatsim.schema.errors import InputError
 from seatsim.sweeps.plan import Plan
 
@@ -14,16 +15,20 @@ MOST_LEVELS = 1000
 """Different numbers of a key from which on only the least and the greatest are looked at."""
 
 
-def check_plan(plan: Plan) -> None:
+def check_plan(plan: Plan) -> list[str]:
     """Build the scenarios of those runs in which a value could be out of place.
 
     Bounds are intervals: in each combination of texts and mappings (models, classes) the least and the greatest number
     of each key is looked at, besides the first run with each of up to a thousand different numbers.
 
+    Returns:
+        What is doubtful about the values though they are permitted, a sentence each.
+
     Raises:
         InputError: a value is not permitted; the message has its place, the number of its run, and what is permitted.
     """
     floors: set[tuple[type[Excitation], str]] = set()
+    doubts: dict[str, None] = {}
     for run in sorted(set(_list_telling_runs(plan))):
         try:
             scenario = plan.scenario(run)
@@ -34,6 +39,8 @@ def check_plan(plan: Plan) -> None:
                     scenario.excitation.floor(scenario.solver.step, scenario.seed)
         except InputError as error:
             raise InputError(f"{error} (run {run} of {plan.runs})") from error
+        doubts |= dict.fromkeys(list_doubts(scenario))
+    return list(doubts)
 
 
 def _list_telling_runs(plan: Plan) -> Iterator[int]:

@@ -59,10 +59,11 @@ class SweepResult(NamedTuple):
 
 
 class PreparedSweep(NamedTuple):
-    """A sweep file and its runs, checked."""
+    """A sweep file and its runs, checked; `doubts` say what is permitted but unusual."""
 
     definition: SweepDefinition
     plan: Plan
+    doubts: list[str]
 
 
 def prepare(path: Path) -> PreparedSweep:
@@ -73,8 +74,7 @@ def prepare(path: Path) -> PreparedSweep:
     """
     definition = read_definition(path)
     plan = make_plan(definition)
-    check_plan(plan)
-    return PreparedSweep(definition, plan)
+    return PreparedSweep(definition, plan, check_plan(plan))
 
 
 def execute(
@@ -93,7 +93,7 @@ def execute(
     Raises:
         InputError: the folder is held by another process, holds another sweep, or `resume` is not set.
     """
-    definition, plan = prepared
+    definition, plan = prepared.definition, prepared.plan
     with hold_folder(folder, share.text if share else ""):
         identity = identify_sweep(definition, plan)
         # The first of several shares makes the manifest, which the others then find.

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.excitations.base import Excitation, Floor
-from seatsim.metrics.table import METRICS
+from seatsim.metrics.table import METRICS, Metric
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import SeatsimError
 from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.result import Run
-from seatsim.simulation.runs import run_one
+from seatsim.simulation.runs import measure_run
+from seatsim.simulation.simulate import History, simulate
+from seatsim.simulation.validity import list_ranges_left
 
 DONE, FAILED, UNVERIFIED = "done", "failed", "unverified"
 STATES = (DONE, FAILED, UNVERIFIED)
@@ -47,16 +48,17 @@ def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: 
     try:
         scenario = make_scenario()
         seed = scenario.seed
-        run = run_one(scenario, floor=_floor_of(scenario))
+        history = simulate(scenario, _floor_of(scenario))
+        metrics = measure_run(scenario, history)
         if histories is not None:
-            write_histories([run], history_path(histories, number))
+            write_histories([Run(scenario, history, metrics)], history_path(histories, number))
+        reason = "; ".join(_list_doubts(scenario, history, metrics))
     except SeatsimError as error:
         return Outcome(number, FAILED, str(error), seed, (None,) * len(METRICS))
     except Exception as error:  # a model of the user's own may raise anything, and the other runs go on
         return Outcome(number, FAILED, f"{type(error).__name__}: {error}", seed, (None,) * len(METRICS))
-    reason = "; ".join(_list_doubts(run))
-    found = {name: metric.value for name, metric in run.metrics.items()}
-    return Outcome(number, UNVERIFIED if reason else DONE, reason, seed, tuple(found.get(name) for name in METRICS))
+    figures = tuple(metrics[name].value if name in metrics else None for name in METRICS)
+    return Outcome(number, UNVERIFIED if reason else DONE, reason, seed, figures)
 
 
 def history_path(folder: Path, number: int) -> Path:
@@ -64,16 +66,15 @@ def history_path(folder: Path, number: int) -> Path:
     return folder / f"run-{number:07d}.parquet"
 
 
-def _list_doubts(run: Run) -> Sequence[str]:
+def _list_doubts(scenario: Scenario, history: History, metrics: Mapping[str, Metric]) -> list[str]:
     """Return why the metrics of a run cannot be relied on; nothing where they can."""
-    residual = run.metrics.get("energy_residual")
+    found = list(list_ranges_left(scenario, history))
+    residual = metrics.get("energy_residual")
     if residual is None:
-        balance = ["the energy balance cannot be formed, so that nothing confirms the solution"]
-    elif not residual.value <= LARGEST_RESIDUAL:
-        balance = [f"{residual.value:.2g} of the energy is unaccounted for; choose a smaller solver.step"]
-    else:
-        balance = []
-    return [*balance, *run.warnings]
+        found.append("the energy balance cannot be formed, so that nothing confirms the solution")
+    elif residual.value > LARGEST_RESIDUAL:
+        found.append(f"{residual.value:.2g} of the energy is unaccounted for; choose a smaller solver.step")
+    return found
 
 
 def _floor_of(scenario: Scenario) -> Floor | None:
@@ -90,8 +91,3 @@ def _make_floor(kind: type[Excitation], excitation: Excitation, step: float, see
     # The class is part of the key, as records of two classes with the same values are equal.
     assert isinstance(excitation, kind)
     return excitation.floor(step, seed)
-
-
-def is_finite(value: float | None) -> bool:
-    """Tell whether a metric is there and is a number."""
-    return value is not None and math.isfinite(value)

@@ -9,11 +9,14 @@ from typing import Annotated, Literal
 import typer
 
 from seatsim.cli.options import Json, Out, OwnCode
-from seatsim.cli.terminal import answer, complain, count_progress, say, wrote_one
+from seatsim.cli.terminal import answer, complain, count_progress, say, show_progress, warn, wrote, wrote_one
 from seatsim.schema.errors import InputError
 
 FAILURES_SHOWN = 5
 """Failed runs whose reasons are printed; the others stand in the rows."""
+EXCEEDED_SHOWN = 12
+"""Limits by group that are printed; the page has more."""
+DOUBTS_SHOWN = 5
 SweepFile = Annotated[Path, typer.Argument(help="A sweep file: a scenario, and what is varied.", show_default=False)]
 
 
@@ -50,6 +53,7 @@ def sweep(
     folder = out_folder or Path("out") / file.stem
     part = read_share(share) if share else None
     prepared = prepare(file)
+    warn(prepared.doubts[:DOUBTS_SHOWN], "warning")
     if slurm is not None:
         path = write_slurm(slurm, file, folder, prepared.plan, keep == "histories", own_code or [])
         wrote_one(path)
@@ -67,3 +71,24 @@ def sweep(
     answer({"identity": result.identity, "counts": result.counts, "failed": result.failures}, [folder / "manifest.json"])
     if result.failures:
         raise typer.Exit(1)
+
+
+def sweep_report(
+    folder: Annotated[Path, typer.Argument(help="Folder of a sweep.", show_default=False)],
+    out_folder: Annotated[
+        Path | None, typer.Option("--out", help="Folder for the files.", show_default="that of the sweep")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Say what the runs of a sweep have in common: quantiles, sensitivities, probabilities, pictures."""
+    from seatsim.cli.outputs.sweeps import encode_report, report_sweep
+
+    with show_progress():
+        report = report_sweep(folder, out_folder or folder)
+    say(report.sentence)
+    for row in report.exceeded[:EXCEEDED_SHOWN]:
+        who = "".join(f"{value}: " for value in row.group.values())
+        say(f"{who}{row.metric} above {row.limit:g} {row.unit}: {row.exceeding} of {row.runs} runs,"
+            f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)")  # fmt: skip
+    wrote(out_folder or folder, report.paths)
+    answer(encode_report(report), report.paths)
