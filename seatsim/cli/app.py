@@ -27,7 +27,8 @@ app = typer.Typer(
     no_args_is_help=True, pretty_exceptions_enable=False,
 )  # fmt: skip
 for command in (
-    run, compare, sweep, sweep_report, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test, new, check, schema,
+    run, compare, sweep, sweep_report, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test,
+    new, check, schema,
 ):  # fmt: skip
     app.command()(command)
 app.command("import")(import_data)

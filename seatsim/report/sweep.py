@@ -50,7 +50,9 @@ def write_sweep_report(
         FilledSection("states", "Failed and unverified runs", _render_states(rows)),
     ]
     sentence = state_importance(found, rows)
-    return write_text(path, render_document(f"Sweep {rows.folder.name}: {sentence}", _render_head(sentence, rows), sections))
+    return write_text(
+        path, render_document(f"Sweep {rows.folder.name}: {sentence}", _render_head(sentence, rows), sections)
+    )
 
 
 def state_importance(found: Sensitivities, rows: SweepRows) -> str:
@@ -65,7 +67,8 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> str:
     among = f"Of {many} {what} {chosen.key} matters most" if many > 1 else f"{chosen.key} is the only one of the {what}"
     return (
         f"{among} to {words}: it explains {format_percent(chosen.total)} of its variance with its interactions (95 %"
-        f" interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}), {format_percent(chosen.first)} alone."
+        f" interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}), "
+        f"{format_percent(chosen.first)} alone."
     )
 
 
@@ -84,7 +87,9 @@ def _render_head(sentence: str, rows: SweepRows) -> Html:
     counts: Mapping[str, int] = rows.manifest["counts"]
     ended = len(rows.every)
     states = {state: int((rows.every.state == state).sum()) for state in (FAILED, UNVERIFIED)}
-    facts = f"{ended} of {counts['runs']} runs have ended; {states[FAILED]} of them failed and take no part in any figure"
+    facts = (
+        f"{ended} of {counts['runs']} runs have ended; {states[FAILED]} of them failed and take no part in any figure"
+    )
     facts += f", {states[UNVERIFIED]} are unverified and do." if states[UNVERIFIED] else "."
     return tag(
         "header",
@@ -99,14 +104,15 @@ def _render_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> Html:
         return Html("")
     what = "probability" if rows.is_random else "share of the runs"
     lead = (
-        "Estimated from the share of runs above the limit, with its Wilson interval of 95 %. The interval takes runs as drawn"
+        "Estimated from the share of runs above the limit, with its Wilson interval of 95 %, which takes runs as drawn"
         " independently of each other."
         if rows.is_random
         else "No key is drawn from a distribution: these are shares of the runs of the design, no probabilities."
     )
     head = [*exceeded[0].group, "metric", "unit", "limit", "runs above", what, "95 % interval"]
     lines = [
-        [*map(format_level, row.group.values()), describe_column(row.metric, rows.units).words, row.unit, f"{row.limit:g}",
+        [*map(format_level, row.group.values()), describe_column(row.metric, rows.units).words, row.unit,
+         f"{row.limit:g}",
          f"{row.exceeding} of {row.runs}", format_percent(row.share),
          f"{format_percent(row.low)} to {format_percent(row.high)}"]
         for row in exceeded[:MOST_LINES]
@@ -120,14 +126,14 @@ def _render_sensitivity(found: Sensitivities, rows: SweepRows) -> Html:
     metrics = [name for name in (COMFORT, TRAVEL, *rows.manifest["limits"]) if found.of(name)]
     pictures = [plot_tornado(found.of(metric), rows) for metric in dict.fromkeys(metrics or [_main_metric(found)])]
     poor = [
-        f"{describe_column(metric, rows.units).words}: the expansion predicts {format_percent(max(0.0, rest[0].explained))}"
-        " of the variance of runs left out; the rest is road, noise, or interactions that it has no terms for."
+        f"{describe_column(metric, rows.units).words}: the expansion predicts"
+        f" {format_percent(max(0.0, rest[0].explained))} of the variance of runs left out; the rest is road, noise, or interactions that it has no terms for."
         for metric in dict.fromkeys(metrics)
         if (rest := found.of(metric))[0].explained < ENOUGH
     ]
     lead = (
-        "Shares of variance assume that keys vary independently, as this design has them; they say which tolerance to tighten"
-        " first. All metrics stand in sensitivity.csv."
+        "Shares of variance assume that keys vary independently, as this design has them; they say which tolerance to"
+        " tighten first. All metrics stand in sensitivity.csv."
     )
     return join([tag("p", lead), embed_pictures(pictures), make_list(poor)])
 

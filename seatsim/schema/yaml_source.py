@@ -60,7 +60,7 @@ class Source:
         return inner
 
     def put(self, dotted: str, value: object, place: str) -> None:
-        """Put a value under a dotted key, such as `plant.driver_mass` or `effects.0.parameters.high`; it stands at `place`.
+        """Put a value under a dotted key, such as `plant.driver_mass` or `effects.0.parameters.high`, at a `place`.
 
         Raises:
             InputError: the key leads into a value without keys, or to an entry that a list does not have.
@@ -69,12 +69,14 @@ class Source:
         keys: list[str | int] = []
         *above, last = dotted.split(".")
         for name in above:
-            key = _find_key(node, name, dotted, place)
+            key: Any = _find_key(node, name, dotted, place)
             below = node[key] if isinstance(node, list) else node.get(key, {})
             if not isinstance(below, dict | list):
                 raise InputError(f"{place}: '{dotted}' leads into '{name}', which has no keys{nearest(name, node)}")
             # What lies on the way is copied, so that sources that share the rest stay as they are.
-            node[key] = node = copy.copy(below)
+            copied = copy.copy(below)
+            node[key] = copied
+            node = copied
             keys.append(key)
         keys.append(_find_key(node, last, dotted, place))
         node[keys[-1]] = value

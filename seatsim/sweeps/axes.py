@@ -14,8 +14,8 @@ from seatsim.schema.yaml_source import KeyPath, Source
 
 Array = NDArray[np.float64]
 DISTRIBUTIONS = {
-    "uniform": "[low, high]", "normal": "[mean, standard deviation]", "lognormal": "[mean, standard deviation of the log]",
-    "choice": "{value: probability, ...}",
+    "uniform": "[low, high]", "normal": "[mean, standard deviation]",
+    "lognormal": "[mean, standard deviation of the log]", "choice": "{value: probability, ...}",
 }  # fmt: skip
 """Names of distributions, and what each takes."""
 FORMS = (

@@ -45,7 +45,8 @@ def check_plan(plan: Plan) -> list[str]:
 
 def _list_telling_runs(plan: Plan) -> Iterator[int]:
     per_point = len(plan.bases)
-    numbers = {key: values for key, values in plan.columns.items() if all(_is_number(value) for value in values)}
+    numbers = {key: [float(str(value)) for value in values] for key, values in plan.columns.items()
+               if all(_is_number(value) for value in values)}  # fmt: skip
     others = [values for key, values in plan.columns.items() if key not in numbers]
     combinations: dict[str, list[int]] = {}
     for point in range(plan.points):
@@ -53,8 +54,8 @@ def _list_telling_runs(plan: Plan) -> Iterator[int]:
     points = {found[0] for found in combinations.values()}
     for values in numbers.values():
         for found in combinations.values():
-            points |= {min(found, key=values.__getitem__), max(found, key=values.__getitem__)}
-        first: dict[object, int] = {}
+            points |= {min(found, key=lambda point: values[point]), max(found, key=lambda point: values[point])}
+        first: dict[float, int] = {}
         for point, value in enumerate(values):
             first.setdefault(value, point)
         points |= set(first.values()) if len(first) <= MOST_LEVELS else set()

@@ -1,11 +1,11 @@
 """What a sweep file states: the scenario, the varied keys, the design that combines them, and limits of metrics.
 
-    scenario: quickstart.yaml
-    seed: 1
-    design: lhs
-    runs: 1000
-    vary: {plant.driver_mass: {normal: [80, 12], low: 50, high: 120}}
-    limits: {driver_acceleration_weighted: 0.5}
+scenario: quickstart.yaml
+seed: 1
+design: lhs
+runs: 1000
+vary: {plant.driver_mass: {normal: [80, 12], low: 50, high: 120}}
+limits: {driver_acceleration_weighted: 0.5}
 """
 
 from __future__ import annotations
@@ -119,9 +119,7 @@ def _read_whole(source: Source, key: str, least: int) -> int | None:
         return None
     value = source.data[key]
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= MOST_RUNS:
-        raise source.error(
-            (key,), f"{value!r} is not permitted; it must be a whole number from {least} to {MOST_RUNS}"
-        )
+        raise source.error((key,), f"{value!r} is not permitted; it must be a whole number from {least} to {MOST_RUNS}")
     return value
 
 

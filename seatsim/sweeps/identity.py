@@ -1,4 +1,4 @@
-"""What makes two sweeps the same: configuration, resolved design, versions and seed; and what sets them apart, by name."""
+"""What makes two sweeps the same: configuration, resolved design, versions, seed; and what sets them apart, by name."""
 
 from __future__ import annotations
 

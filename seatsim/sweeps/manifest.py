@@ -66,11 +66,11 @@ def check_resumable(folder: Path, identity: Identity, plan: Plan, resume: bool) 
         )
     if old["identity"] == identity.digest:
         return
-    fixed = [{"scenario": {}, **_without_growing(each)} for each in (old["configuration"], identity.configuration)]
+    fixed = [_without_growing(each) for each in (old["configuration"], identity.configuration)]
     differences = [
         *list_differences({"seed": old["seed"], "versions": old["versions"]},
                           {"seed": identity.seed, "versions": dict(identity.versions)}),
-        *list_differences(*fixed),
+        *list_differences(fixed[0], fixed[1]),
     ]  # fmt: skip
     only_adds = plan.runs >= counts["runs"] and digest_design(plan, counts["runs"]) == old["design"]
     if not only_adds:

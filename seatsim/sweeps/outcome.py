@@ -83,11 +83,12 @@ def _floor_of(scenario: Scenario) -> Floor | None:
         return None
     with scenario.placed("excitation"):
         kind = type(scenario.excitation)
-        return _make_floor(kind, scenario.excitation, scenario.solver.step, scenario.seed)
+        return _make_floor(
+            f"{kind.__module__}.{kind.__qualname__}", scenario.excitation, scenario.solver.step, scenario.seed
+        )
 
 
 @lru_cache(maxsize=FLOORS_KEPT)
-def _make_floor(kind: type[Excitation], excitation: Excitation, step: float, seed: int) -> Floor:
-    # The class is part of the key, as records of two classes with the same values are equal.
-    assert isinstance(excitation, kind)
+def _make_floor(kind: str, excitation: Excitation, step: float, seed: int) -> Floor:
+    # Its class is part of the key, as records of two classes with the same values are equal.
     return excitation.floor(step, seed)

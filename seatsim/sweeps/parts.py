@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 RUNS_OF_PART = 200
-"""A part of runs of 10 s is simulated in about a second, which is also what a task of a cluster should take at least."""
+"""A part of runs of 10 s takes about a second, which is what a task of a cluster should take at least."""
 LEADING = ("run", "state", "reason", "seed")
 
 
@@ -51,7 +51,7 @@ def read_outcomes(folder: Path, part: int) -> list[Outcome]:
     columns = _read_columns(folder, part, [*LEADING, *METRICS])
     figures = zip(*(columns[name] for name in METRICS), strict=True)
     leading = zip(*(columns[name] for name in LEADING), strict=True)
-    return [Outcome(*first, metrics) for first, metrics in zip(leading, figures, strict=True)]
+    return [Outcome._make((*first, metrics)) for first, metrics in zip(leading, figures, strict=True)]
 
 
 def read_states(folder: Path, runs: int) -> Iterator[tuple[int, str, str]]:
@@ -94,7 +94,7 @@ def make_table(plan: Plan, schema: pa.Schema, outcomes: Sequence[Outcome]) -> pa
     import pyarrow as pa
 
     values = [plan.values(outcome.run) for outcome in outcomes]
-    columns = [[getattr(outcome, name) for outcome in outcomes] for name in LEADING]
+    columns: list[Sequence[object]] = [[getattr(outcome, name) for outcome in outcomes] for name in LEADING]
     columns += [_cells([each[key] for each in values], schema.field(key).type) for key in varied_keys(plan)]
     columns += map(list, zip(*(outcome.metrics for outcome in outcomes), strict=True))
     arrays = [pa.array(column, type=field.type) for column, field in zip(columns, schema, strict=True)]

@@ -17,7 +17,7 @@ def read_sweep(folder: str | Path) -> pd.DataFrame:
     """Return the rows of a sweep so far, one for each run that has ended, by number.
 
     Columns are `run`, `state` (done, failed, unverified), `reason`, `seed`, every varied key and every metric in SI
-    units; a figure that does not exist is NaN, as are all of a failed run. `frame.attrs["units"]` holds the units by column.
+    units; a figure that does not exist is NaN, as are all of a failed run. `frame.attrs["units"]` holds units.
 
     Raises:
         InputError: the folder holds no sweep, or none of its runs has ended.

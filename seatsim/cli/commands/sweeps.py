@@ -10,7 +10,6 @@ import typer
 
 from seatsim.cli.options import Json, Out, OwnCode
 from seatsim.cli.terminal import answer, complain, count_progress, say, show_progress, warn, wrote, wrote_one
-from seatsim.schema.errors import InputError
 
 FAILURES_SHOWN = 5
 """Failed runs whose reasons are printed; the others stand in the rows."""
@@ -68,7 +67,9 @@ def sweep(
         complain(f"failed: {text}")
     if len(result.failures) > FAILURES_SHOWN:
         complain(f"and {len(result.failures) - FAILURES_SHOWN} more; their reasons stand in the rows")
-    answer({"identity": result.identity, "counts": result.counts, "failed": result.failures}, [folder / "manifest.json"])
+    answer(
+        {"identity": result.identity, "counts": result.counts, "failed": result.failures}, [folder / "manifest.json"]
+    )
     if result.failures:
         raise typer.Exit(1)
 

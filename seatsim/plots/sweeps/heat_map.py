@@ -40,14 +40,22 @@ def plot_heat_map(rows: SweepRows, metric: str, across: str, up: str) -> Picture
     for (i, j), value in np.ndenumerate(values):
         if np.isfinite(value):
             dark = value < 0.5 * (np.nanmin(values) + np.nanmax(values))
-            axes.text(j, i, format_number(value), ha="center", va="center", fontsize=FONT - 2, color="white" if dark else "black")
+            axes.text(
+                j,
+                i,
+                format_number(value),
+                ha="center",
+                va="center",
+                fontsize=FONT - 2,
+                color="white" if dark else "black",
+            )
     axes.grid(False)
     axes.set_xticks(range(len(table.columns)), list(table.columns), rotation=30, ha="right")
     axes.set_yticks(range(len(table.index)), list(table.index))
     axes.set_xlabel(describe_column(across, rows.units).axis)
     axes.set_ylabel(describe_column(up, rows.units).axis)
     axes.figure.colorbar(image, cax=add_axes_beside(axes, 0.02, 0.03), label=quantity.axis)
-    title = f"{quantity.words} over {clean_text(across, 40)} and {clean_text(up, 40)}"
+    title = f"{quantity.words} over {across} and {up}"
     return Picture(title, "Mean over the runs of each cell.", page.figure)
 
 

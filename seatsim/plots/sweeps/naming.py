@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from seatsim.metrics.table import METRICS
 from seatsim.plots.frame import Quantity, describe_quantity
+from seatsim.plots.labels import clean_text
 
+LONGEST_KEY = 40
 WORDS = {
     "driver_acceleration_weighted": "driver, Wk RMS", "suspension_displacement_rms": "RMS suspension travel",
     "suspension_displacement_peak": "peak suspension travel",
@@ -16,8 +19,9 @@ SCREEN = 7.0
 
 
 def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
-    """Return how a key or a metric is drawn."""
-    return describe_quantity(WORDS.get(name, name), units.get(name, ""))
+    """Return how a key, by its name, or a metric, in words, is drawn."""
+    quantity = describe_quantity(WORDS.get(name, name), units.get(name, ""))
+    return quantity if name in METRICS else quantity._replace(words=clean_text(name, LONGEST_KEY))
 
 
 def format_level(value: object) -> str:

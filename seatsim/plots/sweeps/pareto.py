@@ -13,6 +13,7 @@ from matplotlib.colors import Normalize
 from numpy.typing import NDArray
 
 from seatsim.plots.frame import WIDE, Picture, Quantity, make_frame
+from seatsim.plots.labels import LONGEST_TITLE, clean_text
 from seatsim.plots.style import COLOURS, DARK, Entry, Grid, add_axes_beside
 from seatsim.plots.sweeps.naming import SCREEN, describe_column, format_level
 from seatsim.sweeps.statistics.inputs import SweepRows, is_number
@@ -39,7 +40,7 @@ class Looks(NamedTuple):
 
 
 def plot_pareto(rows: SweepRows, order: Sequence[str]) -> Picture | None:
-    """Return comfort over travel; `order` lists the varied keys, what matters most first. None without these metrics."""
+    """Return comfort over travel; `order` lists the varied keys by importance. None without these metrics."""
     if not {COMFORT, TRAVEL} <= set(rows.metrics):
         return None
     looks = _choose_looks(rows, order)
@@ -51,7 +52,9 @@ def plot_pareto(rows: SweepRows, order: Sequence[str]) -> Picture | None:
     continuous = looks.colour is not None and is_number(shown[looks.colour])
     legend = [FRONT, *_list_colours(shown, looks.colour), *_list_markers(shown, looks.marker)]
     spare = SCREEN - 0.55 - 0.3 - 0.62 * lines - 0.25 * -(-len(legend) // 3)
-    grid = Grid((min(4.2, spare / lines),) * lines, columns, right=1.05 if continuous else 0.2, top=0.3, gap=(0.7, 0.75))
+    grid = Grid(
+        (min(4.2, spare / lines),) * lines, columns, right=1.05 if continuous else 0.2, top=0.3, gap=(0.7, 0.75)
+    )
     page = make_frame(grid, legend, WIDE)
     axes = [each for row in page.rows for each in row]
     for each, value in zip(axes, panels, strict=False):
@@ -64,7 +67,9 @@ def plot_pareto(rows: SweepRows, order: Sequence[str]) -> Picture | None:
         _add_scale(axes[min(columns, len(panels)) - 1], shown[looks.colour], describe_column(looks.colour, rows.units))
     some = f" {MOST_POINTS} of {len(shown)} runs are drawn." if len(drawn) < len(shown) else ""
     return Picture(
-        "Comfort against travel", f"A point for each run; the further down and to the left the better.{some}", page.figure
+        "Comfort against travel",
+        f"A point for each run; the further down and to the left the better.{some}",
+        page.figure,
     )
 
 
@@ -73,7 +78,8 @@ def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:
     order = np.lexsort((comfort, travel))
     best = np.minimum.accumulate(comfort[order])
     keep = np.concatenate([[True], comfort[order][1:] < best[:-1]])
-    return order[keep]
+    front: NDArray[np.intp] = order[keep]
+    return front
 
 
 def _choose_looks(rows: SweepRows, order: Sequence[str]) -> Looks:
@@ -117,7 +123,7 @@ def _draw_front(axes: Axes, runs: pd.DataFrame) -> None:
 
 
 def _name_axes(axes: Axes, title: str, rows: SweepRows) -> None:
-    axes.set_title(title.replace("$", r"\$"), fontsize=9.5, loc="left")
+    axes.set_title(clean_text(title, LONGEST_TITLE), fontsize=9.5, loc="left")
     axes.set_xlabel(describe_column(TRAVEL, rows.units).axis)
     axes.set_ylabel(describe_column(COMFORT, rows.units).axis)
 
@@ -132,7 +138,8 @@ def _list_colours(every: pd.DataFrame, key: str | None) -> list[Entry]:
 def _list_markers(every: pd.DataFrame, key: str | None) -> list[Entry]:
     levels = [] if key is None else sorted(every[key].unique())
     return [
-        Entry(f"{key} {format_level(level)}", DARK, "none", mark=mark) for level, mark in zip(levels, MARKERS, strict=False)
+        Entry(f"{key} {format_level(level)}", DARK, "none", mark=mark)
+        for level, mark in zip(levels, MARKERS, strict=False)
     ]
 
 

@@ -1,7 +1,7 @@
 """Engine `dask`: a cluster, embedded in this process or at the address of its scheduler.
 
-A task is a part of the sweep with the values of its runs, so that a worker needs nothing but seatsim, the files that the
-scenario names and the user's own code, at the same paths. A task whose worker dies is given to another one.
+A task is a part of the sweep with the values of its runs, so that a worker needs nothing but seatsim, the files that
+the scenario names and the user's own code, at the same paths. A task whose worker dies is given to another one.
 """
 
 from __future__ import annotations
@@ -66,14 +66,16 @@ class ClusterEngine(NamedTuple):
         # What goes wrong is said once, by the error that reaches the user.
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         if self.address is None:
-            cluster = LocalCluster(n_workers=self.jobs, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL)
+            cluster = LocalCluster(
+                n_workers=self.jobs, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL
+            )
             return stack.enter_context(Client(stack.enter_context(cluster)))
         try:
             return stack.enter_context(Client(self.address, timeout=LONGEST_SEARCH))
         except (OSError, ValueError) as error:
             raise InputError(
-                f"--address {self.address}: no dask scheduler answers there; start one with 'dask scheduler', and workers"
-                f" with 'dask worker {self.address}'"
+                f"--address {self.address}: no dask scheduler answers there; start one with 'dask scheduler', and"
+                f" workers with 'dask worker {self.address}'"
             ) from error
 
 

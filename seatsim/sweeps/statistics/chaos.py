@@ -1,7 +1,7 @@
 """Polynomial chaos expansions of metrics over the varied keys, by least squares.
 
-Each key has functions that are orthonormal over the runs: polynomials of the rank of a number, contrasts of the values of
-a text. A metric is a constant, a sum of these and of products of two; where keys are independent, the squares of the
+Each key has functions that are orthonormal over the runs: polynomials of the rank of a number, contrasts of the values
+of a text. A metric is a constant, a sum of these and of products of two; where keys are independent, the squares of the
 coefficients are shares of its variance (Sudret 2008, Reliab. Eng. Syst. Saf. 93, 964).
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ RUNS_PER_TERM = 2
 
 
 class Degree(NamedTuple):
-    """How rich an expansion is: the highest degree of one key alone, and of each of two keys in a product (0: none)."""
+    """How rich an expansion is: the highest degree of a key alone, and of of each of two in a product (0: none)."""
 
     alone: int
     product: int
@@ -64,7 +64,8 @@ def make_key_basis(values: Array | Sequence[object], degree: int) -> Array:
     whole = np.column_stack([np.ones(len(column)), raw])
     q, r = np.linalg.qr(whole)
     # The sign of a column of Q is the library's choice; with that of R a function rises with the key.
-    return np.sqrt(len(column)) * (q * np.sign(np.diag(r)))[:, 1:]
+    functions: Array = np.sqrt(len(column)) * (q * np.sign(np.diag(r)))[:, 1:]
+    return functions
 
 
 def make_basis(columns: Sequence[Array | Sequence[object]], degree: Degree) -> Basis:
@@ -86,11 +87,11 @@ def fit_expansion(basis: Array, metrics: Array) -> Expansion | None:
     gram = basis.T @ basis
     if runs < RUNS_PER_TERM * terms or np.linalg.cond(gram) > 1e10:
         return None
-    inverse = np.linalg.inv(gram)
-    coefficients = inverse @ (basis.T @ metrics)
+    inverse = cast("Array", np.linalg.inv(gram))
+    coefficients: Array = inverse @ (basis.T @ metrics)
     residuals = metrics - basis @ coefficients
     leverage = ((basis @ inverse) * basis).sum(axis=1)
-    noise = (residuals**2).sum(axis=0) / (runs - terms)
+    noise: Array = (residuals**2).sum(axis=0) / (runs - terms)
     return Expansion(coefficients, inverse, noise, residuals / (1 - leverage)[:, None])
 
 

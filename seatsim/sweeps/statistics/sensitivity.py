@@ -2,10 +2,10 @@
 
     first(k) = Var(E[y | k]) / Var(y),  total(k) = E[Var(y | all keys but k)] / Var(y)
 
-Both come from a polynomial chaos expansion of the runs at hand, so that every design in which keys are independent will
-do and no runs are made for them. The intervals of 95 % are those of a bootstrap over runs. Products of three keys and
-what polynomials miss are in no index: `explained`, the share of the variance that the expansion predicts of runs left out
-of its fit, says how far the indices can be relied on. What replicates differ in is unexplained, too.
+Both come from a polynomial chaos expansion of the runs at hand, so that every design in which keys are independent
+will do, and no runs are made for them. The intervals of 95 % are those of a bootstrap over runs. Products of three keys
+and what polynomials miss are in no index: `explained`, the share of the variance that the expansion predicts of runs
+left out of its fit, says how far the indices can be relied on. What replicates differ in is unexplained, too.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ RESAMPLES = 200
 MOST_RUNS = 4000
 """Runs that are used; more hardly narrow the intervals, and the bootstrap takes time for each."""
 DEPENDENT = 0.3
-"""Correlation of functions of two keys from which on these are not independent, and shares of variance have no meaning."""
+"""Correlation of functions of two keys from which on these are dependent, and shares of variance have no meaning."""
 SWING = (0.05, 0.95)
 """Quantiles of a key between which a metric swings."""
 VANISHING = 1e-9
@@ -37,7 +37,7 @@ VANISHING = 1e-9
 class Sensitivity(NamedTuple):
     """How a metric hangs on a key: indices with intervals, and the metric's mean at a low and a high value of the key.
 
-    `low` and `high` are the 5 % and 95 % quantiles of a number; of a text, the values with the least and the greatest mean.
+    `low` and `high` are the 5 % and 95 % quantiles of a number; of a text, those with the least and greatest mean.
     """
 
     metric: str
@@ -86,7 +86,9 @@ def analyse_sensitivity(rows: SweepRows) -> Sensitivities:
     made: list[Sensitivity] = []
     for m, metric in enumerate(complete):
         explained = 1 - float((expansion.errors[:, m] ** 2).mean() / usable[metric].var())
-        here = [_make_row(usable, metric, key, k, basis, expansion, resampled, m, explained) for k, key in enumerate(keys)]
+        here = [
+            _make_row(usable, metric, key, k, basis, expansion, resampled, m, explained) for k, key in enumerate(keys)
+        ]
         made += sorted(here, key=lambda row: -row.total)
     return Sensitivities(made)
 
@@ -168,7 +170,7 @@ def _swing(
 
 
 def choose_key(found: Sequence[Sensitivity], rows: SweepRows) -> Sensitivity | None:
-    """Return what matters most to a metric: of the keys that are drawn where there are some, else of all but `variant`."""
+    """Return what matters most to a metric: of the keys that are drawn if there are some, else of all but `variant`."""
     candidates = [row for row in found if row.key in rows.drawn] or [row for row in found if row.key != "variant"]
     return max(candidates, key=lambda row: row.total, default=None)
 
