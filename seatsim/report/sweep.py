@@ -127,7 +127,8 @@ def _render_sensitivity(found: Sensitivities, rows: SweepRows) -> Html:
     pictures = [plot_tornado(found.of(metric), rows) for metric in dict.fromkeys(metrics or [_main_metric(found)])]
     poor = [
         f"{describe_column(metric, rows.units).words}: the expansion predicts"
-        f" {format_percent(max(0.0, rest[0].explained))} of the variance of runs left out; the rest is road, noise, or interactions that it has no terms for."
+        f" {format_percent(max(0.0, rest[0].explained))} of the variance of runs left out; the rest is road, noise, or"
+        " interactions that it has no terms for."
         for metric in dict.fromkeys(metrics)
         if (rest := found.of(metric))[0].explained < ENOUGH
     ]

@@ -45,6 +45,8 @@ def load(path: str | Path, settings: Mapping[str, object] | None = None) -> list
         InputError: anything in the file is missing, unknown or not permitted.
     """
     source = Source(find_file(Path(path)))
+    if {"scenario", "vary"} <= set(source.data):
+        raise source.error(("vary",), f"this file is a sweep of a scenario; simulate it with 'seatsim sweep {path}'")
     return [read_scenario(variant, label) for variant, label in expand(source, settings or {})]
 
 

@@ -73,6 +73,8 @@ class Source:
             below = node[key] if isinstance(node, list) else node.get(key, {})
             if not isinstance(below, dict | list):
                 raise InputError(f"{place}: '{dotted}' leads into '{name}', which has no keys{nearest(name, node)}")
+            if not below:
+                self.places[(*keys, key)] = place
             # What lies on the way is copied, so that sources that share the rest stay as they are.
             copied = copy.copy(below)
             node[key] = copied

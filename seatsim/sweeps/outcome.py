@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
+
+import numpy as np
 
 from seatsim.excitations.base import Excitation, Floor
 from seatsim.metrics.table import METRICS, Metric
@@ -48,8 +51,10 @@ def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: 
     try:
         scenario = make_scenario()
         seed = scenario.seed
-        history = simulate(scenario, _floor_of(scenario))
-        metrics = measure_run(scenario, history)
+        # What grows beyond all numbers is said by the state of the run, once.
+        with np.errstate(over="ignore", invalid="ignore"):
+            history = simulate(scenario, _floor_of(scenario))
+            metrics = measure_run(scenario, history)
         if histories is not None:
             write_histories([Run(scenario, history, metrics)], history_path(histories, number))
         reason = "; ".join(_list_doubts(scenario, history, metrics))
@@ -69,8 +74,9 @@ def history_path(folder: Path, number: int) -> Path:
 def _list_doubts(scenario: Scenario, history: History, metrics: Mapping[str, Metric]) -> list[str]:
     """Return why the metrics of a run cannot be relied on; nothing where they can."""
     found = list(list_ranges_left(scenario, history))
+    found += [f"{name} is infinite" for name, metric in metrics.items() if math.isinf(metric.value)]
     residual = metrics.get("energy_residual")
-    if residual is None:
+    if residual is None or math.isnan(residual.value):
         found.append("the energy balance cannot be formed, so that nothing confirms the solution")
     elif residual.value > LARGEST_RESIDUAL:
         found.append(f"{residual.value:.2g} of the energy is unaccounted for; choose a smaller solver.step")

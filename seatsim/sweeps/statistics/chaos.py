@@ -40,7 +40,7 @@ class Basis(NamedTuple):
 
 
 class Expansion(NamedTuple):
-    """Coefficients of metrics, shape (P, M), the inverse of the Gram matrix, shape (P, P), and variances of errors (M,).
+    """Coefficients of metrics, shape (P, M), inverse of the Gram matrix, shape (P, P), and variances of errors (M,).
 
     `errors` are those of runs left out one by one, shape (N, M).
     """

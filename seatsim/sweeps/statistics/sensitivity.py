@@ -78,6 +78,8 @@ def analyse_sensitivity(rows: SweepRows) -> Sensitivities:
         return Sensitivities([], f"{keys[pair[0]]} and {keys[pair[1]]} vary together; shares of variance need keys that"
                                  " vary independently (cross, lhs, sobol)")  # fmt: skip
     complete = [name for name in rows.metrics if usable[name].notna().all() and _varies(usable[name].to_numpy())]
+    if not complete:
+        return Sensitivities([], "no metric varies")
     found = _expand(columns, usable[complete].to_numpy())
     if found is None:
         return Sensitivities([], f"{len(usable)} runs that can be used are too few for {len(keys)} keys")
