@@ -15,7 +15,16 @@ from seatsim.sweeps.identity import identify_sweep
 from seatsim.sweeps.lock import hold_file, hold_folder
 from seatsim.sweeps.manifest import check_resumable, count_states, write_manifest
 from seatsim.sweeps.outcome import FAILED, Outcome
-from seatsim.sweeps.parts import make_schema, part_of, read_outcomes, read_states, runs_of, varied_keys, write_outcomes
+from seatsim.sweeps.parts import (
+    make_schema,
+    part_of,
+    read_outcomes,
+    read_states,
+    remove_unfinished,
+    runs_of,
+    varied_keys,
+    write_outcomes,
+)
 from seatsim.sweeps.plan import Plan, make_plan
 from seatsim.sweeps.units import find_unit
 
@@ -95,6 +104,8 @@ def execute(
     """
     definition, plan = prepared.definition, prepared.plan
     with hold_folder(folder, share.text if share else ""):
+        if share is None:
+            remove_unfinished(folder)
         identity = identify_sweep(definition, plan)
         # The first of several shares makes the manifest, which the others then find.
         with hold_file(folder / ".lock-manifest", wait=True):

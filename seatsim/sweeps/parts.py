@@ -42,6 +42,12 @@ def part_path(folder: Path, part: int) -> Path:
     return folder / "runs" / f"part-{part:06d}.parquet"
 
 
+def remove_unfinished(folder: Path) -> None:
+    """Remove what a process that was killed had not finished writing; nobody else may be writing."""
+    for path in (folder / "runs").glob(".*.parquet"):
+        path.unlink()
+
+
 def read_outcomes(folder: Path, part: int) -> list[Outcome]:
     """Return the outcomes that a part holds so far, in order.
 

@@ -24,7 +24,11 @@ def answer_of(kind, out):
 
 
 def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
-    vary = {**MASSES, "plant.suspension_stiffness": {"uniform": [4000, 5000]}, "excitation.spectral_class": ["EM1", "EM5"]}
+    vary = {
+        **MASSES,
+        "plant.suspension_stiffness": {"uniform": [4000, 5000]},
+        "excitation.spectral_class": ["EM1", "EM5"],
+    }
     path, out = write_sweep(vary=vary, runs=12, limits={"driver_acceleration_weighted": 0.1}), tmp_path / "out"
     status, text, _ = seatsim_command("check", path)
     assert status == 0 and "sweep, no errors; 24 runs over plant.driver_mass" in text

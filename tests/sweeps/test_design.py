@@ -27,9 +27,7 @@ def test_cross_combines_lists_and_ranges_and_draws_once_for_all_of_them(write_sw
     assert len({row[MASS] for row in rows}) == 4 and len({row[MASS] for row in rows[:6]}) == 1
 
 
-@pytest.mark.parametrize(
-    ("design", "runs"), [("cross", (4, 9)), ("sobol", (4, 9)), ("zip", (None, None))]
-)
+@pytest.mark.parametrize(("design", "runs"), [("cross", (4, 9)), ("sobol", (4, 9)), ("zip", (None, None))])
 def test_a_design_of_more_runs_begins_with_the_points_of_one_of_fewer(design, runs, write_sweep):
     vary = {MASS: {"uniform": [50, 120]}, STIFFNESS: {"lognormal": [8.4, 0.1]}}
     lists = ([1000.0, 2000.0], [1000.0, 2000.0, 3000.0])
