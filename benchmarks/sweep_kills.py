@@ -2,9 +2,9 @@
 
     python benchmarks/sweep_kills.py [KILLS] [--victim command|worker|scheduler]
 
-Each kill is `kill -9`, after a time that is uniform over that of an undisturbed sweep: of the command itself, of a worker
-of a dask cluster, which the sweep survives, or of its scheduler, which ends the command. Then the sweep is resumed until it
-is complete, and its parts and manifest are compared. Prints a line for each kill and a summary.
+Each kill is `kill -9`, after a time that is uniform over that of an undisturbed sweep: of the command itself, of a
+worker of a dask cluster, which the sweep survives, or of its scheduler, which ends the command. Then the sweep is
+resumed until it is complete, and its parts and manifest are compared. Prints a line for each kill and a summary.
 """
 
 from __future__ import annotations
@@ -57,9 +57,7 @@ def main() -> None:
             wrong += not same
             print(f"{number + 1:3}: {options.victim} killed after {moment:5.2f} s with {kept:4} parts on disk,"
                   f" resumed: {'same' if same else 'DIFFERENT'}", flush=True)  # fmt: skip
-    print(
-        f"{options.kills} kills of the {options.victim} over {lasts:.1f} s: {options.kills - wrong} same, {wrong} different"
-    )
+    print(f"{options.kills} kills over {lasts:.1f} s: {options.kills - wrong} same, {wrong} different")
     sys.exit(wrong > 0)
 
 

@@ -6,7 +6,10 @@ from ruamel.yaml import YAML
 from seatsim.sweeps.engines.threads import ThreadEngine
 from seatsim.sweeps.execute import execute, prepare
 
+from ..cli.conftest import seatsim_command
 from ..conftest import SEAT
+
+__all__ = ["seatsim_command"]
 
 MASSES = {"plant.driver_mass": {"normal": [80, 12], "low": 50, "high": 120}}
 

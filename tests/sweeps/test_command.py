@@ -15,7 +15,6 @@ from pydantic import TypeAdapter
 import seatsim
 from seatsim.cli.outputs.answers import ANSWERS
 
-from ..cli.conftest import seatsim_command  # noqa: F401
 from .conftest import MASSES, bytes_of
 
 

@@ -76,9 +76,11 @@ def test_a_table_states_every_point(write_sweep, tmp_path):
 
 def test_a_run_is_the_scenario_with_its_values_and_a_replicate_the_next_seed(write_sweep, seat_file):
     path = write_sweep(vary={MASS: [55.0, 98.0], "effects.0.parameters.high": [0.03]}, replicates=2, runs=None)
-    text = path.read_text().replace("scenario:", "scenario:\n  effects: [{effect: suspension.end_stop, parameters:"
-                                    " {low: -0.05, high: 0.05}}]\n  seed: 7\n  variants: {a: {}, b: {temperature: 50.0}}")  # fmt: skip
-    path.write_text(text)
+    added = (
+        "scenario:\n  effects: [{effect: suspension.end_stop, parameters: {low: -0.05, high: 0.05}}]\n"
+        "  seed: 7\n  variants: {a: {}, b: {temperature: 50.0}}"
+    )
+    path.write_text(path.read_text().replace("scenario:", added))
     plan = prepare(path).plan
     found = [plan.scenario(run) for run in range(plan.runs)]
     assert [each.seed for each in found] == [7] * 4 + [8] * 4
