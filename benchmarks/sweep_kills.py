@@ -2,7 +2,7 @@
 
     python benchmarks/sweep_kills.py [KILLS] [--victim command|worker|scheduler]
 
-Each kill is `kill -9`, after a time that is uniform over that of an undisturbed sweep: of the command itself, of a
+Each kill is `kill -9`, at a moment that is uniform over the runs of an undisturbed sweep: of the command itself, of a
 worker of a dask cluster, which the sweep survives, or of its scheduler, which ends the command. Then the sweep is
 resumed until it is complete, and its parts and manifest are compared. Prints a line for each kill and a summary.
 """
@@ -22,7 +22,7 @@ from pathlib import Path
 SWEEP = """\
 scenario: em5
 design: cross
-runs: 150
+runs: 300
 vary:
   excitation.duration: [2.0]
   excitation.spectral_class: [EM1, EM5]
@@ -46,8 +46,10 @@ def main() -> None:
         file.write_text(SWEEP, encoding="utf-8")
         with Cluster(options.victim) as cluster:
             run_sweep(file, folder / "warm", cluster)
+            process = start(file, folder / "whole", cluster)
+            await_manifest(folder / "whole")
             since = time.monotonic()
-            run_sweep(file, folder / "whole", cluster)
+            process.wait()
             lasts = time.monotonic() - since
         expected = read_bytes(folder / "whole")
         wrong = 0
@@ -108,11 +110,18 @@ def start(file: Path, out: Path, cluster: Cluster) -> subprocess.Popen[bytes]:
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
+def await_manifest(out: Path) -> None:
+    """Wait until the runs of a sweep begin: what comes before are imports."""
+    while not (out / "manifest.json").exists():
+        time.sleep(0.005)
+
+
 def kill_once(file: Path, out: Path, victim: str, moment: float, expected: dict[str, bytes]) -> tuple[int, bool]:
     """Kill after a moment, resume; return how many parts were on the disk, and whether the end is the same."""
     shutil.rmtree(out, ignore_errors=True)
     with Cluster(victim) as cluster:
         process = start(file, out, cluster)
+        await_manifest(out)
         time.sleep(moment)
         if victim == "command":
             process.send_signal(signal.SIGKILL)
