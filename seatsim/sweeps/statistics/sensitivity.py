@@ -3,9 +3,9 @@
     first(k) = Var(E[y | k]) / Var(y),  total(k) = E[Var(y | all keys but k)] / Var(y)
 
 Both come from a polynomial chaos expansion of the runs at hand, so that every design in which keys are independent
-will do, and no runs are made for them. The intervals of 95 % are those of a bootstrap over runs. Products of three keys
-and what polynomials miss are in no index: `explained`, the share of the variance that the expansion predicts of runs
-left out of its fit, says how far the indices can be relied on. What replicates differ in is unexplained, too.
+will do, and no runs are made for them. The intervals of 95 % are those of a bootstrap over draws. Products of three
+keys and what polynomials miss are in no index: `explained`, the share of the variance that the expansion predicts of
+runs left out of its fit, says how far the indices can be relied on. What replicates differ in is unexplained, too.
 """
 
 from __future__ import annotations
@@ -16,7 +16,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.sweeps.statistics.chaos import DEGREES, Basis, Expansion, fit_expansion, make_basis, make_key_basis
+from seatsim.sweeps.statistics.chaos import (
+    DEGREES,
+    RUNS_PER_TERM,
+    Basis,
+    Expansion,
+    fit_expansion,
+    make_basis,
+    make_key_basis,
+)
 from seatsim.sweeps.statistics.inputs import SweepRows, is_number
 
 if TYPE_CHECKING:
@@ -28,6 +36,8 @@ MOST_RUNS = 4000
 """Runs that are used; more hardly narrow the intervals, and the bootstrap takes time for each."""
 DEPENDENT = 0.3
 """Correlation of functions of two keys from which on these are dependent, and shares of variance have no meaning."""
+SAME = 0.95
+"""Correlation from which on two keys are one, however few their points."""
 SWING = (0.05, 0.95)
 """Quantiles of a key between which a metric swings."""
 VANISHING = 1e-9
@@ -80,11 +90,14 @@ def analyse_sensitivity(rows: SweepRows) -> Sensitivities:
     complete = [name for name in rows.metrics if usable[name].notna().all() and _varies(usable[name].to_numpy())]
     if not complete:
         return Sensitivities([], "no metric varies")
-    found = _expand(columns, usable[complete].to_numpy())
+    drawn = [key for key in keys if key in rows.drawn]
+    # In a cross every draw stands in many rows, which then tell of that one draw.
+    draw = np.asarray(usable.groupby(drawn).ngroup() if drawn else range(len(usable)), dtype=np.intp)
+    found = _expand(columns, usable[complete].to_numpy(), int(draw.max()) + 1, len(drawn))
     if found is None:
         return Sensitivities([], f"{len(usable)} runs that can be used are too few for {len(keys)} keys")
     basis, expansion = found
-    resampled = list(_resample(basis, usable[complete].to_numpy()))
+    resampled = list(_resample(basis, usable[complete].to_numpy(), draw))
     made: list[Sensitivity] = []
     for m, metric in enumerate(complete):
         explained = 1 - float((expansion.errors[:, m] ** 2).mean() / usable[metric].var())
@@ -103,16 +116,24 @@ def _find_dependent(columns: Sequence[Array]) -> tuple[int, int] | None:
     bases = [make_key_basis(column, 1) for column in columns]
     for a in range(len(bases)):
         for b in range(a + 1, len(bases)):
-            if np.abs(bases[a].T @ bases[b]).max() / len(bases[a]) > max(DEPENDENT, 3 / np.sqrt(len(bases[a]))):
+            pairs = len(set(zip(columns[a].tolist(), columns[b].tolist(), strict=True)))
+            # Few points are alike by chance, within three standard deviations of 1/sqrt(points); the same ones are not.
+            permitted = max(DEPENDENT, min(SAME, 3 / np.sqrt(pairs)))
+            if np.abs(bases[a].T @ bases[b]).max() / len(bases[a]) > permitted:
                 return a, b
     return None
 
 
-def _expand(columns: Sequence[Array], metrics: Array) -> tuple[Basis, Expansion] | None:
-    """Return the expansion that predicts runs left out best, over all metrics."""
+def _expand(columns: Sequence[Array], metrics: Array, draws: int, drawn: int) -> tuple[Basis, Expansion] | None:
+    """Return the expansion that predicts runs left out best, over all metrics.
+
+    So many keys are `drawn` together so many times: these `draws` determine their terms, however many runs there are.
+    """
     best: tuple[float, Basis, Expansion] | None = None
     scale = metrics.var(axis=0)
     for degree in DEGREES:
+        if draws < RUNS_PER_TERM * (1 + drawn * degree.alone):
+            continue
         basis = make_basis(columns, degree)
         expansion = fit_expansion(basis.values, metrics)
         if expansion is None:
@@ -123,11 +144,13 @@ def _expand(columns: Sequence[Array], metrics: Array) -> tuple[Basis, Expansion]
     return None if best is None else best[1:]
 
 
-def _resample(basis: Basis, metrics: Array) -> Iterator[Expansion]:
+def _resample(basis: Basis, metrics: Array, draw: NDArray[np.intp]) -> Iterator[Expansion]:
+    """Yield expansions of the runs with the draws taken anew, as often as chance has it; `draw` is that of each run."""
     rng = np.random.default_rng(0)
+    draws = int(draw.max()) + 1
     for _ in range(RESAMPLES):
-        chosen = rng.integers(0, len(metrics), len(metrics))
-        expansion = fit_expansion(basis.values[chosen], metrics[chosen])
+        weights = np.sqrt(rng.multinomial(draws, np.full(draws, 1 / draws)))[draw, None]
+        expansion = fit_expansion(weights * basis.values, weights * metrics)
         if expansion is not None:
             yield expansion
 
