@@ -80,11 +80,13 @@ class Source:
             node[key] = copied
             node = copied
             keys.append(key)
-        keys.append(_find_key(node, last, dotted, place))
-        node[keys[-1]] = value
-        whole = tuple(keys)
-        for known in [known for known in self.places if known[: len(whole)] == whole]:
-            del self.places[known]
+        end: Any = _find_key(node, last, dotted, place)
+        whole = (*keys, end)
+        replaced = node[end] if isinstance(node, list) else node.get(end)
+        node[end] = value
+        if isinstance(replaced, dict | list):
+            for known in [known for known in self.places if known[: len(whole)] == whole]:
+                del self.places[known]
         self.places[whole] = place
 
     def place(self, keys: KeyPath) -> str:

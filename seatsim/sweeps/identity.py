@@ -48,7 +48,7 @@ def digest_design(plan: Plan, runs: int) -> str:
     state = hashlib.sha256()
     for run in range(runs):
         replicate = run // (plan.points * len(plan.bases))
-        state.update(_encode([replicate, list(plan.values(run).values())]))
+        state.update(json.dumps([replicate, *plan.values(run).values()], default=str).encode())
     return state.hexdigest()
 
 

@@ -87,7 +87,9 @@ class Plan:
 
     @cached_property
     def _sections(self) -> list[str]:
-        return list(dict.fromkeys(key.partition(".")[0] for key in self.columns))
+        # What all points share was read with the first of them.
+        varying = [key for key, values in self.columns.items() if any(value != values[0] for value in values)]
+        return list(dict.fromkeys(key.partition(".")[0] for key in varying))
 
     @cached_property
     def _first_scenarios(self) -> dict[int, Scenario]:
