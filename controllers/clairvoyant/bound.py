@@ -26,7 +26,7 @@ STEPS = 120
 """Most steps of a barrier."""
 # Pairs kept by L-BFGS; largest change of a logarithm in one step; relative gain that ends an ascent, once the memory is
 # full; change of all logarithms while a start has no minimum: weaker multipliers are nearer to the convex criterion.
-_MEMORY, _LONGEST, _SETTLED, _RETREAT = 30, 2.0, 1e-6, 0.1
+_MEMORY, _LONGEST, _SETTLED, _RETREAT = 30, 2.0, 1e-8, 0.1
 _NU = 1e-9  # of the criterion a N^2, where the ascent starts
 
 DualFunction = Callable[[Array], tuple[float, Array] | None]

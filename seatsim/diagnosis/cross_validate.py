@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from seatsim.diagnosis.fit import find_step
 from seatsim.diagnosis.movement import is_material
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
-from seatsim.diagnosis.probability import weigh_set
+from seatsim.diagnosis.probability import Evidence
 from seatsim.diagnosis.problem import normalise_rms_errors
 from seatsim.diagnosis.select import Selection
 
@@ -25,9 +25,9 @@ Array = NDArray[np.float64]
 
 
 class Supported(NamedTuple):
-    """What runs left out support: a set, sets that help as much, and all sets tried, with what they leave.
+    """What runs left out support: a set, sets that help as much, and all sets tried, with the logarithm of the weight.
 
-    That is the square of the share of the gap that stays, pooled over the runs, of the rig without effects.
+    That weight is of the square of the share of the gap that stays, pooled over the runs, of the rig without effects.
     """
 
     chosen: Evaluation
@@ -57,26 +57,24 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> Su
         if not best or _weigh(objective, *best[0]) < _weigh(objective, chosen, before):
             break
         (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
-    return Supported(chosen, equivalent, found)
+    return Supported(chosen, equivalent, [(each, _weigh(objective, each, left)) for each, left in found])
 
 
 def _weigh(objective: Objective, evaluation: Evaluation, left: float) -> float:
     """Return the logarithm of a set's evidence."""
-    settings = objective.settings
-    return weigh_set(settings.decision, evaluation.parameters.names, left, settings.cross_validation.power)
+    settings = objective.settings.cross_validation
+    evidence = Evidence(objective.settings.decision.prior, settings.prior_of_sensor, settings.power)
+    return evidence.weigh(evaluation.parameters.names, left)
 
 
 def _charge(objective: Objective, evaluation: Evaluation, left: float) -> float:
-    """Return what a set leaves, charged for its parameters, which raise it by as much as they lower the evidence.
+    """Return what a set leaves, raised by as much as its parameters lower the evidence.
 
-    Nuisance parameters cost their prior. Of n independent numbers each further parameter of an effect costs n^(1/2),
-    as by Schwarz's criterion: runs of like excitation share the errors of the form, which its law may fit.
+    Nuisance parameters cost their prior, further parameters of effects what the weights by the gap charge for them.
     """
-    settings, parameters = objective.settings, evaluation.parameters
-    prior = float(np.sum((parameters.deviations / settings.fit.prior_std) ** 2))
-    further = sum(len(term.free) - 1 for term in parameters.terms)
-    cost = prior + further * math.log(settings.cross_validation.independent)
-    return left * math.exp(0.5 * cost / settings.cross_validation.power)
+    settings = objective.settings
+    prior = float(np.sum((evaluation.parameters.deviations / settings.fit.prior_std) ** 2))
+    return left * evaluation.charge * math.exp(0.5 * prior / settings.cross_validation.power)
 
 
 def _count_sensors(evaluation: Evaluation) -> int:

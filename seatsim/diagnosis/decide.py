@@ -13,7 +13,7 @@ from typing import Literal
 
 from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders, measure_shares_left
 from seatsim.diagnosis.objective import Evaluation
-from seatsim.diagnosis.probability import weigh_effects
+from seatsim.diagnosis.probability import Evidence, weigh_effects
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.settings.judging import DecisionSettings
@@ -52,7 +52,7 @@ def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Seq
     unknown = min(max(unknown, least), most) if explained else max(unknown, settings.unknown_if_unknown)
     groups = groups if explained else []
     verdict: Verdict = ("ambiguous" if groups else "known") if explained else "unknown"
-    probabilities = weigh_effects(settings, _list_compared(settings, selection, chosen), effects, settings.power)
+    probabilities = weigh_effects(_weigh_compared(settings, selection, chosen), effects, settings.effect_bounds)
     return Decision(verdict, chosen, groups, probabilities, settings.none_if_gap, unknown)
 
 
@@ -63,7 +63,7 @@ def call_unknown(settings: DecisionSettings, decision: Decision) -> Decision:
 
 def decide_beside_unknown(
     settings: DecisionSettings, decision: Decision, chosen: Evaluation, equivalent: Sequence[Evaluation] = (),
-    tried: Sequence[tuple[Evaluation, float]] = (), power: float = 0.0,
+    tried: Sequence[tuple[Evaluation, float]] = (),
 ) -> Decision:  # fmt: skip
     """Return the decision `unknown` with another set of effects stated beside the unknown cause.
 
@@ -72,13 +72,12 @@ def decide_beside_unknown(
         decision: the decision so far.
         chosen: the set to be stated, possibly none.
         equivalent: sets that do as well.
-        tried: sets with the mean square that each leaves on runs left out of its fit.
-        power: exponent of that mean square in the evidence of a set.
+        tried: sets with the logarithm of the weight that runs left out of its fit give each.
     """
     # Where no effect helps enough to be stated, the single ones are still ranked by how much they help.
     size = max(1, len(chosen.parameters.terms))
-    compared = [(each.parameters.names, left) for each, left in tried if len(each.parameters.terms) <= size]
-    probabilities = weigh_effects(settings, compared, list(decision.probabilities), power)
+    compared = [(each.parameters.names, weight) for each, weight in tried if len(each.parameters.terms) <= size]
+    probabilities = weigh_effects(compared, list(decision.probabilities), settings.effect_bounds)
     stated = dataclasses.replace(
         decision, chosen=chosen, groups=group_equivalent(chosen, equivalent), probabilities=probabilities
     )
@@ -154,18 +153,21 @@ def _list_equivalent(settings: DecisionSettings, selection: Selection, chosen: E
     return [evaluation for evaluation in others if evaluation.excess <= limit]
 
 
-def _list_compared(
+def _weigh_compared(
     settings: DecisionSettings, selection: Selection, chosen: Evaluation
 ) -> list[tuple[frozenset[str], float]]:
-    """Return the chosen set and all that are no larger and leave no less, by names, with what each leaves.
+    """Return the chosen set and all that are no larger and leave no less, by names, with the logarithm of each weight.
 
     Sets that leave less were passed over, since an effect of theirs is immaterial.
     """
+    # Where the noise is known, a sensor is found to err as surely as any other part.
+    evidence = Evidence(settings.prior, settings.prior, settings.power)
     size = len(chosen.parameters.terms)
     others = [
         each for sets in selection.sets[: size + 1] for each in sets if each.excess >= chosen.excess or each is chosen
     ]
-    return [(each.parameters.names, each.excess + settings.excess_margin) for each in others]
+    left = {each.parameters.names: each.excess + settings.excess_margin for each in others}
+    return [(names, evidence.weigh(names, square)) for names, square in left.items()]
 
 
 def _logistic(log_odds: float) -> float:

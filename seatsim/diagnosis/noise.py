@@ -11,6 +11,7 @@ is found to all that is there. It is never fitted to the residual under test, wh
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -30,11 +31,13 @@ Array = NDArray[np.float64]
 class NoiseWeights:
     """Turns residuals into whitened numbers, by the power of the noise: `power[run]`, shape (channels, frequencies).
 
-    `independent` is the share of these numbers that count as independent of each other.
+    `independent` is the share of these numbers that count as independent of each other, `parameter_cost` the logarithm
+    of the factor by which a further parameter of an effect has to lower the cost.
     """
 
     power: dict[str, Array]
     independent: float = 1.0
+    parameter_cost: float = 0.0
 
     @cached_property
     def weights(self) -> dict[str, Array]:
@@ -90,13 +93,16 @@ def weigh_gap(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> Nois
     """Return weights that are the same at all frequencies, from the power of the given residuals over all runs.
 
     What a rig leaves whose form is wrong is no noise: its numbers depend on each other, so that few of them count as
-    independent. A parameter inside its tolerance then weighs as much as what it takes off the gap.
+    independent. A parameter inside its tolerance then weighs as much as what it takes off the gap, and a further
+    parameter of an effect costs, by Schwarz's criterion for n independent numbers, the factor n^(1/n): runs of like
+    excitation share the errors of the form, which a law with more parameters may fit.
     """
     settings, errors = problem.settings.cross_validation, normalise_rms_errors(problem, residuals)
     level = settings.noise_level * np.sqrt(np.mean(errors**2)) * problem.spread
     power = {run: level[:, None] ** 2 * values.shape[1] for run, values in problem.measured.items()}
     compared = 2 * sum(each.size for each in weigh_uniformly(problem, power).power.values())
-    return weigh_uniformly(problem, power, settings.noise_level**2 * settings.independent / compared)
+    weights = weigh_uniformly(problem, power, settings.noise_level**2 * settings.independent / compared)
+    return dataclasses.replace(weights, parameter_cost=math.log(settings.independent) / settings.independent)
 
 
 def measure_broadband(problem: DiagnosisProblem, residuals: Mapping[str, Array]) -> dict[str, Array]:

@@ -10,6 +10,7 @@ over the deviations of the nuisance parameters and the free parameters of the ef
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -30,18 +31,27 @@ AT_ONCE = 16
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Parameters, residuals by run of shape (channels, samples), whitened residuals, and the cost with the prior."""
+    """Parameters, residuals by run of shape (channels, samples), whitened residuals, and the cost with the prior.
+
+    `charge` is the factor on the cost by which structures with further parameters are ranked behind simpler ones.
+    """
 
     parameters: Parameters
     residuals: dict[str, Array]
     whitened: dict[str, Array]
     cost: float
     independent: float = 1.0
+    charge: float = 1.0
 
     @property
     def rows(self) -> float:
         """Number of whitened numbers that are compared, of which a share may count as independent."""
         return self.independent * sum(values.size for values in self.whitened.values())
+
+    @property
+    def charged(self) -> float:
+        """The cost with the charge for further parameters, by which sets of effects are compared."""
+        return self.cost * self.charge
 
     @property
     def excess(self) -> float:
@@ -116,7 +126,8 @@ class Objective:
         if not finite:
             cost = np.inf
         prior = float(np.sum((parameters.deviations / self.settings.fit.prior_std) ** 2))
-        return Evaluation(parameters, residuals, whitened, cost + prior, self.weights.independent)
+        charge = math.exp(self.weights.parameter_cost * parameters.further)
+        return Evaluation(parameters, residuals, whitened, cost + prior, self.weights.independent, charge)
 
     def linearise(self, evaluation: Evaluation, components: Sequence[int]) -> Linearisation:
         """Return the sensitivities of the whitened outputs to some components of the vector, by finite differences.

@@ -32,6 +32,11 @@ class Parameters:
         return frozenset(term.effect for term in self.terms)
 
     @property
+    def further(self) -> int:
+        """How many free parameters the effects have beyond their sizes."""
+        return sum(len(term.free) - 1 for term in self.terms)
+
+    @property
     def vector(self) -> Array:
         """All parameters in natural sizes, shape (nuisances + free parameters,)."""
         return np.concatenate([self.deviations, *(v / t.scale for t, v in zip(self.terms, self.values, strict=True))])

@@ -13,32 +13,39 @@ unexplained.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
-from seatsim.diagnosis.settings.judging import DecisionSettings
+SENSORS = "sensor."
+"""How the names of effects begin by which a sensor errs."""
+
+
+class Evidence(NamedTuple):
+    """What a set of effects is worth: prior odds of an effect of the rig and of a sensor, and the power above."""
+
+    prior: float
+    prior_of_sensor: float
+    power: float
+
+    def weigh(self, names: frozenset[str], left: float) -> float:
+        """Return the logarithm of the weight of a set of effects that leaves a mean square."""
+        priors = [self.prior_of_sensor if name.startswith(SENSORS) else self.prior for name in names]
+        return sum(math.log(prior) for prior in priors) - self.power * math.log(left)
 
 
 def weigh_effects(
-    settings: DecisionSettings, sets: Iterable[tuple[frozenset[str], float]], effects: Sequence[str], power: float
+    sets: Sequence[tuple[frozenset[str], float]], effects: Sequence[str], bounds: tuple[float, float]
 ) -> dict[str, float]:
-    """Return the probability of each effect, within the bounds that the settings permit.
+    """Return the probability of each effect, within the bounds that are permitted.
 
     Args:
-        settings: prior and bounds.
-        sets: names of the effects of each set, with the mean square that it leaves, in any unit, above 0.
+        sets: names of the effects of each set, with the logarithm of its weight.
         effects: names of all effects.
-        power: exponent of the mean square.
+        bounds: least and greatest probability.
     """
-    logs = [(names, weigh_set(settings, names, left, power)) for names, left in sets]
-    largest = max((log for _, log in logs), default=0.0)
-    weights = [(names, math.exp(log - largest)) for names, log in logs]
+    largest = max((log for _, log in sets), default=0.0)
+    weights = [(names, math.exp(log - largest)) for names, log in sets]
     total = sum(weight for _, weight in weights) or 1.0
     shares = {name: sum(weight for names, weight in weights if name in names) / total for name in effects}
-    least, most = settings.effect_bounds
+    least, most = bounds
     return {name: min(max(share, least), most) for name, share in shares.items()}
-
-
-def weigh_set(settings: DecisionSettings, names: frozenset[str], left: float, power: float) -> float:
-    """Return the logarithm of the evidence of a set of effects that leaves a mean square, but for a constant."""
-    priors = [settings.prior_of_sensor if name.startswith("sensor.") else settings.prior for name in names]
-    return sum(math.log(prior) for prior in priors) - power * math.log(left)

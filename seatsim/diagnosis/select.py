@@ -182,8 +182,8 @@ def _eliminate_backwards(objective: Objective, best: Evaluation, nuisances: Line
 
 
 def _best_of_each_set(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
-    """Return the best evaluation of each set of effects, in the order of cost."""
+    """Return the best evaluation of each set of effects, the best first."""
     best: dict[frozenset[str], Evaluation] = {}
-    for evaluation in sorted(evaluations, key=lambda evaluation: evaluation.cost):
+    for evaluation in sorted(evaluations, key=lambda evaluation: evaluation.charged):
         best.setdefault(evaluation.parameters.names, evaluation)
     return list(best.values())

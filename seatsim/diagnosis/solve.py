@@ -155,9 +155,7 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
     selection = task.method.select_effects(objective, task.candidates, task.progress, largest, rig)
     chosen, equivalent, tried = select_by_cross_validation(objective, selection)
     refitted = refit(first.objective, chosen.parameters)
-    decision = decide_beside_unknown(
-        settings.decision, first.decision, refitted, equivalent, tried, settings.cross_validation.power
-    )
+    decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
     localised = _localise(task, first._replace(decision=decision))
     if localised.decision is not decision:
         return localised

@@ -15,7 +15,7 @@ from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
 from seatsim.diagnosis.error_budget import budget_errors
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_run
-from seatsim.diagnosis.every_run import list_gaps, replay_runs, state_model_error
+from seatsim.diagnosis.every_run import ReplayedRun, list_gaps, measure_gaps, replay_runs, state_model_error
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
 from seatsim.diagnosis.movement import share_removable
@@ -28,32 +28,30 @@ from seatsim.diagnosis.solve import Solution
 from seatsim.diagnosis.validate import (
     choose_held_out_run,
     make_scenario,
-    measure_gaps,
     refit_without,
     shrink_by_run,
 )
 from seatsim.recordings.quality.coverage import measure_coverage
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.errors import RunError
 
 
 @dataclasses.dataclass(frozen=True)
 class Validation:
-    """A solution on a run held out of its fits: the rigs fitted without the run, and the gaps that they leave on it."""
+    """A solution on a run held out of its fits: the rigs fitted without the run, and the gaps that they leave on it.
+
+    `runs` holds every run, replayed with the nominal, the calibrated and the augmented scenario, the three `scenarios`.
+    """
 
     solution: Solution
     nominal: Scenario
     run: str
     calibrated: Evaluation
     augmented: Evaluation
+    scenarios: tuple[Scenario, Scenario, Scenario]
+    runs: Sequence[ReplayedRun]
     gaps: Gaps
-
-    @property
-    def scenarios(self) -> tuple[Scenario, Scenario, Scenario]:
-        """The nominal, the calibrated and the augmented scenario."""
-        problem = self.solution.objective.problem
-        first, second, third = (make_scenario(problem, self.nominal, rig) for rig in self.rigs)
-        return first, second, third
 
     @property
     def fitted(self) -> Parameters:
@@ -81,17 +79,31 @@ def validate_on_held_out(solution: Solution) -> Validation:
     nominal = single(problem.recording.nominal)
     rigs = Parameters(problem.nominal), calibrated.parameters, augmented.parameters
     first, second, third = (make_scenario(problem, nominal, rig) for rig in rigs)
+    try:
+        runs = replay_runs(problem, (first, second, third))
+    except RunError:
+        if not chosen.parameters.terms:
+            raise
+        return validate_on_held_out(_give_up(solution, f"cannot be simulated as fitted without {run}"))
     # A single run has no spread: its standard deviation with n - 1 degrees of freedom would be NaN.
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
-    gaps = measure_gaps(problem, (first, second, third), [run], spread)
+    gaps = measure_gaps(problem, next(each for each in runs if each.name == run), spread)
     if decision.verdict == "unknown" and chosen.parameters.terms and gaps.shrink < 0.0:
-        alone = decide_beside_unknown(problem.settings.decision, decision, selection.calibrated)
-        return validate_on_held_out(solution._replace(decision=alone))
+        return validate_on_held_out(_give_up(solution, f"raises the gap of {run}, without which it was fitted"))
     if not solution.stochastic and decision.verdict in ("known", "ambiguous"):
         taken = share_removable(objective.on_runs([run]), gaps.before.overall, gaps.after.overall)
         if taken < problem.settings.decision.least_taken:
             solution = solution._replace(decision=call_unknown(problem.settings.decision, decision))
-    return Validation(solution, nominal, run, calibrated, augmented, gaps)
+    return Validation(solution, nominal, run, calibrated, augmented, (first, second, third), runs, gaps)
+
+
+def _give_up(solution: Solution, reason: str) -> Solution:
+    """Return the solution without its effects, which are named in a note with the reason."""
+    problem, decision, selection = solution.objective.problem, solution.decision, solution.selection
+    names = " with ".join(sorted(decision.chosen.parameters.names))
+    noted = dataclasses.replace(selection, notes=(*selection.notes, f"{names} was given up, since it {reason}"))
+    alone = decide_beside_unknown(problem.settings.decision, decision, selection.calibrated)
+    return solution._replace(selection=noted, decision=alone)
 
 
 def state_diagnosis(
@@ -108,7 +120,7 @@ def state_diagnosis(
     problem = objective.problem
     recording = problem.recording
     rig, channels = recording.header.rig, recording.channels
-    causes, runs = _list_causes(validation), replay_runs(problem, validation.scenarios)
+    causes, runs = _list_causes(validation), validation.runs
     nuisances = solution.selection.linearise_nuisances(objective, decision.chosen)
     forms = _list_alternatives(validation, damper_forms, progress)
     none = describe_obstacle(problem) or "No other form of the damper was found to fit its force better."

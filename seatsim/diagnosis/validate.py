@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +13,7 @@ from seatsim.diagnosis.nuisance import vary
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
-from seatsim.diagnosis.result import GapFigures, Gaps
 from seatsim.effects.base import replace_effects
-from seatsim.recordings.gap import measure_gap, pool_runs
 from seatsim.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
@@ -68,49 +65,3 @@ def make_scenario(problem: DiagnosisProblem, nominal: Scenario, parameters: Para
     """Return the nominal scenario with some parameters and effects."""
     varied = vary(nominal, problem.parameters, parameters.deviations)
     return dataclasses.replace(varied, effects=replace_effects(nominal.effects, parameters.effects))
-
-
-def measure_gaps(
-    problem: DiagnosisProblem, scenarios: tuple[Scenario, Scenario, Scenario], runs: Sequence[str], spread: float
-) -> Gaps:
-    """Return the gaps of the nominal, the calibrated and the augmented scenario on some runs.
-
-    Args:
-        problem: the recording.
-        scenarios: nominal, calibrated and augmented.
-        runs: held out of the fits.
-        spread: standard deviation of the shrink from run to run.
-    """
-    before, calibrated, after = (measure_gap(scenario, problem.recording, runs) for scenario in scenarios)
-    shrink = 1.0 - after.overall / before.overall
-    # A scenario left as it is shrinks no gap, on whatever data.
-    interval = _bootstrap_shrink(problem, (scenarios[0], scenarios[2]), runs, shrink, spread) if shrink else (0.0, 0.0)
-    figures = [GapFigures(each.overall, each.channels) for each in (before, calibrated, after)]
-    floor = GapFigures(before.floor["overall"], before.floor["channels"])
-    return Gaps(figures[0], figures[1], figures[2], floor, shrink, interval)
-
-
-def _bootstrap_shrink(
-    problem: DiagnosisProblem, scenarios: tuple[Scenario, Scenario], runs: Sequence[str], shrink: float, spread: float
-) -> tuple[float, float]:
-    """Return the block bootstrap interval of the shrink, widened by its spread between excitations."""
-    settings = problem.settings.validation
-    measured, first = pool_runs(scenarios[0], problem.recording, runs)
-    second = pool_runs(scenarios[1], problem.recording, runs)[1]
-    length = max(1, round(settings.block_length * problem.rate))
-    count = max(1, len(next(iter(measured.values()))) // length)
-    powers = np.array([
-        [_block_powers((measured[name] - outputs[name]) / np.std(measured[name]), count, length) for name in measured]
-        for outputs in (first, second)
-    ])  # fmt: skip
-    # The same draws for every recording: equal input gives equal output.
-    rng = np.random.default_rng(0)
-    drawn = powers[:, :, rng.integers(0, count, (settings.draws, count))].mean(axis=(1, 3))
-    widened = np.hypot(settings.excitation_std, spread) * rng.standard_normal(settings.draws)
-    samples = 1.0 - np.sqrt(drawn[1] / drawn[0]) + widened
-    low, high = np.percentile(samples, settings.percentiles)
-    return float(min(low, shrink)), float(min(1.0, max(high, shrink)))
-
-
-def _block_powers(values: Array, count: int, length: int) -> Array:
-    return np.asarray(np.mean(values[: count * length].reshape(count, -1) ** 2, axis=1))

@@ -24,7 +24,7 @@ SWITCH = 0.01
 @effect(
     "damper.gas_spring",
     source="accumulator of a monotube damper, linearised",
-    forms=({"preload": 20.0, "stiffness": 500.0},),
+    forms=({"preload": 20.0}, {"preload": 20.0, "stiffness": 500.0}),
 )
 class GasSpring(NamedTuple):
     """Preload and stiffness of the accumulator: `F + preload + stiffness x`."""

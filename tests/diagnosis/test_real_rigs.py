@@ -76,7 +76,7 @@ def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, data, 
 ])  # fmt: skip
 def test_what_the_data_are_known_to_show_stands_beside_what_is_unexplained(real_rigs, data, tmp_path, name, known):
     rig = next(rig for rig in real_rigs.rigs(data) if rig.name == name)
-    found = seatsim.diagnose(real_rigs.write(rig, tmp_path))
+    found = seatsim.diagnose(real_rigs.write(rig, tmp_path), budget=1200.0)  # on a busy machine, too
     assert found.verdict == "unknown"
     groups = [{each, *(name for group in found.indistinguishable if each in group for name in group)}
               for each in found.selected]  # fmt: skip

@@ -133,15 +133,6 @@ class DecisionSettings(NamedTuple):
             "a set must leave less than `enlarge` for a further effect to be likelier than not: enlarge^power",
         ),
     ] = 0.05
-    prior_of_sensor: Annotated[
-        float,
-        Threshold(
-            "-",
-            "prior odds of a sensor that errs",
-            "higher: a sensor is blamed where a change of the rig does as much",
-            "sensors are calibrated, while dampers and cushions age; on measured rigs",
-        ),
-    ] = 0.01
     power: Annotated[
         float,
         Threshold(
@@ -225,6 +216,15 @@ class CrossValidationSettings(NamedTuple):
             "on measured rigs",
         ),
     ] = 5.0
+    prior_of_sensor: Annotated[
+        float,
+        Threshold(
+            "-",
+            "prior odds of a sensor that errs",
+            "higher: a sensor is blamed where a change of the rig does as much",
+            "sensors are calibrated, while dampers and cushions age; on measured rigs, where forms are wrong anyway",
+        ),
+    ] = 0.01
     sets_compared: Annotated[
         int, Threshold("-", "sets of each size that are cross-validated", "more: time", "on measured rigs")
     ] = 8

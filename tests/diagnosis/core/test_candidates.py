@@ -125,8 +125,8 @@ def test_the_first_parameter_keeps_the_fields_bounds_and_shapes_stay_near_their_
 
 
 def test_a_parameter_of_both_signs_keeps_the_bounds_of_its_field(listed):
-    (spring,) = listed["damper.gas_spring"]
-    assert spring.free == ("preload", "stiffness")
+    offset, spring = listed["damper.gas_spring"]
+    assert offset.free == ("preload",) and spring.free == ("preload", "stiffness")
     assert spring.low[0] == -5e3 and spring.high[0] == 5e3
     skewed = next(each for each in listed["suspension.progressive_spring"] if each.free == ("rise", "skew"))
     assert (skewed.low[1], skewed.high[1]) == (-100.0, 100.0)

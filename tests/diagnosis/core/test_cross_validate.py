@@ -166,7 +166,7 @@ def test_of_two_that_help_as_much_the_rig_is_chosen_before_the_sensor():
     assert select(pose(), [("sensor.alike",)]) == ({"sensor.alike"}, [])
 
 
-def test_every_set_tried_is_returned_with_what_it_leaves():
+def test_every_set_tried_is_returned_with_its_weight():
     objective = pose()
     calibrated, one, two = (fitted(objective, *names) for names in ((), ("rig.one",), ("rig.two",)))
     selection = Selection(calibrated, ((calibrated,), (one, two)), ())
@@ -175,17 +175,14 @@ def test_every_set_tried_is_returned_with_what_it_leaves():
     expected = [(1.0 - gain(objective, names)) ** 2 for names in ([], ["rig.one"], ["rig.two"])]
     # The prior of the nuisance parameter raises what is left by as much as it lowers the evidence.
     charged = [np.exp((each.parameters.deviations[0] / 0.58) ** 2 / 40.0) for each in (calibrated, one, two)]
-    np.testing.assert_allclose([left for _, left in tried], np.array(expected) * charged, rtol=1e-3)
+    weights = np.log([1.0, 0.05, 0.05]) - 20.0 * np.log(np.array(expected) * charged)
+    np.testing.assert_allclose([weight for _, weight in tried], weights, atol=0.02)
 
 
-def test_a_further_parameter_costs_as_by_schwarz():
-    term = offer("rig.one")
-    one, two = (
-        Parameters(np.zeros(1), (term._replace(free=free),), (np.ones(len(free)),)) for free in (("a",), ("a", "b"))
-    )
-    plain, charged = (_charge(pose(), Evaluation(rig, {}, {}, 0.0), 0.5) for rig in (one, two))
-    # (charged / plain)^-20 = 40^(-1/2)
-    assert plain == 0.5 and (charged / plain) ** 20 == pytest.approx(np.sqrt(40.0))
+def test_what_a_structure_is_charged_raises_what_it_leaves():
+    rig = Parameters(np.zeros(1))
+    assert _charge(pose(), Evaluation(rig, {}, {}, 0.0), 0.5) == 0.5
+    assert _charge(pose(), Evaluation(rig, {}, {}, 0.0, charge=1.1), 0.5) == pytest.approx(0.55)
 
 
 def test_only_the_first_sets_of_a_size_are_cross_validated():

@@ -248,7 +248,8 @@ def test_beside_an_unknown_cause_effects_are_weighed_by_what_runs_left_out_suppo
     none, chosen, other = (state(rig, effects, 4.0) for effects in ({}, {"a.one": 1.0}, {"d.four": 1.0}))
     larger = state(rig, {"a.one": 1.0, "d.four": 1.0}, 4.0)
     tried = [(none, 1.0), (chosen, 0.3), (other, 0.35), (larger, 0.001)]
-    beside = decide_beside_unknown(rig.settings.decision, found, chosen, [other], tried, 4.0)
+    weighed = [(each, math.log(0.05 ** len(each.parameters.terms) / left**4)) for each, left in tried]
+    beside = decide_beside_unknown(rig.settings.decision, found, chosen, [other], weighed)
     assert (beside.verdict, beside.unknown, beside.none) == ("unknown", found.unknown, 0.01)
     assert beside.chosen is chosen and beside.groups == [["a.one", "d.four"]]
     assert list(beside.probabilities) == EFFECTS

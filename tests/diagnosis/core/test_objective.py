@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from seatsim.diagnosis.noise import weigh_gap
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.parameters import Parameters
 
@@ -196,3 +197,11 @@ def test_a_rig_that_cannot_be_simulated_a_step_away_has_no_sensitivity(objective
     assert np.isfinite(evaluation.cost)
     for jacobian in objective.linearise_effects(evaluation).jacobian.values():
         np.testing.assert_array_equal(jacobian, 0.0)
+
+
+def test_weights_by_the_gap_charge_every_further_parameter_by_schwarz(objective, rig, evaluation):
+    assert (rig.further, evaluation.charged) == (1, evaluation.cost)
+    by_gap = dataclasses.replace(objective, weights=weigh_gap(objective.problem, evaluation.residuals))
+    found = by_gap.evaluate([rig])[0]
+    # exp(-n / 2 log cost) falls by n^(1/2) for n = 40 independent numbers.
+    assert (found.charged / found.cost) ** -20 == pytest.approx(40.0**-0.5)

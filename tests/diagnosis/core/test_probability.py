@@ -2,15 +2,18 @@
 
 import pytest
 
-from seatsim.diagnosis.probability import weigh_effects
-from seatsim.diagnosis.settings.judging import DecisionSettings
+from seatsim.diagnosis.probability import Evidence, weigh_effects
 
-SETTINGS = DecisionSettings()._replace(prior=0.1, prior_of_sensor=0.02, effect_bounds=(0.01, 0.9))
+BOUNDS = (0.01, 0.9)
 NAMES = ["a", "b", "c"]
 
 
 def weigh(*sets, power=2.0):
-    return weigh_effects(SETTINGS, [(frozenset(names), left) for names, left in sets], NAMES, power)
+    return weigh_all(Evidence(0.1, 0.02, power), [(frozenset(names), left) for names, left in sets], NAMES)
+
+
+def weigh_all(evidence, sets, names):
+    return weigh_effects([(each, evidence.weigh(each, left)) for each, left in sets], names, BOUNDS)
 
 
 def test_an_effect_has_the_share_of_the_weight_that_lies_in_sets_with_it():
@@ -38,6 +41,6 @@ def test_very_different_sets_are_weighed_without_overflow():
 
 def test_a_sensor_has_a_prior_of_its_own():
     sets = [(frozenset(), 1.0), (frozenset({"sensor.gain"}), 0.2), (frozenset({"rig.one", "sensor.gain"}), 0.1)]
-    found = weigh_effects(SETTINGS, sets, ["sensor.gain", "rig.one"], 2.0)
+    found = weigh_all(Evidence(0.1, 0.02, 2.0), sets, ["sensor.gain", "rig.one"])
     total = 1.0 + 0.02 / 0.04 + 0.1 * 0.02 / 0.01
     assert found == pytest.approx({"sensor.gain": (0.5 + 0.2) / total, "rig.one": 0.2 / total})

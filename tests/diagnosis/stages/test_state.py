@@ -7,6 +7,7 @@ import pytest
 
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
+from seatsim.diagnosis.every_run import replay_runs
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, show_discrepancy
 from seatsim.diagnosis.result import GapFigures, Gaps, Share
@@ -18,6 +19,7 @@ from seatsim.diagnosis.validate import choose_held_out_run, make_scenario, refit
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.quality.coverage import measure_coverage
 from seatsim.scenario.loading import single
+from seatsim.schema.errors import RunError
 
 from .toy import CHANNELS, Added, offer, place, pose, record, weigh_stated
 
@@ -76,8 +78,8 @@ def test_a_solution_is_checked_on_a_run_that_its_rigs_are_fitted_without(known):
 def test_the_shrinks_own_spread_from_run_to_run_widens_its_interval(known, monkeypatch):
     seen = []
 
-    def measure(problem, scenarios, runs, spread):
-        seen.append((runs, spread))
+    def measure(problem, run, spread):
+        seen.append((run.name, spread))
         figures = [GapFigures(each, {}) for each in (0.5, 0.5, 0.1, 0.05)]
         return Gaps(*figures, 0.8, (0.7, 0.9))
 
@@ -85,7 +87,7 @@ def test_the_shrinks_own_spread_from_run_to_run_widens_its_interval(known, monke
     run = validate_on_held_out(known).run
     shrink = shrink_by_run(known.objective.problem, known.selection.nominal, known.decision.chosen)
     mean = sum(shrink) / 3.0
-    assert seen == [([run], pytest.approx(np.sqrt(sum((each - mean) ** 2 for each in shrink) / 2.0)))]
+    assert seen == [(run, pytest.approx(np.sqrt(sum((each - mean) ** 2 for each in shrink) / 2.0)))]
 
 
 def test_a_single_run_has_no_spread(folder, monkeypatch):
@@ -131,6 +133,28 @@ def test_effects_that_do_harm_on_the_held_out_run_are_given_up_beside_an_unknown
     assert decision.chosen is solution.selection.calibrated and decision.verdict == "unknown"
     assert decision.probabilities[ONE.effect] < 0.1
     assert found.augmented is solution.selection.nominal and found.gaps.shrink == 0.0
+
+
+def test_effects_whose_rig_cannot_be_simulated_in_a_run_left_out_are_given_up_with_a_note(known, monkeypatch):
+    def replay(problem, scenarios):
+        if scenarios[2].effects:
+            raise RunError("first: not finite")
+        return replay_runs(problem, scenarios)
+
+    monkeypatch.setattr("seatsim.diagnosis.state.replay_runs", replay)
+    found = validate_on_held_out(known)
+    assert found.solution.decision.verdict == "unknown" and found.augmented is known.selection.nominal
+    (note,) = found.solution.selection.notes
+    assert note.startswith(f"{ONE.effect} with {TWO.effect} was given up, since it cannot be simulated as fitted")
+
+
+def test_a_rig_without_effects_that_cannot_be_simulated_is_an_error(objective, monkeypatch):
+    def replay(problem, scenarios):
+        raise RunError("first: not finite")
+
+    monkeypatch.setattr("seatsim.diagnosis.state.replay_runs", replay)
+    with pytest.raises(RunError, match="not finite"):
+        validate_on_held_out(make_solution(objective, "unknown"))
 
 
 def test_a_known_effect_that_takes_too_little_off_the_held_out_run_stays_beside_an_unknown_cause(objective):

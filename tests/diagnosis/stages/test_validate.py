@@ -5,14 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from seatsim.diagnosis import validate
+from seatsim.diagnosis import every_run
+from seatsim.diagnosis.every_run import measure_gaps, replay_runs
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.validate import (
     choose_held_out_run,
     make_scenario,
-    measure_gaps,
     refit_without,
     shrink_by_run,
 )
@@ -151,6 +151,10 @@ def scenarios(problem, *amounts):
     )
 
 
+def measure(problem, three, name, spread):
+    return measure_gaps(problem, next(run for run in replay_runs(problem, three) if run.name == name), spread)
+
+
 def rms_by_channel(problem, run, amount):
     """Return the RMS of `amount` of the signal `one`, in standard deviations of the measured channels."""
     table = problem.recording.table(run)
@@ -161,28 +165,28 @@ def rms_by_channel(problem, run, amount):
 
 def test_gaps_are_those_of_the_three_rigs_on_the_held_out_run(folder):
     problem = pose(record(folder, (Added("one", 1.0),), {"first": 3000, "second": 800}, noise=0.0))
-    found = measure_gaps(problem, scenarios(problem, 0.0, 0.5, 0.6), ["second"], 0.2)
+    found = measure(problem, scenarios(problem, 0.0, 0.5, 0.6), "second", 0.2)
     for figures, amount in ((found.before, 1.0), (found.calibrated, 0.5), (found.after, 0.4)):
         channels = rms_by_channel(problem, "second", amount)
         assert list(figures.channels) == list(problem.channels)
         assert list(figures.channels.values()) == pytest.approx(list(channels))
         assert figures.overall == pytest.approx(np.sqrt(np.mean(channels**2)))
     assert found.shrink == pytest.approx(0.6)
-    assert measure_gaps(problem, scenarios(problem, 0.0, 0.5, 0.6), ["second"], 0.2) == found
+    assert measure(problem, scenarios(problem, 0.0, 0.5, 0.6), "second", 0.2) == found
 
 
 def test_other_excitations_and_the_spread_from_run_to_run_widen_the_interval(folder):
     # Residuals that are all in proportion shrink alike in all blocks, so that nothing else is left of the interval.
     problem = pose(record(folder, (Added("one", 1.0),), {"first": 3000}, noise=0.0))
     three = scenarios(problem, 0.0, 0.0, 0.6)
-    narrow, wide = (np.array(measure_gaps(problem, three, ["first"], s).shrink_interval) - 0.6 for s in (0.0, 0.2))
+    narrow, wide = (np.array(measure(problem, three, "first", s).shrink_interval) - 0.6 for s in (0.0, 0.2))
     assert narrow == pytest.approx([-0.1645, 0.1645], abs=0.04)
     assert wide == pytest.approx(narrow * np.sqrt(0.1**2 + 0.2**2) / 0.1)
 
 
 def test_the_floor_is_the_noise_in_standard_deviations(folder):
     problem = pose(record(folder, (Added("one", 1.0),)))
-    found = measure_gaps(problem, scenarios(problem, 0.0, 0.0, 1.0), ["first"], 0.0).floor
+    found = measure(problem, scenarios(problem, 0.0, 0.0, 1.0), "first", 0.0).floor
     table = problem.recording.table("first")
     stated = [0.05 * size / np.std(table[name][SKIP:]) for name, size in zip(problem.channels, SIZES, strict=False)]
     assert list(found.channels.values()) == pytest.approx(stated)
@@ -191,14 +195,14 @@ def test_the_floor_is_the_noise_in_standard_deviations(folder):
 
 def test_a_gap_that_does_not_shrink_has_no_interval(folder):
     problem = pose(record(folder, (Added("one", 1.0),)))
-    found = measure_gaps(problem, scenarios(problem, 0.5, 0.2, 0.5), ["first"], 0.3)
+    found = measure(problem, scenarios(problem, 0.5, 0.2, 0.5), "first", 0.3)
     assert found.shrink == 0.0 and found.shrink_interval == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("amount", [0.97, 1.3, 2.2])
 def test_an_interval_holds_its_shrink_and_no_gap_shrinks_by_more_than_itself(folder, amount):
     problem = pose(record(folder, (Added("one", 1.0),), noise=1e-3))
-    found = measure_gaps(problem, scenarios(problem, 0.0, 0.0, amount), ["first"], 0.1)
+    found = measure(problem, scenarios(problem, 0.0, 0.0, amount), "first", 0.1)
     low, high = found.shrink_interval
     assert low <= found.shrink <= high <= 1.0
 
@@ -207,7 +211,7 @@ BLOCKS, LENGTH = 40, 20
 
 
 @pytest.fixture
-def draw_residuals(monkeypatch, folder):
+def draw_residuals(folder):
     """Return a function that draws residuals of two rigs, whose blocks differ in strength, and bootstraps them."""
     problem = pose(record(folder), validation={"excitation_std": 0.0, "block_length": LENGTH / RATE, "draws": 200})
 
@@ -218,13 +222,12 @@ def draw_residuals(monkeypatch, folder):
         measured = dict(zip(("x", "y"), [[30.0], [1.0]] * rng.standard_normal((2, BLOCKS * LENGTH)), strict=True))
         left = [strength * first, strength * second]
         # Both rigs miss what was measured by residuals that are small beside it.
-        outputs = {
-            rig: {name: measured[name] - np.std(measured[name]) * residual[k] for k, name in enumerate(measured)}
-            for rig, residual in zip(("before", "after"), left, strict=True)
-        }
-        monkeypatch.setattr(validate, "pool_runs", lambda rig, recording, runs: (measured, outputs[rig]))
+        outputs = [
+            {name: measured[name] - np.std(measured[name]) * residual[k] for k, name in enumerate(measured)}
+            for residual in left
+        ]
         point = 1.0 - np.sqrt(np.mean(left[1] ** 2) / np.mean(left[0] ** 2))
-        return validate._bootstrap_shrink(problem, ("before", "after"), ["first"], point, spread), point
+        return every_run._bootstrap_shrink(problem, measured, outputs, point, spread), point
 
     return bootstrap
 
