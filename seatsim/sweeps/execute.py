@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, RunError
 from seatsim.sweeps.checks import check_plan
 from seatsim.sweeps.definition import SweepDefinition, read_definition
 from seatsim.sweeps.engines.base import Engine, Work
@@ -117,6 +117,8 @@ def execute(
             histories = folder / "histories" if keep_histories else None
             for outcomes in engine(Work(plan, rows.missing(), histories)):
                 rows.add(outcomes)
+            if left := sum(map(len, rows.missing())):
+                raise RunError(f"{folder}: the engine ended without {left} of its runs; go on with --resume")
         finally:
             rows.flush()
             with hold_file(folder / ".lock-manifest", wait=True):

@@ -14,6 +14,7 @@ from pydantic import TypeAdapter
 
 import seatsim
 from seatsim.cli.outputs.answers import ANSWERS
+from seatsim.sweeps import parts
 
 from .conftest import MASSES, bytes_of
 
@@ -49,13 +50,13 @@ def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
 
 def test_what_is_wrong_is_one_sentence(write_sweep, tmp_path, seatsim_command, monkeypatch):
     path, out = write_sweep(runs=2), tmp_path / "out"
-    for options, part in (
+    for options, sentence in (
         (["--engine", "cuda"], "no CUDA device"),
         (["--address", "tcp://here:1"], "add --engine dask"),
         (["--part", "3/2"], "write K/N with K from 1 to N"),
     ):
         status, _, err = seatsim_command("sweep", path, "--out", out, *options)
-        assert status == 2 and part in err and not out.exists()
+        assert status == 2 and sentence in err and not out.exists()
     monkeypatch.setitem(sys.modules, "distributed", None)
     status, _, err = seatsim_command("sweep", path, "--out", out, "--engine", "dask")
     assert status == 2 and 'pip install "seatsim[cluster]"' in err
@@ -89,8 +90,10 @@ def test_the_tasks_of_a_script_make_the_sweep(write_sweep, tmp_path, seatsim_com
 
 
 @pytest.mark.parametrize("where", ["embedded", "address"])
-def test_a_cluster_gives_the_same_bytes(where, write_sweep, tmp_path, seatsim_command):
+def test_a_cluster_gives_the_same_bytes(where, write_sweep, tmp_path, seatsim_command, monkeypatch):
     distributed = pytest.importorskip("distributed")
+    # More tasks than are sent at once.
+    monkeypatch.setattr(parts, "RUNS_OF_PART", 10)
     path = write_sweep(runs=203)
     assert seatsim_command("sweep", path, "--out", tmp_path / "threads")[0] == 0
     options = ["--engine", "dask", "--jobs", "2"]

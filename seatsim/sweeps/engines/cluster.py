@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -50,8 +51,7 @@ class ClusterEngine(NamedTuple):
             waiting = iter(work.tasks)
 
             def submit(count: int) -> list[Any]:
-                chosen = [task for task, _ in zip(waiting, range(count), strict=False)]
-                return [client.submit(_simulate, *_pack(work, task), pure=False) for task in chosen]
+                return [client.submit(_simulate, *_pack(work, task), pure=False) for task in islice(waiting, count)]
 
             ahead = AHEAD * max(self.jobs, len(client.scheduler_info()["workers"]))
             running = as_completed(submit(ahead))
