@@ -100,7 +100,7 @@ def test_a_cluster_gives_the_same_bytes(where, write_sweep, tmp_path, seatsim_co
     if where == "embedded":
         assert seatsim_command("sweep", path, "--out", tmp_path / "dask", *options)[0] == 0
     else:
-        with distributed.LocalCluster(2, processes=False, protocol="tcp", dashboard_address=None) as cluster:
+        with distributed.LocalCluster(2, processes=False, protocol="tcp", dashboard_address=":0") as cluster:
             options += ["--address", cluster.scheduler_address]
             assert seatsim_command("sweep", path, "--out", tmp_path / "dask", *options)[0] == 0
     assert bytes_of(tmp_path / "dask") == bytes_of(tmp_path / "threads")

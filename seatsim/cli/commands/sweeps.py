@@ -59,8 +59,12 @@ def sweep(
         say(f"next: sbatch {path}, then seatsim sweep-report {folder}")
         return answer({"runs": prepared.plan.runs}, [path])
     carry_out = choose_engine(engine, jobs or os.cpu_count() or 1, address)
-    with count_progress("simulating", prepared.plan.runs) as count:
-        result = execute(prepared, folder, carry_out, resume, keep == "histories", part, count)
+    try:
+        with count_progress("simulating", prepared.plan.runs) as count:
+            result = execute(prepared, folder, carry_out, resume, keep == "histories", part, count)
+    except KeyboardInterrupt:
+        complain(f"interrupted: {folder} keeps what has ended; go on with --resume")
+        raise
     counts = ", ".join(f"{number} {state}" for state, number in result.counts.items() if number or state == "done")
     say(f"{folder}: {counts}")
     for text in result.failures[:FAILURES_SHOWN]:

@@ -67,7 +67,7 @@ class ClusterEngine(NamedTuple):
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         if self.address is None:
             cluster = LocalCluster(
-                n_workers=self.jobs, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL
+                n_workers=self.jobs, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
             )
             return stack.enter_context(Client(stack.enter_context(cluster)))
         try:
