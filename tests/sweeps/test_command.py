@@ -59,7 +59,7 @@ def test_what_is_wrong_is_one_sentence(write_sweep, tmp_path, seatsim_command, m
         assert status == 2 and sentence in err and not out.exists()
     monkeypatch.setitem(sys.modules, "distributed", None)
     status, _, err = seatsim_command("sweep", path, "--out", out, "--engine", "dask")
-    assert status == 2 and 'pip install "seatsim[cluster]"' in err
+    assert status == 2 and 'pip install "seatsim[cluster]"' in err and not out.exists()
     status, _, err = seatsim_command("sweep-report", tmp_path)
     assert status == 2 and "holds no sweep" in err
     status, _, err = seatsim_command("run", path)

@@ -18,7 +18,7 @@ def choose_engine(name: str, jobs: int, address: str | None) -> Engine:
     if name == "cuda":
         raise InputError("--engine cuda: no CUDA device can be used here; choose --engine local or dask")
     if name == "dask":
-        from seatsim.sweeps.engines.cluster import ClusterEngine
+        from seatsim.sweeps.engines.cluster import make_cluster_engine
 
-        return ClusterEngine(jobs, address)
+        return make_cluster_engine(jobs, address)
     return ThreadEngine(jobs)

@@ -29,6 +29,19 @@ LONGEST_SEARCH = 10
 """Seconds in which a scheduler must answer."""
 
 
+def make_cluster_engine(jobs: int, address: str | None) -> ClusterEngine:
+    """Return the engine.
+
+    Raises:
+        InputError: dask is not installed.
+    """
+    try:
+        import distributed  # noqa: F401
+    except ImportError as error:
+        raise InputError(EXTRA) from error
+    return ClusterEngine(jobs, address)
+
+
 class ClusterEngine(NamedTuple):
     """Simulates runs on a dask cluster: of `jobs` processes on this machine, or the one at an address."""
 
@@ -39,12 +52,10 @@ class ClusterEngine(NamedTuple):
         """Yield the outcomes of each task as it ends.
 
         Raises:
-            InputError: dask is not installed, or no scheduler answers at the address.
+            InputError: no scheduler answers at the address, or it has no worker. RunError: the cluster was lost.
         """
-        try:
-            from distributed import as_completed
-        except ImportError as error:
-            raise InputError(EXTRA) from error
+        from distributed import as_completed
+
         with ExitStack() as stack:
             client = self._connect(stack)
             _await_workers(client)
