@@ -49,10 +49,7 @@ def hold_file(path: Path, alone: bool = True, wait: bool = False) -> Iterator[No
             raise InputError(
                 f"{path.parent}: {owner} works on this sweep; wait for it, end it, or choose another --out"
             ) from error
-        if alone:
-            file.truncate(0)
-            file.write(f"process {os.getpid()} on {socket.gethostname()}")
-        elif not path.stat().st_size:
-            file.write("commands for shares of it")
+        file.truncate(0)
+        file.write(f"process {os.getpid()} on {socket.gethostname()}" if alone else "a command for a share of it")
         file.flush()
         yield
