@@ -53,7 +53,8 @@ def main() -> None:
             command = ["run", "quickstart", "--out", f"{folder}/out"]
             wall, cpu = time_command(command, os.environ | {"SEATSIM_CACHE_DIR": folder})
             print(f"process {process}: seatsim run quickstart {wall:.2f} s, {cpu:.2f} s of processors")
-    for name in (command.callback.__name__ for command in app.registered_commands if command.callback):
+    for each in app.registered_commands:
+        name = each.name or getattr(each.callback, "__name__", "").replace("_", "-")
         cpu = min(time_command([name, "--help"], dict(os.environ))[1] for _ in range(PROCESSES))
         print(f"seatsim {name} --help: {cpu:.3f} s of a processor")
 

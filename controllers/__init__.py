@@ -9,7 +9,7 @@
     linear_systems   linear systems, connected and sampled
 
 What belongs to the rig and is the same for every law (noise, delay, coil, inverse damper) stands in `seatsim`, which
-never imports this package: it finds it through the entry point `laws`.
+never imports this package: it finds laws and bounds through the entry points `laws` and `bounds`.
 """
 
 from __future__ import annotations

@@ -122,6 +122,11 @@ def stuck(channel, start, end):
     return lambda f: f.assign(**{channel: f[channel].mask((f.time > start) & (f.time <= end)).ffill()})
 
 
+def dropped(channel, start, end):
+    """Let a channel read zero between two instants."""
+    return lambda f: f.assign(**{channel: f[channel].mask((f.time > start) & (f.time <= end), 0.0)})
+
+
 def held(channel, rows):
     """Hold each value for some rows."""
     return lambda f: f.assign(**{channel: f[channel].to_numpy()[np.arange(len(f)) // rows * rows]})
@@ -175,6 +180,11 @@ FAULTS = {f"sign of {c}": (scaled(c, -1.0), c, "sign is swapped") for c in SIGNS
     "force in kN": (scaled("damper_force", 0.001), "damper_force", "in kN"),
     "current in mA": (scaled("coil_current", 1000.0), "coil_current", "in mA"),
     "command in mA": (scaled("current_command", 1000.0), "current_command", "in mA"),
+    "accelerations upside down": (
+        lambda f: f.assign(**{c: -f[c] for c in f if c.endswith("_acceleration")}),
+        "driver_acceleration",
+        "signs are swapped",
+    ),
     "kelvin": (shifted("damper_temperature", 273.15), "damper_temperature", "in kelvin"),
     "frame for driver": (exchanged("frame_acceleration", "driver_acceleration"), "frame_acceleration", "exchanged"),
     "floor for frame": (exchanged("floor_acceleration", "frame_acceleration"), "floor_acceleration", "exchanged"),
@@ -199,6 +209,9 @@ WARNINGS = {
     "gravity in the floor's accelerometer": (shifted("floor_acceleration", 9.79), "floor_acceleration", "is gravity"),
     "gravity upside down": (shifted("driver_acceleration", -9.7), "driver_acceleration", "is gravity"),
     "an offset of the frame's accelerometer": (shifted("frame_acceleration", 2.0), "frame_acceleration", "an offset"),
+    "half a metre per square second": (shifted("floor_acceleration", 0.5), "floor_acceleration", "an offset"),
+    "a travel of another zero": (shifted("suspension_displacement", 0.1), "suspension_displacement", "sensor's zero"),
+    "a dropout": (dropped("damper_force", 3.0, 3.2), "damper_force", "a dropout"),
     "late current": (late(0.15, "coil_current"), "coil_current", "s late"),
 }
 """Faults that are said while diagnosis and gap go on."""

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from controllers.linear_systems import zero_order_hold
 from seatsim.rig.coil import Coil
@@ -66,6 +65,9 @@ class SampledLoop(NamedTuple):
         The least phase ahead of 1 over its frequency, over all crossings of unit gain between 0.01 rad/s and the
         Nyquist frequency, found on 2000 frequencies.
         """
+        # Imported here: a run does not need it, and it takes long.
+        from scipy.optimize import brentq
+
         if self.radius() >= 1.0:
             return 0.0
         grid = np.geomspace(0.01, math.pi / self.sample_time, 2000)

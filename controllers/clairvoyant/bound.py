@@ -10,13 +10,15 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import scipy.sparse
 
 from controllers.clairvoyant.problem import HeldForceProblem
 from controllers.clairvoyant.recursion import Array, ForceBand
+
+if TYPE_CHECKING:
+    import scipy.sparse
 
 SPACING = 0.02
 """s between the nodes of the multipliers."""
@@ -66,6 +68,8 @@ def _evaluate_bound(
 
 def _build_hat_functions(count: int, step: float) -> scipy.sparse.csr_array:
     """Return what the hat functions of unit density sum up to in each of `count` intervals, shape (count, nodes)."""
+    import scipy.sparse
+
     place = step / SPACING * (np.arange(count) + 0.5)
     left = place.astype(int)
     entries = (

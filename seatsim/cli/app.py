@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import shlex
 import sys
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from seatsim.cli.commands.blind import blind
 from seatsim.cli.commands.dampers import characterise, identify
@@ -18,11 +19,33 @@ from seatsim.cli.commands.runs import compare, run
 from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.sweeps import sweep, sweep_report
 from seatsim.cli.commands.synthesis import synthesise
-from seatsim.cli.terminal import complain, fail
+from seatsim.cli.terminal import answer_as_json, answer_error, complain, fail
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.modules import MissingModuleError
 
+UsageError: Any = typer.BadParameter.__bases__[0]
+"""What is raised for options and arguments that a command does not have, before any of them is read."""
+ASKED = "seatsim.json"
+
+
+class _Commands(TyperGroup):
+    """The commands; what is wrong with their options is one object where `--json` stands among them."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        ctx.meta[ASKED] = "--json" in args
+        return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: Any) -> object:
+        answer_as_json(ctx.meta[ASKED])
+        try:
+            return super().invoke(ctx)
+        except UsageError as error:
+            answer_error(error.format_message())
+            raise
+
+
 app = typer.Typer(
+    cls=_Commands,
     help="Simulate semi-active MR-damper seats and compare what is done to them.",
     no_args_is_help=True, pretty_exceptions_enable=False,
 )  # fmt: skip

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from seatsim.characterisation.specimen import load_specimen
 from seatsim.excitations.recording import RecordedRun
+from seatsim.importing.import_map import read_map
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.scenario.describe import KINDS
@@ -28,7 +29,7 @@ class Checked(NamedTuple):
 
 
 def check_file(path: Path) -> Checked:
-    """Read a scenario, a recording (or its folder), a sweep, a damper with its parameters, or a Python file.
+    """Read a scenario, recording (or its folder), sweep, damper with its parameters, map of `import`, or Python file.
 
     Raises:
         InputError: there is an error in it.
@@ -42,6 +43,9 @@ def check_file(path: Path) -> Checked:
         return Checked("parameters", [load_specimen(None, path).name], [])
     if is_sweep(stated):
         return _check_sweep(path)
+    if "channels" in stated:
+        found = read_map(path)
+        return Checked(f"map of a {found.rig}", list(found.channels), [])
     return _check_scenario(path)
 
 

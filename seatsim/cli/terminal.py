@@ -66,6 +66,11 @@ def complain(text: str) -> None:
 def fail(text: str) -> None:
     """Print why a command came to its end: on standard error, and as the one object where `--json` asks for it."""
     complain(f"error: {text}")
+    answer_error(text)
+
+
+def answer_error(text: str) -> None:
+    """Print why a command came to its end as the one object, where `--json` asks for it."""
     if out.quiet:
         sys.stdout.write(json.dumps({"error": text}) + "\n")
 

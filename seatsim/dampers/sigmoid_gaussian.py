@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cache
 from typing import Annotated, NamedTuple
 
 import numpy as np
+from numba import types
+from numba.extending import overload
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
-from seatsim.compilation.jit import jit
+from seatsim.compilation.jit import INLINED, jit
 from seatsim.dampers.base import damper
 from seatsim.dampers.pieces import BRANCH_STATE, CurrentLaw, branch, branch_rate, cubic
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
 from seatsim.schema.fields import param
 
+Array = NDArray[np.float64]
 Row = tuple[float, float, float, float, float]
 
 CURRENTS = np.array([0.0, 0.25, 0.5, 0.75, 1.0, 2.0])
@@ -39,23 +43,43 @@ TABLES = np.array([
     ],
 ])  # fmt: skip
 """Tables 1 and 2 of the paper, shape (test, current, parameter), in kN and the velocity unit u."""
-_CUBICS = np.array([np.moveaxis(PchipInterpolator(CURRENTS, table).c, 0, -1) for table in TABLES])
-"""Shape (test, cell, parameter, power from 3 to 0)."""
+
+
+@cache
+def _cubics() -> Array:
+    """Return the monotone cubics through the tables, shape (test, cell, parameter, power from 3 to 0)."""
+    # Imported here: it takes a third of a second, for which every command would wait.
+    from scipy.interpolate import PchipInterpolator
+
+    return np.array([np.moveaxis(PchipInterpolator(CURRENTS, table).c, 0, -1) for table in TABLES])
+
+
+def table_row(test: int, current: float) -> Row:
+    """Return (a, b, c, sigma, r) of test 1 or 2, monotone between the test currents and held beyond them."""
+    return _row(_cubics()[test - 1], current)
+
+
+def _compile_table_row(test: types.Type, current: types.Type) -> Callable[[int, float], Row]:
+    """Return `table_row` for compiled code, of which the cubics are constants."""
+    cubics = _cubics()
+    return lambda test, current: _row(cubics[test - 1], current)
+
+
+overload(table_row, strict=False, jit_options=INLINED)(_compile_table_row)
 
 
 @jit
-def table_row(test: int, current: float) -> Row:
-    """Return (a, b, c, sigma, r) of test 1 or 2, monotone between the test currents and held beyond them."""
+def _row(cubics: Array, current: float) -> Row:
     held = min(max(current, CURRENTS[0]), CURRENTS[-1])
     cell = 0
     while cell < len(CURRENTS) - 2 and held >= CURRENTS[cell + 1]:
         cell += 1
-    cubics, s = _CUBICS[test - 1, cell], held - CURRENTS[cell]
-    return _at(cubics[0], s), _at(cubics[1], s), _at(cubics[2], s), _at(cubics[3], s), _at(cubics[4], s)
+    row, s = cubics[cell], held - CURRENTS[cell]
+    return _at(row[0], s), _at(row[1], s), _at(row[2], s), _at(row[3], s), _at(row[4], s)
 
 
 @jit
-def _at(c: NDArray[np.float64], s: float) -> float:
+def _at(c: Array, s: float) -> float:
     """Return the cubic `((c[0] s + c[1]) s + c[2]) s + c[3]`."""
     value: float = ((c[0] * s + c[1]) * s + c[2]) * s + c[3]
     return value

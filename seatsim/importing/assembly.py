@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,11 +12,11 @@ from seatsim.importing.alignment import Channel, describe_offset, estimate_offse
 from seatsim.importing.channels import make_channel, no_column
 from seatsim.importing.clocks import SHORTEST_RUN, Clocked, clock_groups, split_at_gaps
 from seatsim.importing.import_map import ImportMap
-from seatsim.importing.relations import doubt_rig
 from seatsim.importing.resampling import resample
 from seatsim.importing.signals import Array, DataFile
 from seatsim.recordings.channel_units import CHANNELS
-from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.quality.issue import Issue, place_in_run
+from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import conversion
 
@@ -71,9 +71,14 @@ def assemble(files: Sequence[DataFile], stated: ImportMap) -> Assembled:
         used = _use_channels(name, clocked, stated, doubts, notes)
         moved = _align(used, align, notes)
         table = _tabulate(name, used, moved, stated, rate, notes)
-        doubts += _of_run(name, doubt_rig(table, rate))
         runs.append(Run(name, table))
     return Assembled(runs, rate, dataclasses.replace(stated, align=align), list(dict.fromkeys(notes)), doubts)
+
+
+def doubt_runs(assembled: Assembled) -> list[Issue]:
+    """Return what the channels of each run show of each other, which an examination would find too."""
+    runs = assembled.runs
+    return [each for run in runs for each in place_in_run(run.name, doubt_relations(run.table, assembled.rate))]
 
 
 def _group_runs(files: Sequence[DataFile], stated: ImportMap) -> list[tuple[str, list[DataFile]]]:
@@ -95,11 +100,6 @@ def _run_name(file: DataFile, files: Sequence[DataFile]) -> str:
     return file.path.name.split(".")[0] if len(files) > 1 else "run-a"
 
 
-def _of_run(run: str, issues: Iterable[Issue]) -> list[Issue]:
-    """Return issues with the name of their run."""
-    return [issue._replace(sentence=f"{run}, {issue.sentence}", run=run) for issue in issues]
-
-
 def _use_channels(
     run: str, clocked: Sequence[Clocked], stated: ImportMap, doubts: list[Issue], notes: list[str]
 ) -> _Used:
@@ -115,7 +115,7 @@ def _use_channels(
             is_taken = each is holders[0]
             channel, found = make_channel(name, entry, each, CHANNELS[stated.rig][name], notes if is_taken else [])
             used.by_group[each.label][name] = channel
-            doubts += _of_run(run, found) if is_taken else []
+            doubts += place_in_run(run, found) if is_taken else []
         used.taken_from[name] = holders[0].label
     return used
 
@@ -129,7 +129,8 @@ def _tabulate(
     end = min(each.start + (len(each.values) - 1) / each.rate for each in held.values())
     if end - begin < SHORTEST_RUN:
         raise InputError(
-            f"{run}: its files have less than {SHORTEST_RUN:g} s in common; check their times, or state align"
+            f"{run}: its files have less than {SHORTEST_RUN:g} s in common ({max(0.0, end - begin):.3g} s at"
+            f" {rate:.6g} Hz); check their times and the unit under time, or state align"
         )
     times = begin + np.arange(int((end - begin) * rate + 1e-6) + 1) / rate
     table = {}

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.importing.damage import Doubter
 from seatsim.importing.signals import Array
 from seatsim.importing.time_axis import Axis
+from seatsim.recordings.quality.damage import Doubter
 from seatsim.recordings.quality.issue import Issue
 
 SLOWEST, FASTEST = 5.0, 200_000.0

@@ -8,19 +8,17 @@ import numpy as np
 
 from seatsim.importing.alignment import Channel
 from seatsim.importing.clocks import Clocked, list_names
-from seatsim.importing.damage import find_spikes
 from seatsim.importing.doubts import doubt_channel
-from seatsim.importing.import_map import ChannelMap
+from seatsim.importing.import_map import PRIMITIVE, ChannelMap
 from seatsim.importing.names import quantity_of
 from seatsim.importing.resampling import evened
 from seatsim.importing.signals import Array
 from seatsim.importing.time_axis import Axis
+from seatsim.recordings.quality.damage import find_spikes
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import conversion
 
-PRIMITIVE = {("m/s^2", 1): "m/s", ("m/s^2", 2): "m", ("m/s", 1): "m"}
-"""Unit of what is differentiated so many times, by the unit of the derivative."""
 SLOWER = 0.9
 """Share of the rows of its table below which a channel has a rate of its own."""
 
@@ -64,11 +62,7 @@ def _quantity(name: str, entry: ChannelMap) -> str | None:
 
 
 def _in_si(name: str, entry: ChannelMap, values: Array, clocked: Clocked, wanted: str) -> Array:
-    base = PRIMITIVE.get((wanted, entry.differentiate)) if entry.differentiate else wanted
-    if base is None:
-        raise InputError(
-            f"channels.{name}.differentiate: {entry.differentiate} is none for a channel in {wanted}; leave it out"
-        )
+    base = PRIMITIVE[wanted, entry.differentiate] if entry.differentiate else wanted
     signal = clocked.group.find(entry.column or "")
     unit = entry.unit or (signal.unit if signal else "") or (base if entry.column == name else "")
     if not unit:

@@ -10,8 +10,8 @@ import numpy as np
 
 from seatsim.importing.axis_doubts import doubt_time
 from seatsim.importing.import_map import AxisMap, ImportMap
-from seatsim.importing.names import read_name
-from seatsim.importing.signals import DataFile, Group
+from seatsim.importing.names import is_of, read_name
+from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis, even_axis, measured_axis, unbroken
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
@@ -80,6 +80,17 @@ def _timed(label: str, group: Group, time: AxisMap, doubts: list[Issue]) -> tupl
         raise InputError(f"{label}: column '{time.column}' does not rise as a time does; name another one under time")
     doubts += doubt_time(axis, f"{label}, {time.column}")
     return group._replace(signals=signals), axis
+
+
+def read_clock(signal: Signal) -> Axis | None:
+    """Return the times of a column that is called time, in s where its unit is none of time; None if they never rise.
+
+    Rows that hold no number are left out.
+    """
+    unit = read_name(signal.name, signal.unit).unit
+    values = signal.values[np.isfinite(signal.values)]
+    factor = conversion(unit if unit and is_of(unit, "time") else "s", DIMENSIONS["time"]).factor
+    return measured_axis(factor * values) if len(values) > 2 else None
 
 
 def list_names(names: Sequence[str], most: int = 12) -> str:

@@ -10,16 +10,17 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape
-from seatsim.importing.names import DIMENSION
+from seatsim.importing.names import BY_UNIT, DIMENSION
 from seatsim.importing.signals import Array
+from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape
 from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.quality.plausible_ranges import say_implausible
 from seatsim.recordings.quality.shapes import plateaus
-from seatsim.schema.units import DIMENSIONS, STANDARD_GRAVITY, find_conversion
+from seatsim.schema.units import DIMENSIONS, STANDARD_GRAVITY
 
 NEAR = 0.08
 """Share by which a mean may differ from gravity: tilt, scale and offset of the sensor."""
-OFFSET = 0.5
+OFFSET = 0.2
 """m/s^2; mean of an accelerometer from which it has an offset."""
 ZERO = {
     "force": "gas force, preload or the zero of the load cell", "displacement": "the zero of the sensor",
@@ -36,16 +37,6 @@ WARMING = 2.0
 """K/s; a damper's body does not warm faster."""
 SWITCHED = ("current", "voltage")
 """Quantities that rest and jump by themselves."""
-PLAUSIBLE = {
-    "acceleration": (0.0, 500.0), "displacement": (0.0, 1.0), "velocity": (0.0, 5.0), "force": (0.0, 30_000.0),
-    "current": (0.0, 30.0), "voltage": (0.0, 60.0), "temperature": (-50.0, 200.0),
-}  # fmt: skip
-"""Range of the size of a quantity of a seat or damper in SI units; outside it another unit is meant."""
-ALTERNATIVES = {
-    "acceleration": ("mm/s^2", "cm/s^2"), "displacement": ("mm", "cm"), "velocity": ("mm/s",), "force": ("mN",),
-    "current": ("mA",), "voltage": ("mV",), "temperature": ("K", "degF"),
-}  # fmt: skip
-"""Units to which values outside the range point, the likeliest first."""
 
 
 def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | None) -> Iterator[Issue]:
@@ -69,7 +60,9 @@ def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | 
             )
             yield doubter.say("note", "levels", text)
         return
-    yield from doubt_shape(doubter, values, lengths)
+    for issue in doubt_shape(doubter, values, lengths):
+        # A command is logged at the rate of its controller, and holds until the next.
+        yield issue._replace(severity="note") if issue.kind == "held" and quantity in SWITCHED else issue
     if rate is not None and quantity not in SWITCHED:
         yield from doubt_dropouts(doubter, values, lengths, starts)
 
@@ -82,20 +75,15 @@ def _missing(doubter: Doubter, missing: NDArray[np.bool_]) -> Issue:
 
 def _of_quantity(doubter: Doubter, values: Array, quantity: str | None) -> Iterator[Issue]:
     """Yield what the size and the mean of a known quantity show."""
-    mean, size = float(np.mean(values)), float(np.max(np.abs(values)))
+    mean = float(np.mean(values))
     if quantity == "acceleration":
         yield from _constant_part(doubter, values, mean)
     elif quantity in ZERO:
         yield from _rest(doubter, values, mean, quantity)
     elif quantity == "temperature":
         yield from _warming(doubter, values)
-    if quantity in PLAUSIBLE:
-        low, high = PLAUSIBLE[quantity]
-        extreme = size if low == 0.0 else float(values[np.argmax(np.abs(values))])
-        if not low <= extreme <= high:
-            units = _other_units(quantity, values)
-            guess = f"; is it in {' or '.join(units)}?" if units else ""
-            yield doubter.say("warning", "unit", f"reaches {extreme:.4g} in SI units, more than a seat does{guess}")
+    if quantity in BY_UNIT and (text := say_implausible(values, DIMENSIONS[DIMENSION[quantity]])):
+        yield doubter.say("warning", "unit", text)
 
 
 def _warming(doubter: Doubter, values: Array) -> Iterator[Issue]:
@@ -112,18 +100,6 @@ def _warming(doubter: Doubter, values: Array) -> Iterator[Issue]:
     if fastest > WARMING:
         text = f"changes by up to {fastest:.2g} K/s, faster than a damper warms: a disturbed or a surface reading"
         yield doubter.say("warning", "warming", text)
-
-
-def _other_units(quantity: str, values: Array) -> list[str]:
-    """Return the units in which all values would be plausible."""
-    low, high = PLAUSIBLE[quantity]
-    fitting = []
-    for unit in ALTERNATIVES[quantity]:
-        found = find_conversion(unit, DIMENSIONS[DIMENSION[quantity]])
-        other = values if found is None else found.factor * values + found.zero
-        if found is not None and float(np.max(np.abs(other))) <= high and (low == 0.0 or float(np.min(other)) >= low):
-            fitting.append(unit)
-    return fitting
 
 
 def _constant_part(doubter: Doubter, values: Array, mean: float) -> Iterator[Issue]:
@@ -149,5 +125,7 @@ def _rest(doubter: Doubter, values: Array, mean: float, quantity: str) -> Iterat
     if swing > 0.0 and abs(mean) > (ABSOLUTE if quantity == "elevation" else OFF_CENTRE) * swing:
         text = f"its mean is {mean:.4g} {unit}, {abs(mean) / swing:.0%} of its swing: {ZERO[quantity]}"
         yield doubter.say("note", "offset", text)
-    elif quantity != "elevation" and abs(mean) < CENTRED * swing:
+    if quantity == "displacement" and values[0] == 0.0 and swing > 0.0:
+        yield doubter.say("note", "zeroed", "begins at exactly 0: counted from its start, its own zero is lost")
+    if quantity != "elevation" and abs(mean) < CENTRED * swing:
         yield doubter.say("note", "centred", "its mean is zero: an offset was removed, and with it what it would show")

@@ -11,6 +11,7 @@ from seatsim.importing.readers.reading import TextLayout
 from seatsim.recordings.channel_units import CHANNELS
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
+from seatsim.schema.units import conversion
 from seatsim.schema.validation import build, check_keys, mapping
 from seatsim.schema.yaml_source import Source
 
@@ -19,6 +20,10 @@ Gaps = Literal["split", "fill"]
 AS_FOUND = TextLayout()
 """Layout of a text table that is left to be found."""
 FILE = "map.yaml"
+DRIVES = {"seat": "floor_acceleration", "damper_bench": "displacement"}
+"""Channel without which no recording of a rig can be replayed."""
+PRIMITIVE = {("m/s^2", 1): "m/s", ("m/s^2", 2): "m", ("m/s", 1): "m"}
+"""Unit of what is differentiated so many times, by the unit of the derivative."""
 
 
 class ChannelMap(NamedTuple):
@@ -152,7 +157,22 @@ def _channels(data: Mapping[str, object], rig: Rig, source: Source) -> dict[str,
         channels[name] = build(ChannelMap, entry, source, ("channels", name))
         if (channels[name].column is None) == (channels[name].value is None):
             raise source.error(("channels", name), "give either the name of its column, or value for a constant")
+        _check_unit(name, channels[name], CHANNELS[rig][name] if rig in CHANNELS else "m", source)
+    if rig in DRIVES and DRIVES[rig] not in channels:
+        raise source.error(("channels",), f"channel '{DRIVES[rig]}' is missing; it drives the simulation of this rig")
     return channels
+
+
+def _check_unit(name: str, entry: ChannelMap, wanted: str, source: Source) -> None:
+    base = PRIMITIVE.get((wanted, entry.differentiate)) if entry.differentiate else wanted
+    if base is None:
+        problem = f"{entry.differentiate} is none for a channel in {wanted}; leave it out"
+        raise source.error(("channels", name, "differentiate"), problem)
+    if entry.unit:
+        try:
+            conversion(entry.unit, base)
+        except InputError as error:
+            raise source.error(("channels", name, "unit"), str(error)) from error
 
 
 def _runs(data: Mapping[str, object], source: Source) -> dict[str, list[str]]:

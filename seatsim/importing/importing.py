@@ -8,8 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.importing.assembly import Assembled, assemble
-from seatsim.importing.damage import QUIET, noise_of
+from seatsim.importing.assembly import Assembled, assemble, doubt_runs
 from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map
 from seatsim.importing.map_text import write_map
 from seatsim.importing.matching import propose
@@ -18,7 +17,8 @@ from seatsim.importing.readers.reading import read_file
 from seatsim.importing.road import assemble_road
 from seatsim.importing.signals import DataFile
 from seatsim.importing.writing import write_recording, write_road
-from seatsim.recordings.channel_units import CHANNELS
+from seatsim.recordings.channel_units import CHANNELS, COMMANDS
+from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import load_recording
@@ -79,7 +79,8 @@ def import_files(
         return Import(folder, used, stated is None, write_road(folder, road, used), notes, doubts)
     assembled = _assembled(files, used, folder, stated is None)
     scenario = make_nominal(nominal, used.rig, assembled.runs[0].table) if nominal else None
-    doubts = merge_issues(assembled.doubts, len(assembled.runs)) + (_examined(assembled, scenario) if scenario else [])
+    found = [*assembled.doubts, *([] if scenario else doubt_runs(assembled))]
+    doubts = merge_issues(found, len(assembled.runs)) + (_examined(assembled, scenario) if scenario else [])
     written = write_recording(folder, assembled, scenario)
     runs = tuple(run.name for run in assembled.runs)
     notes += assembled.notes
@@ -137,7 +138,7 @@ def _commented(assembled: Assembled) -> ImportMap:
         noise = noise_of(assembled.runs[0].table[name], assembled.rate)
         unit = CHANNELS[assembled.map.rig][name]
         said = [kind for kind, severity in kinds.items() if severity == "warning"]
-        if noise and not any(kind in kinds for kind in QUIET):
+        if noise and name not in COMMANDS and not any(kind in kinds for kind in QUIET):
             said.append(f"floor at high frequencies {noise:.2g} {unit}: noise_rms, if it is the sensor's")
         if said:
             comments[name] = "; ".join(said)

@@ -1,24 +1,27 @@
-"""What a recording holds: its channels, the issues that `gap` and `diagnose` name, and noise that it does not state."""
+"""What a recording holds, or a file by its map: channels, what `gap` and `diagnose` say, noise that is not stated."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from seatsim.importing.damage import QUIET
+from seatsim.importing.assembly import assemble, doubt_runs
 from seatsim.importing.doubts import doubt_channel
+from seatsim.importing.import_map import read_map
 from seatsim.importing.inspection import ChannelSummary, Inspection, summarise
 from seatsim.importing.names import quantity_of
-from seatsim.importing.relations import doubt_rig
+from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import Signal
+from seatsim.recordings.channel_units import CHANNELS, COMMANDS
+from seatsim.recordings.quality.damage import QUIET
 from seatsim.recordings.quality.examination import examine, merge_issues
-from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.quality.issue import Issue, place_in_run
+from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.recording import Recording, load_recording
-
-SWITCHED = ("current_command", "command_voltage")
-"""Channels that are logged and not measured, so that they have no noise."""
+from seatsim.schema.errors import InputError
 
 
 def inspect_recording(folder: Path) -> Inspection:
@@ -38,8 +41,8 @@ def inspect_recording(folder: Path) -> Inspection:
         found = [
             issue for name, values in table.items() for issue in doubt_channel(name, values, rate, quantity_of(name))
         ]
-        found += doubt_rig(table, rate)
-        doubts += [issue._replace(sentence=f"{run}, {issue.sentence}", run=run) for issue in found]
+        found += [] if recording.nominal.exists() else doubt_relations(table, rate)
+        doubts += place_in_run(run, found)
     doubts = merge_issues(doubts, len(recording.runs))
     doubts += _offered(recording, channels, doubts)
     if recording.nominal.exists():
@@ -50,12 +53,36 @@ def inspect_recording(folder: Path) -> Inspection:
     return Inspection(str(folder), "recording", channels, doubts)
 
 
+def inspect_mapped(path: Path, map_file: Path) -> Inspection:
+    """Return what import would make of a file by a map: channels in SI units, with what is left to doubt.
+
+    Raises:
+        InputError: the file or the map is wrong, or the map is that of a road.
+    """
+    stated = read_map(map_file)
+    if stated.rig == "road":
+        raise InputError(f"{map_file}: is the map of a road; inspect {path.name} without --map")
+    file = read_file(path, stated.csv)
+    assembled = assemble([file], dataclasses.replace(stated, runs={}))
+    units = CHANNELS[stated.rig]
+    channels = {
+        run.name: [
+            summarise(Signal(name, units[name], values), units[name], name, assembled.rate)
+            for name, values in run.table.items()
+        ]
+        for run in assembled.runs
+    }
+    notes = [Issue("note", "mapped", note) for note in (*file.notes, *assembled.notes)]
+    doubts = merge_issues([*assembled.doubts, *doubt_runs(assembled)], len(assembled.runs))
+    return Inspection(str(path), f"{file.format} by {map_file.name}", channels, [*notes, *doubts])
+
+
 def _offered(
     recording: Recording, channels: dict[str, list[ChannelSummary]], doubts: Sequence[Issue]
 ) -> Iterator[Issue]:
     """Yield the noise of each measured channel that states none: of its floor, or of repeats, which show all of it."""
     for name, entry in recording.channels.items():
-        if entry.noise_rms > 0.0 or name in SWITCHED:
+        if entry.noise_rms > 0.0 or name in COMMANDS:
             continue
         repeated = _of_repeats(recording, name)
         floor = min(

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.axis_doubts import doubt_distance, doubt_time
-from seatsim.importing.damage import noise_of
+from seatsim.importing.clocks import read_clock
 from seatsim.importing.doubts import doubt_channel
 from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of
@@ -18,8 +18,9 @@ from seatsim.importing.names import DIMENSION, is_of, read_name, without_unit
 from seatsim.importing.readers.reading import TextLayout, read_file
 from seatsim.importing.relations import doubt_pairs
 from seatsim.importing.signals import Array, DataFile, Group, Signal
-from seatsim.importing.time_axis import Axis, measured_axis
+from seatsim.importing.time_axis import Axis
 from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
+from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.units import DIMENSIONS, conversion
 
@@ -84,7 +85,7 @@ def _group(group: Group) -> tuple[list[ChannelSummary], list[Issue]]:
     """Return the channels of a group, and the doubts about them, their time and what they are to each other."""
     columns = [Column(group, signal, read_name(signal.name, signal.unit)) for signal in group.signals]
     clock = next((column for column in columns if column.meaning.quantity == "time"), None)
-    axis = _axis(clock) if clock else None
+    axis = read_clock(clock.signal) if clock else None
     rate = axis.rate if axis else group.rate
     found = list(doubt_time(axis, clock.signal.name)) if axis and clock else []
     rig: Rig = "seat" if any(column.meaning.place for column in columns) else "damper_bench"
@@ -108,12 +109,6 @@ def _group(group: Group) -> tuple[list[ChannelSummary], list[Issue]]:
     parts = _longest_part(axis, known) if axis else known
     commands = {column.signal.name for column in columns if column.meaning.is_command}
     return summaries, [*found, *doubt_pairs(parts, rate, quantities, commands)]
-
-
-def _axis(clock: Column) -> Axis | None:
-    unit = clock.meaning.unit if clock.meaning.unit and is_of(clock.meaning.unit, "time") else "s"
-    values = clock.signal.values[np.isfinite(clock.signal.values)]
-    return measured_axis(conversion(unit, "s").factor * values) if len(values) > 2 else None
 
 
 def _longest_part(axis: Axis, channels: Mapping[str, Array]) -> dict[str, Array]:

@@ -62,7 +62,7 @@ DAMPERS = ("damper", "dampfer", "daempfer", "amortisseur", "zuni", "load cell", 
 DIMENSION = {
     "acceleration": "acceleration", "displacement": "length", "velocity": "velocity", "force": "force",
     "current": "current", "voltage": "voltage", "temperature": "temperature", "time": "time",
-    "distance": "length", "elevation": "length",
+    "distance": "length", "elevation": "length", "angular_acceleration": "angular_acceleration",
 }  # fmt: skip
 BY_UNIT = ("acceleration", "velocity", "displacement", "force", "current", "voltage", "temperature")
 """Quantities that a unit alone tells, where no word does."""

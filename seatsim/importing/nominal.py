@@ -11,7 +11,7 @@ from seatsim.schema.yaml_source import Source
 
 NOMINAL = "nominal.yaml"
 KEPT = {
-    "seat": ("plant", "damper", "actuator", "temperature", "effects", "solver"),
+    "seat": ("plant", "driver", "damper", "actuator", "temperature", "effects", "solver"),
     "damper_bench": ("damper", "actuator", "temperature", "effects"),
 }
 """Sections of a scenario that state its rig."""

@@ -1,4 +1,4 @@
-"""What two channels show of each other: copies, derivatives, delays, signs and units that no law of motion permits."""
+"""What two channels of a file show of each other, whatever rig they are of: copies, derivatives, delays."""
 
 from __future__ import annotations
 
@@ -9,18 +9,14 @@ import numpy as np
 
 from seatsim.importing.signals import Array
 from seatsim.recordings.quality.issue import Issue
-from seatsim.schema.units import USUAL, find_conversion
+from seatsim.recordings.quality.relations import MOST_ROWS, kind_of, read_gain, regress
 
 ALIKE = 0.9
-"""Correlation from which a factor between two sides of an equation is meant."""
-MOST_ROWS = 120_000
-"""Rows from which relations are computed."""
-TINY_FORCE, MOVED = 5.0, 1e-3
-"""N that a damper exceeds once it is moved by so many m."""
-UNEXPLAINED = 0.2
-"""Share of the travel's second derivative that both accelerations leave, above which they are no balance."""
-NEAR = 0.25
-"""Share by which a factor may differ from that of a unit."""
+"""Correlation from which a channel is the delayed copy of another one."""
+REST, STANDING, RELAXED = 0.5, 0.01, 0.01
+"""s for which a motion stands still, its swing there as a share of the whole, and the least change of a force there."""
+FEWEST = 8
+"""Rows of such a stretch from which a change can be told."""
 
 
 def doubt_pairs(
@@ -37,8 +33,10 @@ def doubt_pairs(
             yield Issue("warning", "duplicate", f"{second}: holds the same values as {first}", second)
         elif rate and same and (first in commands) != (second in commands):
             yield from _delayed(first, second, part[first], part[second], rate)
+    yield from _unconfirmed(channels, quantities, commands)
     if rate:
         yield from _derived(part, rate, quantities)
+        yield from _relaxed(part, rate, quantities)
 
 
 def _centred(values: Array) -> Array | None:
@@ -58,10 +56,47 @@ def _derived(part: Mapping[str, Array], rate: float, quantities: Mapping[str, st
                 )
                 yield Issue("note", "derived", text, velocity)
                 break
-            if alike > 0.98 and (said := _meaning(gain, "m/s")):
+            if alike > 0.98 and (said := read_gain(gain, "m/s")):
                 text = f"{velocity}: is {gain:.4g} times the derivative of {name}: {said}"
-                yield Issue("warning", _kind(gain), text, velocity)
+                yield Issue("warning", kind_of(gain), text, velocity)
                 break
+
+
+def _unconfirmed(
+    channels: Mapping[str, Array], quantities: Mapping[str, str | None], commands: Collection[str]
+) -> Iterator[Issue]:
+    """Yield commanded forces and motions of which nothing was measured: no data tell their sign and their size."""
+    measured = {quantities.get(name) for name in channels if name not in commands}
+    for name in channels:
+        quantity = quantities.get(name)
+        if name in commands and quantity in ("force", "velocity", "displacement") and quantity not in measured:
+            text = f"is a command by its name, and no {quantity} was measured: nothing here shows its sign or scale"
+            yield Issue("note", "command", f"{name}: {text}", name)
+
+
+def _relaxed(part: Mapping[str, Array], rate: float, quantities: Mapping[str, str | None]) -> Iterator[Issue]:
+    """Yield forces that change while the motion stands still after it has moved, as those that relax do."""
+    rows = round(REST * rate)
+    if rows < FEWEST:
+        return
+    for name in (name for name in part if quantities.get(name) == "displacement"):
+        still = _still(part[name], rows)
+        for force in (each for each in part if quantities.get(each) == "force"):
+            piece = np.array([np.mean(part[force][at : at + rows // 4]) for at in still])
+            later = np.array([np.mean(part[force][at + rows - rows // 4 : at + rows]) for at in still])
+            change = np.abs(later - piece)
+            if len(change) and np.max(change) > RELAXED * np.ptp(part[force]):
+                text = f"changes by up to {np.max(change):.3g} N in {REST:g} s after {name} has come to rest"
+                said = f"{force}: {text}: it relaxes, its zero drifts, or its current changes"
+                yield Issue("note", "relaxation", said, force)
+
+
+def _still(motion: Array, rows: int) -> list[int]:
+    """Return the rows at which a motion comes to rest for so many rows."""
+    windows = len(motion) // rows
+    swing = np.ptp(motion[: windows * rows].reshape(windows, rows), axis=1) if windows else np.empty(0)
+    calm = swing < STANDING * float(np.ptp(motion))
+    return [int(k) * rows for k in np.flatnonzero(calm[1:] & ~calm[:-1]) + 1]
 
 
 def _delayed(first: str, second: str, one: Array, other: Array, rate: float) -> Iterator[Issue]:
@@ -84,111 +119,3 @@ def delay_rows(first: Array, second: Array, most: int) -> tuple[int, float]:
     at = int(np.argmax(lags))
     norm = float(np.linalg.norm(first) * np.linalg.norm(second))
     return at - most, float(lags[at]) / norm if norm else 0.0
-
-
-def band_passed(values: Array, rate: float, low: float, high: float) -> Array:
-    """Return values between two frequencies in Hz, by smooth edges in the frequency domain."""
-    spectrum = np.fft.rfft(values * np.hanning(len(values)))
-    frequency = np.fft.rfftfreq(len(values), 1.0 / rate)
-    with np.errstate(divide="ignore"):
-        edges = 1.0 / (1.0 + (frequency / high) ** 8) / (1.0 + (low / np.maximum(frequency, 1e-12)) ** 8)
-    return np.fft.irfft(spectrum * edges, len(values))
-
-
-def regress(expected: Array, measured: Array, rate: float, low: float = 0.5, high: float = 8.0) -> tuple[float, float]:
-    """Return the gain of measured to expected between two frequencies, and their correlation without its sign."""
-    high = min(high, 0.2 * rate)
-    one, other = band_passed(expected, rate, low, high), band_passed(measured, rate, low, high)
-    norm = float(np.linalg.norm(one) * np.linalg.norm(other))
-    product = float(one @ other)
-    return (product / float(one @ one), abs(product) / norm) if norm else (0.0, 0.0)
-
-
-def _meaning(gain: float, unit: str) -> str:
-    """Return what a gain of values in a unit means; empty where it is close to one, or means nothing."""
-    sign = "its sign is swapped" if gain < 0.0 else ""
-    if abs(abs(gain) - 1.0) < NEAR:
-        return sign
-    for other in USUAL[unit]:
-        found = find_conversion(other, unit)
-        if found is not None and abs(abs(gain) * found.factor - 1.0) < NEAR:
-            return f"it reads as if in {other}" + (f", and {sign}" if sign else "")
-    return sign
-
-
-def doubt_rig(table: Mapping[str, Array], rate: float) -> Iterator[Issue]:
-    """Yield signs and units of a seat's or a bench's channels that contradict the laws of motion, whatever the rig."""
-    part = {name: values[:MOST_ROWS] - float(np.mean(values[:MOST_ROWS])) for name, values in table.items()}
-    yield from _force(part, rate)
-    yield from _motion(part, rate)
-    # On a stiff cushion the driver moves as the frame does, and a coil follows its command.
-    yield from _copies(part, rate, ("frame_acceleration", "driver_acceleration", "m/s^2"), (0.5, 2.0))
-    yield from _copies(part, rate, ("current_command", "coil_current", "A"), (0.0, 2.0))
-
-
-def _copies(
-    part: Mapping[str, Array], rate: float, named: tuple[str, str, str], band: tuple[float, float]
-) -> Iterator[Issue]:
-    """Yield what it means that a channel is another one in a band, but for its sign or its unit."""
-    first, second, unit = named
-    if first in part and second in part:
-        gain, alike = regress(part[first], part[second], rate, *band)
-        if alike > ALIKE and (said := _meaning(gain, unit)):
-            text = f"{second}: is {gain:.3g} times {first} below {band[1]:g} Hz: {said}, or that of {first} is wrong"
-            yield Issue("warning", _kind(gain), text, second)
-
-
-def _kind(gain: float) -> str:
-    return "sign" if gain < 0.0 else "unit"
-
-
-def _force(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
-    """Yield a damper force that drives the motion, where it opposes extension and dissipates, or that is tiny."""
-    name = "displacement" if "displacement" in part else "suspension_displacement"
-    if name not in part or "damper_force" not in part:
-        return
-    travel, force = part[name], part["damper_force"]
-    largest, stroke = float(np.max(np.abs(force))), float(np.max(np.abs(travel)))
-    if largest < TINY_FORCE and stroke > MOVED:
-        text = f"damper_force: is {largest:.3g} N at most over a stroke of {1e3 * stroke:.3g} mm; is it in kN?"
-        yield Issue("warning", "unit", text, "damper_force")
-    speed = np.gradient(travel, 1.0 / rate)
-    gain, alike = regress(speed, force, rate, 0.05)
-    if alike > 0.3 and gain < 0.0:
-        text = "damper_force: does work on the motion instead of taking it out: its sign is swapped, or that of " + name
-        yield Issue("warning", "sign", text, "damper_force")
-
-
-def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
-    """Compare the travel's second derivative with frame - floor acceleration, the shares of both apart."""
-    if not {"suspension_displacement", "frame_acceleration", "floor_acceleration"} <= set(part):
-        return
-    slope = np.gradient(np.gradient(part["suspension_displacement"], 1.0 / rate), 1.0 / rate)
-    target, frame, floor = (
-        band_passed(each, rate, 0.7, min(8.0, 0.2 * rate))
-        for each in (slope, part["frame_acceleration"], part["floor_acceleration"])
-    )
-    shares, left, _, _ = np.linalg.lstsq(np.column_stack([frame, -floor]), target, rcond=None)
-    if not len(left) or left[0] > UNEXPLAINED * float(target @ target) or not shares.all():
-        return
-    gains = {"frame_acceleration": 1.0 / float(shares[0]), "floor_acceleration": 1.0 / float(shares[1])}
-    both = float(np.mean(list(gains.values())))
-    if abs(gains["frame_acceleration"] / gains["floor_acceleration"] - 1.0) < NEAR:
-        yield from _motion_of_both(both)
-        return
-    for name, gain in gains.items():
-        if said := _meaning(gain, "m/s^2"):
-            text = f"{name}: is {gain:.3g} times what the travel and the other acceleration show: {said}"
-            yield Issue("warning", _kind(gain), text, name)
-
-
-def _motion_of_both(gain: float) -> Iterator[Issue]:
-    """Yield what it means that both accelerations differ from the travel's by the same factor."""
-    if said := _meaning(gain, "m/s^2"):
-        exchanged = ", or the two are exchanged" if gain < 0.0 else ""
-        text = f"are {gain:.3g} times the travel's second derivative: of both {said}{exchanged}"
-        first = "floor_acceleration"
-        yield Issue("warning", _kind(gain), f"{first} and frame_acceleration: {text}", first)
-    if said := _meaning(1.0 / gain, "m"):
-        text = f"its second derivative is {1.0 / gain:.4g} times frame - floor acceleration: {said}"
-        yield Issue("warning", _kind(gain), f"suspension_displacement: {text}", "suspension_displacement")

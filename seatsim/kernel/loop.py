@@ -13,8 +13,8 @@ from seatsim.kernel.assumed_model import follow_state, model_scaling, model_stat
 from seatsim.kernel.chain import leading_state
 from seatsim.kernel.generic import advance_filters, evaluate_law, read, scaling_at, update, wants_force
 from seatsim.kernel.inverse import CELLS, invert
-from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, sample_of, step_inputs
-from seatsim.kernel.rig import Disturbance, Rig
+from seatsim.kernel.loop_inputs import ControlledRig, LoopInputs, LoopSetup, sample_of, step_inputs
+from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import IntegratorState, advance, relaxed, start
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Measurement
@@ -70,9 +70,10 @@ def run_loop(
         # that its command acts from this instant.
         sensed = advance_filters(setup.sensors, floor, now.state[DISPLACEMENT], now.rates, sensed)
         if k % timing.sample_every == 0:
-            true = _measure(rig, inputs, now, k, step, current, temperature)
+            speed, replayed = inputs.floor_velocity[k], inputs.replayed[k] if len(inputs.replayed) > 0 else math.nan
+            true = measure(now, k * step, floor, speed, current, temperature, replayed)
             y, sensed = read(setup.sensors, true, inputs.noise, k // timing.sample_every, sensed)
-            command, wanted, served = _decide(setup, y, now, factors, followed, law_state, grid)
+            command, wanted, served = decide(setup, y, now, factors, followed, law_state, grid)
             law_state = update(law, y, law_state)
         _record(out, k, now, floor, wanted, served, current, command, temperature)
         if k == samples - 1:
@@ -107,8 +108,8 @@ def run_loop(
 
 
 @jit
-def _decide(
-    setup: LoopSetup,
+def decide(
+    setup: ControlledRig,
     y: Measurement,
     now: IntegratorState,
     factors: TemperatureScaling,
@@ -137,16 +138,20 @@ def _decide(
 
 
 @jit
-def _measure(
-    rig: Rig, inputs: LoopInputs, now: IntegratorState, k: int, step: float, current: float, temperature: float
+def measure(
+    now: IntegratorState,
+    time: float,
+    floor: float,
+    floor_velocity: float,
+    current: float,
+    temperature: float,
+    replayed: float,
 ) -> Measurement:
-    """Return the true values at sample `k`, in the form in which a law sees them."""
-    floor = inputs.floor_acceleration[k]
+    """Return the true values at a sample, in the form in which a law sees them."""
     frame = now.rates[VELOCITY] + floor
-    velocity = now.state[VELOCITY] + inputs.floor_velocity[k]
-    replayed = inputs.replayed[k] if len(inputs.replayed) > 0 else math.nan
+    velocity = now.state[VELOCITY] + floor_velocity
     return Measurement(
-        k * step,
+        time,
         now.state[DISPLACEMENT],
         now.state[VELOCITY],
         velocity,

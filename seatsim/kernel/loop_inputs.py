@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,6 +69,26 @@ class LoopSetup(NamedTuple):
     timing: Timing
     max_command: float
     sensors: Sensing = Direct()
+
+
+class ControlledRig(Protocol):
+    """What a decision of the law depends on beside what is measured: a `LoopSetup`, or the setup of a lane."""
+
+    @property
+    def rig(self) -> Rig:
+        """What moves."""
+
+    @property
+    def law(self) -> CompiledLaw:
+        """The law."""
+
+    @property
+    def inverse_model(self) -> InverseModel:
+        """The damper that the inverse uses."""
+
+    @property
+    def max_command(self) -> float:
+        """The greatest command in A."""
 
 
 @jit

@@ -144,7 +144,7 @@ def _margin(slip: float, state: State, forces: RigForces) -> float:
 
 
 @jit
-def _substep(
+def take_substep(
     rig: Rig, coil: Coil, inputs: StepInputs, scaling: TemperatureScaling, now: IntegratorState, time: float, h: float
 ) -> tuple[State, State, RigForces, State, float]:
     """Return state, rates, forces after a sub-step of `h` from `time`, the fourth stage, and the current at the end.
@@ -175,14 +175,14 @@ def advance(
     h = now.substep
     # The common case, a rig without set-valued friction that needs one sub-step, has a short path of its own.
     if h == inputs.length and now.forces.friction_limit <= 0.0:
-        state, rates, forces, k4, i_end = _substep(rig, coil, inputs, scaling, now, 0.0, h)
-        if forces.friction_limit <= 0.0 and _error(state, rates, k4, h, tolerance) <= 1.0:
+        state, rates, forces, k4, i_end = take_substep(rig, coil, inputs, scaling, now, 0.0, h)
+        if forces.friction_limit <= 0.0 and estimate_error(state, rates, k4, h, tolerance) <= 1.0:
             return IntegratorState(state, rates, forces, 0.0, h), i_end, True
     return _advance_divided(rig, coil, inputs, scaling, now, tolerance)
 
 
 @jit
-def _error(state: State, rates: State, k4: State, h: float, tolerance: float) -> float:
+def estimate_error(state: State, rates: State, k4: State, h: float, tolerance: float) -> float:
     """Return the estimated error in the velocities over a sub-step of `h`, in units of the tolerance.
 
     Only the velocities count: displacements are their integrals, and a damper's state shows in them by its force.
@@ -202,8 +202,8 @@ def _advance_divided(
         last = h >= remaining * (1.0 - REMAINDER)
         if last:
             h = remaining
-        state, rates, forces, k4, i_end = _substep(rig, coil, inputs, scaling, now, time, h)
-        error = _error(state, rates, k4, h, tolerance)
+        state, rates, forces, k4, i_end = take_substep(rig, coil, inputs, scaling, now, time, h)
+        error = estimate_error(state, rates, k4, h, tolerance)
         # Written so that a NaN error is rejected.
         if not error <= 1.0 and h > SHORTEST * inputs.length:
             h *= max(REJECTED_LEAST, SAFETY / error**ERROR_EXPONENT) if error < DIVERGED else REJECTED_LEAST
@@ -254,7 +254,7 @@ def _end_of_phase(
     i_end = inputs.current
     for _ in range(MOST_TRIALS):
         h = (low * m_high - high * m_low) / (m_high - m_low) if m_low > 0.0 else 0.5 * (low + high)
-        state, _, forces, _, i_end = _substep(rig, coil, inputs, scaling, now, time, h)
+        state, _, forces, _, i_end = take_substep(rig, coil, inputs, scaling, now, time, h)
         margin = _margin(now.slip, state, forces)
         if abs(margin) <= EVENT_TOLERANCE or high - low <= SHORTEST * inputs.length:
             break

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.units import conversion
+from seatsim.schema.units import OWN_SPELLINGS, USUAL, conversion
 from seatsim.schema.yaml_source import Source
 
 if TYPE_CHECKING:
@@ -24,20 +24,19 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-LENGTHS, CURRENTS = ("m", "cm", "mm"), ("A", "mA")
-QUANTITIES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "time": (("time", "t"), ("s", "ms")),
-    "displacement": (("displacement", "stroke", "position", "x"), LENGTHS),
-    "velocity": (("velocity", "speed", "v"), tuple(f"{unit}_s" for unit in LENGTHS)),
-    "force": (("force", "damper_force", "f"), ("N", "kN")),
-    "current": (("current", "coil_current", "i"), CURRENTS),
-    "command": (("current_command", "current_cmd", "command"), CURRENTS),
-    "voltage": (("voltage", "command_voltage"), ("V", "mV")),
-    "temperature": (("temperature", "damper_temperature"), ("degC", "C", "K", "degF")),
-    "segment": (("segment",), ()),
-    "valid": (("valid",), ()),
+QUANTITIES: dict[str, tuple[tuple[str, ...], str]] = {
+    "time": (("time", "t"), "s"),
+    "displacement": (("displacement", "stroke", "position", "x"), "m"),
+    "velocity": (("velocity", "speed", "v"), "m/s"),
+    "force": (("force", "damper_force", "f"), "N"),
+    "current": (("current", "coil_current", "i"), "A"),
+    "command": (("current_command", "current_cmd", "command"), "A"),
+    "voltage": (("voltage", "command_voltage"), "V"),
+    "temperature": (("temperature", "damper_temperature"), "degC"),
+    "segment": (("segment",), ""),
+    "valid": (("valid",), ""),
 }
-"""Names of every quantity, and units that may follow them; a bare name is in the first of them."""
+"""Names of every quantity, and its SI unit, in which a bare name is; usual units and spellings may follow a name."""
 DRIVES = ("current", "command", "voltage")
 """Quantities that state the damper's input, in the order of preference."""
 NEEDED = ("time", "displacement", "force")
@@ -60,17 +59,23 @@ class Meaning(NamedTuple):
         """Return values of the column in SI units (degC)."""
         if not self.unit:
             return values
-        found = conversion(self.unit, QUANTITIES[self.quantity][1][0].replace("_", "/"))
+        found = conversion(self.unit, QUANTITIES[self.quantity][1])
         return values * found.factor + found.zero
 
 
 def _known() -> dict[str, Meaning]:
     known = {}
-    for quantity, (names, units) in QUANTITIES.items():
+    for quantity, (names, si) in QUANTITIES.items():
+        units = (*USUAL.get(si, ()), *(unit for unit in OWN_SPELLINGS.get(si, {}) if unit[0].isalpha()))
         for name in names:
             known[name] = Meaning(quantity)
-            known |= {f"{name}_{unit.lower()}": Meaning(quantity, unit if unit != units[0] else "") for unit in units}
+            known |= {_named(name, unit).lower(): Meaning(quantity, unit if unit != si else "") for unit in units}
     return known
+
+
+def _named(name: str, unit: str) -> str:
+    """Return the name of a column that ends in a unit, such as `velocity_m_s`."""
+    return f"{name}_{re.sub('[/ ]', '_', unit)}"
 
 
 KNOWN = _known()
@@ -157,8 +162,8 @@ def check_needed(there: Iterable[str], columns: Sequence[str], file: Path) -> No
 
 
 def _spelt(quantity: str) -> str:
-    units = QUANTITIES[quantity][1]
-    return " or ".join(f"'{quantity}_{unit}'" for unit in units) if units else f"'{quantity}'"
+    units = USUAL.get(QUANTITIES[quantity][1], ())
+    return " or ".join(f"'{_named(quantity, unit)}'" for unit in units) or f"'{quantity}'"
 
 
 def constants(sidecar: Source) -> dict[str, float]:

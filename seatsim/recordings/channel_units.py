@@ -21,3 +21,5 @@ BENCH_CHANNELS = {
 }
 CHANNELS = {"seat": SEAT_CHANNELS, "damper_bench": BENCH_CHANNELS}
 """Channels by rig, each with its unit."""
+COMMANDS = ("current_command", "command_voltage")
+"""Channels that are logged and not measured, so that they have no noise."""

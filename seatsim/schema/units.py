@@ -17,19 +17,20 @@ if TYPE_CHECKING:
 
 DIMENSIONS = {
     "acceleration": "m/s^2", "length": "m", "velocity": "m/s", "force": "N", "current": "A", "voltage": "V",
-    "temperature": "degC", "time": "s",
+    "temperature": "degC", "time": "s", "angular_acceleration": "rad/s^2",
 }  # fmt: skip
 """The unit of every kind of quantity that a measured channel may hold."""
 STANDARD_GRAVITY = 9.80665
 """m/s^2."""
 USUAL = {
-    "m/s^2": ("m/s^2", "g", "mm/s^2", "ft/s^2"), "m": ("m", "cm", "mm", "um", "inch"), "m/s": ("m/s", "mm/s", "km/h"),
-    "N": ("N", "kN", "daN", "lbf", "kgf"), "A": ("A", "mA"), "V": ("V", "mV"), "degC": ("degC", "degF", "K"),
-    "s": ("s", "ms", "us", "min"),
+    "m/s^2": ("m/s^2", "g", "mm/s^2", "cm/s^2", "ft/s^2"), "m": ("m", "cm", "mm", "um", "inch"),
+    "m/s": ("m/s", "cm/s", "mm/s", "km/h"), "N": ("N", "kN", "daN", "lbf", "kgf"), "A": ("A", "mA"), "V": ("V", "mV"),
+    "degC": ("degC", "degF", "K"), "s": ("s", "ms", "us", "min"), "rad/s^2": ("rad/s^2", "deg/s^2"),
 }  # fmt: skip
 """Units in which a quantity is usually recorded, by its SI unit; errors list them, doubts compare with them."""
 OWN_SPELLINGS = {
-    "m/s^2": {"g": "standard_gravity", "gn": "standard_gravity", "g_n": "standard_gravity", "gal": "cm/s^2"},
+    "m/s^2": {"g": "standard_gravity", "gn": "standard_gravity", "g_n": "standard_gravity", "gal": "cm/s^2",
+              "mg": "millistandard_gravity"},
     "degC": {"c": "degC", "f": "degF", "celsius": "degC", "fahrenheit": "degF", "k": "kelvin", "deg c": "degC",
              "deg f": "degF", "grad c": "degC"},
     "N": {"lb": "lbf", "lbs": "lbf", "kg": "kgf", "kp": "kgf"},
@@ -93,7 +94,7 @@ def _spelt(unit: str, wanted: str) -> str:
         plain = own
     for sign, ascii_sign in SIGNS.items():
         plain = plain.replace(sign, ascii_sign)
-    plain = re.sub(r"^([A-Za-z]+)_([A-Za-z]+\d?)$", r"\1/\2", plain) if plain != "standard_gravity" else plain
+    plain = re.sub(r"^([A-Za-z]+)_([A-Za-z]+\d?)$", r"\1/\2", plain) if own is None else plain
     plain = re.sub(r"\bsec\b", "s", plain)
     return re.sub(r"([A-Za-z])\^?(-?\d)", r"\1**\2", plain)
 

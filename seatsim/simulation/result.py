@@ -85,15 +85,19 @@ class Result:
         return self.runs[0][name]
 
     @property
+    def rows(self) -> list[dict[str, object]]:
+        """The metrics of every run by name, after what sets the runs apart; SI units."""
+        return [
+            {"scenario": run.scenario.name, **run.scenario.label, **{name: m.value for name, m in run.metrics.items()}}
+            for run in self.runs
+        ]
+
+    @property
     def table(self) -> pd.DataFrame:
-        """The metrics of every run: a row a run, with the columns that set the runs apart first; SI units."""
+        """The same as a frame, a row a run."""
         import pandas as pd
 
-        rows = []
-        for run in self.runs:
-            row: dict[str, object] = {"scenario": run.scenario.name, **run.scenario.label}
-            rows.append(row | {name: metric.value for name, metric in run.metrics.items()})
-        return pd.DataFrame(rows)
+        return pd.DataFrame(self.rows)
 
     def plot(self, *names: str) -> Pictures:
         """Return its pictures, or those that are named, such as `pareto`; a notebook shows them."""

@@ -84,8 +84,8 @@ def simulate(
         with scenario.placed("excitation"):
             floor = scenario.excitation.floor(step, scenario.seed)
     is_recorded = floor.temperature is not None
-    setup, initial = _setup(scenario, scenario.plant, scenario.control, is_recorded, carry_all_effects)
-    inputs = _inputs(scenario, scenario.control, floor, forces or Forces())
+    setup, initial = set_up(scenario, scenario.plant, scenario.control, is_recorded, carry_all_effects)
+    inputs = prepare_inputs(scenario, scenario.control, floor, forces or Forces())
     if scenario.control.sensors:
         noise = scenario.control.sensors.noise(-(-len(floor.acceleration) // setup.timing.sample_every), scenario.seed)
         inputs = inputs._replace(sensed=at_rest(scenario.start.displacement), noise=noise)
@@ -95,16 +95,21 @@ def simulate(
     states = (initial, _initial_state(setup.inverse_model), specification_of(type(scenario.control.law)).initial)
     reached = compiled(run_loop, parts)(setup, inputs, *states, out)
     if reached < len(out):
-        raise RunError(
-            f"{scenario.title}: no solution beyond {reached * step:.3f} s, where it leaves all bounds; check the signs"
-            " of gains and stiffnesses, and the damper's parameters"
-        )
+        raise diverged(scenario, reached)
     notes = setup.law.notes() if isinstance(setup.law, LawWithNotes) else ()
     history = _history(setup.rig.plant, step, out, notes)
     return history if scenario.driver.model == SINGLE_MASS else _without_balance(history)
 
 
-def _setup(
+def diverged(scenario: Scenario, reached: int) -> RunError:
+    """Return the error of a run that leaves all bounds after the samples `reached`."""
+    return RunError(
+        f"{scenario.title}: no solution beyond {reached * scenario.solver.step:.3f} s, where it leaves all bounds;"
+        " check the signs of gains and stiffnesses, and the damper's parameters"
+    )
+
+
+def set_up(
     scenario: Scenario, plant: Plant, control: Control, is_recorded: bool, carry_all_effects: bool | None
 ) -> tuple[LoopSetup, tuple[float, ...]]:
     """Return the constant parts and the rig's state at rest; where its temperature is recorded none is simulated."""
@@ -163,7 +168,8 @@ def _count_steps(step: float, control: Control) -> int:
     return every
 
 
-def _inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> LoopInputs:
+def prepare_inputs(scenario: Scenario, control: Control, floor: Floor, forces: Forces) -> LoopInputs:
+    """Return what drives a run of the loop, under a floor and with forces beside those of the effects."""
     step, effects, samples = scenario.solver.step, scenario.effects, len(floor.acceleration)
     acceleration = undo_reading(effects, floor.acceleration, "floor_acceleration", step)
     fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature

@@ -14,20 +14,13 @@ from seatsim.metrics.directions import DIRECTIONS, POINTS, Direction, direction,
 from seatsim.metrics.exposure import Exposure, assess_exposure
 from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmission
 from seatsim.metrics.weighting import weight
-from seatsim.recordings.acceleration_tables import STANDARD_GRAVITY, AccelerationRecord, load_accelerations, split_unit
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.units import STANDARD_GRAVITY
+from seatsim.standards.acceleration_records import AccelerationRecord, find_axes, load_accelerations
 
 FLOOR = {"floor.x": "x", "floor.y": "y", "floor.z": "z"}
 """Axes at the base of the seat, and the axis of the seat whose weighting and SEAT factor they belong to."""
 AXES = (*DIRECTIONS, *FLOOR)
-ALIASES = {
-    **{axis: (axis, *(f"{a}_{axis}" for a in ("acc", "acceleration", "seat"))) for axis in ("x", "y", "z")},
-    "floor.z": ("floor_acceleration", "floor_z"),
-}
-"""Columns that are taken for an axis where no channel is named, without the unit at their end."""
-DRIVER = "driver_acceleration"
-"""Channel of a recording that stands for z on the seat."""
-
 OFFSET = 0.05
 """Smallest mean in m/s^2 that is said to have been taken out."""
 SHORTEST = 108.0
@@ -88,26 +81,27 @@ def comfort(
     rate: float | None = None,
     unit: str | None = None,
 ) -> Comfort:
-    """Assess the accelerations of a CSV table, or of the runs of a recording, by ISO 2631-1:1997.
+    """Assess the accelerations of a measured file, or of the runs of a recording, by ISO 2631-1:1997.
 
     The mean of every channel is removed, the whole record weighted, and the blocks cut out of what results.
 
     Args:
-        source: the table, or the folder of the recording.
+        source: a file of any format that `seatsim import` reads, or the folder of a recording.
         channels: column by axis: `x`, `y`, `z`, `rx`, `ry`, `rz` on the seat, `back.x` .. `feet.z`, and `floor.x` ..
             `floor.z` at its base; None takes columns with usual names.
         hours: duration of such vibration in a day.
         runs: names of the runs of a recording, all of them where empty; they count as one vibration.
         blocks: stretches (from, to) in s of every run, the whole run where empty.
-        rate: sample rate in Hz of a table without times.
-        unit: of the columns whose names state none, m/s^2 where it is None.
+        rate: sample rate in Hz of a file without times.
+        unit: of the columns for which none is stated, m/s^2 (rad/s^2) where it is None.
 
     Raises:
         InputError: a file, column, axis, run or block is not there, or the record cannot be weighted.
     """
-    records = _chosen(load_accelerations(source, rate, unit), runs, source)
-    named = {axis.lower(): column for axis, column in channels.items()} if channels else usual_channels(records[0])
+    named = {axis.lower(): column for axis, column in (channels or {}).items()}
     _check_axes(named)
+    records = _chosen(load_accelerations(source, rate, unit, [*named.values()]), runs, source)
+    named = named or find_axes(records[0])
     doses = {axis: _doses(records, axis, column, blocks) for axis, column in named.items()}
     axes = {axis: _assess(axis, named[axis], doses[axis], records) for axis in DIRECTIONS if axis in named}
     if not axes:
@@ -142,24 +136,6 @@ def total_values(doses: Mapping[str, Dose]) -> dict[str, float]:
     return present | {"overall": float(np.sqrt(sum(squares.values())))}
 
 
-def usual_channels(record: AccelerationRecord) -> dict[str, str]:
-    """Return the columns of a record that have usual names, by axis.
-
-    Raises:
-        InputError: there are none.
-    """
-    plain = {split_unit(column)[0]: column for column in record.columns}
-    found = {axis: plain[name] for axis, names in ALIASES.items() for name in names if name in plain}
-    if DRIVER in plain:
-        found.setdefault("z", plain[DRIVER])
-    if not found:
-        there = ", ".join(record.columns)
-        raise InputError(
-            f"{record.name}: no column has a usual name; name them with --channel AXIS=COLUMN; columns: {there}"
-        )
-    return found
-
-
 def _chosen(records: list[AccelerationRecord], runs: Sequence[str], source: str | Path) -> list[AccelerationRecord]:
     known = [record.name for record in records]
     for name in runs:
@@ -178,17 +154,15 @@ def _check_axes(named: Mapping[str, str]) -> None:
 
 def _doses(records: Sequence[AccelerationRecord], axis: str, column: str, blocks: Blocks) -> list[Dose]:
     """Return the dose of each block of each record."""
-    weighting = direction(FLOOR.get(axis, axis)).weighting
-    return [
-        dose(part, record.sample_rate) for record in records for part in _weighted(record, column, weighting, blocks)
-    ]
+    along = direction(FLOOR.get(axis, axis))
+    return [dose(part, record.sample_rate) for record in records for part in _weighted(record, column, along, blocks)]
 
 
-def _weighted(record: AccelerationRecord, column: str, weighting: str, blocks: Blocks) -> list[Array]:
+def _weighted(record: AccelerationRecord, column: str, along: Direction, blocks: Blocks) -> list[Array]:
     # The high-pass would take seconds to forget a constant, and gravity in a sensor would be the largest "vibration".
-    x = record.column(column)
+    x = record.values(column, along.unit)
     try:
-        whole = weight(x - x.mean(), record.sample_rate, weighting)
+        whole = weight(x - x.mean(), record.sample_rate, along.weighting)
     except InputError as error:
         raise InputError(f"{record.name}, {column}: {error}") from error
     return [whole[cut] for cut in _cuts(record, len(whole), blocks)]
@@ -206,9 +180,9 @@ def _cuts(record: AccelerationRecord, samples: int, blocks: Blocks) -> list[slic
 
 
 def _assess(axis: str, column: str, doses: Sequence[Dose], records: Sequence[AccelerationRecord]) -> AxisAssessment:
-    joined = join_doses(doses)
-    means = [float(np.mean(record.column(column))) for record in records]
-    return AxisAssessment(column, direction(axis), joined, tuple(find_shocks(joined)), max(means, key=abs))
+    joined, along = join_doses(doses), direction(axis)
+    means = [float(np.mean(record.values(column, along.unit))) for record in records]
+    return AxisAssessment(column, along, joined, tuple(find_shocks(joined)), max(means, key=abs))
 
 
 def _motion_sickness(
@@ -216,7 +190,8 @@ def _motion_sickness(
 ) -> MotionSickness | None:
     if column is None:
         return None
-    parts = [(part, record.sample_rate) for record in records for part in _weighted(record, column, "Wf", blocks)]
+    along = direction("z")._replace(weighting="Wf")
+    parts = [(part, record.sample_rate) for record in records for part in _weighted(record, column, along, blocks)]
     energy = sum(motion_sickness_dose(part, rate) ** 2 for part, rate in parts)
     return MotionSickness(
         float(np.sqrt(energy / sum(len(part) / rate for part, rate in parts))), float(np.sqrt(energy))
@@ -234,7 +209,7 @@ def _notes(
             cause = "gravity" if abs(size - STANDARD_GRAVITY) < 0.05 * STANDARD_GRAVITY else "an offset of the sensor"
             mean = f"{found.removed:.3g} {found.direction.unit}"
             yield f"{axis}: a mean of {mean}, {cause}, was taken out of {found.column}"
-    unitless = [column for column in named.values() if column in records[0].unitless]
+    unitless = [column for column in dict.fromkeys(named.values()) if records[0].is_unitless(column)]
     if unitless:
         yield f"{', '.join(unitless)}: no unit is stated, so m/s^2 (rad/s^2) is taken; another one by --unit"
     for found in axes.values():

@@ -18,7 +18,7 @@ from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError
 from seatsim.schema.text import join_names
 from seatsim.standards.iso7096 import PERSONS, RECALLED, SEATED_SHARE
-from seatsim.standards.seat_rows import SETTLE, SeatTest, Trial, doubt_runs, has_travel, state_row
+from seatsim.standards.seat_rows import SETTLE, SeatFailure, SeatTest, Trial, doubt_runs, has_travel, state_row
 
 NEEDED = ("floor_acceleration", "driver_acceleration")
 TRAVEL = "suspension_displacement"
@@ -50,9 +50,14 @@ def assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass])
         raise InputError(f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(NEEDED)}")
     groups: dict[tuple[SpectralClass, str], list[Trial]] = {}
     notes = [RECALLED, "the damping test needs tones under an inert mass, and is left out"]
+    failures: list[SeatFailure] = []
     for run in recording.runs:
-        table = recording.table(run)
-        found, off = nearest_class(table[NEEDED[0]], recording.header.sample_rate, classes)
+        try:
+            table = recording.table(run)
+            found, off = nearest_class(table[NEEDED[0]], recording.header.sample_rate, classes)
+        except InputError as error:
+            failures.append(SeatFailure(run, None, None, str(error)))
+            continue
         mass = recording.runs[run].set.get("plant.driver_mass", plant.driver_mass) / SEATED_SHARE
         person = min(PERSONS, key=lambda name: abs(PERSONS[name] - mass))
         if off > FARTHEST or abs(PERSONS[person] - mass) > PERSON_TOLERANCE:
@@ -66,10 +71,11 @@ def assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass])
             notes.append(f"run {run}: its floor has {trial.floor.rms:.3g} m/s^2 weighted, {found} has {expected:.3g}")
         groups.setdefault((found, person), []).append(trial)
     if not groups:
-        raise InputError(f"{recording.folder}: no run is of a class of ISO 7096; " + "; ".join(notes[2:]))
+        reasons = [*notes[2:], *(failure.reason for failure in failures)]
+        raise InputError(f"{recording.folder}: no run is of a class of ISO 7096; " + "; ".join(reasons))
     name = recording.folder.resolve().name
     rows = tuple(state_row(name, *key, trials) for key, trials in sorted(groups.items()))
-    return SeatTest(rows, (), {}, (*notes, *doubt_runs(rows)))
+    return SeatTest(rows, (), {}, (*notes, *doubt_runs(rows)), tuple(failures))
 
 
 def nearest_class(floor: Array, rate: float, classes: Sequence[SpectralClass]) -> tuple[SpectralClass, float]:

@@ -59,17 +59,35 @@ class DampingRow(NamedTuple):
     clause: str
 
 
+class SeatFailure(NamedTuple):
+    """A run that came to no result: a simulation that broke off, or measured rows that cannot be used.
+
+    `spectral_class` is None in the damping test, and both are None where a measured run could not be assigned.
+    """
+
+    run: str
+    spectral_class: SpectralClass | None
+    person: str | None
+    reason: str
+
+
 class SeatTest(NamedTuple):
-    """Result of a test: lines by class and driver, lines of the damping test, the damping tests behind them by run."""
+    """Result of a test: lines by class and driver, lines of the damping test, the damping tests behind them by run.
+
+    A line of which a run is among the `failures` stands on its other runs, and is not passed.
+    """
 
     rows: tuple[SeatRow, ...]
     damping_rows: tuple[DampingRow, ...]
     damping: dict[str, DampingTest]
     notes: tuple[str, ...]
+    failures: tuple[SeatFailure, ...] = ()
 
 
-def state_row(run: str, spectral_class: SpectralClass, person: str, trials: Sequence[Trial]) -> SeatRow:
-    """Return the line of a class and driver from its runs, at least one."""
+def state_row(
+    run: str, spectral_class: SpectralClass, person: str, trials: Sequence[Trial], is_whole: bool = True
+) -> SeatRow:
+    """Return the line of a class and driver from its runs, at least one; it is only passed where it `is_whole`."""
     found = seat_transmission([trial.driver for trial in trials], [trial.floor for trial in trials])
     limit = LIMITS[spectral_class].seat
     hits = [trial.hits for trial in trials if trial.hits is not None]
@@ -80,7 +98,7 @@ def state_row(run: str, spectral_class: SpectralClass, person: str, trials: Sequ
         mass=PERSONS[person],
         seat=found.rms,
         limit=limit,
-        passed=bool(found.rms <= limit),
+        passed=bool(found.rms <= limit) and is_whole,
         clause=ACCEPTANCE,
         platform=sum(trial.floor.rms for trial in trials) / len(trials),
         spread=found.spread,

@@ -6,7 +6,7 @@ import dataclasses
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from seatsim.effects.driver import Mass
 from seatsim.excitations.iso7096 import Iso7096, SpectralClass
@@ -16,18 +16,30 @@ from seatsim.metrics.seat_transmission import RUNS
 from seatsim.metrics.weighting import weight
 from seatsim.rig.plant import Plant
 from seatsim.scenario.scenario import Scenario
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
 from seatsim.schema.text import join_names
 from seatsim.simulation.simulate import simulate
 from seatsim.standards.damping_test import DampingTest, run_damping_test
 from seatsim.standards.iso7096 import PERSONS, RECALLED, SEATED_SHARE
-from seatsim.standards.seat_rows import SETTLE, SeatTest, Trial, doubt_runs, has_travel, state_damping_row, state_row
+from seatsim.standards.seat_rows import (
+    SETTLE,
+    SeatFailure,
+    SeatTest,
+    Trial,
+    doubt_runs,
+    has_travel,
+    state_damping_row,
+    state_row,
+)
 
+INERT = "inert mass"
+"""What sits on the seat in the damping test, where others have a person."""
 DURATION = 60.0
 """s; length of each run that is evaluated."""
 
 Count = Callable[[int, int], None]
+_Result = TypeVar("_Result", Trial, DampingTest)
 
 
 def assess_simulated_seats(
@@ -47,7 +59,7 @@ def assess_simulated_seats(
 
     Raises:
         InputError: a scenario has no seat, or a law that only replays.
-        RunError: a simulation could not be carried to its end.
+        RunError: no simulation could be carried to its end.
     """
     seats = {scenario.title: _seat_of(scenario) for scenario in scenarios}
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
@@ -59,8 +71,13 @@ def assess_simulated_seats(
         }
         damping = {title: pool.submit(run_damping_test, seat.scenario, seat.plant) for title, seat in seats.items()}
         _count([*(future for futures in trials.values() for future in futures), *damping.values()], progress)
-    tested = {title: future.result() for title, future in damping.items()}
-    rows = tuple(state_row(*key, [future.result() for future in runs]) for key, runs in trials.items())
+    failures: list[SeatFailure] = []
+    done = {key: _finished(runs, (*key,), failures) for key, runs in trials.items()}
+    ended = {title: _finished([future], (title, None, INERT), failures) for title, future in damping.items()}
+    tested = {title: found[0] for title, found in ended.items() if found}
+    rows = tuple(state_row(*key, found, len(found) == RUNS) for key, found in done.items() if found)
+    if not rows and not tested:
+        raise RunError(failures[0].reason)
     return SeatTest(
         rows=rows,
         damping_rows=tuple(
@@ -68,7 +85,21 @@ def assess_simulated_seats(
         ),
         damping=tested,
         notes=(*_notes(seats), *doubt_runs(rows)),
+        failures=tuple(dict.fromkeys(failures)),
     )
+
+
+def _finished(
+    futures: Sequence[Future[_Result]], place: tuple[str, SpectralClass | None, str | None], failures: list[SeatFailure]
+) -> list[_Result]:
+    """Return the results of the simulations that were carried to their end; the others are put among the failures."""
+    found = []
+    for future in futures:
+        try:
+            found.append(future.result())
+        except RunError as error:
+            failures.append(SeatFailure(*place, str(error)))
+    return found
 
 
 class _Seat(NamedTuple):

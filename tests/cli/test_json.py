@@ -63,6 +63,20 @@ def test_a_diagnosis_is_of_the_documented_form(case):
     TypeAdapter(ANSWERS["diagnose"]).validate_python({**content, "files": []})
 
 
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("gapp",), "No such command 'gapp'"), (("gap", "--jsn"), "No such option: --jsn"),
+        (("gap",), "Missing argument"), (("blind", "make"), "Missing option"),
+        (("comfort", "x", "--hours", "a"), "hours"),
+    ],
+)  # fmt: skip
+def test_a_wrong_use_of_the_command_line_is_an_object_too(seatsim_command, arguments, said):
+    status, out, err = seatsim_command(*arguments, "--json")
+    assert status == 2 and said in check("error", out)["error"] and said in err
+    assert seatsim_command(*arguments)[1] == ""
+
+
 def test_an_error_is_an_object_too(seatsim_command):
     status, out, err = seatsim_command("run", "quickstrat", "--json")
     assert status == 2

@@ -1,5 +1,6 @@
 """What the key of the cache is made of, module by module, without compiling anything."""
 
+import gc
 import hashlib
 import math
 import sys
@@ -193,3 +194,13 @@ def test_a_function_is_kept_where_all_sources_are_files(tmp_path, monkeypatch):
     count = len(asked)
     cached.compiled(square, [Path])
     assert len(asked) == count
+
+
+def test_garbage_is_left_alone_while_something_is_compiled():
+    watch, was = cached._Watch(), gc.isenabled()
+    watch.on_start(None), watch.on_start(None)
+    assert not gc.isenabled()
+    watch.on_end(None)
+    assert not gc.isenabled()
+    watch.on_end(None)
+    assert gc.isenabled() == was

@@ -53,9 +53,9 @@ def starts(name):
     return [off(cls)._replace(**form.fixed, **form.free) for form in specification_of(cls).forms]
 
 
-def shaken(scenario, *effects):
+def shaken(scenario, *effects, carry_all_effects=None):
     """The history of a scenario with effects, as its sensors tell it."""
-    history = simulate(replace(scenario, effects=effects))
+    history = simulate(replace(scenario, effects=effects), carry_all_effects=carry_all_effects)
     return read_sensors(effects, scenario.solver.step, history.channels)
 
 

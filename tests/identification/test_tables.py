@@ -185,7 +185,7 @@ def jumping():
          "no column holds the force (did you mean 'force_filtered'?); name it 'force_N' or 'force_kN'"),
         (plain().drop(columns="time_s"), None, "or give 'sample_rate_Hz' in one.yaml"),
         (plain(curent_A=1.0), None, "column 'curent_A' is not known; name it 'current_A' or 'current_mA'"),
-        (plain(temperature_F=70.0), None, "column 'temperature_F' is not known; name it 'temperature_degC' or"),
+        (plain(temperature_degX=70.0), None, "column 'temperature_degX' is not known; name it 'temperature_degC' or"),
         (plain(stroke_mm=1.0), None, "'displacement_m' and 'stroke_mm' both hold the displacement"),
         (plain(damper_force_kN=1.0), None, "'force_N' and 'damper_force_kN' both hold the force"),
         (plain(temperature_C=["warm"] * 100), None, "line 2, temperature_C: 'warm' (and 99 more rows) is not"),

@@ -78,3 +78,32 @@ def test_inspect_shows_channels_and_doubts(noisy_table, tmp_path, monkeypatch, c
     told = json.loads(capsys.readouterr().out)
     assert {each["name"] for each in told["channels"]} >= set(noisy_table) - {"time"}
     assert "gravity" in {each["kind"] for each in told["doubts"]}
+
+
+def test_inspect_by_a_map_shows_what_import_would_make(noisy_table, tmp_path, monkeypatch, capsys):
+    renamed = {"t": 1e3 * noisy_table["time"], "Kanal 1": -noisy_table["floor_acceleration"] / 9.80665}
+    path, stated = write_csv(tmp_path / "a.csv", renamed), tmp_path / "map.yaml"
+    stated.write_text(
+        "time: {column: t, unit: ms}\nchannels: {floor_acceleration: {column: Kanal 1, unit: g, sign: -1}}\n"
+    )
+    assert call(monkeypatch, "inspect", path, "--map", stated, "--json") == 0
+    (found,) = json.loads(capsys.readouterr().out)["channels"]
+    assert (found["name"], found["unit"], found["rate"]) == ("floor_acceleration", "m/s^2", 500.0)
+    assert found["rms"] == pytest.approx(np.sqrt(np.mean(noisy_table["floor_acceleration"] ** 2)), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        ("floor_acceleration: {column: a, unit: kN}", "line 2, channels.floor_acceleration.unit: 'kN' is no unit"),
+        ("floor_acceleration: {column: a, sgn: 1}", "did you mean 'sign'"),
+        ("damper_force: {column: a}", "channel 'floor_acceleration' is missing"),
+        ("floor_acceleration: {column: a}", ""),
+    ],
+)
+def test_check_reads_a_map(tmp_path, monkeypatch, capsys, entry, said):
+    stated = tmp_path / "map.yaml"
+    stated.write_text(f"channels:\n  {entry}\n")
+    assert call(monkeypatch, "check", stated) == (2 if said else 0)
+    told = capsys.readouterr()
+    assert said in told.err and ("map of a seat" in told.out) == (not said)

@@ -54,7 +54,10 @@ QUIRKS = {
     },
     "fsae_damper_temperature/t1_1_1_18_18_s1_n10_150psi": {("force_N", "offset"), ("velocity_m_s", "derived")},
     "fsae_damper_temperature/t2_3_3_24_24_s5_n100_100psi_with_heat_gun": {("temperature_C", "warming")},
-    "quanser_active_suspension/chirp_A_rep1": {("unsprung_displacement_m", "resolution")},
+    "quanser_active_suspension/chirp_A_rep1": {
+        ("unsprung_displacement_m", "resolution"), ("force_cmd_N", "command"), ("road_displacement_m", "zeroed"),
+    },
+    "utfsm_mr_sine_raw/raw_2mm_5Hz": {("force_N", "relaxation"), ("displacement_m", "zeroed")},
     "roads/profile_1": {("distance_m", "coarse"), ("elevation_m", "offset")},
     "utfsm_mr_chirp/chirp15Hz_0p5A": {
         ("current_A", "constant"), ("displacement_m", "late"), ("velocity_m_s", "derived"), ("force_N", "resolution"),

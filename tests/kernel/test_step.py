@@ -90,7 +90,7 @@ def test_the_margin_to_the_end_of_a_phase(slip, v, friction, margin):
 def test_the_error_is_that_of_both_velocities_over_the_tolerance():
     state, rates, k4 = (9.0, 0.3, 9.0, -0.2), (9.0, 5.0, 9.0, 1.0), (7.0, 5.6, 7.0, 0.7)
     expected = H / 6.0 * (0.6 + 0.3) / (1e-4 * (0.01 + 0.3 + 0.2))
-    assert module._error(state, rates, k4, H, 1e-4) == pytest.approx(expected, rel=1e-12)
+    assert module.estimate_error(state, rates, k4, H, 1e-4) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -8,11 +8,12 @@ from typer.testing import CliRunner
 
 from seatsim import load, run, seat_test
 from seatsim.cli.app import app
-from seatsim.excitations.iso7096 import acceleration_density
+from seatsim.excitations.iso7096 import Iso7096, acceleration_density
 from seatsim.metrics import frequency_response
 from seatsim.recordings.writer import save_recording
 from seatsim.rig.plant import control_system
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, RunError
+from seatsim.simulation.simulate import simulate
 from seatsim.standards.iso7096 import INERT_MASS, LIMITS, SEATED_SHARE
 from seatsim.standards.recorded_seat import weighted_input
 
@@ -113,3 +114,26 @@ def test_a_travel_that_is_not_stated_is_said(scenario):
     found = seat_test(scenario, ["EM6"], {"plant.travel": [-10.0, 10.0]})
     assert found.rows[0].end_stop_hits is None
     assert any("no travel is stated" in note for note in found.notes)
+
+
+def test_a_run_that_breaks_off_leaves_the_others_and_is_a_line_with_its_reason(scenario, tmp_path, monkeypatch):
+    def broken(case):
+        if isinstance(case.excitation, Iso7096) and case.seed == 1:
+            raise RunError("a state ran away at 3 s")
+        return simulate(case)
+
+    monkeypatch.setattr("seatsim.standards.simulated_seat.simulate", broken)
+    done = CliRunner().invoke(app, ["seat-test", str(scenario), "--class", "EM5", "--out", str(tmp_path), "--json"])
+    found = json.loads(done.stdout)
+    assert done.exit_code == 1 and "failed: seat, EM5, light: a state ran away" in done.stderr
+    assert [(each["class"], each["person"]) for each in found["failed"]] == [("EM5", "light"), ("EM5", "heavy")]
+    assert len(found["classes"]) == 2 and not any(row["pass"] for row in found["classes"]) and found["damping"]
+
+
+def test_a_damaged_run_of_a_recording_leaves_the_others(tmp_path):
+    settings = {"variants": {}, "plant.driver_mass": 72.0, "sweep": {"seed": [1, 2]}}
+    save_recording(run("em5", settings), tmp_path, ["floor_acceleration", "driver_acceleration", "current_command"])
+    (tmp_path / "run-2.csv.gz").write_bytes(b"torn")
+    found = seat_test(tmp_path)
+    assert len(found.rows) == 1 and [failure.run for failure in found.failures] == ["run-2"]
+    assert "cannot be read" in found.failures[0].reason

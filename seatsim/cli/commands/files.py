@@ -40,7 +40,7 @@ def new(
 
 
 def check(
-    file: Annotated[Path, typer.Argument(help="A scenario, recording, sweep, damper with parameters, or Python file.")],
+    file: Annotated[Path, typer.Argument(help="A scenario, recording, sweep, damper, map of import, or Python file.")],
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:

@@ -57,18 +57,25 @@ def import_data(
 
 def inspect_data(
     data: Annotated[Path, typer.Argument(help="A data file, or the folder of a recording.", show_default=False)],
+    map_file: Annotated[
+        Path | None, typer.Option("--map", metavar="MAP.yaml", help="Show the channels that this map makes of a file.")
+    ] = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
     """Show the channels of a file or a recording, with unit, rate, range, RMS, noise and every doubt."""
-    found = _inspected(data)
+    found = _inspected(data, map_file)
     _show(found)
     _doubt(found.doubts)
     answer(found.as_dict())
 
 
-def _inspected(data: Path) -> Inspection:
+def _inspected(data: Path, map_file: Path | None) -> Inspection:
     """Return what a file or a recording holds; what a recording needs is not loaded for a file."""
+    if map_file is not None:
+        from seatsim.importing.inspected_recording import inspect_mapped
+
+        return inspect_mapped(data, map_file)
     if data.is_dir():
         from seatsim.importing.inspected_recording import inspect_recording
 

@@ -128,7 +128,6 @@ def _simulate(scenarios: list[Scenario]) -> _Simulated:
 
 def _load_writers() -> None:
     """Load what writes tables and draws pictures: it takes as long as many runs, and can be done beside them."""
-    import pandas  # noqa: F401
     import pyarrow.parquet  # noqa: F401
 
     import seatsim.plots.runs.draw  # noqa: F401

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from seatsim.cli.options import Json, Out, OwnCode, Settings, scenario_settings
-from seatsim.cli.terminal import answer, count_progress, say, warn, wrote_one
+from seatsim.cli.terminal import answer, complain, count_progress, say, warn, wrote_one
 from seatsim.schema.errors import InputError
 
 
@@ -77,7 +77,7 @@ def seat_test(
     as_json: Json = False,
 ) -> None:
     """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops."""
-    from seatsim.cli.outputs.seat_test import encode, make_tables, summarise
+    from seatsim.cli.outputs.seat_test import encode, list_failures, make_tables, summarise
     from seatsim.cli.show_table import show_table
     from seatsim.schema.files import write_json
     from seatsim.standards.seat_test import seat_test as test
@@ -88,7 +88,11 @@ def seat_test(
     for table in make_tables(found):
         show_table(table)
     say(summarise(found))
+    for failure in list_failures(found):
+        complain(f"failed: {failure}")
     warn(found.notes)
     path = write_json((out_folder or Path("out") / f"seat-test-{Path(source).stem}") / "seat_test.json", content)
     wrote_one(path)
     answer(content, [path])
+    if found.failures:
+        raise typer.Exit(1)

@@ -321,6 +321,7 @@ class SeatTestAnswer(Answer):
     standard: str
     classes: list[dict[str, object]]
     damping: list[dict[str, object]]
+    failed: list[dict[str, object]]
     notes: list[str]
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import csv
+import math
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -30,7 +32,7 @@ def write_result(result: Result, folder: Path) -> list[Path]:
         from seatsim.plots.runs.draw import plot_result
 
         paths = [
-            write_whole(folder / "summary.csv", partial(result.table.to_csv, index=False)),
+            write_whole(folder / "summary.csv", partial(_write_table, result.rows)),
             write_json(folder / "summary.json", _encode_runs(result)),
         ]
         pictures = write_pictures(plot_result(result), folder)
@@ -80,3 +82,17 @@ def _encode_summary(run: Run) -> dict[str, object]:
         "warnings": list(run.warnings),
         "notes": list(run.history.notes),
     }
+
+
+def _write_table(rows: Sequence[Mapping[str, object]], path: Path) -> None:
+    """Write rows below each other, with a column for every name; what is absent or NaN stays empty."""
+    names = dict.fromkeys(name for row in rows for name in row)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(names), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
+
+
+def _cell(value: object) -> object:
+    """Return a value as a table writes it; NaN is an empty cell."""
+    return "" if isinstance(value, float) and math.isnan(value) else value

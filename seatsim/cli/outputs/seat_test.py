@@ -9,7 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from seatsim.standards.iso7096 import ACCEPTANCE, DAMPING, LIMITS, RECALLED, SEATED_SHARE
-from seatsim.standards.seat_rows import DampingRow, SeatRow, SeatTest
+from seatsim.standards.seat_rows import DampingRow, SeatFailure, SeatRow, SeatTest
 
 
 def make_tables(found: SeatTest) -> list[Table]:
@@ -26,6 +26,14 @@ def summarise(found: SeatTest) -> str:
     return f"{sum(verdicts)} of {len(verdicts)} lines pass; {hits} hits of the end stops"
 
 
+def list_failures(found: SeatTest) -> list[str]:
+    """Return a line for each run that came to no result."""
+    return [
+        f"{', '.join(filter(None, (each.run, each.spectral_class, each.person)))}: {each.reason}"
+        for each in found.failures
+    ]
+
+
 def encode(found: SeatTest, source: str) -> dict[str, object]:
     """Return the content of `seat_test.json`."""
     return {
@@ -35,11 +43,12 @@ def encode(found: SeatTest, source: str) -> dict[str, object]:
         "classes": [_encode(row) | {"mass_on_seat": SEATED_SHARE * row.mass} for row in found.rows],
         "damping": [_encode(row) for row in found.damping_rows],
         "damping_tests": found.damping,
+        "failed": [_encode(failure) for failure in found.failures],
         "notes": found.notes,
     }
 
 
-def _encode(row: SeatRow | DampingRow) -> dict[str, object]:
+def _encode(row: SeatRow | DampingRow | SeatFailure) -> dict[str, object]:
     content = row._asdict()
     return {{"passed": "pass", "spectral_class": "class"}.get(key, key): value for key, value in content.items()}
 

@@ -6,12 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.quality.damage import Doubter, doubt_dropouts, doubt_spikes
+from seatsim.recordings.quality.issue import Issue, place_in_run
+from seatsim.recordings.quality.plausible_ranges import say_implausible
 from seatsim.recordings.quality.run_under_test import MOTION, RunUnderTest
 from seatsim.recordings.quality.shapes import flat_tops, plateaus, quantum
 
 STUCK = 0.5
 """s; a noisy channel without any change for this long is stuck."""
+STEADY = ("suspension_displacement", "displacement", "velocity")
+"""Channels that inertia keeps from jumping: a force and an acceleration jump where a current is switched."""
 CLIPPED = 0.002
 """Share of rows at an extreme above which clipping is an error."""
 
@@ -20,9 +24,10 @@ def check_ranges(run: RunUnderTest) -> Iterator[Issue]:
     """Report constant channels, and currents and temperatures out of range."""
     for channel in run.table:
         yield from _constant(run, channel)
-    for channel in ("current_command", "coil_current"):
-        if channel in run.table:
-            yield from _current(run, channel)
+    gains = {"current_command": 1.0, "coil_current": 1.0, "command_voltage": run.recording.voltage_gain}
+    for channel, gain in gains.items():
+        if channel in run.table and gain is not None:
+            yield from _current(run, channel, gain)
     if "damper_temperature" in run.table:
         yield from _temperature(run, "damper_temperature")
 
@@ -37,12 +42,14 @@ def _constant(run: RunUnderTest, channel: str) -> Iterator[Issue]:
         yield run.issue("warning", "silent", text, channel)
 
 
-def _current(run: RunUnderTest, channel: str) -> Iterator[Issue]:
-    values, most = run.table[channel], run.nominal.coil.max_current
+def _current(run: RunUnderTest, channel: str, gain: float) -> Iterator[Issue]:
+    """Report a current, or a voltage that commands one, outside the range of the coil."""
+    values, most = gain * run.table[channel], run.nominal.coil.max_current
+    unit = run.recording.channels[channel].unit
     low, high = float(np.min(values)), float(np.max(values))
     seen = f"ranges from {low:.3g} to {high:.3g} A"
     if max(-low, high) > 30.0 * most:
-        text = f"{seen} where max_current is {most:g} A; is it in mA? convert it to A"
+        text = f"{seen} where max_current is {most:g} A; is it in m{unit}? convert it to {unit}"
         yield run.issue("error", "unit", text, channel)
     elif -low > max(0.25 * most, 2.0 * high):
         yield run.issue("error", "sign", f"{seen}; its sign is swapped: turn it", channel)
@@ -71,6 +78,23 @@ def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
             yield run.issue("error" if is_sure else "warning", "clipped", text, channel)
         if is_fine:
             yield from _held(run, channel)
+
+
+def check_sizes(run: RunUnderTest) -> Iterator[Issue]:
+    """Report channels of motion with values that no seat reaches; only a comparison tells of which unit they are."""
+    for channel in MOTION:
+        if channel in run.table and (text := say_implausible(run.table[channel], run.recording.channels[channel].unit)):
+            yield run.issue("error", "unit", f"{text}; correct its unit", channel)
+
+
+def check_damage(run: RunUnderTest) -> Iterator[Issue]:
+    """Report dropouts of the channels that move, and spikes of those that no switched current can make jump."""
+    for channel in MOTION:
+        if channel in run.table and np.ptp(run.table[channel]) > 0.0:
+            doubter, values = Doubter(channel, run.rate), run.table[channel]
+            found = [*doubt_dropouts(doubter, values, *plateaus(values))]
+            found += doubt_spikes(doubter, values) if channel in STEADY else []
+            yield from place_in_run(run.name, found)
 
 
 def _held(run: RunUnderTest, channel: str) -> Iterator[Issue]:

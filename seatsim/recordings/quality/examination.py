@@ -7,14 +7,15 @@ a fault of the data.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from seatsim.recordings.quality.channels import check_ranges, check_shapes
+from seatsim.recordings.quality.channels import check_damage, check_ranges, check_shapes, check_sizes
 from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
 from seatsim.recordings.quality.floor_sensor import check_floor_sensor
 from seatsim.recordings.quality.gravity import without_gravity
-from seatsim.recordings.quality.issue import Issue, select_errors
+from seatsim.recordings.quality.issue import Issue, place_in_run, select_errors
+from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.quality.run_under_test import RunUnderTest
 from seatsim.recordings.quality.runs import check_all_runs, check_clock
 from seatsim.recordings.recording import Recording
@@ -88,11 +89,23 @@ def _read(recording: Recording) -> tuple[list[RunUnderTest], list[Issue]]:
 def _each(run: RunUnderTest) -> list[Issue]:
     """Return the issues of one run; later checks run only where the earlier ones found no error."""
     issues: list[Issue] = []
-    for check in (check_ranges, check_exchanged_currents, check_shapes, check_floor_sensor, check_consistency):
+    for check in CHECKS:
         issues += check(run)
         if select_errors(issues):
             break
     return issues
+
+
+def _check_relations(run: RunUnderTest) -> Iterator[Issue]:
+    """Report signs and units that contradict the laws of motion, whatever the nominal scenario says."""
+    yield from place_in_run(run.name, doubt_relations(run.table, run.rate))
+
+
+CHECKS = (
+    check_ranges, check_exchanged_currents, check_shapes, check_damage, check_floor_sensor, check_consistency,
+    check_sizes, _check_relations,
+)  # fmt: skip
+"""Checks of one run, in their order."""
 
 
 def merge_issues(issues: Sequence[Issue], runs: int) -> list[Issue]:

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.compared import LEFT_OUT
 from seatsim.recordings.quality.residual import filter_band, find_delay
 from seatsim.recordings.quality.run_under_test import LATE, MOTION, Array, RunUnderTest, Table
-from seatsim.schema.units import conversion
+from seatsim.schema.units import USUAL, conversion
 
-UNITS = {
-    "acceleration": ("m/s^2", ("g", "ft/s^2", "cm/s^2", "mm/s^2")),
-    "displacement": ("m", ("inch", "cm", "mm")),
-    "velocity": ("m/s", ("cm/s", "mm/s")),
-    "force": ("N", ("kN",)),
-}
-"""SI unit and other units of channels of motion and force, by the last word of their names."""
+TOGETHER = (("floor_acceleration", "frame_acceleration", "driver_acceleration"), ("displacement", "velocity"))
+"""Channels whose axis may point down for all of them."""
 LONGEST_DELAY = 0.5
 """s; largest delay that is sought: half a period of the slowest motion considered."""
 ALIKE = 0.8
@@ -39,6 +35,10 @@ def list_faults(run: RunUnderTest, outputs: Table | None) -> Iterator[DataFault]
     """Yield every fault that a run may have; delays are relative to simulated outputs."""
     for channel in run.table:
         yield from _scales(channel)
+    for channels in TOGETHER:
+        swapped = tuple(channel for channel in channels if channel in run.table)
+        if len(swapped) > 1:
+            yield DataFault("sign", swapped, "all their signs are swapped", _swapped(swapped))
     for first, second in itertools.combinations(MOTION[:3], 2):
         if first in run.table and second in run.table:
             yield exchange_fault(first, second)
@@ -46,17 +46,21 @@ def list_faults(run: RunUnderTest, outputs: Table | None) -> Iterator[DataFault]
 
 
 def _scales(channel: str) -> Iterator[DataFault]:
-    quantity = channel.rpartition("_")[2]
     if channel in MOTION or channel == "coil_current":
         yield DataFault("sign", (channel,), "its sign is swapped", _scaled(channel, -1.0))
-    wanted, others = UNITS.get(quantity, ("", ()))
-    for unit in others:
-        factor = conversion(unit, wanted).factor
-        yield DataFault("unit", (channel,), f"reads as if in {unit}", _scaled(channel, factor))
+    if channel in MOTION:
+        wanted = (SEAT_CHANNELS | BENCH_CHANNELS)[channel]
+        for unit in USUAL[wanted][1:]:
+            factor = conversion(unit, wanted).factor
+            yield DataFault("unit", (channel,), f"reads as if in {unit}", _scaled(channel, factor))
 
 
 def _scaled(channel: str, factor: float) -> Callable[[Table], Table]:
     return lambda table: {**table, channel: factor * table[channel]}
+
+
+def _swapped(channels: Sequence[str]) -> Callable[[Table], Table]:
+    return lambda table: {**table, **{channel: -table[channel] for channel in channels}}
 
 
 def exchange_fault(first: str, second: str) -> DataFault:

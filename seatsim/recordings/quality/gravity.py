@@ -21,8 +21,12 @@ from seatsim.schema.units import STANDARD_GRAVITY
 
 NEAR = 0.05
 """Share by which a mean may differ from gravity: tilt of the sensor, error of its scale, and its own offset."""
-OFFSET = 0.5
-"""m/s^2; mean from which an offset is said: a motion of 24 s that has it ends at 12 m/s."""
+OFFSET = 0.2
+"""m/s^2; mean from which an offset is said: a motion of 24 s that has it ends at 5 m/s."""
+DISPLACED = 1.0
+"""Mean over half the range from the 1st to the 99th percentile above which a channel hardly passes through zero."""
+ABOUT_ZERO = ("suspension_displacement", "displacement", "velocity", "damper_force")
+"""Other channels that swing about zero, or not far from it."""
 ACCELEROMETERS = ("floor_acceleration", "frame_acceleration", "driver_acceleration")
 
 
@@ -44,7 +48,7 @@ def without_gravity(recording: Recording) -> Recording:
 
 
 def check_constants(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
-    """Say which accelerometers read gravity, which was taken out, and which have an offset."""
+    """Say which accelerometers read gravity, which was taken out, and which channels have an offset."""
     for channel, mean in runs[0].recording.removed.items():
         text = f"its mean of {mean:.4g} m/s^2 is gravity, which is taken out; the gap and the diagnosis are without it"
         yield issue_in_all_runs("note", "gravity", text, channel)
@@ -55,4 +59,13 @@ def check_constants(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
                 text = (
                     f"its mean is {mean:.3g} m/s^2, an offset: a seat that stays where it is has no mean acceleration"
                 )
+                yield issue_in_all_runs("note", "offset", text, channel)
+    for channel in ABOUT_ZERO:
+        if channel in runs[0].table:
+            values = np.concatenate([run.table[channel] for run in runs])
+            low, high = np.quantile(values, (0.01, 0.99))
+            mean, swing = float(np.mean(values)), 0.5 * float(high - low)
+            if abs(mean) > DISPLACED * swing > 0.0:
+                unit = runs[0].recording.channels[channel].unit
+                text = f"its mean is {mean:.3g} {unit}, {abs(mean) / swing:.0%} of its swing; check the sensor's zero"
                 yield issue_in_all_runs("note", "offset", text, channel)

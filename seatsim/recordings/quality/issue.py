@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple
 
 Severity = Literal["error", "warning", "note"]
@@ -25,6 +25,11 @@ def issue_in_all_runs(severity: Severity, kind: str, text: str, channel: str | N
     """Return an issue of all runs together, or of one channel in all of them."""
     place = f"all runs, {channel}" if channel else "all runs"
     return Issue(severity, kind, f"{place}: {text}", channel)
+
+
+def place_in_run(run: str, issues: Iterable[Issue]) -> list[Issue]:
+    """Return issues of channels as those of a run."""
+    return [issue._replace(sentence=f"{run}, {issue.sentence}", run=run) for issue in issues]
 
 
 def select_errors(issues: Sequence[Issue]) -> list[Issue]:

@@ -15,6 +15,8 @@ from seatsim.recordings.quality.residual import filter_band, find_delay
 from seatsim.recordings.quality.run_under_test import LATE, MOTION, RunUnderTest
 from seatsim.rig.temperature import Thermal
 
+SLOWEST, FASTEST = 10.0, 200_000.0
+"""Hz; rates of loggers of vibration lie between: below, nothing of a seat's resonances is left."""
 SHORTEST, SHORT = 4.0, 10.0
 """s; compared time of all runs together below which nothing can be diagnosed, or not well."""
 
@@ -33,7 +35,10 @@ def check_clock(run: RunUnderTest) -> Iterator[Issue]:
     jumps = np.flatnonzero(~is_even)
     mean = float(np.mean(steps[is_even])) if is_even.any() else 0.0
     typical = float(np.median(steps))
-    if not (abs(typical - 1.0) <= 0.3 and abs(mean - 1.0) <= 0.005):
+    if not SLOWEST <= run.rate <= FASTEST:
+        apart = f"rows are {interval:.5g} s apart, {run.rate:.5g} Hz, which no logger of a seat has"
+        yield run.issue("error", "rate", f"{apart}; is the time in ms? state its unit and import again", "time")
+    elif not (abs(typical - 1.0) <= 0.3 and abs(mean - 1.0) <= 0.005):
         apart = f"rows are {typical * interval:.5g} s apart where sample_rate {run.rate:g} means {interval:.5g} s"
         yield run.issue("error", "rate", f"{apart}; resample the run or correct the rate", "time")
     elif jumps.size:

@@ -7,9 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.signals import Array
 from seatsim.recordings.quality.issue import Issue, Severity
-from seatsim.recordings.quality.shapes import Level, flat_tops, measure_level
+from seatsim.recordings.quality.shapes import Array, Level, flat_tops, measure_level
 
 SPIKE, AROUND, ALONE = 8.0, 25, 4.0
 """A spike bends so many times as much as usual, and so many times as much as anything within so many rows."""
@@ -52,7 +51,7 @@ def doubt_shape(doubter: Doubter, values: Array, lengths: NDArray[np.int_]) -> I
     """Yield clipping, spikes, held values and the floor of a channel that varies."""
     for extreme, rows in flat_tops(values):
         yield doubter.say("warning", "clipped", f"{rows} rows stand at its extreme {extreme:.5g}; it is clipped")
-    yield from _spikes(doubter, values)
+    yield from doubt_spikes(doubter, values)
     if doubter.rate is None:
         return
     level, step = measure_level(values[:MOST_ROWS], doubter.rate), find_resolution(values[:MOST_ROWS])
@@ -83,7 +82,8 @@ def _jump(jumps: Array, row: int) -> float:
     return float(jumps[row]) if 0 <= row < len(jumps) else 0.0
 
 
-def _spikes(doubter: Doubter, values: Array) -> Iterator[Issue]:
+def doubt_spikes(doubter: Doubter, values: Array) -> Iterator[Issue]:
+    """Yield the single rows that jump away from both neighbours."""
     rows = find_spikes(values)
     rows = rows[np.abs(values[rows] - 0.5 * (values[rows - 1] + values[rows + 1])) > NOTABLE * np.std(values)]
     if len(rows):
