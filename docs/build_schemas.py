@@ -1,4 +1,4 @@
-"""Write the JSON Schemas: of scenarios and recordings beside the examples, of `--json` in `docs/schemas`."""
+"""Write the JSON Schemas: of scenarios, recordings and sweeps beside the examples, of `--json` in `docs/schemas`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 def schemas() -> Mapping[str, str]:
     """Return the text of every file by its path from the root."""
-    files = {f"scenarios/schema/{kind}.json": json.dumps(FILES[kind]()) for kind in ("scenario", "recording")}
+    files = {f"scenarios/schema/{kind}.json": json.dumps(FILES[kind]()) for kind in ("scenario", "recording", "sweep")}
     answers = {f"docs/schemas/{name}.json": json.dumps(answer_schema(name), indent=1) for name in ANSWERS}
     return {path: f"{text}\n" for path, text in (files | answers).items()}
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from seatsim.standards.comfort import Comfort, comfort
     from seatsim.standards.seat_rows import SeatTest
     from seatsim.standards.seat_test import seat_test
+    from seatsim.sweeps.read import read_sweep
 
 _HOME = {
     "Channel": "simulation.result",
@@ -46,6 +47,7 @@ _HOME = {
     "load": "scenario.loading",
     "load_recording": "recordings.recording",
     "predict_gap": "recordings.prediction",
+    "read_sweep": "sweeps.read",
     "run": "simulation.runs",
     "seat_test": "standards.seat_test",
     "use": "schema.modules",
@@ -74,6 +76,7 @@ __all__ = [
     "load",
     "load_recording",
     "predict_gap",
+    "read_sweep",
     "run",
     "seat_test",
     "use",

@@ -17,6 +17,7 @@ from seatsim.cli.commands.importing import import_data, inspect_data
 from seatsim.cli.commands.recordings import diagnose, gap
 from seatsim.cli.commands.runs import compare, run
 from seatsim.cli.commands.standards import comfort, seat_test
+from seatsim.cli.commands.sweeps import sweep, sweep_report
 from seatsim.cli.commands.synthesis import synthesise
 from seatsim.cli.terminal import answer_as_json, answer_error, complain, fail
 from seatsim.schema.errors import SeatsimError
@@ -49,7 +50,8 @@ app = typer.Typer(
     no_args_is_help=True, pretty_exceptions_enable=False,
 )  # fmt: skip
 for command in (
-    run, compare, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test, new, check, schema,
+    run, compare, sweep, sweep_report, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test,
+    new, check, schema,
 ):  # fmt: skip
     app.command()(command)
 app.command("import")(import_data)

@@ -16,6 +16,8 @@ from seatsim.scenario.plausibility import list_doubts
 from seatsim.schema.modules import use
 from seatsim.schema.registry import find, names
 from seatsim.schema.yaml_source import Source
+from seatsim.sweeps.definition import is_sweep
+from seatsim.sweeps.execute import prepare
 
 
 class Checked(NamedTuple):
@@ -27,7 +29,7 @@ class Checked(NamedTuple):
 
 
 def check_file(path: Path) -> Checked:
-    """Read a scenario, a recording (or its folder), a damper with its parameters, a map of `import`, or a Python file.
+    """Read a scenario, recording (or its folder), sweep, damper with its parameters, map of `import`, or Python file.
 
     Raises:
         InputError: there is an error in it.
@@ -36,11 +38,14 @@ def check_file(path: Path) -> Checked:
         return _check_recording(path if path.is_dir() else path.parent)
     if path.suffix == ".py":
         return _check_code(path)
-    if path.exists() and {"model", "bench"} & set(Source(path).data):
+    stated = Source(path).data if path.exists() else {}
+    if {"model", "bench"} & set(stated):
         return Checked("parameters", [load_specimen(None, path).name], [])
-    if path.exists() and "channels" in Source(path).data:
-        stated = read_map(path)
-        return Checked(f"map of a {stated.rig}", list(stated.channels), [])
+    if is_sweep(stated):
+        return _check_sweep(path)
+    if "channels" in stated:
+        found = read_map(path)
+        return Checked(f"map of a {found.rig}", list(found.channels), [])
     return _check_scenario(path)
 
 
@@ -54,6 +59,12 @@ def _check_scenario(path: Path) -> Checked:
                 scenario.excitation.floor(scenario.solver.step, scenario.seed)
     doubts = dict.fromkeys(sentence for scenario in scenarios for sentence in list_doubts(scenario))
     return Checked("scenario", [scenario.title for scenario in scenarios], list(doubts))
+
+
+def _check_sweep(path: Path) -> Checked:
+    prepared = prepare(path)
+    keys = ", ".join(prepared.plan.keys)
+    return Checked("sweep", [f"{prepared.plan.runs} runs over {keys}"], prepared.doubts)
 
 
 def _check_recording(folder: Path) -> Checked:

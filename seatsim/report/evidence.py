@@ -7,9 +7,9 @@ import math
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.plots import labels
 from seatsim.plots.diagnosis.discrepancy import plot_discrepancy
-from seatsim.plots.diagnosis.frame import FACTORS
 from seatsim.plots.diagnosis.maps import plot_maps
 from seatsim.plots.diagnosis.signals import plot_signals, plot_spectra
+from seatsim.plots.frame import FACTORS
 from seatsim.report.formatting import UNKNOWN, format_sentence
 from seatsim.report.html import Html, embed_pictures, join, make_list, make_table, tag
 from seatsim.schema.text import join_names

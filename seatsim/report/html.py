@@ -6,7 +6,7 @@ import base64
 import html
 from collections.abc import Iterable, Sequence
 
-from seatsim.plots.diagnosis.frame import Picture, render_png
+from seatsim.plots.frame import Picture, render_png
 
 EMPTY_TAGS = ("img", "meta", "br")
 CSS_DPI = 96

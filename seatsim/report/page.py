@@ -1,14 +1,14 @@
-"""The page: its sections in their order, and its look."""
+"""The page of a diagnosis: its sections in their order."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib.resources import files
 from typing import NamedTuple
 
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.report import answer, causes, evidence
-from seatsim.report.html import Html, join, tag
+from seatsim.report.document import FilledSection, render_document
+from seatsim.report.html import Html
 
 
 class PageSection(NamedTuple):
@@ -39,31 +39,5 @@ SECTIONS = (
 def render_page(diagnosis: Diagnosis) -> str:
     """Return the HTML page of a diagnosis; sections without content are left out."""
     chosen = [section for section in SECTIONS if section.short or diagnosis.verdict != "none"]
-    filled = [(section, section.content(diagnosis)) for section in chosen]
-    shown = [(section, content) for section, content in filled if content]
-    body = tag(
-        "main",
-        answer.render_head(diagnosis),
-        _render_contents([section for section, _ in shown]),
-        *(_render_section(section, content) for section, content in shown),
-    )
-    return f"<!DOCTYPE html>\n{tag('html', _render_head(diagnosis), tag('body', body), lang='en')}\n"
-
-
-def _render_head(diagnosis: Diagnosis) -> Html:
-    look = files(__package__).joinpath("report.css").read_text(encoding="utf-8")
-    return tag(
-        "head",
-        Html('<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'),
-        tag("title", f"{diagnosis.name}: {diagnosis.sentence}"),
-        tag("style", Html(look)),
-    )
-
-
-def _render_contents(sections: list[PageSection]) -> Html:
-    links = [tag("a", section.heading, href=f"#{section.anchor}") for section in sections]
-    return tag("nav", join(links, " "), aria_label="Contents")
-
-
-def _render_section(section: PageSection, content: Html) -> Html:
-    return tag("section", tag("h2", section.heading), content, id=section.anchor)
+    filled = [FilledSection(section.anchor, section.heading, section.content(diagnosis)) for section in chosen]
+    return render_document(f"{diagnosis.name}: {diagnosis.sentence}", answer.render_head(diagnosis), filled)

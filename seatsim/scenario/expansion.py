@@ -9,21 +9,19 @@ under `temperature` is a sweep as well.
 
 from __future__ import annotations
 
-import copy
 import itertools
 import json
 from collections.abc import Iterator, Mapping
 
-from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.validation import mapping
 from seatsim.schema.yaml_source import KeyPath, Source
 
 
 def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Source, dict[str, object]]]:
     """Yield the content of every run with the label that sets it apart."""
-    base = copy.deepcopy(source)
+    base = source.with_changes()
     for key, value in settings.items():
-        _set(base, key, value)
+        base.put(key, value, _place_of_setting(key, value))
     variants = mapping(base.data.pop("variants", {}), base, ("variants",))
     stated = mapping(base.data.pop("sweep", {}), base, ("sweep",))
     sweep = dict(stated)
@@ -32,7 +30,7 @@ def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Sou
     lists = {key: _swept_values(values, base, key) for key, values in sweep.items()}
     for name, changes in variants.items() or [(None, {})]:
         for chosen in itertools.product(*lists.values()):
-            run = copy.deepcopy(base)
+            run = base.with_changes()
             for key, value in mapping(changes, base, ("variants", str(name))).items():
                 _replace(run, key, value, ("variants", str(name)))
             swept = dict(zip(lists, chosen, strict=True))
@@ -48,29 +46,16 @@ def _swept_values(values: object, source: Source, key: str) -> list[object]:
     return values
 
 
-def _set(source: Source, dotted: str, value: object) -> None:
-    """Put a value that an option states under a dotted key; its place is then that option, not a line of the file."""
+def _place_of_setting(dotted: str, value: object) -> str:
+    """Return the place of a value that an option states: that option, not a line of the file."""
     shown = value if isinstance(value, str) else json.dumps(value, default=str)
-    # Where a value leads into one without keys, the option is the place as well.
-    source.places[("--set", dotted)] = f"--set {dotted}={shown if len(shown) <= 60 else shown[:57] + '...'}"
-    _replace(source, dotted, value, ("--set",))
-    del source.places[("--set", dotted)]
+    return f"--set {dotted}={shown if len(shown) <= 60 else shown[:57] + '...'}"
 
 
 def _replace(source: Source, dotted: str, value: object, origin: KeyPath) -> None:
-    """Put a value under a dotted key; its place is then that of the variant, sweep or option it comes from."""
+    """Put a value under a dotted key; its place is then that of the variant or sweep it comes from."""
+    stated = (*origin, dotted)
+    inner = [(known[len(stated) :], at) for known, at in source.places.items() if known[: len(stated)] == stated]
+    source.put(str(dotted), value, source.nearest_place(stated))
     keys = tuple(str(dotted).split("."))
-    place = source.nearest_place((*origin, dotted))
-    node = source.data
-    for key in keys[:-1]:
-        below = node.setdefault(key, {})
-        if not isinstance(below, dict):
-            raise InputError(f"{place}: '{dotted}' leads into '{key}', which has no keys{nearest(key, node)}")
-        node = below
-    node[keys[-1]] = value
-    for known in [known for known in source.places if known[: len(keys)] == keys]:
-        del source.places[known]
-    source.places[keys] = place
-    for known, at in list(source.places.items()):
-        if known[: len(origin) + 1] == (*origin, dotted):
-            source.places[(*keys, *known[len(origin) + 1 :])] = at
+    source.places.update({(*keys, *rest): at for rest, at in inner})

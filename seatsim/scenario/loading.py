@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeGuard, cast
+from typing import TYPE_CHECKING, Any, TypeGuard, cast
 
 from seatsim.effects.base import EFFECTS
 from seatsim.rig.coil import Coil
@@ -43,8 +44,10 @@ def load(path: str | Path, settings: Mapping[str, object] | None = None) -> list
     Raises:
         InputError: anything in the file is missing, unknown or not permitted.
     """
-    source = Source(_located(Path(path)))
-    return [_scenario(variant, label) for variant, label in expand(source, settings or {})]
+    source = Source(find_file(Path(path)))
+    if {"scenario", "vary"} <= set(source.data):
+        raise source.error(("vary",), f"this file is a sweep of a scenario; simulate it with 'seatsim sweep {path}'")
+    return [read_scenario(variant, label) for variant, label in expand(source, settings or {})]
 
 
 def single(path: str | Path, settings: Mapping[str, object] | None = None) -> Scenario:
@@ -55,7 +58,12 @@ def single(path: str | Path, settings: Mapping[str, object] | None = None) -> Sc
     return scenarios[0]
 
 
-def _located(path: Path) -> Path:
+def find_file(path: Path) -> Path:
+    """Return the path of a scenario file, or of the example that has this name.
+
+    Raises:
+        InputError: there is neither.
+    """
     if path.exists():
         return path
     if not path.is_absolute():
@@ -70,7 +78,12 @@ def _located(path: Path) -> Path:
     raise InputError(f"{path}: no such file{near}; give the path of a scenario, or an example: {', '.join(known)}")
 
 
-def _scenario(source: Source, label: Mapping[str, object]) -> Scenario:
+def read_scenario(source: Source, label: Mapping[str, object]) -> Scenario:
+    """Return the scenario that a source states, without `variants` and `sweep`; `label` sets its run apart.
+
+    Raises:
+        InputError: anything in it is missing, unknown or not permitted.
+    """
     data = source.data
     check_keys(data, SEAT_KEYS, source, ())
     bench = not {"plant", "controller", "excitation"} & set(data)
@@ -80,22 +93,27 @@ def _scenario(source: Source, label: Mapping[str, object]) -> Scenario:
         if key not in data:
             raise source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator, temperature,"
                                    " controller and excitation")  # fmt: skip
-    return Scenario(
-        name=str(data.get("name", source.path.stem)),
-        damper=_damper(data["damper"], source, ("damper",)),
-        coil=build(Coil, data["actuator"], source, ("actuator",), required=("rate", "max_current")),
-        temperature=_temperature(data["temperature"], source),
-        plant=None if bench else build(Plant, data["plant"], source, ("plant",)),
-        driver=build(Driver, data.get("driver", {}), source, ("driver",)),
-        control=None if bench else _control(data["controller"], source),
-        excitation=None if bench else _excitation(data["excitation"], source),
-        effects=_effects(data.get("effects", []), source),
-        solver=build(Solver, data.get("solver", {}), source, ("solver",)),
-        start=build(Start, data.get("start", {}), source, ("start",)),
-        seed=_seed(data.get("seed", 0), source),
-        label=label,
-        source=source,
-    )
+    sections = {section: read(data[section], source) for section, read in _READERS.items() if section in data}
+    name = str(data.get("name", source.path.stem))
+    return Scenario(name=name, label=label, source=source, **_by_field(sections))
+
+
+def reread(scenario: Scenario, sections: Iterable[str], source: Source, label: Mapping[str, object]) -> Scenario:
+    """Return a scenario of which some sections, such as `plant`, are read anew from a source.
+
+    Raises:
+        InputError: a value in one of the sections is not permitted, or no section has this name.
+    """
+    for section in sections:
+        if section not in _READERS:
+            raise source.error((section,), f"unknown key{nearest(section, _READERS)}; permitted: {', '.join(_READERS)}")
+    changed = {section: _READERS[section](source.data[section], source) for section in sections}
+    return replace(scenario, label=label, source=source, **_by_field(changed))
+
+
+def _by_field(sections: Mapping[str, object]) -> dict[str, Any]:
+    """Return what was read of each section by the field of a scenario that holds it."""
+    return {_FIELDS.get(section, section): value for section, value in sections.items()}
 
 
 def _damper(values: object, source: Source, keys: KeyPath, extra: tuple[str, ...] = ()) -> DamperChoice:
@@ -180,3 +198,21 @@ def _seed(value: object, source: Source) -> int:
             f"{value!r} is not permitted; it must be a whole number of at least 0{sweep_hint(value, ('seed',))}",
         )
     return value
+
+
+_READERS: Mapping[str, Callable[[object, Source], object]] = {
+    "damper": lambda value, source: _damper(value, source, ("damper",)),
+    "actuator": lambda value, source: build(Coil, value, source, ("actuator",), required=("rate", "max_current")),
+    "temperature": _temperature,
+    "plant": lambda value, source: build(Plant, value, source, ("plant",)),
+    "driver": lambda value, source: build(Driver, value, source, ("driver",)),
+    "controller": _control,
+    "excitation": _excitation,
+    "effects": _effects,
+    "solver": lambda value, source: build(Solver, value, source, ("solver",)),
+    "start": lambda value, source: build(Start, value, source, ("start",)),
+    "seed": _seed,
+}
+"""What reads each section of a scenario."""
+_FIELDS = {"actuator": "coil", "controller": "control"}
+"""Fields of a scenario that are not called as the section they come from."""

@@ -22,8 +22,10 @@ class _Named(Protocol):
     def _asdict(self) -> Mapping[str, object]: ...
 
 
-def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
+def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = False) -> Path:
     """Let `write` fill a temporary file next to `path`, then put it in place at once; nothing stays where it fails.
+
+    A `lasting` file is on the disk before it is put in place, so that it survives a loss of power.
 
     Raises:
         InputError: the folder or the file cannot be written.
@@ -38,20 +40,30 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
     try:
         write(part)
         part.chmod(0o644)
+        if lasting:
+            _synchronise(part)
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
     return path
 
 
-def write_text(path: Path, text: str) -> Path:
-    """Write a text file whole."""
-    return write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+def _synchronise(path: Path) -> None:
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
 
 
-def write_json(path: Path, value: object) -> Path:
-    """Write JSON whole; numbers that JSON has no word for become null."""
-    return write_text(path, json.dumps(plain(value), indent=2, allow_nan=False) + "\n")
+def write_text(path: Path, text: str, lasting: bool = False) -> Path:
+    """Write a text file whole; `lasting` as for `write_whole`."""
+    return write_whole(path, lambda part: part.write_text(text, encoding="utf-8"), lasting)
+
+
+def write_json(path: Path, value: object, lasting: bool = False) -> Path:
+    """Write JSON whole; numbers that JSON has no word for become null. `lasting` as for `write_whole`."""
+    return write_text(path, json.dumps(plain(value), indent=2, allow_nan=False) + "\n", lasting)
 
 
 def plain(value: object) -> object:

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.fields import describe, validated
+from seatsim.schema.fields import describe, field_names, validated
 from seatsim.schema.plausible import guess
 from seatsim.schema.registry import Record, Registry
 from seatsim.schema.yaml_source import KeyPath, Source
@@ -29,8 +29,7 @@ def build(
     missing key. Raises InputError with place, value, what is permitted and the nearest valid name.
     """
     stated = mapping(values, source, keys)
-    known = [specification.name for specification in describe(record)]
-    check_keys(stated, known, source, keys)
+    check_keys(stated, field_names(record), source, keys)
     _check_finite(stated, source, keys)
     for name in required:
         if name not in stated:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import copy
 from pathlib import Path
+from typing import Any, Self
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, nearest
 
 KeyPath = tuple[str | int, ...]
 
@@ -40,6 +42,52 @@ class Source:
             raise InputError(f"{path}: holds no mapping; a file has keys such as 'plant:' and 'damper:' at its top")
         self.places: dict[KeyPath, str] = {(): self._line(1)}
         self.data = self._plain_mapping(tree, ())
+
+    def with_changes(self) -> Self:
+        """Return a copy whose content may be changed by `put`; what is not changed is shared with this one."""
+        changed = copy.copy(self)
+        changed.data, changed.places = dict(self.data), dict(self.places)
+        return changed
+
+    def below(self, key: str) -> Self:
+        """Return the mapping under a key at the top as a source of its own, whose places are those in this file."""
+        inner = copy.copy(self)
+        stated = self.data[key]
+        if not isinstance(stated, dict):
+            raise self.error((key,), f"{stated!r} is not a mapping; write its keys indented below it")
+        inner.data = stated
+        inner.places = {keys[1:]: place for keys, place in self.places.items() if keys[:1] == (key,)}
+        return inner
+
+    def put(self, dotted: str, value: object, place: str) -> None:
+        """Put a value under a dotted key, such as `plant.driver_mass` or `effects.0.parameters.high`, at a `place`.
+
+        Raises:
+            InputError: the key leads into a value without keys, or to an entry that a list does not have.
+        """
+        node: Any = self.data
+        keys: list[str | int] = []
+        *above, last = dotted.split(".")
+        for name in above:
+            key: Any = _find_key(node, name, dotted, place)
+            below = node[key] if isinstance(node, list) else node.get(key, {})
+            if not isinstance(below, dict | list):
+                raise InputError(f"{place}: '{dotted}' leads into '{name}', which has no keys{nearest(name, node)}")
+            if not below:
+                self.places[(*keys, key)] = place
+            # What lies on the way is copied, so that sources that share the rest stay as they are.
+            copied = copy.copy(below)
+            node[key] = copied
+            node = copied
+            keys.append(key)
+        end: Any = _find_key(node, last, dotted, place)
+        whole = (*keys, end)
+        replaced = node[end] if isinstance(node, list) else node.get(end)
+        node[end] = value
+        if isinstance(replaced, dict | list):
+            for known in [known for known in self.places if known[: len(whole)] == whole]:
+                del self.places[known]
+        self.places[whole] = place
 
     def place(self, keys: KeyPath) -> str:
         """Return `file, line N, key.path` of a key, or of the nearest one above it that has a place."""
@@ -79,3 +127,13 @@ class Source:
             if isinstance(node, kind):
                 return kind(node)
         return node
+
+
+def _find_key(node: Any, name: str, dotted: str, place: str) -> str | int:
+    """Return what a part of a dotted key is in a mapping (itself) or in a list (the number of an entry)."""
+    if not isinstance(node, list):
+        return name
+    if name.isdecimal() and int(name) < len(node):
+        return int(name)
+    permitted = f"0 to {len(node) - 1}" if node else "none, as it is empty"
+    raise InputError(f"{place}: '{dotted}' leads to entry '{name}' of a list; permitted: {permitted}")

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from seatsim.metrics import summarise
+from seatsim.metrics import Metric, summarise
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import RunError, SynthesisError
 from seatsim.simulation.result import Result, Run
-from seatsim.simulation.simulate import simulate
+from seatsim.simulation.simulate import History, simulate
 from seatsim.simulation.validity import list_warnings
 
 
@@ -48,14 +48,18 @@ def share_a_loop(scenarios: Iterable[Scenario]) -> bool | None:
 def run_one(scenario: Scenario, carry_all_effects: bool | None = False) -> Run:
     """Simulate one scenario and work out its metrics; `carry_all_effects` as for `simulate`."""
     history = simulate(scenario, carry_all_effects=carry_all_effects)
+    return Run(scenario, history, measure_run(scenario, history), list_warnings(scenario, history))
+
+
+def measure_run(scenario: Scenario, history: History) -> dict[str, Metric]:
+    """Return the metrics of a run by name."""
     plant = scenario.plant
-    metrics = summarise(
+    return summarise(
         history.channels,
         history.step,
         travel=plant.travel if plant else None,
         coil_resistance=scenario.coil.resistance,
     )
-    return Run(scenario, history, metrics, list_warnings(scenario, history))
 
 
 def run_many(

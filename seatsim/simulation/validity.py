@@ -17,10 +17,12 @@ SHARE = 0.01
 
 
 def list_warnings(scenario: Scenario, history: History) -> tuple[str, ...]:
-    """Return the doubts about a scenario, and a sentence for every range that its run leaves.
+    """Return the doubts about a scenario, and a sentence for every range that its run leaves."""
+    return (*list_doubts(scenario), *list_ranges_left(scenario, history))
 
-    The ranges of the damper are left where that is so for more than 1 % of the time.
-    """
+
+def list_ranges_left(scenario: Scenario, history: History) -> tuple[str, ...]:
+    """Return a sentence for every range that a run leaves; those of the damper for more than 1 % of the time."""
     cls = type(scenario.damper.record)
     specification, model = specification_of(cls), name_of("damper", cls)
     ratio = scenario.plant.damper_ratio if scenario.plant else 1.0
@@ -46,7 +48,7 @@ def list_warnings(scenario: Scenario, history: History) -> tuple[str, ...]:
         centring(history["suspension_displacement"], history["suspension_velocity"]) if specification.centred else ""
     )
     found += [f"{model}: {drift}"] if drift else []
-    return (*list_doubts(scenario), *_doubt_travel(scenario.plant, history), *found)
+    return (*_doubt_travel(scenario.plant, history), *found)
 
 
 def _doubt_travel(plant: Plant | None, history: History) -> tuple[str, ...]:

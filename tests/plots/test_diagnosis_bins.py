@@ -6,7 +6,7 @@ import pytest
 from seatsim.diagnosis.result import Trace
 from seatsim.plots.diagnosis import bins
 from seatsim.plots.diagnosis.discrepancy import _explained_share
-from seatsim.plots.diagnosis.frame import describe_quantity, format_number
+from seatsim.plots.frame import describe_quantity, format_number
 
 RATE = 200.0
 TIME = np.arange(4000) / RATE

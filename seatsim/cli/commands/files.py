@@ -40,7 +40,7 @@ def new(
 
 
 def check(
-    file: Annotated[Path, typer.Argument(help="A scenario, recording, damper, map of import, or Python file.")],
+    file: Annotated[Path, typer.Argument(help="A scenario, recording, sweep, damper, map of import, or Python file.")],
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:
@@ -55,7 +55,7 @@ def check(
 
 def schema(
     kind: Annotated[
-        str, typer.Argument(help="scenario, recording or parameters; or a command, for what its --json prints.")
+        str, typer.Argument(help="scenario, recording, sweep or parameters; or a command, for what its --json prints.")
     ] = "scenario",
     own_code: OwnCode = None,
     as_json: Json = False,

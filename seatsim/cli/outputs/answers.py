@@ -58,6 +58,62 @@ class RunAnswer(Answer):
     failed: list[str]
 
 
+class RunCounts(TypedDict):
+    """Runs of a sweep by state."""
+
+    runs: int
+    done: int
+    failed: int
+    unverified: int
+    pending: int
+
+
+class SweepAnswer(Answer):
+    """A sweep, as in `manifest.json`; `failed` says which runs failed, and why."""
+
+    identity: str
+    counts: RunCounts
+    failed: list[str]
+
+
+class SlurmAnswer(Answer):
+    """A script for an array of tasks, which run a sweep of so many runs."""
+
+    runs: int
+
+
+class LimitExceeded(TypedDict):
+    """How many of the runs of a group (texts that were varied) exceed a limit; the Wilson interval of the share."""
+
+    group: dict[str, object]
+    metric: str
+    unit: str
+    limit: float
+    exceeding: int
+    runs: int
+    share: float
+    low: float
+    high: float
+
+
+class KeySensitivity(TypedDict):
+    """Sobol indices of a key with intervals, as in `sensitivity.csv`."""
+
+    metric: str
+    key: str
+    first: float | None
+    total: float | None
+    explained: float | None
+
+
+class SweepReportAnswer(Answer):
+    """The report of a sweep."""
+
+    sentence: str
+    exceeded: list[LimitExceeded]
+    sensitivities: list[KeySensitivity]
+
+
 class SynthesisAnswer(Answer):
     """A design, as in `design.yaml`."""
 
@@ -296,7 +352,8 @@ class ErrorAnswer(TypedDict):
 
 
 ANSWERS: Mapping[str, object] = {
-    "run": RunAnswer, "compare": RunAnswer, "synthesise": SynthesisAnswer, "gap": GapAnswer,
+    "run": RunAnswer, "compare": RunAnswer, "sweep": SweepAnswer | SlurmAnswer, "sweep-report": SweepReportAnswer,
+    "synthesise": SynthesisAnswer, "gap": GapAnswer,
     "diagnose": DiagnosisAnswer, "characterise": CharacterisationAnswer,
     "identify": IdentificationAnswer | LeagueAnswer, "describe": DescriptionAnswer, "new": NewAnswer,
     "check": CheckAnswer, "import": ImportAnswer, "inspect": InspectionAnswer, "comfort": ComfortAnswer,

@@ -10,15 +10,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.schema.files import write_json, write_whole
+from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.performance_bounds import measure_distance
-from seatsim.simulation.result import UNITS, Result, Run
+from seatsim.simulation.result import Result, Run
 
 if TYPE_CHECKING:
-    import pyarrow as pa
     from matplotlib.figure import Figure
 
 DPI = 110
@@ -31,7 +28,7 @@ def write_result(result: Result, folder: Path) -> list[Path]:
     """Write `summary.csv`, `summary.json`, `history.parquet` and the pictures of a result; return their paths."""
     with ThreadPoolExecutor(max_workers=1) as pool:
         # Compressing the histories, in a thread of its own, releases Python's lock to the drawing of the pictures.
-        history = pool.submit(write_whole, folder / "history.parquet", partial(_write_history, result))
+        history = pool.submit(write_histories, result.runs, folder / "history.parquet")
         from seatsim.plots.runs.draw import plot_result
 
         paths = [
@@ -99,39 +96,3 @@ def _write_table(rows: Sequence[Mapping[str, object]], path: Path) -> None:
 def _cell(value: object) -> object:
     """Return a value as a table writes it; NaN is an empty cell."""
     return "" if isinstance(value, float) and math.isnan(value) else value
-
-
-def _write_history(result: Result, path: Path) -> None:
-    """Write all runs below each other, a column a channel in single precision, units in the columns' metadata."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    fields = [pa.field("run", pa.dictionary(pa.int32(), pa.string()))]
-    fields += [
-        pa.field(name, pa.float64() if name == "time" else pa.float32(), metadata={"unit": unit})
-        for name, unit in UNITS.items()
-    ]
-    schema = pa.schema(fields)
-    with pq.ParquetWriter(path, schema, compression="zstd", compression_level=1) as writer:
-        for run in result.runs:
-            length = len(run.history["time"])
-            titles = pa.DictionaryArray.from_arrays(_array(np.zeros(length), pa.int32()), _text(run.scenario.title))
-            columns = [_array(run.history[name], schema.field(name).type) for name in UNITS]
-            writer.write_table(pa.Table.from_arrays([titles, *columns], schema=schema))
-
-
-def _array(values: NDArray[np.float64], kind: pa.DataType) -> pa.Array:
-    """Return numbers as pyarrow holds them. Its own conversion imports pandas, which takes longer than writing."""
-    import pyarrow as pa
-
-    stored = np.ascontiguousarray(values, dtype=kind.to_pandas_dtype())
-    return pa.Array.from_buffers(kind, len(stored), [None, pa.py_buffer(stored)])
-
-
-def _text(text: str) -> pa.Array:
-    """Return an array of one text."""
-    import pyarrow as pa
-
-    content = text.encode()
-    ends = np.array([0, len(content)], dtype=np.int32)
-    return pa.Array.from_buffers(pa.string(), 1, [None, pa.py_buffer(ends), pa.py_buffer(content)])

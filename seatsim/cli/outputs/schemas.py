@@ -1,10 +1,11 @@
-"""JSON Schema of the files that seatsim reads, for editors: scenarios, recordings, dampers with their parameters."""
+"""JSON Schema of the files that seatsim reads, for editors: scenarios, recordings, sweeps, parameters of dampers."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
 from seatsim.dampers.base import DAMPERS
+from seatsim.metrics.table import METRICS
 from seatsim.recordings.header import Header, RunEntry
 from seatsim.recordings.recording import ChannelEntry, VoltageGain
 from seatsim.rig.coil import Coil
@@ -15,6 +16,7 @@ from seatsim.scenario.scenario import Solver, Start
 from seatsim.schema.fields import field_names
 from seatsim.schema.json_schema import Schema, mapping_schema, record_schema
 from seatsim.schema.registry import find, names
+from seatsim.sweeps.definition import DESIGNS
 
 ANYTHING: Schema = {}
 TEXT: Schema = {"type": "string"}
@@ -74,8 +76,37 @@ def parameters_schema() -> Schema:
     return _headed("seatsim damper parameters", whole | {"$defs": {BY_MODEL: _parameters_by_model()}})
 
 
+def sweep_schema() -> Schema:
+    """Return the schema of a sweep."""
+    number: Schema = {"type": "number"}
+    pair = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
+    whole: Schema = {"type": "integer", "minimum": 1}
+    ends = {"low": number, "high": number}
+    forms = [
+        {"type": "array", "minItems": 1},
+        mapping_schema(
+            {"from": number, "to": number, "steps": {"type": "integer", "minimum": 2}}, ("from", "to", "steps")
+        ),
+        mapping_schema({"uniform": pair}, ("uniform",)),
+        mapping_schema({"normal": pair, **ends}, ("normal",)),
+        mapping_schema({"lognormal": pair, **ends}, ("lognormal",)),
+        mapping_schema({"choice": {"type": "object", "additionalProperties": number}}, ("choice",)),
+    ]
+    keys = {
+        "scenario": {"anyOf": [TEXT, BY_KEY]},
+        "seed": {"type": "integer", "minimum": 0, "description": "every draw of the design derives from it"},
+        "design": {"enum": list(DESIGNS)},
+        "runs": {**whole, "description": "points of lhs and sobol; draws of cross and zip"},
+        "replicates": {**whole, "description": "runs of each point with other seeds of the scenario"},
+        "vary": {"type": "object", "additionalProperties": {"anyOf": forms}},
+        "table": {**TEXT, "description": "CSV file whose columns are keys, for design table"},
+        "limits": mapping_schema({name: {**number, "unit": metric.unit} for name, metric in METRICS.items()}),
+    }
+    return _headed("seatsim sweep", mapping_schema(keys, ("scenario",)))
+
+
 FILES: Mapping[str, Callable[[], Schema]] = {
-    "scenario": scenario_schema, "recording": recording_schema, "parameters": parameters_schema,
+    "scenario": scenario_schema, "recording": recording_schema, "parameters": parameters_schema, "sweep": sweep_schema,
 }  # fmt: skip
 """Schemas of files by kind."""
 

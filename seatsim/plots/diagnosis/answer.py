@@ -13,7 +13,7 @@ from matplotlib.ticker import LogLocator
 
 from seatsim.diagnosis.result import Cause, Diagnosis, Gaps
 from seatsim.plots import style
-from seatsim.plots.diagnosis.frame import FONT, Picture, draw_bars, make_frame, name_rows
+from seatsim.plots.frame import FONT, Picture, draw_bars, make_frame, name_rows
 from seatsim.plots.style import COLOURS, Grid
 from seatsim.recordings.gap import Gap
 

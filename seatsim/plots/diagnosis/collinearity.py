@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.result import Diagnosis
-from seatsim.plots.diagnosis.frame import FONT, Picture, make_frame, name_rows
+from seatsim.plots.frame import FONT, Picture, make_frame, name_rows
 from seatsim.plots.style import Grid
 from seatsim.plots.thinning import Array
 

@@ -11,8 +11,8 @@ from seatsim.diagnosis.result import Diagnosis
 from seatsim.metrics import rms
 from seatsim.plots import style
 from seatsim.plots.diagnosis.bins import bin_edges, bin_mean, find_window, varies
-from seatsim.plots.diagnosis.frame import FONT, Picture, Quantity, describe_quantity, make_frame
 from seatsim.plots.diagnosis.maps import OVER, PROFILE
+from seatsim.plots.frame import FONT, Picture, Quantity, describe_quantity, make_frame
 from seatsim.plots.style import COLOURS, Entry, Grid
 from seatsim.plots.thinning import Array, thin_line
 

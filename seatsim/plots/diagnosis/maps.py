@@ -28,19 +28,8 @@ from seatsim.plots.diagnosis.bins import (
     sample_step,
     varies,
 )  # fmt: skip
-from seatsim.plots.diagnosis.frame import (
-    FONT,
-    NOISE,
-    NOMINAL,
-    WIDE,
-    Picture,
-    Quantity,
-    choose_after_look,
-    describe_quantity,
-    format_number,
-    make_frame,
-    scale_frequency_axis,
-)
+from seatsim.plots.diagnosis.frame import NOISE, NOMINAL, choose_after_look, scale_frequency_axis
+from seatsim.plots.frame import FONT, WIDE, Picture, Quantity, describe_quantity, format_number, make_frame
 from seatsim.plots.style import Entry, Grid
 from seatsim.plots.thinning import Array
 

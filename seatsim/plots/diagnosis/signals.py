@@ -19,19 +19,8 @@ from seatsim.plots.diagnosis.bins import (
     group_by_channel,
     nominal_gap,
 )
-from seatsim.plots.diagnosis.frame import (
-    FONT,
-    MEASURED,
-    NOISE,
-    NOMINAL,
-    Picture,
-    Quantity,
-    choose_after_look,
-    describe_quantity,
-    format_number,
-    make_frame,
-    scale_frequency_axis,
-)  # fmt: skip
+from seatsim.plots.diagnosis.frame import MEASURED, NOISE, NOMINAL, choose_after_look, scale_frequency_axis
+from seatsim.plots.frame import FONT, Picture, Quantity, describe_quantity, format_number, make_frame
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import Array, Window
 

@@ -1,0 +1,99 @@
+"""The commands on sweeps: sweep, sweep-report."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from seatsim.cli.options import Json, Out, OwnCode
+from seatsim.cli.terminal import answer, complain, count_progress, say, show_progress, warn, wrote, wrote_one
+
+FAILURES_SHOWN = 5
+"""Failed runs whose reasons are printed; the others stand in the rows."""
+EXCEEDED_SHOWN = 12
+"""Limits by group that are printed; the page has more."""
+DOUBTS_SHOWN = 5
+SweepFile = Annotated[Path, typer.Argument(help="A sweep file: a scenario, and what is varied.", show_default=False)]
+
+
+def sweep(
+    file: SweepFile,
+    out_folder: Out = None,
+    engine: Annotated[
+        Literal["local", "dask", "cuda"], typer.Option("--engine", help="Threads, a cluster, or a CUDA device.")
+    ] = "local",
+    address: Annotated[
+        str | None, typer.Option("--address", metavar="URL", help="Running dask scheduler, such as tcp://host:8786.")
+    ] = None,
+    jobs: Annotated[
+        int | None, typer.Option("--jobs", min=1, help="Runs at once.", show_default="all processors")
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the sweep in the folder.")] = False,
+    keep: Annotated[
+        Literal["none", "histories"], typer.Option("--keep", help="What is kept of a run besides its metrics.")
+    ] = "none",
+    share: Annotated[
+        str | None, typer.Option("--part", metavar="K/N", help="Only part K of N, beside commands for the others.")
+    ] = None,
+    slurm: Annotated[
+        Path | None, typer.Option("--slurm", metavar="FILE", help="Write an array script for Slurm; nothing runs.")
+    ] = None,
+    own_code: OwnCode = None,
+    as_json: Json = False,
+) -> None:
+    """Simulate a scenario with many values of its keys, and keep the metrics of every run."""
+    from seatsim.sweeps.engines.choice import choose_engine
+    from seatsim.sweeps.execute import execute, prepare, read_share
+    from seatsim.sweeps.slurm import write_slurm
+
+    folder = out_folder or Path("out") / file.stem
+    part = read_share(share) if share else None
+    prepared = prepare(file)
+    warn(prepared.doubts[:DOUBTS_SHOWN], "warning")
+    if slurm is not None:
+        path = write_slurm(slurm, file, folder, prepared.plan, keep == "histories", own_code or [])
+        wrote_one(path)
+        say(f"next: sbatch {path}, then seatsim sweep-report {folder}")
+        return answer({"runs": prepared.plan.runs}, [path])
+    carry_out = choose_engine(engine, jobs or os.cpu_count() or 1, address)
+    try:
+        with count_progress("simulating", prepared.plan.runs) as count:
+            result = execute(prepared, folder, carry_out, resume, keep == "histories", part, count)
+    except KeyboardInterrupt:
+        complain(f"interrupted: {folder} keeps what has ended; go on with --resume")
+        raise
+    counts = ", ".join(f"{number} {state}" for state, number in result.counts.items() if number or state == "done")
+    say(f"{folder}: {counts}")
+    for text in result.failures[:FAILURES_SHOWN]:
+        complain(f"failed: {text}")
+    if len(result.failures) > FAILURES_SHOWN:
+        complain(f"and {len(result.failures) - FAILURES_SHOWN} more; their reasons stand in the rows")
+    answer(
+        {"identity": result.identity, "counts": result.counts, "failed": result.failures}, [folder / "manifest.json"]
+    )
+    if result.failures:
+        raise typer.Exit(1)
+
+
+def sweep_report(
+    folder: Annotated[Path, typer.Argument(help="Folder of a sweep.", show_default=False)],
+    out_folder: Annotated[
+        Path | None, typer.Option("--out", help="Folder for the files.", show_default="that of the sweep")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Say what the runs of a sweep have in common: quantiles, sensitivities, probabilities, pictures."""
+    from seatsim.cli.outputs.sweeps import encode_report, report_sweep
+
+    with show_progress():
+        report = report_sweep(folder, out_folder or folder)
+    say(report.sentence)
+    for row in report.exceeded[:EXCEEDED_SHOWN]:
+        who = "".join(f"{value}: " for value in row.group.values())
+        say(f"{who}{row.metric} above {row.limit:g} {row.unit}: {row.exceeding} of {row.runs} runs,"
+            f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)")  # fmt: skip
+    wrote(out_folder or folder, report.paths)
+    answer(encode_report(report), report.paths)

@@ -1,0 +1,48 @@
+"""Files of the report of a sweep: `report.html`, `table.csv`, `sensitivity.csv`."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+from seatsim.report.sweep import state_importance, write_sweep_report
+from seatsim.schema.files import write_whole
+from seatsim.sweeps.statistics.exceedance import Exceedance, count_exceedances
+from seatsim.sweeps.statistics.inputs import read_rows
+from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
+from seatsim.sweeps.statistics.sensitivity import Sensitivities, analyse_sensitivity, tabulate_sensitivities
+
+
+class SweepReport(NamedTuple):
+    """What a report says, and the files that hold it."""
+
+    sentence: str
+    exceeded: list[Exceedance]
+    sensitivities: Sensitivities
+    paths: list[Path]
+
+
+def report_sweep(folder: Path, out: Path) -> SweepReport:
+    """Write the report of a sweep to a folder.
+
+    Raises:
+        InputError: the folder holds no sweep, or none of its runs has ended.
+    """
+    rows = read_rows(folder)
+    quantiles, found, exceeded = tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows)
+    paths = [
+        write_whole(out / "table.csv", partial(quantiles.to_csv, index=False)),
+        write_whole(out / "sensitivity.csv", partial(tabulate_sensitivities(found).to_csv, index=False)),
+        write_sweep_report(rows, quantiles, found, exceeded, out / "report.html"),
+    ]
+    return SweepReport(state_importance(found, rows), exceeded, found, paths)
+
+
+def encode_report(report: SweepReport) -> dict[str, object]:
+    """Return what `--json` prints of a report."""
+    return {
+        "sentence": report.sentence,
+        "exceeded": [row._asdict() for row in report.exceeded],
+        "sensitivities": [row._asdict() for row in report.sensitivities.rows],
+    }

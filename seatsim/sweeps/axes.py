@@ -1,0 +1,154 @@
+"""The values that one key takes: a list, a range, or a distribution that is drawn from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple, TypeGuard
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.schema.validation import check_keys, mapping
+from seatsim.schema.yaml_source import KeyPath, Source
+
+Array = NDArray[np.float64]
+DISTRIBUTIONS = {
+    "uniform": "[low, high]", "normal": "[mean, standard deviation]",
+    "lognormal": "[mean, standard deviation of the log]", "choice": "{value: probability, ...}",
+}  # fmt: skip
+"""Names of distributions, and what each takes."""
+FORMS = (
+    "a list, {from: A, to: B, steps: N}, or a distribution: "
+    + ", ".join(f"{name}: {takes}" for name, takes in DISTRIBUTIONS.items())
+)  # fmt: skip
+SLIGHTLY = 1e-9
+"""By how much probabilities may miss the sum of 1, for the sake of rounding."""
+EDGE = 2.0**-53
+"""Probability in either tail that no draw reaches: a quantile at 0 or 1 may be infinite."""
+
+
+class Axis(NamedTuple):
+    """A varied key: its values where these are listed, and in any case its quantile function.
+
+    `values` are the stated ones in order, None of a distribution. `quantile` maps probabilities, shape (N,), to values;
+    those of a list are equally likely.
+    """
+
+    key: str
+    values: tuple[object, ...] | None
+    quantile: Callable[[Array], list[object]]
+
+
+def read_axis(key: str, source: Source) -> Axis:
+    """Return the values of a key, as they stand under `vary` in a sweep file.
+
+    Raises:
+        InputError: they are no list, range or distribution, or its numbers do not fit each other.
+    """
+    where: KeyPath = ("vary", key)
+    stated = mapping(source.data["vary"], source, ("vary",))[key]
+    if isinstance(stated, list):
+        if not stated:
+            raise source.error(where, "the list is empty; state at least one value")
+        return _listed(key, stated)
+    if not isinstance(stated, Mapping):
+        raise source.error(where, f"{stated!r} is a single value; permitted: {FORMS}")
+    if {"from", "to", "steps"} & set(stated):
+        return _listed(key, _read_range(stated, source, where))
+    return Axis(key, None, _read_distribution(stated, source, where))
+
+
+def _listed(key: str, values: Sequence[object]) -> Axis:
+    return Axis(key, tuple(values), _choose(values, np.full(len(values), 1 / len(values))))
+
+
+def _choose(values: Sequence[object], probabilities: Array) -> Callable[[Array], list[object]]:
+    edges = np.cumsum(probabilities)[:-1]
+    return lambda u: [values[index] for index in np.searchsorted(edges, u, side="right")]
+
+
+def _read_range(stated: Mapping[str, object], source: Source, where: KeyPath) -> list[object]:
+    check_keys(stated, ("from", "to", "steps"), source, where)
+    for name in ("from", "to", "steps"):
+        if not _is_number(stated.get(name)):
+            raise source.error((*where, name), f"{stated.get(name)!r} is not a finite number; a range is"
+                                               " {from: A, to: B, steps: N}")  # fmt: skip
+    steps, ends = stated["steps"], [stated["from"], stated["to"]]
+    if not isinstance(steps, int) or steps < 2:
+        raise source.error((*where, "steps"), f"{steps!r} is not permitted; it must be a whole number of at least 2")
+    values = np.linspace(float(str(ends[0])), float(str(ends[1])), steps).tolist()
+    whole = all(isinstance(end, int) for end in ends) and all(value.is_integer() for value in values)
+    # Whole numbers stay what they are: keys such as `seed` take no others.
+    return [int(value) for value in values] if whole else values
+
+
+def _read_distribution(stated: Mapping[str, object], source: Source, where: KeyPath) -> Callable[[Array], list[object]]:
+    check_keys(stated, (*DISTRIBUTIONS, "low", "high"), source, where)
+    named = [name for name in DISTRIBUTIONS if name in stated]
+    if len(named) != 1:
+        raise source.error(where, f"states {' and '.join(named) or 'no values'}; permitted: {FORMS}")
+    kind = named[0]
+    if kind in ("uniform", "choice") and {"low", "high"} & set(stated):
+        raise source.error(where, f"low and high truncate normal and lognormal; {kind} takes {DISTRIBUTIONS[kind]}")
+    if kind == "choice":
+        return _read_choice(stated["choice"], source, (*where, kind))
+    first, second = _read_pair(stated[kind], kind, source, (*where, kind))
+    if kind == "uniform":
+        return lambda u: (first + u * (second - first)).tolist()
+    low, high = _read_truncation(stated, source, where)
+    if kind == "normal":
+        return lambda u: _truncated_normal(u, first, second, low, high).tolist()
+    return lambda u: np.exp(_truncated_normal(u, first, second, _log(low), _log(high))).tolist()
+
+
+def _read_pair(values: object, kind: str, source: Source, where: KeyPath) -> tuple[float, float]:
+    if not (isinstance(values, list) and len(values) == 2 and all(map(_is_number, values))):
+        raise source.error(where, f"{values!r} is not permitted; {kind} takes {DISTRIBUTIONS[kind]}")
+    first, second = map(float, values)
+    if kind == "uniform" and not first < second:
+        raise source.error(where, f"{values!r} is not permitted; the second number must be greater than the first")
+    if kind != "uniform" and not second > 0:
+        raise source.error(where, f"{second:g} is not permitted; a standard deviation must be greater than 0")
+    return first, second
+
+
+def _read_truncation(stated: Mapping[str, object], source: Source, where: KeyPath) -> tuple[float, float]:
+    ends = []
+    for name, default in (("low", -math.inf), ("high", math.inf)):
+        value = stated.get(name, default)
+        if name in stated and not _is_number(value):
+            raise source.error((*where, name), f"{value!r} is not a finite number")
+        ends.append(float(str(value)))
+    if not ends[0] < ends[1]:
+        raise source.error((*where, "high"), f"{ends[1]:g} is not permitted; it must be greater than low, {ends[0]:g}")
+    return ends[0], ends[1]
+
+
+def _truncated_normal(u: Array, mean: float, deviation: float, low: float, high: float) -> Array:
+    # scipy.stats takes as long to load as many runs take, and most sweeps and all commands do without.
+    from scipy.stats import truncnorm
+
+    drawn: Array = truncnorm.ppf(
+        np.clip(u, EDGE, 1 - EDGE), (low - mean) / deviation, (high - mean) / deviation, loc=mean, scale=deviation
+    )
+    return drawn
+
+
+def _read_choice(stated: object, source: Source, where: KeyPath) -> Callable[[Array], list[object]]:
+    shares = mapping(stated, source, where)
+    for value, share in shares.items():
+        if not _is_number(share) or share < 0:
+            raise source.error((*where, value), f"{share!r} is not permitted; a probability is at least 0")
+    probabilities = np.array(list(shares.values()), dtype=float)
+    if not shares or abs(probabilities.sum() - 1) > SLIGHTLY:
+        raise source.error(where, f"the probabilities sum to {probabilities.sum():g}; they must sum to 1")
+    return _choose(list(shares), probabilities)
+
+
+def _log(value: float) -> float:
+    return math.log(value) if value > 0 else -math.inf
+
+
+def _is_number(value: object) -> TypeGuard[float]:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

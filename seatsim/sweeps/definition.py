@@ -1,0 +1,169 @@
+"""What a sweep file states: the scenario, the varied keys, the design that combines them, and limits of metrics.
+
+scenario: quickstart.yaml
+seed: 1
+design: lhs
+runs: 1000
+vary: {plant.driver_mass: {normal: [80, 12], low: 50, high: 120}}
+limits: {driver_acceleration_weighted: 0.5}
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Literal, NamedTuple, cast, get_args
+
+from seatsim.metrics.table import METRICS
+from seatsim.scenario.loading import find_file
+from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.validation import check_keys, mapping
+from seatsim.schema.yaml_source import Source
+from seatsim.sweeps.axes import Axis, read_axis
+
+DesignName = Literal["cross", "zip", "lhs", "sobol", "table"]
+DESIGNS: tuple[str, ...] = get_args(DesignName)
+KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
+MOST_RUNS = 10_000_000
+"""Runs of a sweep: their numbers have this many digits, and more would be a slip of the keyboard."""
+
+
+class Table(NamedTuple):
+    """A design that a CSV file states: values by key and row, and the file."""
+
+    path: Path
+    columns: Mapping[str, list[object]]
+
+
+class SweepDefinition(NamedTuple):
+    """A sweep file, read and checked as far as it goes without the scenario.
+
+    `runs` is None where the design needs none; `source` is the file, `scenario` the content of the scenario.
+    """
+
+    source: Source
+    scenario: Source
+    seed: int
+    design: DesignName
+    runs: int | None
+    replicates: int
+    axes: tuple[Axis, ...]
+    table: Table | None
+    limits: Mapping[str, float]
+
+    def place(self, key: str) -> str:
+        """Return where the values of a varied key are stated."""
+        return str(self.table.path) if self.table else self.source.nearest_place(("vary", key))
+
+
+def read_definition(path: Path) -> SweepDefinition:
+    """Return what a sweep file states.
+
+    Raises:
+        InputError: the file cannot be read, or a key is unknown, missing or has a value that is not permitted.
+    """
+    source = Source(path)
+    check_keys(source.data, KEYS, source, ())
+    design = _read_design(source)
+    table = _read_table(source) if design == "table" else None
+    if table is not None and "vary" in source.data:
+        raise source.error(("vary",), "a design 'table' takes its keys from the columns of the file; leave 'vary' out")
+    if design != "table" and "table" in source.data:
+        raise source.error(("table",), f"design '{design}' takes no table; write design: table")
+    stated = mapping(source.data.get("vary", {}), source, ("vary",))
+    if table is None and not stated:
+        raise source.error((), "key 'vary' is missing; it names the keys of the scenario that are varied")
+    return SweepDefinition(
+        source=source,
+        scenario=_read_scenario(source),
+        seed=_read_whole(source, "seed", least=0) or 0,
+        design=design,
+        runs=_read_whole(source, "runs", least=1),
+        replicates=_read_whole(source, "replicates", least=1) or 1,
+        axes=tuple(read_axis(key, source) for key in stated),
+        table=table,
+        limits=_read_limits(source),
+    )
+
+
+def is_sweep(data: Mapping[str, object]) -> bool:
+    """Tell whether the content of a YAML file is a sweep and no scenario."""
+    return "scenario" in data and bool({"vary", "table", "design"} & set(data))
+
+
+def _read_design(source: Source) -> DesignName:
+    name = source.data.get("design", "cross")
+    if name not in DESIGNS:
+        raise source.error(
+            ("design",), f"{name!r} is not permitted{nearest(name, DESIGNS)}; permitted: {', '.join(DESIGNS)}"
+        )
+    return cast("DesignName", name)
+
+
+def _read_scenario(source: Source) -> Source:
+    stated = source.data.get("scenario")
+    if isinstance(stated, Mapping):
+        return source.below("scenario")
+    if not isinstance(stated, str):
+        raise source.error(("scenario",), "state a scenario file, the name of an example, or a whole scenario")
+    beside = source.path.parent / stated
+    try:
+        return Source(beside if beside.is_file() else find_file(Path(stated)))
+    except InputError as error:
+        raise source.error(("scenario",), str(error)) from error
+
+
+def _read_whole(source: Source, key: str, least: int) -> int | None:
+    if key not in source.data:
+        return None
+    value = source.data[key]
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= MOST_RUNS:
+        raise source.error((key,), f"{value!r} is not permitted; it must be a whole number from {least} to {MOST_RUNS}")
+    return value
+
+
+def _read_limits(source: Source) -> Mapping[str, float]:
+    stated = mapping(source.data.get("limits", {}), source, ("limits",))
+    check_keys(stated, METRICS, source, ("limits",))
+    for name, value in stated.items():
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise source.error(
+                ("limits", name), f"{value!r} is not permitted; it must be a finite number in {METRICS[name].unit}"
+            )
+    return {name: float(str(value)) for name, value in stated.items()}
+
+
+def _read_table(source: Source) -> Table:
+    stated = source.data.get("table")
+    if not isinstance(stated, str):
+        raise source.error(("table",), "design 'table' needs the path of a CSV file whose columns are keys")
+    path = source.path.parent / stated
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.reader(file))
+    except (OSError, UnicodeDecodeError) as error:
+        raise source.error(("table",), f"{path} cannot be read: {error}") from error
+    head, body = (rows[0], [row for row in rows[1:] if row]) if rows else ([], [])
+    if not head or not body or len(set(head)) < len(head):
+        raise InputError(f"{path}: a design has a line of different keys, and below it a line for each point")
+    for number, row in enumerate(body, start=2):
+        if len(row) != len(head):
+            raise InputError(f"{path}, row {number}: has {len(row)} values; {len(head)} keys are named")
+    return Table(path, {key: [_read_cell(row[k]) for row in body] for k, key in enumerate(head)})
+
+
+def _read_cell(text: str) -> object:
+    """Return a cell as YAML reads it: a number, a truth value, or text."""
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    try:
+        return cast("object", YAML(typ="safe").load(text))
+    except YAMLError:
+        return text

@@ -1,0 +1,24 @@
+"""Engines by name."""
+
+from __future__ import annotations
+
+from seatsim.schema.errors import InputError
+from seatsim.sweeps.engines.base import Engine
+from seatsim.sweeps.engines.threads import ThreadEngine
+
+
+def choose_engine(name: str, jobs: int, address: str | None) -> Engine:
+    """Return the engine that is called `name`, for so many runs at once or on the scheduler at an address.
+
+    Raises:
+        InputError: the engine is not available here, or an address is given to one that takes none.
+    """
+    if address is not None and name != "dask":
+        raise InputError(f"--address {address}: engine '{name}' takes none; add --engine dask")
+    if name == "cuda":
+        raise InputError("--engine cuda: no CUDA device can be used here; choose --engine local or dask")
+    if name == "dask":
+        from seatsim.sweeps.engines.cluster import make_cluster_engine
+
+        return make_cluster_engine(jobs, address)
+    return ThreadEngine(jobs)

@@ -1,0 +1,128 @@
+"""Engine `dask`: a cluster, embedded in this process or at the address of its scheduler.
+
+A task is a part of the sweep with the values of its runs, so that a worker needs nothing but seatsim, the files that
+the scenario names and the user's own code, at the same paths. A task whose worker dies is given to another one.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from seatsim.schema.errors import InputError, RunError
+from seatsim.schema.modules import use_all, used_files
+from seatsim.sweeps.engines.base import Work, simulate_one
+from seatsim.sweeps.outcome import Outcome
+from seatsim.sweeps.plan import Selection
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+EXTRA = 'engine dask needs an extra; install it with: pip install "seatsim[cluster]"'
+AHEAD = 4
+"""Tasks for each worker that are sent before it has asked for them, so that it never waits for one."""
+LONGEST_SEARCH = 10
+"""Seconds in which a scheduler must answer."""
+
+
+def make_cluster_engine(jobs: int, address: str | None) -> ClusterEngine:
+    """Return the engine.
+
+    Raises:
+        InputError: dask is not installed.
+    """
+    try:
+        import distributed  # noqa: F401
+    except ImportError as error:
+        raise InputError(EXTRA) from error
+    return ClusterEngine(jobs, address)
+
+
+class ClusterEngine(NamedTuple):
+    """Simulates runs on a dask cluster: of `jobs` processes on this machine, or the one at an address."""
+
+    jobs: int
+    address: str | None
+
+    def __call__(self, work: Work) -> Iterator[list[Outcome]]:
+        """Yield the outcomes of each task as it ends.
+
+        Raises:
+            InputError: no scheduler answers at the address, or it has no worker. RunError: the cluster was lost.
+        """
+        from distributed import as_completed
+
+        with ExitStack() as stack:
+            client = self._connect(stack)
+            _await_workers(client)
+            waiting = iter(work.tasks)
+
+            def submit(count: int) -> list[Any]:
+                return [client.submit(_simulate, *_pack(work, task), pure=False) for task in islice(waiting, count)]
+
+            ahead = AHEAD * max(self.jobs, len(client.scheduler_info()["workers"]))
+            running = as_completed(submit(ahead))
+            for future in running:
+                yield _await_outcomes(future)
+                future.release()
+                running.update(submit(1))
+
+    def _connect(self, stack: ExitStack) -> Client:
+        from distributed import Client, LocalCluster
+
+        # What goes wrong is said once, by the error that reaches the user.
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        if self.address is None:
+            cluster = LocalCluster(
+                n_workers=self.jobs, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+            )
+            return stack.enter_context(Client(stack.enter_context(cluster)))
+        try:
+            return stack.enter_context(Client(self.address, timeout=LONGEST_SEARCH))
+        except (OSError, ValueError) as error:
+            raise InputError(
+                f"--address {self.address}: no dask scheduler answers there; start one with 'dask scheduler', and"
+                f" workers with 'dask worker {self.address}'"
+            ) from error
+
+
+def _await_workers(client: Client) -> None:
+    try:
+        client.wait_for_workers(1, timeout=LONGEST_SEARCH)
+    except TimeoutError as error:
+        raise InputError(
+            f"the dask scheduler has no worker; start some with 'dask worker {client.scheduler.address}'"
+        ) from error
+
+
+def _await_outcomes(future: Any) -> list[Outcome]:
+    """Return the outcomes of a task.
+
+    Raises:
+        RunError: the scheduler was lost, or the task ended one worker after the other.
+    """
+    from asyncio import CancelledError as CancelledTaskError
+    from concurrent.futures import CancelledError
+
+    from distributed import KilledWorker
+
+    try:
+        outcomes: list[Outcome] = future.result()
+    except (KilledWorker, CancelledError, CancelledTaskError, OSError) as error:
+        raise RunError(f"the cluster was lost ({type(error).__name__}: {error}); go on with --resume") from error
+    return outcomes
+
+
+def _pack(work: Work, runs: Sequence[int]) -> tuple[Selection, Path | None, tuple[Path, ...]]:
+    folder = work.histories.resolve() if work.histories else None
+    return work.plan.select(runs), folder, used_files()
+
+
+def _simulate(selection: Selection, histories: Path | None, own_code: Sequence[Path]) -> list[Outcome]:
+    """Simulate the runs of a task; called on a worker."""
+    use_all(own_code)
+    return [simulate_one(selection.plan, inner, number, histories) for number, inner in selection.runs]

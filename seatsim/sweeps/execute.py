@@ -1,0 +1,181 @@
+"""Carry out a sweep in a folder: check, lock, compare with what is there, simulate what is missing, keep it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from seatsim.schema.errors import InputError, RunError
+from seatsim.sweeps.checks import check_plan
+from seatsim.sweeps.definition import SweepDefinition, read_definition
+from seatsim.sweeps.engines.base import Engine, Work
+from seatsim.sweeps.identity import identify_sweep
+from seatsim.sweeps.lock import hold_file, hold_folder
+from seatsim.sweeps.manifest import check_resumable, count_states, write_manifest
+from seatsim.sweeps.outcome import FAILED, Outcome
+from seatsim.sweeps.parts import (
+    make_schema,
+    part_of,
+    read_outcomes,
+    read_states,
+    remove_unfinished,
+    runs_of,
+    varied_keys,
+    write_outcomes,
+)
+from seatsim.sweeps.plan import Plan, make_plan
+from seatsim.sweeps.units import find_unit
+
+FLUSH = 1.0
+"""Seconds between two times at which unfinished parts are written: what a killed process may lose."""
+Progress = Callable[[int, int], None]
+"""Is called with how many runs have ended, and of how many."""
+
+
+class Share(NamedTuple):
+    """Share `number` of `of` shares of a sweep: every so-manieth part, for one command among several."""
+
+    number: int
+    of: int
+
+    @property
+    def text(self) -> str:
+        """The share as an option states it."""
+        return f"{self.number}/{self.of}"
+
+
+def read_share(text: str) -> Share:
+    """Return the share that an option states as `K/N`.
+
+    Raises:
+        InputError: it is no such share.
+    """
+    number, sign, of = text.partition("/")
+    if not (sign and number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
+        raise InputError(f"--part {text}: write K/N with K from 1 to N, such as --part 2/8")
+    return Share(int(number), int(of))
+
+
+class SweepResult(NamedTuple):
+    """A sweep after a command: its folder, its identity, runs by state, and reasons of the first runs that failed."""
+
+    folder: Path
+    identity: str
+    counts: Mapping[str, int]
+    failures: list[str]
+
+
+class PreparedSweep(NamedTuple):
+    """A sweep file and its runs, checked; `doubts` say what is permitted but unusual."""
+
+    definition: SweepDefinition
+    plan: Plan
+    doubts: list[str]
+
+
+def prepare(path: Path) -> PreparedSweep:
+    """Read a sweep file, resolve its design and check its values; nothing runs.
+
+    Raises:
+        InputError: anything in it is wrong, or a draw is not permitted.
+    """
+    definition = read_definition(path)
+    plan = make_plan(definition)
+    return PreparedSweep(definition, plan, check_plan(plan))
+
+
+def execute(
+    prepared: PreparedSweep,
+    folder: Path,
+    engine: Engine,
+    resume: bool = False,
+    keep_histories: bool = False,
+    share: Share | None = None,
+    progress: Progress = lambda done, runs: None,
+) -> SweepResult:
+    """Carry out a sweep, or what is missing of it with `resume`, and keep its rows in a folder.
+
+    On an interrupt what has ended is kept. A `share` is a part of the sweep that other commands complete.
+
+    Raises:
+        InputError: the folder is held by another process, holds another sweep, or `resume` is not set.
+    """
+    definition, plan = prepared.definition, prepared.plan
+    with hold_folder(folder, share.text if share else ""):
+        if share is None:
+            remove_unfinished(folder)
+        identity = identify_sweep(definition, plan)
+        # The first of several shares makes the manifest, which the others then find.
+        with hold_file(folder / ".lock-manifest", wait=True):
+            check_resumable(folder, identity, plan, resume)
+            states = [state for _, state, _ in read_states(folder, plan.runs)]
+            write_manifest(folder, identity, definition.limits, count_states(states, plan.runs))
+        rows = _Rows(folder, plan, share, progress)
+        try:
+            histories = folder / "histories" if keep_histories else None
+            for outcomes in engine(Work(plan, rows.missing(), histories)):
+                rows.add(outcomes)
+            if left := sum(map(len, rows.missing())):
+                raise RunError(f"{folder}: the engine ended without {left} of its runs; go on with --resume")
+        finally:
+            rows.flush()
+            with hold_file(folder / ".lock-manifest", wait=True):
+                found = list(read_states(folder, plan.runs))
+                counts = count_states((state for _, state, _ in found), plan.runs)
+                write_manifest(folder, identity, definition.limits, counts)
+    failures = [f"run {run}: {reason}" for run, state, reason in found if state == FAILED]
+    return SweepResult(folder, identity.digest, counts, failures)
+
+
+class _Rows:
+    """The rows of the parts of a share, or of all, that are not complete yet."""
+
+    def __init__(self, folder: Path, plan: Plan, share: Share | None, progress: Progress) -> None:
+        self._folder, self._plan, self._progress = folder, plan, progress
+        units = {key: find_unit(plan.scenario(0), key) for key in varied_keys(plan)}
+        self._schema = make_schema(plan, units)
+        self._open: dict[int, dict[int, Outcome]] = {}
+        self._total = self._done = 0
+        every = range(part_of(plan.runs - 1) + 1)
+        for part in every if share is None else every[share.number - 1 :: share.of]:
+            found = {outcome.run: outcome for outcome in read_outcomes(folder, part)}
+            self._total += len(self._runs(part))
+            self._done += len(found)
+            if len(found) < len(self._runs(part)):
+                self._open[part] = found
+        self._changed: set[int] = set()
+        self._flushed = time.monotonic()
+
+    def _runs(self, part: int) -> range:
+        return runs_of(part, self._plan.runs)
+
+    def missing(self) -> list[list[int]]:
+        """Return the runs that have no row yet, by part."""
+        return [[run for run in self._runs(part) if run not in rows] for part, rows in self._open.items()]
+
+    def add(self, outcomes: list[Outcome]) -> None:
+        """Take outcomes in; a part that is complete is written, the others from time to time."""
+        for outcome in outcomes:
+            part = part_of(outcome.run)
+            self._open[part][outcome.run] = outcome
+            self._changed.add(part)
+        self._done += len(outcomes)
+        self._progress(self._done, self._total)
+        for part in {part_of(outcome.run) for outcome in outcomes}:
+            if len(self._open[part]) == len(self._runs(part)):
+                self._write(part)
+                del self._open[part]
+        if time.monotonic() - self._flushed > FLUSH:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the parts that have rows which are not on the disk."""
+        for part in sorted(self._changed):
+            self._write(part)
+        self._flushed = time.monotonic()
+
+    def _write(self, part: int) -> None:
+        write_outcomes(self._folder, part, self._plan, self._schema, self._open[part].values())
+        self._changed.discard(part)

@@ -1,0 +1,100 @@
+"""What becomes of one run of a sweep: its state, the reason for it, and its metrics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.excitations.base import Excitation, Floor
+from seatsim.metrics.table import METRICS, Metric
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.errors import SeatsimError
+from seatsim.simulation.history_table import write_histories
+from seatsim.simulation.result import Run
+from seatsim.simulation.runs import measure_run
+from seatsim.simulation.simulate import History, simulate
+from seatsim.simulation.validity import list_ranges_left
+
+DONE, FAILED, UNVERIFIED = "done", "failed", "unverified"
+STATES = (DONE, FAILED, UNVERIFIED)
+LARGEST_RESIDUAL = 0.01
+"""Share of the energy that may be unaccounted for before a run counts as unverified."""
+FLOORS_KEPT = 8
+"""Floors that are kept for the next runs; of 60 s at 1 kHz each takes 1.5 MB."""
+
+
+class Outcome(NamedTuple):
+    """The outcome of a run by its number.
+
+    `done` has metrics that can be used; `unverified` has metrics that nothing confirms, or that come from outside the
+    range of a model; `failed` has none. `metrics` are in the order of `METRICS`, None where there is no such figure.
+    """
+
+    run: int
+    state: str
+    reason: str
+    seed: int
+    metrics: tuple[float | None, ...]
+
+
+def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: Path | None) -> Outcome:
+    """Simulate one run and return its outcome; nothing that goes wrong in it ends the sweep.
+
+    `histories` is a folder in which the channels are kept, or None.
+    """
+    seed = 0
+    try:
+        scenario = make_scenario()
+        seed = scenario.seed
+        # What grows beyond all numbers is said by the state of the run, once.
+        with np.errstate(over="ignore", invalid="ignore"):
+            history = simulate(scenario, _floor_of(scenario))
+            metrics = measure_run(scenario, history)
+        if histories is not None:
+            write_histories([Run(scenario, history, metrics)], history_path(histories, number))
+        reason = "; ".join(_list_doubts(scenario, history, metrics))
+    except SeatsimError as error:
+        return Outcome(number, FAILED, str(error), seed, (None,) * len(METRICS))
+    except Exception as error:  # a model of the user's own may raise anything, and the other runs go on
+        return Outcome(number, FAILED, f"{type(error).__name__}: {error}", seed, (None,) * len(METRICS))
+    figures = tuple(metrics[name].value if name in metrics else None for name in METRICS)
+    return Outcome(number, UNVERIFIED if reason else DONE, reason, seed, figures)
+
+
+def history_path(folder: Path, number: int) -> Path:
+    """Return the file that keeps the channels of a run."""
+    return folder / f"run-{number:07d}.parquet"
+
+
+def _list_doubts(scenario: Scenario, history: History, metrics: Mapping[str, Metric]) -> list[str]:
+    """Return why the metrics of a run cannot be relied on; nothing where they can."""
+    found = list(list_ranges_left(scenario, history))
+    found += [f"{name} is infinite" for name, metric in metrics.items() if math.isinf(metric.value)]
+    residual = metrics.get("energy_residual")
+    if residual is None or math.isnan(residual.value):
+        found.append("the energy balance cannot be formed, so that nothing confirms the solution")
+    elif residual.value > LARGEST_RESIDUAL:
+        found.append(f"{residual.value:.2g} of the energy is unaccounted for; choose a smaller solver.step")
+    return found
+
+
+def _floor_of(scenario: Scenario) -> Floor | None:
+    """Return the floor of a scenario, from the floors kept where it is among them; None where it has none."""
+    if scenario.excitation is None:
+        return None
+    with scenario.placed("excitation"):
+        kind = type(scenario.excitation)
+        return _make_floor(
+            f"{kind.__module__}.{kind.__qualname__}", scenario.excitation, scenario.solver.step, scenario.seed
+        )
+
+
+@lru_cache(maxsize=FLOORS_KEPT)
+def _make_floor(kind: str, excitation: Excitation, step: float, seed: int) -> Floor:
+    # Its class is part of the key, as records of two classes with the same values are equal.
+    return excitation.floor(step, seed)

@@ -1,0 +1,145 @@
+"""The rows of a sweep on disk: partitioned Parquet with one schema, a row for each run that has ended.
+
+Part k holds the runs k * RUNS_OF_PART to (k + 1) * RUNS_OF_PART - 1 in order, whoever simulated them and in whatever
+order they ended. It is replaced as a whole while runs are added to it, so that a run that has a row is done for good,
+and one without is pending.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from seatsim.metrics.table import METRICS
+from seatsim.schema.errors import InputError
+from seatsim.schema.files import write_whole
+from seatsim.sweeps.outcome import Outcome
+from seatsim.sweeps.plan import Plan
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+RUNS_OF_PART = 200
+"""A part of runs of 10 s takes about a second, which is what a task of a cluster should take at least."""
+LEADING = ("run", "state", "reason", "seed")
+
+
+def part_of(run: int) -> int:
+    """Return the number of the part that holds a run."""
+    return run // RUNS_OF_PART
+
+
+def runs_of(part: int, runs: int) -> range:
+    """Return the runs that a part holds, of a sweep of so many runs."""
+    return range(part * RUNS_OF_PART, min((part + 1) * RUNS_OF_PART, runs))
+
+
+def part_path(folder: Path, part: int) -> Path:
+    """Return the file of a part."""
+    return folder / "runs" / f"part-{part:06d}.parquet"
+
+
+def remove_unfinished(folder: Path) -> None:
+    """Remove what a process that was killed had not finished writing; nobody else may be writing."""
+    for path in (folder / "runs").glob(".*.parquet"):
+        path.unlink()
+
+
+def read_outcomes(folder: Path, part: int) -> list[Outcome]:
+    """Return the outcomes that a part holds so far, in order.
+
+    Raises:
+        InputError: the file is no part of a sweep.
+    """
+    columns = _read_columns(folder, part, [*LEADING, *METRICS])
+    figures = zip(*(columns[name] for name in METRICS), strict=True)
+    leading = zip(*(columns[name] for name in LEADING), strict=True)
+    return [Outcome._make((*first, metrics)) for first, metrics in zip(leading, figures, strict=True)]
+
+
+def read_states(folder: Path, runs: int) -> Iterator[tuple[int, str, str]]:
+    """Yield number, state and reason of every run that has a row.
+
+    Raises:
+        InputError: a file is no part of a sweep.
+    """
+    names = ["run", "state", "reason"]
+    for part in range(part_of(runs - 1) + 1):
+        columns = _read_columns(folder, part, names)
+        yield from zip(*(columns[name] for name in names), strict=True)
+
+
+def _read_columns(folder: Path, part: int, names: Sequence[str]) -> Mapping[str, list[Any]]:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    path = part_path(folder, part)
+    if not path.exists():
+        return {name: [] for name in names}
+    try:
+        table = pq.ParquetFile(path).read(columns=list(names))
+        return {name: table.column(name).to_pylist() for name in names}
+    except (pa.ArrowException, OSError, KeyError) as error:
+        raise InputError(f"{path}: is no part of a sweep: {error}; remove it, and its runs run again") from error
+
+
+def write_outcomes(folder: Path, part: int, plan: Plan, schema: pa.Schema, outcomes: Iterable[Outcome]) -> Path:
+    """Write the outcomes of a part, which takes the place of what it held; `schema` is that of `make_schema`."""
+    import pyarrow.parquet as pq
+
+    table = make_table(plan, schema, sorted(outcomes, key=lambda outcome: outcome.run))
+    write = partial(pq.write_table, table, compression="zstd", compression_level=1)
+    return write_whole(part_path(folder, part), write, lasting=True)
+
+
+def make_table(plan: Plan, schema: pa.Schema, outcomes: Sequence[Outcome]) -> pa.Table:
+    """Return outcomes with the values of their runs as a table."""
+    import pyarrow as pa
+
+    values = [plan.values(outcome.run) for outcome in outcomes]
+    columns: list[Sequence[object]] = [[getattr(outcome, name) for outcome in outcomes] for name in LEADING]
+    columns += [_cells([each[key] for each in values], schema.field(key).type) for key in varied_keys(plan)]
+    columns += map(list, zip(*(outcome.metrics for outcome in outcomes), strict=True))
+    arrays = [pa.array(column, type=field.type) for column, field in zip(columns, schema, strict=True)]
+    return pa.Table.from_arrays(arrays, schema=schema)
+
+
+def make_schema(plan: Plan, units: Mapping[str, str]) -> pa.Schema:
+    """Return the one schema of all parts, with units in the metadata; `units` are those of the varied keys.
+
+    A key whose values are numbers is a column of numbers; where some are none, all are texts.
+    """
+    import pyarrow as pa
+
+    kinds = {"run": pa.int64(), "state": pa.string(), "reason": pa.string(), "seed": pa.int64()}
+    fields = [pa.field(name, kinds[name]) for name in LEADING]
+    fields += [pa.field(key, _type_of(plan, key), metadata={"unit": units[key]}) for key in varied_keys(plan)]
+    fields += [pa.field(name, pa.float64(), metadata={"unit": metric.unit}) for name, metric in METRICS.items()]
+    return pa.schema(fields)
+
+
+def varied_keys(plan: Plan) -> list[str]:
+    """Return the keys that have columns of their own: `seed` is a column of every sweep."""
+    return [key for key in plan.keys if key != "seed"]
+
+
+def _type_of(plan: Plan, key: str) -> pa.DataType:
+    import pyarrow as pa
+
+    kinds = set(map(type, plan.every_value(key)))
+    if kinds <= {int, float}:
+        return pa.float64()
+    return pa.bool_() if kinds == {bool} else pa.string()
+
+
+def _cells(values: Sequence[object], kind: pa.DataType) -> Sequence[object]:
+    """Return the values of a key as cells: in a column of texts, JSON of what is none."""
+    return [as_text(value) for value in values] if str(kind) == "string" else values
+
+
+def as_text(value: object) -> str:
+    """Return any value of a scenario as text."""
+    return value if isinstance(value, str) else json.dumps(value, default=str)

@@ -1,0 +1,43 @@
+"""An array script for Slurm, each of whose tasks runs a share of a sweep; it needs nothing but seatsim."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+
+from seatsim.schema.files import write_text
+from seatsim.sweeps.parts import part_of
+from seatsim.sweeps.plan import Plan
+
+MOST_TASKS = 256
+"""Tasks of an array, well below the 1001 that Slurm permits unless it is configured otherwise."""
+SCRIPT = """\
+#!/bin/bash
+# {runs} runs of {name}, in {tasks} shares. Submit with: sbatch {script}
+# A task that ends early goes on where it was when it is submitted again: sbatch --array=NUMBER {script}
+#SBATCH --job-name=seatsim-{stem}
+#SBATCH --array=1-{tasks}
+#SBATCH --cpus-per-task=1
+#SBATCH --output={logs}
+exec {command} --part "$SLURM_ARRAY_TASK_ID/{tasks}" --jobs "${{SLURM_CPUS_PER_TASK:-1}}" --resume
+"""
+
+
+def write_slurm(
+    script: Path, file: Path, folder: Path, plan: Plan, keep_histories: bool, own_code: Sequence[Path]
+) -> Path:
+    """Write the script for a sweep `file` whose rows go to `folder`; paths in it are absolute.
+
+    Raises:
+        InputError: the script or the folder cannot be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    words = ["seatsim", "sweep", str(file.resolve()), "--out", str(folder.resolve())]
+    words += ["--keep", "histories"] if keep_histories else []
+    words += [word for path in own_code for word in ("--with", str(path.resolve()))]
+    text = SCRIPT.format(
+        runs=plan.runs, name=file.name, stem=file.stem, script=script, command=shlex.join(words),
+        tasks=min(part_of(plan.runs - 1) + 1, MOST_TASKS), logs=folder.resolve() / "slurm-%a.log",
+    )  # fmt: skip
+    return write_text(script, text)

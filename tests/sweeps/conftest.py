@@ -1,0 +1,44 @@
+"""A short sweep, and how it is written and carried out."""
+
+import pytest
+from ruamel.yaml import YAML
+
+from seatsim.sweeps.engines.threads import ThreadEngine
+from seatsim.sweeps.execute import execute, prepare
+
+from ..cli.conftest import seatsim_command
+from ..conftest import SEAT
+
+__all__ = ["seatsim_command"]
+
+MASSES = {"plant.driver_mass": {"normal": [80, 12], "low": 50, "high": 120}}
+
+
+@pytest.fixture
+def write_sweep(tmp_path):
+    """Return a function that writes a sweep file of a seat on a floor of half a second; keys replace its own."""
+
+    def write(**stated):
+        scenario = YAML(typ="safe").load(SEAT.replace("duration: 6.0", "duration: 0.5"))
+        path = tmp_path / "sweep.yaml"
+        content = {"scenario": scenario, "seed": 3, "design": "cross", "runs": 5, "vary": MASSES} | stated
+        YAML().dump({key: value for key, value in content.items() if value is not None}, path)
+        return path
+
+    return write
+
+
+@pytest.fixture
+def carry_out(tmp_path):
+    """Return a function that carries out a sweep file on threads in a folder of `tmp_path`."""
+
+    def carry(path, name="out", jobs=2, **options):
+        return execute(prepare(path), tmp_path / name, ThreadEngine(jobs), **options)
+
+    return carry
+
+
+def bytes_of(folder):
+    """Return the content of every part of a sweep, and of its manifest."""
+    files = [*sorted(folder.glob("runs/part-*.parquet")), folder / "manifest.json"]
+    return {path.name: path.read_bytes() for path in files}

@@ -1,0 +1,106 @@
+"""The commands: what they print and write, engines that are not there, scripts for clusters."""
+
+import base64
+import io
+import json
+import os
+import re
+import subprocess
+import sys
+
+import matplotlib.image
+import pytest
+from pydantic import TypeAdapter
+
+import seatsim
+from seatsim.cli.outputs.answers import ANSWERS
+from seatsim.sweeps import parts
+
+from .conftest import MASSES, bytes_of
+
+
+def answer_of(kind, out):
+    return TypeAdapter(ANSWERS[kind]).validate_json(out)
+
+
+def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
+    vary = {
+        **MASSES,
+        "plant.suspension_stiffness": {"uniform": [4000, 5000]},
+        "excitation.spectral_class": ["EM1", "EM5"],
+    }
+    path, out = write_sweep(vary=vary, runs=12, limits={"driver_acceleration_weighted": 0.1}), tmp_path / "out"
+    status, text, _ = seatsim_command("check", path)
+    assert status == 0 and "sweep, no errors; 24 runs over plant.driver_mass" in text
+    status, text, _ = seatsim_command("sweep", path, "--out", out, "--json")
+    assert status == 0 and answer_of("sweep", text)["counts"]["done"] == 24
+    status, text, _ = seatsim_command("sweep-report", out, "--json")
+    content = answer_of("sweep-report", text)
+    assert status == 0 and re.match("Of 2 tolerances plant.* matters most to driver, Wk RMS", content["sentence"])
+    assert {row["group"]["excitation.spectral_class"] for row in content["exceeded"]} == {"EM1", "EM5"}
+    page = (out / "report.html").read_text()
+    assert len(page) < 5e6 and "http" not in page.replace("http-equiv", "")
+    for picture in re.findall('base64,([^"]+)"', page):
+        image = matplotlib.image.imread(io.BytesIO(base64.b64decode(picture)))
+        assert max(image.shape) < 2000 and image.shape[0] < 1080 * 150 / 96
+    table = (out / "table.csv").read_text().splitlines()
+    assert table[0].startswith("excitation.spectral_class,metric,unit,runs,mean") and len(table) > 20
+    assert (out / "sensitivity.csv").read_text().startswith("metric,key,first,first_low")
+
+
+def test_what_is_wrong_is_one_sentence(write_sweep, tmp_path, seatsim_command, monkeypatch):
+    path, out = write_sweep(runs=2), tmp_path / "out"
+    for options, sentence in (
+        (["--engine", "cuda"], "no CUDA device"),
+        (["--address", "tcp://here:1"], "add --engine dask"),
+        (["--part", "3/2"], "write K/N with K from 1 to N"),
+    ):
+        status, _, err = seatsim_command("sweep", path, "--out", out, *options)
+        assert status == 2 and sentence in err and not out.exists()
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    status, _, err = seatsim_command("sweep", path, "--out", out, "--engine", "dask")
+    assert status == 2 and 'pip install "seatsim[cluster]"' in err and not out.exists()
+    status, _, err = seatsim_command("sweep-report", tmp_path)
+    assert status == 2 and "holds no sweep" in err
+    status, _, err = seatsim_command("run", path)
+    assert status == 2 and f"seatsim sweep {path}" in err
+
+
+def test_failed_runs_end_with_status_1(write_sweep, tmp_path, seatsim_command):
+    path = write_sweep(vary={"controller.sample_time": [0.005, 0.0052]}, runs=None)
+    status, out, err = seatsim_command("sweep", path, "--out", tmp_path / "out")
+    assert status == 1 and "1 done, 1 failed" in out and "failed: run 1: " in err and "choose 0.005 s" in err
+
+
+def test_the_tasks_of_a_script_make_the_sweep(write_sweep, tmp_path, seatsim_command):
+    path, script = write_sweep(runs=203), tmp_path / "array.sh"
+    status, _, _ = seatsim_command("sweep", path, "--out", tmp_path / "array", "--slurm", script)
+    assert status == 0 and "#SBATCH --array=1-2\n" in script.read_text()
+    command = tmp_path / "bin" / "seatsim"
+    command.parent.mkdir()
+    command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m seatsim "$@"\n')
+    command.chmod(0o755)
+    environment = {**os.environ, "SLURM_ARRAY_TASK_ID": "2", "PATH": f"{command.parent}:{os.environ['PATH']}"}
+    subprocess.run(["bash", script], env=environment, check=True)
+    assert seatsim_command("sweep", path, "--out", tmp_path / "array", "--part", "1/2", "--resume")[0] == 0
+    assert seatsim_command("sweep", path, "--out", tmp_path / "alone")[0] == 0
+    assert bytes_of(tmp_path / "array") == bytes_of(tmp_path / "alone")
+    assert json.loads((tmp_path / "array" / "manifest.json").read_text())["counts"]["done"] == 203
+    assert len(seatsim.read_sweep(tmp_path / "array")) == 203
+
+
+@pytest.mark.parametrize("where", ["embedded", "address"])
+def test_a_cluster_gives_the_same_bytes(where, write_sweep, tmp_path, seatsim_command, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    # More tasks than are sent at once.
+    monkeypatch.setattr(parts, "RUNS_OF_PART", 10)
+    path = write_sweep(runs=203)
+    assert seatsim_command("sweep", path, "--out", tmp_path / "threads")[0] == 0
+    options = ["--engine", "dask", "--jobs", "2"]
+    if where == "embedded":
+        assert seatsim_command("sweep", path, "--out", tmp_path / "dask", *options)[0] == 0
+    else:
+        with distributed.LocalCluster(2, processes=False, protocol="tcp", dashboard_address=":0") as cluster:
+            options += ["--address", cluster.scheduler_address]
+            assert seatsim_command("sweep", path, "--out", tmp_path / "dask", *options)[0] == 0
+    assert bytes_of(tmp_path / "dask") == bytes_of(tmp_path / "threads")

@@ -1,0 +1,126 @@
+"""Designs: which values are combined, drawn within their bounds, and refused before anything runs."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import seatsim
+from seatsim.sweeps.definition import read_definition
+from seatsim.sweeps.execute import prepare
+from seatsim.sweeps.plan import make_plan
+
+MASS, STIFFNESS, CLASS = "plant.driver_mass", "plant.suspension_stiffness", "excitation.spectral_class"
+
+
+def plan_of(path):
+    return make_plan(read_definition(path))
+
+
+def test_cross_combines_lists_and_ranges_and_draws_once_for_all_of_them(write_sweep):
+    vary = {CLASS: ["EM1", "EM5"], MASS: {"normal": [80, 12]}, "temperature": {"from": 20, "to": 80, "steps": 3}}
+    plan = plan_of(write_sweep(vary=vary, runs=4))
+    rows = [plan.values(run) for run in range(plan.runs)]
+    assert plan.runs == 24 and plan.keys == [CLASS, MASS, "temperature"]
+    assert [(row[CLASS], row["temperature"]) for row in rows[:6]] == [
+        (name, degrees) for name in ("EM1", "EM5") for degrees in (20, 50, 80)
+    ]
+    assert len({row[MASS] for row in rows}) == 4 and len({row[MASS] for row in rows[:6]}) == 1
+
+
+@pytest.mark.parametrize(("design", "runs"), [("cross", (4, 9)), ("sobol", (4, 9)), ("zip", (None, None))])
+def test_a_design_of_more_runs_begins_with_the_points_of_one_of_fewer(design, runs, write_sweep):
+    vary = {MASS: {"uniform": [50, 120]}, STIFFNESS: {"lognormal": [8.4, 0.1]}}
+    lists = ([1000.0, 2000.0], [1000.0, 2000.0, 3000.0])
+    found = []
+    for count, values in zip(runs, lists, strict=True):
+        stated = vary if design != "zip" else {**vary, "plant.cushion_damping": values}
+        found.append(plan_of(write_sweep(design=design, runs=count, vary=stated)))
+    few, many = found
+    assert [few.values(run) for run in range(few.runs)] == [many.values(run) for run in range(few.runs)]
+    assert many.runs > few.runs
+
+
+def test_a_latin_hypercube_has_one_value_in_each_stratum(write_sweep):
+    vary = {MASS: {"uniform": [50, 120]}, STIFFNESS: {"uniform": [4000, 5000]}}
+    columns = plan_of(write_sweep(design="lhs", runs=50, vary=vary)).columns
+    assert sorted(int(50 * (mass - 50) / 70) for mass in columns[MASS]) == list(range(50))
+    assert abs(np.corrcoef(columns[MASS], columns[STIFFNESS])[0, 1]) < 0.4
+
+
+@pytest.mark.parametrize(
+    ("stated", "expected"),
+    [
+        ({"normal": [80, 12]}, stats.norm(80, 12)),
+        ({"normal": [80, 12], "low": 70, "high": 120}, stats.truncnorm(-10 / 12, 40 / 12, 80, 12)),
+        ({"lognormal": [4.3, 0.2]}, stats.lognorm(0.2, scale=np.exp(4.3))),
+        ({"uniform": [50, 120]}, stats.uniform(50, 70)),
+    ],
+)  # fmt: skip
+def test_draws_follow_their_distribution(stated, expected, write_sweep):
+    columns = plan_of(write_sweep(design="lhs", runs=400, vary={MASS: stated})).columns
+    assert stats.kstest(columns[MASS], expected.cdf).statistic < 0.01
+
+
+def test_a_truncated_lognormal_and_a_choice_keep_to_what_is_stated(write_sweep):
+    vary = {MASS: {"lognormal": [4.3, 0.5], "low": 60, "high": 100}, CLASS: {"choice": {"EM1": 0.2, "EM5": 0.8}}}
+    columns = plan_of(write_sweep(design="sobol", runs=100, vary=vary)).columns
+    assert min(columns[MASS]) >= 60 and max(columns[MASS]) <= 100
+    assert columns[CLASS].count("EM5") == pytest.approx(80, abs=4)
+
+
+def test_a_table_states_every_point(write_sweep, tmp_path):
+    (tmp_path / "points.csv").write_text("plant.driver_mass,excitation.spectral_class\n55,EM1\n98.5,EM5\n")
+    plan = prepare(write_sweep(design="table", table="points.csv", vary=None, runs=None)).plan
+    assert [plan.values(run) for run in range(2)] == [{MASS: 55, CLASS: "EM1"}, {MASS: 98.5, CLASS: "EM5"}]
+
+
+def test_a_run_is_the_scenario_with_its_values_and_a_replicate_the_next_seed(write_sweep, seat_file):
+    path = write_sweep(vary={MASS: [55.0, 98.0], "effects.0.parameters.high": [0.03]}, replicates=2, runs=None)
+    added = (
+        "scenario:\n  effects: [{effect: suspension.end_stop, parameters: {low: -0.05, high: 0.05}}]\n"
+        "  seed: 7\n  variants: {a: {}, b: {temperature: 50.0}}"
+    )
+    path.write_text(path.read_text().replace("scenario:", added))
+    plan = prepare(path).plan
+    found = [plan.scenario(run) for run in range(plan.runs)]
+    assert [each.seed for each in found] == [7] * 4 + [8] * 4
+    assert [each.plant.driver_mass for each in found[:4]] == [55.0, 55.0, 98.0, 98.0]
+    assert [each.temperature for each in found[:2]] == [20.0, 50.0]
+    assert {each.effects[0].high for each in found} == {0.03} and found[0].effects[0].low == -0.05
+    assert plan.values(5) == {"variant": "b", MASS: 55.0, "effects.0.parameters.high": 0.03}
+
+
+@pytest.mark.parametrize(
+    ("stated", "parts"),
+    [
+        ({"desing": "lhs"}, ["unknown key", "did you mean 'design'"]),
+        ({"design": "sobel"}, ["line", "did you mean 'sobol'", "cross, zip, lhs"]),
+        ({"design": "lhs", "runs": None}, ["'runs' is missing"]),
+        ({"runs": 0}, ["runs", "from 1 to"]),
+        ({"vary": None}, ["'vary' is missing"]),
+        ({"vary": {"plant.driver_mas": [80.0]}}, ["line", "did you mean 'driver_mass'"]),
+        ({"vary": {"plantt.driver_mass": [80.0]}}, ["did you mean 'plant'"]),
+        ({"vary": {MASS: {"normal": [80, 60]}}}, ["line", MASS, "greater than 0 kg", "run "]),
+        ({"vary": {MASS: [80.0, -1.0]}}, ["line", "-1.0 is not permitted", "(run 1 of 2)"]),
+        ({"vary": {MASS: 80.0}}, ["single value", "{from: A, to: B, steps: N}"]),
+        ({"vary": {MASS: []}}, ["the list is empty"]),
+        ({"vary": {MASS: {"normall": [80, 6]}}}, ["did you mean 'normal'"]),
+        ({"vary": {MASS: {"uniform": [80, 60]}}}, ["greater than the first"]),
+        ({"vary": {MASS: {"normal": [80, 0]}}}, ["standard deviation"]),
+        ({"vary": {MASS: {"normal": [80, 6], "low": 90, "high": 70}}}, ["greater than low"]),
+        ({"vary": {MASS: {"uniform": [50, 60], "low": 55}}}, ["truncate normal and lognormal"]),
+        ({"vary": {MASS: {"choice": {50: 0.5, 80: 0.6}}}}, ["sum to 1.1"]),
+        ({"vary": {MASS: {"from": 1, "to": 2, "steps": 1.5}}}, ["steps", "whole number"]),
+        ({"vary": {"effects.0.parameters.high": [0.1]}}, ["line", "effects", "not a list"]),
+        ({"design": "zip", "vary": {MASS: [60.0, 70.0], STIFFNESS: [4600.0]}}, ["plant.driver_mass 2"]),
+        ({"limits": {"driver_vdw": 9.0}}, ["did you mean 'driver_vdv'"]),
+        ({"vary": {CLASS: ["EM1", "EM99"]}}, ["line", "'EM99' is not permitted"]),
+        ({"design": "table", "vary": None}, ["CSV file"]),
+        ({"scenario": "nowhere.yaml"}, ["line", "no such file"]),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_refused_before_anything_runs(stated, parts, write_sweep, tmp_path):
+    with pytest.raises(seatsim.InputError) as caught:
+        prepare(write_sweep(**stated))
+    assert all(part in str(caught.value) for part in parts), caught.value
+    assert [path.name for path in tmp_path.iterdir()] == ["sweep.yaml"]

@@ -1,0 +1,82 @@
+"""Statistics of sweeps against what is known exactly."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.stats import qmc
+
+from seatsim.plots.sweeps.pareto import find_front
+from seatsim.sweeps.statistics.exceedance import count_exceedances
+from seatsim.sweeps.statistics.inputs import SweepRows
+from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
+from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity, choose_key
+
+COMFORT, HITS = "driver_acceleration_weighted", "end_stop_hits"
+
+
+def rows_of(frame, keys, drawn=(), limits=None):
+    frame = frame.assign(run=range(len(frame)), state="done", reason="", seed=0)
+    metrics = [name for name in frame if name in (COMFORT, HITS)]
+    manifest = {"limits": limits or {}, "counts": {"runs": len(frame)}, "identity": "0", "configuration": {}}
+    return SweepRows(None, manifest, frame, frame, list(keys), list(drawn), metrics, dict.fromkeys(metrics, "-"))
+
+
+@pytest.fixture(scope="module")
+def known():
+    """y = 3 a + b + 2 a b + 2 [t is B] of a, b uniform on [-1, 1] and t one of three: its indices are known."""
+    u = 2 * qmc.LatinHypercube(3, seed=np.random.default_rng(1)).random(300) - 1
+    text = np.array(list("ABC"))[np.random.default_rng(0).permutation(300) % 3]
+    y = 3 * u[:, 0] + u[:, 1] + 2 * u[:, 0] * u[:, 1] + 2 * (text == "B")
+    # A key may have any distribution: what counts is the rank of its values.
+    return pd.DataFrame({"a": u[:, 0], "b": np.exp(u[:, 1]), "c": u[:, 2], "t": text, COMFORT: y})
+
+
+def test_sobol_indices_are_the_exact_ones(known):
+    parts = {"a": 3.0, "b": 1 / 3, "ab": 4 / 9, "t": 4 * 2 / 9}
+    whole = sum(parts.values())
+    exact = {"a": (3.0, 3 + 4 / 9), "b": (1 / 3, 7 / 9), "c": (0, 0), "t": (8 / 9, 8 / 9)}
+    found = analyse_sensitivity(rows_of(known, "abct", drawn="ab"))
+    assert [row.key for row in found.rows] == ["a", "t", "b", "c"]
+    for row in found.rows:
+        first, total = (part / whole for part in exact[row.key])
+        assert (row.first, row.total) == pytest.approx((first, total), abs=0.02)
+        assert row.first_low <= row.first <= row.first_high and row.explained > 0.99
+    best = choose_key(found.rows, rows_of(known, "abct", drawn="bc"))
+    assert best.key == "b" and (best.at_low, best.at_high) == pytest.approx((-0.9 + 2 / 3, 0.9 + 2 / 3), abs=0.15)
+
+
+def test_noise_widens_the_intervals_and_is_told(known):
+    noisy = known.assign(**{COMFORT: known[COMFORT] + np.random.default_rng(2).normal(0, 3, len(known))})
+    found = analyse_sensitivity(rows_of(noisy, "abct"))
+    assert found.rows[0].explained < 0.6
+    assert found.rows[0].total_high - found.rows[0].total_low > 0.05
+
+
+def test_indices_are_refused_where_they_have_no_meaning(known):
+    together = known.assign(b=known.a)
+    assert "a and b vary together" in analyse_sensitivity(rows_of(together, "abc")).problem
+    assert "too few for 4 keys" in analyse_sensitivity(rows_of(known.head(8), "abct")).problem
+    constant = known.assign(**{COMFORT: 1.0})
+    assert analyse_sensitivity(rows_of(constant, "abct")).problem == "no metric varies"
+
+
+def test_shares_have_wilson_intervals(known):
+    frame = pd.DataFrame({"t": ["x"] * 50 + ["y"] * 50, COMFORT: [1.0] * 5 + [0.2] * 95, HITS: 0.0})
+    found = count_exceedances(rows_of(frame, "t"))
+    first = found[0]
+    assert (first.group, first.metric, first.limit, first.exceeding, first.runs) == ({"t": "x"}, COMFORT, 0.5, 5, 50)
+    # Wilson 1927 for 5 of 50.
+    assert (first.low, first.high) == pytest.approx((0.0435, 0.2136), abs=1e-4)
+    assert [row.exceeding for row in found[1:]] == [0, 0, 0]
+
+
+def test_quantiles_are_those_of_each_group():
+    frame = pd.DataFrame({"t": ["x", "y"] * 21, COMFORT: np.arange(42.0)})
+    table = tabulate_quantiles(rows_of(frame, "t"))
+    assert list(table.t) == ["x", "y"] and list(table.runs) == [21, 21]
+    assert (table["median"][0], table.p05[0], table["max"][1]) == (20.0, 2.0, 41.0)
+
+
+def test_the_front_holds_what_nothing_is_better_than():
+    travel, comfort = np.array([3.0, 1.0, 2.0, 2.0, 1.0]), np.array([1.0, 5.0, 2.0, 3.0, 6.0])
+    assert list(find_front(travel, comfort)) == [1, 2, 0]
