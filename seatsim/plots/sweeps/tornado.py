@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from matplotlib.axes import Axes
 
@@ -18,7 +18,9 @@ MOST = 14
 """Keys that are drawn, the strongest ones: more do not fit on a screen."""
 LOW, HIGH = Entry("at the low value", COLOURS[0], width=5.0), Entry("at the high value", COLOURS[1], width=5.0)
 FIRST, TOTAL = Entry("alone", COLOURS[2], width=5.0), Entry("with interactions", DARK, width=1.4)
-LONGEST_VALUE = 16
+LONGEST_VALUE = 12
+BESIDE = 0.75
+"""Margin on either side, as a share of the longest swing, that holds the longest value beside its bar."""
 WORDS_WIDTH = 2.3
 """Inches for the names of keys."""
 
@@ -39,9 +41,9 @@ def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Picture:
         )
         shares.plot(row.total, number, "|", color=TOTAL.colour, markersize=9, zorder=4)
     swing.axvline(quantity.factor * middle, color=DARK, linewidth=0.9, zorder=3)
-    name_rows(swing, [row.key for row in shown])
+    name_rows(swing, [_name(row.key, rows.units) for row in shown])
     name_rows(shares, [""] * len(shown))
-    swing.margins(x=0.2)
+    swing.margins(x=BESIDE)
     swing.set_xlabel(quantity.axis)
     shares.set_xlim(0, 1.02)
     shares.set_xlabel("share of the variance [-]")
@@ -51,6 +53,11 @@ def plot_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Picture:
         f" Sobol indices of a polynomial chaos expansion, with 95 % intervals of the total ones.{cut}"
     )
     return Picture(f"What {quantity.words} hangs on", caption, page.figure)
+
+
+def _name(key: str, units: Mapping[str, str]) -> str:
+    """Return a key with its unit, in which its values stand beside the bars."""
+    return f"{key} [{units[key]}]" if units.get(key, "-") not in ("", "-") else key
 
 
 def _draw_swing(axes: Axes, number: int, row: Sensitivity, factor: float, middle: float) -> None:
