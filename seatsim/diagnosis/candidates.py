@@ -96,7 +96,10 @@ def _change(candidate: Candidate, own: Record) -> Candidate:
     """
     have: dict[str, float | str] = {name: getattr(own, name) for name in own._fields}
     at = np.array([float(have[name]) for name in candidate.free])
-    start = at.copy() if candidate.is_limit else np.where(np.arange(len(at)) == 0, at + candidate.start, at)
+    # What the scenario leaves at 0 starts as in the form: a parameter has no natural size there.
+    start = np.where(at == 0.0, candidate.start, at)
+    if not candidate.is_limit:
+        start[0] = at[0] + candidate.start[0]
     low, high = np.minimum(candidate.low, at), np.maximum(candidate.high, at)
     return candidate._replace(
         fixed={name: value for name, value in have.items() if name not in candidate.free}, nominal=float(at[0]),

@@ -77,6 +77,11 @@ def test_an_effect_of_the_nominal_scenario_may_have_another_size_there(listed):
     assert places == {"frame_acceleration": 0.0, "driver_acceleration": 0.4, "floor_acceleration": 0.0}
 
 
+def test_a_parameter_that_the_scenario_leaves_off_starts_as_in_the_form(listed):
+    found = by_effect(list_candidates(posed(effects=(GasSpring(10.0),))))["damper.gas_spring"]
+    assert found[1].start == (30.0, 500.0) and (found[1].scale > 0.0).all()
+
+
 def test_without_a_command_nothing_can_be_said_of_the_coil():
     assert not COIL & set(by_effect(list_candidates(posed(recorded=("coil_current",)))))
     assert set(by_effect(list_candidates(posed(recorded=("command_voltage",))))) >= COIL
