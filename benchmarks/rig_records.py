@@ -235,18 +235,25 @@ class CarrierRecords(NamedTuple):
 
 def list_carriers(data: Path) -> list[CarrierRecords]:
     """Return the backgrounds of cases, every record among the runs."""
+    bench_lags = tuple(_sensor_lag(channel) for channel in ("displacement", "damper_force"))
     outputs = ("frame_acceleration", "driver_acceleration", "suspension_displacement")
     press = [utfsm(data, "utfsm-low", (0.0, 0.25, 0.5)), utfsm(data, "utfsm", (0.0, 0.25, 0.5, 0.75, 1.0))]
     yokes = [
         fsae(data, "fsae", "t1_3_3_18_18_s5_n100_50psi", 6.0),
         fsae(data, "fsae-hot", "t2_3_3_24_24_s5_n100_100psi_with_heat_gun", 6.0),
     ]
+    seat = quanser(data, "quanser", outputs)
     return [
-        *(CarrierRecords(_all_runs(rig), (GAS_SPRING, ASYMMETRY, SATURATION)) for rig in press),
-        CarrierRecords(_cut(_all_runs(dyke(data, "dyke", 130.0)), 4.1), (GAS_SPRING, ASYMMETRY)),
-        *(CarrierRecords(_all_runs(rig), (GAS_SPRING, ASYMMETRY, SEAL, FADE)) for rig in yokes),
-        CarrierRecords(_thinned(_all_runs(quanser(data, "quanser", outputs)), 18.0, 2), (FRICTION,)),
+        *(CarrierRecords(_all_runs(rig), (GAS_SPRING, ASYMMETRY, SATURATION, *bench_lags)) for rig in press),
+        CarrierRecords(_cut(_all_runs(dyke(data, "dyke", 130.0)), 4.1), (GAS_SPRING, ASYMMETRY, *bench_lags)),
+        *(CarrierRecords(_all_runs(rig), (GAS_SPRING, ASYMMETRY, SEAL, FADE, *bench_lags)) for rig in yokes),
+        CarrierRecords(_thinned(_all_runs(seat), 18.0, 2), (FRICTION, *map(_sensor_lag, outputs))),
     ]
+
+
+def _sensor_lag(channel: str) -> Addition:
+    """Return the lag of a sensor as an effect to be added."""
+    return "sensor.lag", {"channel": channel}, {"time": 0.003}
 
 
 def _all_runs(rig: RigRecords) -> RigRecords:
