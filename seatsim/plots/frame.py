@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from seatsim.plots import labels
+from seatsim.plots.quantities import FACTORS, Quantity
 from seatsim.plots.style import LETTER, LINE, MARGIN, SAMPLE, Entry, Grid, Page, add_panels
 
 WIDTH, WIDE = 5.8, 7.6
@@ -24,8 +25,6 @@ DPI = 150
 """Dots per inch: sharp on a fine screen and in print."""
 FONT = 9.5
 """Size of text in points."""
-FACTORS = {"m": (1e3, "mm")}
-"""Factor and unit of quantities whose values are small in SI units."""
 
 
 class Picture(NamedTuple):
@@ -34,19 +33,6 @@ class Picture(NamedTuple):
     title: str
     caption: str
     figure: Figure
-
-
-class Quantity(NamedTuple):
-    """How a quantity is drawn: its words, the unit shown, and the factor from SI to that unit."""
-
-    words: str
-    unit: str
-    factor: float = 1.0
-
-    @property
-    def axis(self) -> str:
-        """The label of an axis."""
-        return f"{self.words} [{self.unit}]"
 
 
 def format_number(value: float) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
+from seatsim.report.html import Html, join, make_list, make_table, tag
 
 from seatsim.diagnosis.result import (
     Cause,
@@ -41,7 +42,6 @@ from seatsim.report.formatting import (
     format_sentence,
     format_value,
 )
-from seatsim.report.html import Html, join, make_list, make_table, tag
 from seatsim.schema.text import join_names
 
 RATE = 500.0

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from seatsim.plots.diagnosis.discrepancy import _explained_share
 
 from seatsim.diagnosis.result import Trace
+from seatsim.plots.averaging import average_bands
 from seatsim.plots.diagnosis import bins
-from seatsim.plots.diagnosis.discrepancy import _explained_share
 from seatsim.plots.frame import describe_quantity, format_number
 
 RATE = 200.0
@@ -69,7 +70,7 @@ def test_the_spectrum_of_white_noise_is_two_variances_a_sample():
 
 def test_bands_keep_their_mean_density():
     frequency, power = np.arange(1.0, 33.0), np.arange(1.0, 33.0)
-    centres, density, count = bins.average_bands(frequency, power, 1.0, 1)
+    centres, density, count = average_bands(frequency, power, 1.0, 1)
     assert count.tolist() == [1, 2, 4, 8, 16, 1]
     np.testing.assert_allclose(density, centres)
     np.testing.assert_allclose(centres, [1.0, 2.5, 5.5, 11.5, 23.5, 32.0])

@@ -10,6 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from seatsim.report.rendering import write_html
+from seatsim.report.runs import report_runs
 from seatsim.schema.files import write_json, write_whole
 from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.performance_bounds import measure_distance
@@ -24,8 +26,11 @@ COMPRESSION = 3
 """Level of zlib, 0 to 9: fast rather than small."""
 
 
-def write_result(result: Result, folder: Path) -> list[Path]:
-    """Write `summary.csv`, `summary.json`, `history.parquet` and the pictures of a result; return their paths."""
+def write_result(result: Result, folder: Path, command: str = "seatsim run SCENARIO") -> list[Path]:
+    """Write `summary.csv`, `summary.json`, `history.parquet`, `report.html` and the pictures; return their paths.
+
+    `command`: what makes the files again, for the report.
+    """
     with ThreadPoolExecutor(max_workers=1) as pool:
         # Compressing the histories, in a thread of its own, releases Python's lock to the drawing of the pictures.
         history = pool.submit(write_histories, result.runs, folder / "history.parquet")
@@ -34,6 +39,7 @@ def write_result(result: Result, folder: Path) -> list[Path]:
         paths = [
             write_whole(folder / "summary.csv", partial(_write_table, result.rows)),
             write_json(folder / "summary.json", _encode_runs(result)),
+            write_html(report_runs(result.runs, command, folder.name), folder / "report.html"),
         ]
         pictures = write_pictures(plot_result(result), folder)
         if result.brackets:

@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics import power_spectral_density, rms
@@ -142,16 +141,6 @@ def estimate_spectrum(time: Array, signals: list[Array]) -> tuple[Array, Array]:
     length = max(8, min(round(SEGMENT * rate), 2 * shortest // (AVERAGES + 1)))
     found = [power_spectral_density(values, rate, min(length, shortest)) for values in signals]
     return found[0][0][1:], np.mean([power for _, power in found], axis=0)[1:]
-
-
-def average_bands(
-    frequency: Array, power: Array, lowest: float, per_octave: int
-) -> tuple[Array, Array, NDArray[np.int64]]:
-    """Return mean frequency, mean density and number of lines of bands of equal width on a logarithmic axis."""
-    inside = frequency >= lowest
-    band = np.floor(per_octave * np.log2(frequency[inside] / lowest)).astype(int)
-    _, index, count = np.unique(band, return_inverse=True, return_counts=True)
-    return np.bincount(index, frequency[inside]) / count, np.bincount(index, power[inside]) / count, count
 
 
 def _first_row(time: Array) -> int:
