@@ -20,6 +20,8 @@ MOST_SETTINGS = 6
 """Settings of amplitude and frequency whose loops are drawn."""
 MOST_ROWS = 60
 POINTS = 240
+ROUNDING = 1e-9
+"""Share of the peak force below which an offset is no finding."""
 METHOD = (
     "A loop is the mean of a record's steady cycles; energy is its area, damping that of a dashpot that dissipates as"
     " much, E / (pi w X²).",
@@ -60,7 +62,9 @@ def say_character(found: Characterisation) -> str:
 
 
 def _advise(found: Characterisation) -> list[str]:
-    texts = [f"Fit a model: seatsim identify with the same {'data' if found.measured else 'model of another damper'}."]
+    if not found.measured:
+        return ["Compare it with a measured damper: seatsim characterise takes a folder of bench tables, too."]
+    texts = ["Fit a model to these records: seatsim identify takes the same folder."]
     if not any(math.isfinite(answer.t95) for answer in found.responses):
         texts.append("Record steps of the current at constant speed: nothing here shows how fast the force follows.")
     if len({round(row.current, 2) for row in found.rows}) < 3:
@@ -74,13 +78,19 @@ def _make_table(rows: Sequence[Row]) -> Table:
         "energy [J]", "damping [N·s/m]", "offset [N]", "asymmetry",
     ]  # fmt: skip
     lines = [
-        [row.record, *map(format_number, (row.current, 1e3 * row.amplitude, row.frequency, row.peak_speed,
-                                          row.peak_rebound, row.peak_compression, row.energy, row.damping, row.offset)),
+        [row.record,
+         *map(format_number, (row.current, 1e3 * row.amplitude, row.frequency, row.peak_speed, row.peak_rebound,
+                              row.peak_compression, row.energy, row.damping, _clean(row))),
          format_percent(row.asymmetry)]
         for row in rows[:MOST_ROWS]
     ]  # fmt: skip
     more = f"; {len(rows) - MOST_ROWS} more in cycles.csv" if len(rows) > MOST_ROWS else ""
     return Table(f"Peaks, energy and damping of the mean cycle{more}", head, lines)
+
+
+def _clean(row: Row) -> float:
+    """Return the offset of a loop, 0 where it is rounding."""
+    return 0.0 if abs(row.offset) < ROUNDING * abs(row.peak_rebound) else row.offset
 
 
 def _draw_loops(rows: Sequence[Row]) -> list[Block]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from seatsim.identification.agreement import Agreement
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
 from seatsim.report.blocks import Block, Items, Report, Section, Table
@@ -77,7 +78,12 @@ def _advise(found: Identification) -> list[str]:
 
 def _make_table(found: Identification) -> Table:
     rows = [
-        [each.record.name, PARTS[each.part], format_number(each.record.mean_current), *_format_figures(each)]
+        [
+            each.record.name,
+            PARTS[each.part],
+            format_number(each.record.mean_current),
+            *_format_agreement(each.agreement),
+        ]
         for each in found.assessments
     ]
     strong = []
@@ -85,15 +91,15 @@ def _make_table(found: Identification) -> Table:
         mean = found.mean(part)
         if mean is not None:
             strong.append(len(rows))
-            figures = (mean.fit_percent, mean.r2, mean.rmse, mean.md)
-            rows.append([f"mean, {words}", words, "", *map(format_number, figures)])
+            rows.append([f"mean, {words}", words, "", *_format_agreement(mean)])
     head = ["record", "part", "current [A]", "fit [%]", "R²", "RMSE [N]", "MD"]
     return Table("Agreement of the predicted force with the measured one", head, rows, 2, strong)
 
 
-def _format_figures(each: Assessment) -> list[str]:
-    agreement = each.agreement
-    return [format_number(value) for value in (agreement.fit_percent, agreement.r2, agreement.rmse, agreement.md)]
+def _format_agreement(found: Agreement) -> list[str]:
+    figures = (found.fit_percent, found.rmse, found.md)
+    fit, error, deviation = map(format_number, figures)
+    return [fit, format_number(found.r2, 5), error, deviation]
 
 
 def _select_records(judged: Sequence[Assessment]) -> list[Assessment]:
@@ -110,7 +116,7 @@ def _draw_loops(chosen: Sequence[Assessment]) -> list[Block]:
         start, stop = record.liveliest(POINTS)
         part = slice(start, stop)
         curves = [
-            Curve("measured", record.velocity[part], record.force[part], 0),
+            Curve("measured", record.velocity[part], record.force[part], 0, "broad"),
             Curve("predicted", record.velocity[part], each.predicted[part], 1),
         ]
         title = f"{record.name} ({PARTS[each.part]}), fit {format_number(each.agreement.fit_percent)} %"

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from seatsim.plots.diagnosis.discrepancy import _explained_share
 
 from seatsim.diagnosis.result import Trace
 from seatsim.plots.averaging import average_bands
@@ -74,15 +73,6 @@ def test_bands_keep_their_mean_density():
     assert count.tolist() == [1, 2, 4, 8, 16, 1]
     np.testing.assert_allclose(density, centres)
     np.testing.assert_allclose(centres, [1.0, 2.5, 5.5, 11.5, 23.5, 32.0])
-
-
-def test_a_loop_explains_what_a_curve_does_not():
-    x = np.cos(TIME)
-    rising = np.gradient(x) > 0
-    values, borders = np.where(rising, 1.0, -1.0), np.linspace(-1, 1, 17)
-    assert _explained_share([np.ones_like(rising)], x, values, borders) < 0.05
-    assert _explained_share([rising, ~rising], x, values, borders) == pytest.approx(1.0)
-    assert _explained_share([rising], x, np.zeros_like(x), borders) == 0.0
 
 
 def test_numbers_and_units_of_an_axis():

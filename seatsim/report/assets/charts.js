@@ -37,6 +37,13 @@
     return [10 ** Math.min(bottom, top - 1), 10 ** top];
   }
 
+  // A little room above and below; a line that never moves stands in the middle.
+  function roomAround(low, high) {
+    if (low == null || high == null) return [0, 1];
+    const room = 0.06 * (high - low) || 0.1 * Math.abs(low) || 1;
+    return [low - room, high + room];
+  }
+
   function show(value) {
     if (value == null) return "–";
     const size = Math.abs(value);
@@ -95,7 +102,7 @@
         width: paper.matches ? PAPER_WIDTH : Math.max(200, box.clientWidth), height: HEIGHT,
         legend: { show: false },
         cursor: { sync: { key: this.element.id }, drag: { x: true, y: false, setScale: false }, y: false },
-        scales: { x: { time: false, distr: data.x.log ? 3 : 1, range: (plot, low, high) => [low, high] }, y: data.log ? { distr: 3, range: (plot, low, high) => decadesAround(low, high) } : {} },
+        scales: { x: { time: false, distr: data.x.log ? 3 : 1, range: (plot, low, high) => [low, high] }, y: data.log ? { distr: 3, range: (plot, low, high) => decadesAround(low, high) } : { range: (plot, low, high) => roomAround(low, high) } },
         axes: [
           { ...(data.x.log ? octaves : axis), size: 30, gap: 4, label: `${data.x.name} [${data.x.unit}]`, labelSize: 18, labelGap: 0, labelFont: "13px system-ui, sans-serif" },
           { ...(data.log ? decades : axis), size: 58 },
@@ -115,7 +122,9 @@
         },
       };
       const made = new uPlot(options, [x, ...lines], box);
-      box.dataset.drawn = "yes";
+      const empty = lines.every(line => line.every(value => value == null));
+      this.readouts[number].textContent = empty ? "Nothing to draw: this run does not hold the channel." : "";
+      box.dataset.drawn = empty ? "empty" : "yes";
       return made;
     }
 
@@ -156,7 +165,8 @@
       event.preventDefault();
       const { min, max } = plot.scales.x, width = plot.over.clientWidth;
       const now = plot.cursor.left >= 0 ? plot.cursor.left : plot.valToPos((min + max) / 2, "x");
-      plot.setCursor({ left: Math.min(width, Math.max(0, now + sign * (event.shiftKey ? 20 : 2))), top: 10 });
+      const left = Math.min(width, Math.max(0, now + sign * (event.shiftKey ? 20 : 2)));
+      this.plots.forEach(each => each.setCursor({ left, top: 10 }, true, false));
     }
 
     fit() {
