@@ -20,14 +20,13 @@ STYLES = ("uPlot.min.css", "report.css")
 
 def render_report(report: Report) -> str:
     """Return a report as HTML; the same report gives the same text. Every text is escaped by the template."""
+    script, style = read_asset(SCRIPTS), read_asset(STYLES)
+    sections = [section for section in report.sections if section.blocks]
+    policy = f"default-src 'none'; script-src {digest_of(script)}; style-src {digest_of(style)}"
     return (
         make_environment()
         .get_template("report.html")
-        .render(
-            report=report,
-            sections=[section for section in report.sections if section.blocks],
-            policy=f"default-src 'none'; script-src {_digest(SCRIPTS)}; style-src {_digest(STYLES)}",
-        )
+        .render(report=report, sections=sections, policy=policy, script=Markup(script), style=Markup(style))
     )
 
 
@@ -42,21 +41,23 @@ def write_html(report: Report, path: Path) -> Path:
 
 @lru_cache(maxsize=1)
 def make_environment() -> jinja2.Environment:
-    """Return the templates, which escape every value; only the scripts and styles of this package pass as they are."""
-    found = jinja2.Environment(
-        loader=jinja2.PackageLoader("seatsim.report"), autoescape=True, undefined=jinja2.StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
-    found.globals.update(script=Markup(_read(SCRIPTS)), style=Markup(_read(STYLES)))
-    return found
+    """Return the templates, which escape every value that is not marked as safe; nothing from a file ever is."""
+    return jinja2.Environment(
+        loader=jinja2.PackageLoader("seatsim.report"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
 
 
-@lru_cache(maxsize=4)
-def _read(names: tuple[str, ...]) -> str:
+@lru_cache(maxsize=8)
+def read_asset(names: tuple[str, ...]) -> str:
+    """Return some scripts or styles of this package as one text."""
     folder = files(__package__).joinpath("assets")
     return "\n".join(folder.joinpath(name).read_text(encoding="utf-8").strip() for name in names)
 
 
-def _digest(names: tuple[str, ...]) -> str:
+def digest_of(text: str) -> str:
     """Return the source by which a content policy knows a script or a style: nothing else runs on the page."""
-    return f"'sha256-{base64.b64encode(hashlib.sha256(_read(names).encode()).digest()).decode()}'"
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"

@@ -151,7 +151,7 @@ def _draw_loops(runs: Sequence[Run], lines: Sequence[tuple[str, int]]) -> Block:
 
 def _make_table(runs: Sequence[Run]) -> Table:
     if len(runs) == 1:
-        return _list_metrics(runs[0])
+        return list_metrics(runs[0])
     chosen = [name for name in TABLE if any(name in run.metrics for run in runs)]
     shown = {name: describe_channel(TABLE[name], _unit_of(runs, name)) for name in chosen}
     head = ["run", *(each.words if each.unit == "-" else each.axis for each in shown.values())]
@@ -164,7 +164,8 @@ def _make_table(runs: Sequence[Run]) -> Table:
     return Table(f"Figures of each run; summary.csv has more.{bold}", head, rows, 1, best)
 
 
-def _list_metrics(run: Run) -> Table:
+def list_metrics(run: Run) -> Table:
+    """Return every figure of a run as a table."""
     rows = [
         [format_sentence(metric.meaning).rstrip("."), format_quantity(metric.value, metric.unit)]
         for metric in run.metrics.values()
