@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Lock
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jinja2
 from markupsafe import Markup
@@ -21,12 +21,14 @@ from starlette.types import ASGIApp
 
 from seatsim.page.folder import Folder, NotInFolderError, TooLargeError
 from seatsim.page.guard import POLICY, Guard
-from seatsim.page.recording_view import RecordingView
-from seatsim.page.scenario_view import ScenarioView
 from seatsim.report.rendering import digest_of, make_environment, read_asset
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.files import write_whole
+
+if TYPE_CHECKING:
+    from seatsim.page.recording_view import RecordingView
+    from seatsim.page.scenario_view import ScenarioView
 
 SCRIPTS = ("uPlot.iife.min.js", "charts.js", "page.js")
 STYLES = ("uPlot.min.css", "report.css", "page.css")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from seatsim.page.controls import Choice, Slider, read_choice, read_number
-from seatsim.report.blocks import Block
-from seatsim.report.runs import describe_run, list_metrics, show_signals
+from seatsim.report.blocks import Block, Table
+from seatsim.report.formatting import format_quantity
+from seatsim.report.runs import TABLE as METRICS_SHOWN
+from seatsim.report.runs import describe_run, show_signals
 from seatsim.scenario.loading import load, read_scenario
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
@@ -72,9 +75,9 @@ class ScenarioView:
             InputError: a value is not permitted.
             RunError: the run cannot be carried to its end.
         """
-        run = self._simulate(self.choose(request))
-        signals = show_signals([run], [(run.scenario.name, 2)])
-        return View(describe_run(run), [list_metrics(run)], signals)
+        run, own = run_one(self.choose(request)), self._own
+        signals = show_signals([own, run], [("as in the file", 0), ("as set", 2)])
+        return View(describe_run(run), [_compare(own, run)], signals)
 
     def choose(self, request: Mapping[str, Any]) -> Scenario:
         """Return the scenario that a request describes."""
@@ -120,5 +123,16 @@ class ScenarioView:
             source.put(key, value, f"the page, {key}")
         return read_scenario(source, label)
 
-    def _simulate(self, scenario: Scenario) -> Run:
-        return run_one(scenario, carry_all_effects=None)
+    @cached_property
+    def _own(self) -> Run:
+        """The first run as the file has it."""
+        return run_one(load(self.path)[0])
+
+
+def _compare(own: Run, run: Run) -> Table:
+    rows = []
+    for name, words in METRICS_SHOWN.items():
+        known = [each.metrics[name] for each in (own, run) if name in each.metrics]
+        if len(known) == 2:
+            rows.append([words, *(format_quantity(metric.value, metric.unit) for metric in known)])
+    return Table("First run of the file, and the run as set", ["figure", "as in the file", "as set"], rows)

@@ -8,15 +8,18 @@ import threading
 import webbrowser
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import uvicorn
 
 from seatsim.page.app import make_app
 from seatsim.page.folder import LARGEST, Folder
-from seatsim.page.recording_view import RecordingView
-from seatsim.page.scenario_view import ScenarioView
 from seatsim.scenario.loading import find_file
 from seatsim.schema.errors import InputError
+
+if TYPE_CHECKING:
+    from seatsim.page.recording_view import RecordingView
+    from seatsim.page.scenario_view import ScenarioView
 
 HOST = "127.0.0.1"
 
@@ -31,7 +34,12 @@ def open_target(path: Path) -> ScenarioView | RecordingView:
         for file in path.iterdir():
             if file.is_file() and file.stat().st_size > LARGEST:
                 raise InputError(f"{file}: larger than {LARGEST / 1e6:.0f} MB, which is the most that the page reads")
+        # The views are loaded when they are wanted: what a diagnosis needs takes a second, which a scenario is spared.
+        from seatsim.page.recording_view import RecordingView
+
         return RecordingView(path)
+    from seatsim.page.scenario_view import ScenarioView
+
     return ScenarioView(find_file(path))
 
 
