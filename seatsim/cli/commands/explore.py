@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import OwnCode
-from seatsim.cli.terminal import say, show_progress
+from seatsim.cli.options import Json, OwnCode
+from seatsim.cli.terminal import announce, show_progress
 from seatsim.schema.errors import InputError
 
 EXTRA = 'the page needs an extra; install it with: pip install "seatsim[page]"'
@@ -23,6 +23,7 @@ def explore(
     ] = 0,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address and open no browser.")] = False,
     own_code: OwnCode = None,
+    as_json: Json = False,
 ) -> None:
     """Open a page on this machine: move driver, temperature, road and controller, or effects, and see what follows."""
     try:
@@ -35,4 +36,4 @@ def explore(
     with show_progress():
         opened = open_target(path)
     folder = path if path.is_dir() else path.parent if path.exists() else Path()
-    serve(opened, folder, port, not no_browser, say)
+    serve(opened, folder, port, not no_browser, announce)

@@ -345,6 +345,12 @@ class BlindPowerAnswer(Answer):
     effects: list[dict[str, object]]
 
 
+class ExploreAnswer(Answer):
+    """A page that is served until the command is interrupted."""
+
+    address: str
+
+
 class ErrorAnswer(TypedDict):
     """What any command prints where it ends with an error."""
 
@@ -358,7 +364,7 @@ ANSWERS: Mapping[str, object] = {
     "identify": IdentificationAnswer | LeagueAnswer, "describe": DescriptionAnswer, "new": NewAnswer,
     "check": CheckAnswer, "import": ImportAnswer, "inspect": InspectionAnswer, "comfort": ComfortAnswer,
     "seat-test": SeatTestAnswer, "blind-make": BlindMakeAnswer, "blind-score": BlindScoreAnswer,
-    "blind-power": BlindPowerAnswer, "error": ErrorAnswer,
+    "blind-power": BlindPowerAnswer, "explore": ExploreAnswer, "error": ErrorAnswer,
 }  # fmt: skip
 """What each command prints; `error` is what any of them prints where it fails."""
 
