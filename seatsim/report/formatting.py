@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import json
 import math
 import re
 
@@ -88,14 +87,3 @@ def describe_effect(effect: str) -> str:
     except InputError:
         return ""
     return re.split(r"[.:;](?:\s|$)", text, maxsplit=1)[0].replace("`", "").strip()
-
-
-def format_value(value: object) -> str:
-    """Return any value of a proposed experiment as text."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, float):
-        return format_number(value, 4)
-    if isinstance(value, list | tuple) and all(isinstance(item, str) for item in value):
-        return ", ".join(value)
-    return json.dumps(value, ensure_ascii=False, default=str)

@@ -10,7 +10,7 @@ from matplotlib.text import Text
 
 from seatsim.plots.diagnosis import answer, signals
 from seatsim.plots.diagnosis.answer import select_stages
-from seatsim.plots.diagnosis.bins import FEWEST, bin_rms, drop_start, find_window, find_worst
+from seatsim.plots.diagnosis.bins import drop_start, find_window, find_worst
 
 from ..report.diagnoses import RATE, known, none, unknown
 
@@ -57,12 +57,6 @@ def test_a_window_holds_the_burst():
     window = find_window(rows, values, 2.0)
     assert window.start <= 12.4 and window.end >= 13.9 and window.end - window.start == pytest.approx(2.0)
     assert tuple(find_window(rows[:50], values[:50], 2.0)) == (0.0, pytest.approx(0.098))
-
-
-def test_bins_of_few_samples_stay_empty():
-    x = np.concatenate([np.full(FEWEST, 0.5), np.full(FEWEST - 1, 1.5)])
-    level = bin_rms(x, np.full(len(x), -3.0), np.array([0.0, 1.0, 2.0]))
-    assert level[0] == 3.0 and np.isnan(level[1])
 
 
 def test_the_first_second_is_left_out_and_the_worst_channel_is_mapped():

@@ -26,7 +26,6 @@ from seatsim.report.formatting import (
     format_percent,
     format_quantity,
     format_sentence,
-    format_value,
 )
 from seatsim.report.gap_stages import list_stages, read_gap
 from seatsim.report.rendering import render_report
@@ -203,9 +202,6 @@ def test_numbers_as_they_are_printed():
 
 
 def test_words_as_they_are_printed():
-    assert [format_value(value) for value in ("x", 12.3456, ["a", "b"], {"c": 1}, True)] == [
-        "x", "12.35", "a, b", '{"c": 1}', "true",
-    ]  # fmt: skip
     assert describe_effect("no.such_effect") == ""
     assert describe_effect("suspension.friction") and "`" not in describe_effect("suspension.friction")
 

@@ -20,11 +20,6 @@ from seatsim.simulation.result import Result, Run
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-DPI = 110
-"""Dots per inch of a picture: 1100 over the width of a page."""
-COMPRESSION = 3
-"""Level of zlib, 0 to 9: fast rather than small."""
-
 
 def write_result(result: Result, folder: Path, command: str = "seatsim run SCENARIO") -> list[Path]:
     """Write `summary.csv`, `summary.json`, `history.parquet`, `report.html` and the pictures; return their paths.
@@ -58,12 +53,9 @@ def _encode_runs(result: Result) -> dict[str, object]:
 
 def write_pictures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     """Write figures as `NAME.png` and return their paths; the same figure gives the same bytes."""
-    # The stated software takes the place of matplotlib's own entry, which holds its version.
-    metadata, options = {"Software": "seatsim"}, {"compress_level": COMPRESSION}
-    return [
-        write_whole(folder / f"{name}.png", partial(figure.savefig, dpi=DPI, metadata=metadata, pil_kwargs=options))
-        for name, figure in figures.items()
-    ]
+    from seatsim.plots.saving import save_figure
+
+    return [write_whole(folder / f"{name}.png", partial(save_figure, figure)) for name, figure in figures.items()]
 
 
 def _encode_brackets(result: Result) -> list[dict[str, object]]:

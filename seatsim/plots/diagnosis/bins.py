@@ -109,20 +109,6 @@ def varies(values: Array | None) -> bool:
     return bool(np.isfinite(low) and high - low > 1e-3 * max(abs(low), abs(high)))
 
 
-def bin_rms(x: Array, values: Array, borders: Array) -> Array:
-    """Return the RMS of values in bins over x; NaN in bins of too few."""
-    count, _ = np.histogram(x, borders)
-    energy, _ = np.histogram(x, borders, weights=np.square(values))
-    return _root_where_enough(energy, count)
-
-
-def bin_mean(x: Array, values: Array, borders: Array) -> Array:
-    """Return the mean of values in bins over x; NaN in bins of too few."""
-    count, _ = np.histogram(x, borders)
-    total, _ = np.histogram(x, borders, weights=values)
-    return np.asarray(np.where(count >= FEWEST, total / np.maximum(count, 1), np.nan))
-
-
 def map_rms(x: Array, y: Array, values: Array, borders: tuple[Array, Array]) -> Array:
     """Return the RMS of values in bins over x and y, shape (bins of y, bins of x); NaN in bins of too few."""
     ends = list(borders)
