@@ -31,7 +31,7 @@ def describe(
     pages = [find_page(name)] if name else list_pages()
     if picture is not None and (not name or pages[0].kind != "damper" or picture.suffix not in ENDINGS):
         raise InputError(
-            f"--picture {picture}: one damper as {', '.join(ENDINGS)}, such as seatsim describe bouc_wen --picture a.png"
+            f"--picture {picture}: one damper, as {', '.join(ENDINGS)}: seatsim describe bouc_wen --picture loops.svg"
         )
     say(describe_name(name))
     paths = _draw_loops(name, picture) if picture else []
