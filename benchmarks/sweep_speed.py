@@ -21,7 +21,7 @@ from seatsim.metrics import summarise
 from seatsim.scenario.scenario import Scenario
 from seatsim.simulation import simulate as simulation
 from seatsim.simulation.validity import list_ranges_left
-from seatsim.sweeps.engines.threads import ThreadEngine
+from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.execute import execute, prepare
 
 SWEEP = """\
@@ -59,7 +59,7 @@ def measure(what: str, runs: int) -> None:
             run_all(scenarios[:VARIANTS])
         else:
             runs, jobs = prepared.plan.runs, int(what.partition("-")[2])
-            work = lambda: execute(prepared, Path(name) / "out", ThreadEngine(jobs))  # noqa: E731
+            work = lambda: execute(prepared, Path(name) / "out", LocalEngine(jobs))  # noqa: E731
         clock, processors = time.perf_counter(), time.process_time()
         work()
         clock, processors = time.perf_counter() - clock, time.process_time() - processors

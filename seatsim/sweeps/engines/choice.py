@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from seatsim.schema.errors import InputError
 from seatsim.sweeps.engines.base import Engine
-from seatsim.sweeps.engines.threads import ThreadEngine
+from seatsim.sweeps.engines.local import LocalEngine
 
 
 def choose_engine(name: str, jobs: int, address: str | None) -> Engine:
@@ -21,4 +21,4 @@ def choose_engine(name: str, jobs: int, address: str | None) -> Engine:
         from seatsim.sweeps.engines.cluster import make_cluster_engine
 
         return make_cluster_engine(jobs, address)
-    return ThreadEngine(jobs)
+    return LocalEngine(jobs)
