@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
@@ -24,7 +24,7 @@ class Work(NamedTuple):
 class Engine(Protocol):
     """Carries out work; one that takes lanes of one combination of models regroups the runs of several tasks."""
 
-    def __call__(self, work: Work) -> Iterator[list[Outcome]]:
+    def __call__(self, work: Work) -> Generator[list[Outcome]]:
         """Yield outcomes as they come, in any order and in lists of any length; each run of the work has one.
 
         Where the iterator is closed, as on an interrupt, nothing of it keeps the process from ending.
