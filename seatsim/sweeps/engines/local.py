@@ -20,7 +20,7 @@ from typing import NamedTuple, cast
 
 from seatsim.schema.errors import RunError
 from seatsim.schema.modules import used_files
-from seatsim.sweeps.engines.base import Work
+from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY, Work
 from seatsim.sweeps.engines.worker import simulate_batches
 from seatsim.sweeps.outcome import Outcome
 
@@ -30,9 +30,6 @@ SHARES = 4
 """Towards the end a batch is this part of what is left for each worker, so that all of them end together."""
 WORTH_A_PROCESS = 3.0
 """Seconds of work that justify a process, whose start takes above one second of a processor."""
-KEEP_FREED_MEMORY = {"MALLOC_TRIM_THRESHOLD_": str(1 << 28), "MALLOC_MMAP_THRESHOLD_": str(1 << 25)}
-"""Bytes that glibc keeps at most of what a run has freed, and the largest array that it keeps: by itself it returns the
-arrays of the main thread to the system, which clears their pages again for the next run, a third of the time of one."""
 MOST_LOST = 3
 """Processes that may be lost before the sweep ends: others get their runs, which may be what ends them."""
 
