@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+
 from seatsim.benchmark.seat_run import DAMPER, GAIN, PLANT
 from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.loop_inputs import LoopSetup

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -50,10 +50,11 @@ def measure_lanes() -> Iterator[Cost]:
     assert seat.plant is not None
     masses = [50.0 + 60.0 * number / max(LANES) for number in range(max(LANES))]
     scenarios = [replace(seat, plant=seat.plant._replace(driver_mass=mass)) for mass in masses]
-    runs = {f"{lanes} side by side": partial(simulate_ensemble, scenarios[:lanes]) for lanes in LANES}
-    for run in (*runs.values(), partial(run_one, seat)):
+    runs: dict[str, Callable[[], object]] = {"alone": partial(run_one, seat)}
+    runs |= {f"{lanes} side by side": partial(simulate_ensemble, scenarios[:lanes]) for lanes in LANES}
+    for run in runs.values():
         run()
-    times = time_in_turns({**runs, "alone": partial(run_one, seat)}, REPEATS)
+    times = time_in_turns(runs, REPEATS)
     alone = times.pop("alone")
     for (name, series), lanes in zip(times.items(), LANES, strict=True):
         each = [t / lanes for t in series]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.protocols import DamperModel
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import LAWS, prepare_law
+from seatsim.rig.control import LAWS, Law, prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.schema.registry import initial_state
@@ -37,7 +38,8 @@ def make_floor(duration: float) -> Array:
 
 def make_setup(sample_every: int, damper: DamperModel = DAMPER) -> LoopSetup:
     """Return the run's constant parts; the law is sampled every `sample_every` steps."""
-    law = prepare_law(LAWS.find("static_output_feedback")(gain=GAIN), PLANT, Coil(), sample_every * STEP)
+    stated = cast("Law", LAWS.find("static_output_feedback")(gain=GAIN))
+    law = prepare_law(stated, PLANT, Coil(), sample_every * STEP)
     model = TrueModel(damper, DAMPERS.specification_of(type(damper)).current_order)
     timing = Timing(STEP, sample_every, 1e-4, self_heating=False)
     factors, coil = TemperatureFactors(), Coil()
