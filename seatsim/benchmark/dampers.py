@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from seatsim.benchmark.measurement import Cost, median_ratio, time_in_turns
+from seatsim.benchmark.measurement import Cost, compare_least, time_in_turns
 from seatsim.benchmark.seat_run import DAMPER, make_floor, make_setup, prepare_run
 from seatsim.dampers.base import DAMPERS
 
@@ -19,5 +19,5 @@ def measure_dampers(names: Sequence[str]) -> Iterator[Cost]:
     for name in names:
         run, _ = prepare_run(acceleration, make_setup(SAMPLE_EVERY, DAMPERS.find(name)()))
         times = time_in_turns({"run": run, "reference": reference}, REPEATS)
-        step = 1e9 * min(times["run"]) / len(acceleration)
-        yield Cost(name, step, UNIT, median_ratio(times["run"], times["reference"]), f"a step with {beside}")
+        scale = 1e9 / len(acceleration)
+        yield compare_least(name, times["run"], UNIT, scale, f"a step with {beside}", times["reference"])

@@ -6,8 +6,6 @@ import time
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-import numpy as np
-
 
 class Cost(NamedTuple):
     """What something costs, in a unit such as `ns a step`, and its ratio to the cost of something else, `beside`."""
@@ -33,6 +31,6 @@ def time_in_turns(runs: Mapping[str, Callable[[], object]], repeats: int) -> Tim
     return times
 
 
-def median_ratio(above: list[float], below: list[float]) -> float:
-    """Return the ratio of two medians."""
-    return float(np.median(above) / np.median(below))
+def compare_least(what: str, times: list[float], unit: str, scale: float, beside: str, others: list[float]) -> Cost:
+    """Return a cost by the least of its times, which a busy machine disturbs least; `scale` turns s into its `unit`."""
+    return Cost(what, scale * min(times), unit, min(times) / min(others), beside)

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from seatsim.benchmark import ivp
-from seatsim.benchmark.measurement import Cost, median_ratio, time_in_turns
+from seatsim.benchmark.measurement import Cost, compare_least, time_in_turns
 from seatsim.benchmark.native import native_run
 from seatsim.benchmark.seat_run import Array, make_floor, make_setup, prepare_run
 from seatsim.kernel.channels import CHANNELS
@@ -51,8 +51,7 @@ def measure_c() -> Iterator[Cost]:
             _check_agreement(source, channels, history, permitted)
         times = time_in_turns(runs, 11)
     for name in AGREEMENT:
-        step = 1e9 * min(times[name]) / len(acceleration)
-        yield Cost(name, step, "ns a step", median_ratio(times[name], times["seatsim"]), "a step of seatsim")
+        yield _compare(name, times[name], times["seatsim"], acceleration)
 
 
 def _check_agreement(source: str, channels: Channels, history: Array, permitted: float) -> None:
@@ -86,10 +85,12 @@ def _measure_solver(solver: Mapping[ivp.MethodName, ivp.Simulate]) -> Iterator[C
             solve = partial(simulate, ivp.IntegrationMethod(name, rtol), acceleration, SAMPLE_EVERY)
             if _error(solve(), exact) <= permitted:
                 times = time_in_turns({"solver": solve, "seatsim": run}, 3)
-                step = 1e9 * min(times["solver"]) / len(acceleration)
-                ratio = median_ratio(times["solver"], times["seatsim"])
-                yield Cost(f"{name}, rtol {rtol:.0e}", step, "ns a step", ratio, "a step of seatsim")
+                yield _compare(f"{name}, rtol {rtol:.0e}", times["solver"], times["seatsim"], acceleration)
                 break
+
+
+def _compare(what: str, times: list[float], ours: list[float], acceleration: Array) -> Cost:
+    return compare_least(what, times, "ns a step", 1e9 / len(acceleration), "a step of seatsim", ours)
 
 
 def _error(channels: Channels, exact: Channels) -> float:

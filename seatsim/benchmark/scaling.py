@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from seatsim.benchmark.measurement import Cost, median_ratio, time_in_turns
+from seatsim.benchmark.measurement import Cost, compare_least, time_in_turns
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import Scenario
 from seatsim.simulation.ensemble import simulate_ensemble
@@ -41,7 +41,7 @@ def measure_lengths() -> Iterator[Cost]:
     steps = {name: [t / length for t in times[name]] for name, length in zip(times, LENGTHS, strict=True)}
     first = next(iter(steps))
     for name, series in steps.items():
-        yield Cost(name, 1e6 * min(series), "ns a step", median_ratio(series, steps[first]), f"a step of a {first}")
+        yield compare_least(name, series, "ns a step", 1e6, f"a step of a {first}", steps[first])
 
 
 def measure_lanes() -> Iterator[Cost]:
@@ -58,7 +58,7 @@ def measure_lanes() -> Iterator[Cost]:
     alone = times.pop("alone")
     for (name, series), lanes in zip(times.items(), LANES, strict=True):
         each = [t / lanes for t in series]
-        yield Cost(name, 1e3 * min(each), "ms a run", median_ratio(each, alone), "a run alone")
+        yield compare_least(name, each, "ms a run", 1e3, "a run alone", alone)
 
 
 def measure_cores() -> Iterator[Cost]:

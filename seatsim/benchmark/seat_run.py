@@ -50,7 +50,7 @@ def prepare_run(acceleration: Array, setup: LoopSetup) -> tuple[Callable[[], Non
     """Return a function that runs the compiled loop, and the history that it fills; both are ready to be timed."""
     none, samples, damper = np.zeros(0), len(acceleration), type(setup.rig.damper)
     inputs = LoopInputs(acceleration, np.zeros(samples), np.full(samples, 20.0), none, none, none, none)
-    history = np.empty((samples, len(CHANNELS)))
+    history = np.empty((len(CHANNELS), samples)).T
     loop, rest = compiled(run_loop, (damper, type(setup.law))), initial_state(damper)
 
     def run() -> None:
