@@ -351,6 +351,24 @@ class ExploreAnswer(Answer):
     address: str
 
 
+class RunCost(TypedDict):
+    """What something costs, and its ratio to the cost of what stands in `beside`."""
+
+    part: str
+    what: str
+    value: float
+    unit: str
+    ratio: float
+    beside: str
+
+
+class BenchAnswer(Answer):
+    """Costs of runs on this machine, and the parts that were left out with the reason."""
+
+    costs: list[RunCost]
+    left_out: dict[str, str]
+
+
 class ErrorAnswer(TypedDict):
     """What any command prints where it ends with an error."""
 
@@ -364,7 +382,7 @@ ANSWERS: Mapping[str, object] = {
     "identify": IdentificationAnswer | LeagueAnswer, "describe": DescriptionAnswer, "new": NewAnswer,
     "check": CheckAnswer, "import": ImportAnswer, "inspect": InspectionAnswer, "comfort": ComfortAnswer,
     "seat-test": SeatTestAnswer, "blind-make": BlindMakeAnswer, "blind-score": BlindScoreAnswer,
-    "blind-power": BlindPowerAnswer, "explore": ExploreAnswer, "error": ErrorAnswer,
+    "blind-power": BlindPowerAnswer, "bench": BenchAnswer, "explore": ExploreAnswer, "error": ErrorAnswer,
 }  # fmt: skip
 """What each command prints; `error` is what any of them prints where it fails."""
 
