@@ -19,11 +19,6 @@ class Slider(NamedTuple):
     high: float
     value: float
 
-    @property
-    def step(self) -> float:
-        """Least change, a two-hundredth of the range."""
-        return float(f"{(self.high - self.low) / 200:.3g}")
-
 
 class Choice(NamedTuple):
     """One of several: its name in a request, what it is called, values with their words; the first is chosen."""
