@@ -135,7 +135,8 @@ def viscous_dahl(p, m, z):
 def lugre_jimenez(p, m, w):
     """Jimenez and Alvarez-Icaza 2005 (recalled): F = sigma0 z V + sigma1 z' + sigma2 v.
 
-    z' = v - sigma0 a0 |v| z (1 + a1 V). At constant V this is so for z = w / bound; the model holds w while V changes, which is its own.
+    z' = v - sigma0 a0 |v| z (1 + a1 V). At constant V this is so for z = w / bound; the model holds w while V changes,
+    which is its own.
     """
     V = m.i + p.i0
     bound = 1 / (p.sigma0 * p.a0 * (1 + p.a1 * V))
