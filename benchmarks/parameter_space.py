@@ -20,6 +20,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections import Counter
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -76,7 +77,7 @@ def draw_case(rng: np.random.Generator, name: str) -> Case:
     cls = find("damper", name)
     specification = specification_of(cls)
     values: dict[str, object] = {}
-    defaults: dict[str, Any] = cls()._asdict()
+    defaults: Mapping[str, Any] = cls()._asdict()
     for field, default in defaults.items():
         if isinstance(default, tuple):
             values[field] = draw_law(rng, default, specification.max_current)

@@ -195,7 +195,8 @@ def _turns_near(
         return True
     inside = INSIDE if j == 0 else CELLS - INSIDE
     near = side * (total_force(damper, x, v, top * inside / CELLS, scaling, z) - target)
-    return near < here if j == 0 else near <= here
+    turns: bool = near < here if j == 0 else near <= here
+    return turns
 
 
 @jit

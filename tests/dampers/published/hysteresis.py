@@ -32,7 +32,7 @@ def simple_bouc_wen(p, m, z):
     return force, bouc_wen_rate(p.A, p.beta, p.gamma, p.n, m.v, z)
 
 
-@equation("modified_bouc_wen", rest=[0.0, 0.0], f0=30.0, k0=9000.0, k1=4000.0, x0=0.004, law_end=0.8)
+@equation("modified_bouc_wen", rest=[0.0, 0.0], f0=30.0, k0=60000.0, k1=4000.0, x0=0.004, law_end=0.8)
 def modified_bouc_wen(p, m, y, z):
     """Spencer et al. 1997, eqs 2.4-2.6 of Braz-Cesar and Barros 2012 (published), F by its other identity."""
     c0, c1, alpha = (law(q, m.i, p.law_end) for q in (p.c0, p.c1, p.alpha))
