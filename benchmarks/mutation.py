@@ -1,11 +1,11 @@
 """Mutants of one module, and how many of them its tests find.
 
-    python benchmarks/mutation.py MODULE TEST... [--most 15] [--seed 0] [--compiled]
+    python benchmarks/mutation.py MODULE TEST... [--only NAMES] [--most 15] [--seed 0] [--compiled]
     python benchmarks/mutation.py seatsim/kernel/inverse.py tests/kernel/test_inverse.py
 
 A mutant differs from the module in one place: a sign or an operator of arithmetic, a comparison, a number, min for max,
 or a factor that is left out. Each is written to a copy of the package in a temporary folder, against which the tests
-run in a process of their own. What survives is printed with its line: a test is missing, or the change has no effect.
+run in a child process. What survives is printed with its line: a test is missing, or the change has no effect.
 Without `--compiled` the functions run as plain Python (`NUMBA_DISABLE_JIT`), which starts sooner than compiling them.
 """
 
@@ -17,11 +17,14 @@ import copy
 import os
 import random
 import shutil
-import subprocess
+import signal
 import sys
 import tempfile
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 COPIED = ("seatsim", "controllers", "tests", "benchmarks", "pyproject.toml")
@@ -90,16 +93,18 @@ class _Replace(ast.NodeTransformer):
         return super().generic_visit(node)
 
 
-def passes(folder: Path, tests: list[str], compiled: bool) -> bool:
-    """Return whether the tests pass on the copy in a folder."""
-    environment = os.environ | {"PYTHONPATH": str(folder), "SEATSIM_CACHE_DIR": str(folder / "cache")}
-    environment |= {} if compiled else {"NUMBA_DISABLE_JIT": "1"}
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", *tests]
-    try:
-        done = subprocess.run(command, check=False, cwd=folder, env=environment, capture_output=True, timeout=LONGEST)
-    except subprocess.TimeoutExpired:
-        return False
-    return done.returncode == 0
+def passes(folder: Path, arguments: list[str]) -> bool:
+    """Return whether the tests pass on the copy in a folder, in a child of this process, which has loaded pytest."""
+    child = os.fork()
+    if child == 0:
+        nothing = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nothing, 1)
+        os.dup2(nothing, 2)
+        os.chdir(folder)
+        sys.path.insert(0, str(folder))
+        signal.alarm(LONGEST)
+        os._exit(pytest.main(["-x", "-q", "-n", "0", "-p", "no:cacheprovider", *arguments]))
+    return os.waitpid(child, 0)[1] == 0
 
 
 def main() -> None:
@@ -113,19 +118,25 @@ def main() -> None:
     parser.add_argument("--compiled", action="store_true")
     options = parser.parse_args()
     tests = ["-k", options.only, *options.tests]
+    if not options.compiled:
+        os.environ["NUMBA_DISABLE_JIT"] = "1"
+    # Loaded once for all children: it takes longer than most tests.
+    for heavy in ("numba", "scipy.integrate", "scipy.signal", "pydantic"):
+        import_module(heavy)
     mutants = mutate((ROOT / options.module).read_text(encoding="utf-8"))
     chosen = random.Random(options.seed).sample(mutants, min(options.most, len(mutants)))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
+        os.environ["SEATSIM_CACHE_DIR"] = str(folder / "cache")
         for part in COPIED:
             copied = shutil.copytree if (ROOT / part).is_dir() else shutil.copy2
             copied(ROOT / part, folder / part)
-        if not passes(folder, tests, options.compiled):
+        if not passes(folder, tests):
             sys.exit("the tests fail on the module as it is")
         killed = 0
         for line, words, source in chosen:
             (folder / options.module).write_text(source, encoding="utf-8")
-            survived = passes(folder, tests, options.compiled)
+            survived = passes(folder, tests)
             killed += not survived
             if survived:
                 print(f"{options.module}:{line}: survives: {words}", flush=True)
