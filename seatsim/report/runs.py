@@ -156,7 +156,10 @@ def _make_table(runs: Sequence[Run]) -> Table:
     shown = {name: describe_channel(TABLE[name], _unit_of(runs, name)) for name in chosen}
     head = ["run", *(each.words if each.unit == "-" else each.axis for each in shown.values())]
     rows = [
-        [name, *(format_number(shown[metric].factor * read_metric(run, metric)) for metric in chosen)]
+        [
+            f"{name} (unverified)" if run.unverified else name,
+            *(format_number(shown[metric].factor * read_metric(run, metric)) for metric in chosen),
+        ]
         for name, run in zip(name_runs(runs), runs, strict=True)
     ]
     best = _rank(runs)[:1]
@@ -178,8 +181,8 @@ def _unit_of(runs: Sequence[Run], name: str) -> str:
 
 
 def _rank(runs: Sequence[Run]) -> list[int]:
-    """Return the runs with a weighted acceleration, the most comfortable first."""
-    known = [k for k, run in enumerate(runs) if np.isfinite(read_metric(run, COMFORT))]
+    """Return the runs with a weighted acceleration that can be relied on, the most comfortable first."""
+    known = [k for k, run in enumerate(runs) if np.isfinite(read_metric(run, COMFORT)) and not run.unverified]
     return sorted(known, key=lambda k: read_metric(runs[k], COMFORT))
 
 
@@ -201,6 +204,9 @@ def _compare(runs: Sequence[Run]) -> str:
 def _advise(runs: Sequence[Run]) -> list[str]:
     found = []
     hitting = [name for name, run in zip(name_runs(runs), runs, strict=True) if read_metric(run, "end_stop_hits") > 0]
+    doubtful = [name for name, run in zip(name_runs(runs), runs, strict=True) if run.unverified]
+    if doubtful:
+        found.append(f"Do not rely on {join_names(doubtful[:3])}: the notes say why the figures are unverified.")
     if hitting:
         found.append(f"Look at the travel of {join_names(hitting[:3])}: end stops are met, which is felt as a jolt.")
     amplifies = [name for name, run in zip(name_runs(runs), runs, strict=True) if read_metric(run, "seat_factor") > 1]
@@ -215,7 +221,8 @@ def _advise(runs: Sequence[Run]) -> list[str]:
 
 
 def _list_notes(runs: Sequence[Run]) -> list[Block]:
-    texts = [sentence for run in runs for sentence in run.warnings]
+    texts = [f"{run.scenario.title} is unverified: {reason}" for run in runs for reason in run.unverified]
+    texts += [sentence for run in runs for sentence in run.warnings]
     texts += [f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes]
     return [Items([format_sentence(text) for text in dict.fromkeys(texts)])] if texts else []
 

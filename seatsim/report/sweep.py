@@ -47,7 +47,7 @@ BINS = 6
 ENOUGH = 0.8
 """Share of the variance that an expansion must predict before nothing is said about it."""
 METHOD = (
-    "Every run has a seed of its own, derived from the sweep's; failed runs take no part in any figure.",
+    "Every run has a seed of its own, derived from the sweep's; failed and unverified runs take no part in any figure.",
     "Shares of variance are Sobol indices of a polynomial chaos expansion, with 95 % intervals by resampling the runs;"
     " they assume that keys vary independently, as this design has them.",
     "Shares of runs above a limit have Wilson's interval of 95 %.",
@@ -108,8 +108,10 @@ def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
 def _count_runs(rows: SweepRows) -> str:
     counts: Mapping[str, int] = rows.manifest["counts"]
     states = {state: int((rows.every.state == state).sum()) for state in (FAILED, UNVERIFIED)}
-    facts = f"{len(rows.every)} of {counts['runs']} runs have ended; {states[FAILED]} of them failed"
-    return facts + (f", {states[UNVERIFIED]} are unverified." if states[UNVERIFIED] else ".")
+    return (
+        f"{len(rows.every)} of {counts['runs']} runs have ended; {states[FAILED]} of them failed and"
+        f" {states[UNVERIFIED]} are unverified, which take no part in any figure."
+    )
 
 
 def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRows) -> list[str]:

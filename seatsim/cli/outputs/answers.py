@@ -36,12 +36,13 @@ class MetricFigure(TypedDict):
 
 
 class RunSummary(TypedDict):
-    """A run: its scenario, what sets it apart (variant, swept values), its metrics by name."""
+    """A run: its scenario, what sets it apart (variant, swept values), its metrics by name, why they are unverified."""
 
     scenario: str
     label: dict[str, object]
     metrics: dict[str, MetricFigure]
     warnings: list[str]
+    unverified: list[str]
     notes: list[str]
 
 
