@@ -189,7 +189,7 @@ def _rank(runs: Sequence[Run]) -> list[int]:
 def _compare(runs: Sequence[Run]) -> str:
     order = _rank(runs)
     if len(order) < 2:
-        return f"{len(runs)} runs were simulated; too few of them have a weighted acceleration to be compared."
+        return f"{len(runs)} runs were simulated; too few of them have figures that can be relied on to be compared."
     best, worst = runs[order[0]], runs[order[-1]]
     low, high = read_metric(best, COMFORT), read_metric(worst, COMFORT)
     if high <= 1.005 * low:

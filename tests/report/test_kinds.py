@@ -1,5 +1,6 @@
 """Reports of runs, comparisons, gaps, identifications, characterisations: the answer, what to do, the figures."""
 
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -28,24 +29,33 @@ from .outline import Outline
 
 @cache
 def runs():
-    scenarios = load("road-b", {"excitation.duration": 5.0})
+    scenarios = load("quickstart", {"excitation.duration": 5.0})
     return [run_one(scenario) for scenario in scenarios]
 
 
 def test_a_run_says_comfort_and_travel():
-    outline = Outline(render_report(report_runs(runs()[:1], "seatsim run road-b.yaml", "road-b")))
+    outline = Outline(render_report(report_runs(runs()[:1], "seatsim run quickstart.yaml", "quickstart")))
     assert "the driver feels" in outline.headings[0] and "m/s² (weighted RMS)" in outline.headings[0]
     assert outline.anchors[:4] == ["figures", "signals", "spectra", "loops"] and outline.anchors[-1] == "method"
     assert outline.rows("Every figure of the run")["RMS suspension travel"][0].endswith(" mm")
-    assert "seatsim run road-b.yaml" in outline.words
+    assert "seatsim run quickstart.yaml" in outline.words
     assert outline.rows("Settings")["plant.driver_mass [kg]"]
 
 
 def test_a_comparison_names_the_most_comfortable_run_and_marks_it():
-    text = render_report(report_runs(runs(), "seatsim compare road-b.yaml", "road-b"))
+    text = render_report(report_runs(runs(), "seatsim compare quickstart.yaml", "quickstart"))
     best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
     assert f"{best.scenario.title} is the most comfortable" in Outline(text).headings[0]
     assert text.count('<tr class="strong">') == 1 and len(text) < 600_000
+
+
+def test_a_run_that_cannot_be_relied_on_is_marked_and_never_the_best():
+    best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
+    doubted = [replace(run, unverified=("a reason",)) if run is best else run for run in runs()]
+    outline = Outline(render_report(report_runs(doubted, "seatsim compare quickstart.yaml", "quickstart")))
+    assert f"{best.scenario.title} is the most comfortable" not in outline.headings[0]
+    assert f"{best.scenario.title} (unverified)" in outline.rows("Figures of each run")
+    assert any(words.endswith("is unverified: a reason.") for words in outline.words)
 
 
 def pair(noise):
