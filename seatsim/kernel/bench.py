@@ -72,7 +72,7 @@ def run_bench(
             break
         if len(z) > 0:
             span = slice(j, j + 3)
-            z, parts, good = _advance(
+            z, parts, good = advance_state(
                 damper, factor, x[span], v[span], current[span], z, step, parts, most_parts, tolerance
             )
             spent += parts
@@ -82,7 +82,7 @@ def run_bench(
 
 
 @jit
-def _advance(
+def advance_state(
     damper: DamperModel,
     scaling: TemperatureScaling,
     x: Array,
