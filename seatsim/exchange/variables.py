@@ -15,6 +15,7 @@ from seatsim.exchange.printing.declarations import is_row
 from seatsim.exchange.printing.values import field_names as c_names
 from seatsim.exchange.printing.values import is_empty
 from seatsim.kernel.augmented import AugmentedDamper
+from seatsim.kernel.rig import Rig
 from seatsim.kernel.seated_body import SeatedBody
 from seatsim.schema.fields import bounds, describe
 
@@ -48,13 +49,16 @@ def _walk(name: str, place: str, value: object, what: Variable) -> Iterator[Vari
     elif isinstance(value, AugmentedDamper):
         yield from _walk(name, f"{place}.damper", value.damper, what)
         yield from _walk_effects(f"{place}.effects", value.effects, what)
-    elif name == "rig.effects":
-        yield from _walk_effects(place, cast("tuple[object, ...]", value), what)
+    elif isinstance(value, Rig):
+        yield from _walk("plant", f"{place}.plant", value.plant, what)
+        yield from _walk("damper", f"{place}.damper", value.damper, what)
+        yield from _walk_effects(f"{place}.effects", value.effects, what)
     elif hasattr(value, "_fields"):
         yield from _walk_record(name, place, value, what)
     elif isinstance(value, tuple):
         for k, (item, code) in enumerate(zip(value, _places(value), strict=True)):
-            yield from _walk(f"{name}[{k + 1}]", f"{place}{code}", item, what)
+            inner = f"{name[:-1]},{k + 1}]" if name.endswith("]") else f"{name}[{k + 1}]"
+            yield from _walk(inner, f"{place}{code}", item, what)
 
 
 def _walk_record(name: str, place: str, record: object, what: Variable) -> Iterator[Variable]:

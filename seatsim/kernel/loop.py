@@ -98,7 +98,7 @@ def run_loop(
         # Temperature is constant over a step: its change within one is far too small to affect the factors.
         if timing.self_heating:
             work = now.state[DAMPER_WORK] - work
-            temperature += _warming(setup.thermal, coil, temperature, work, current, next_current, step)
+            temperature += warm_up(setup.thermal, coil, temperature, work, current, next_current, step)
             factors = scaling_at(setup.factors, temperature)
         elif inputs.temperature[k + 1] != temperature:
             temperature = inputs.temperature[k + 1]
@@ -200,7 +200,7 @@ def _record(
 
 
 @jit
-def _warming(thermal: Thermal, coil: Coil, temperature: float, work: float, i0: float, i1: float, step: float) -> float:
+def warm_up(thermal: Thermal, coil: Coil, temperature: float, work: float, i0: float, i1: float, step: float) -> float:
     """Return the rise of temperature in K over a step: work of the damper and heat of the coil less what is lost.
 
     `(|W| + R (i0^2 + i0 i1 + i1^2) / 3 step - h (T - T_ambient) step) / C`; the mean square is that of a current that

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from seatsim.compilation.cached import compiled
 from seatsim.schema.registry import Record
 
 
@@ -46,9 +45,9 @@ class Block:
     @cached_property
     def initial(self) -> Any:
         """The state at time zero."""
-        return compiled(self.start, self.parts)(self.parameters, self.inputs, self.rest)
+        return self.start(self.parameters, self.inputs, self.rest)
 
     @cached_property
     def outputs(self) -> Any:
         """The outputs at time zero."""
-        return compiled(self.observe, self.parts)(self.parameters, self.inputs, self.initial, 0.0)
+        return self.observe(self.parameters, self.inputs, self.initial, 0.0)

@@ -117,12 +117,12 @@ def _print_library(name: str, values: list[Value], node: ast.Call, scope: Scope)
         (only,) = values
         return number(len(only.type) if is_tuple(only.type) else only.shape[0])
     if name == "empty":
-        length = values[0].known
-        if not isinstance(length, int):
-            raise scope.refuse(node, "the length of an array must be a constant")
+        shape = values[0].known if isinstance(values[0].known, tuple) else (values[0].known,)
+        if not all(isinstance(length, int) for length in shape):
+            raise scope.refuse(node, "the shape of an array must be constant")
         code = scope.name("scratch")
-        scope.write(f"real {code}[{length}];")
-        return Value(code, types.Array(REAL, 1, "C"), shape=(length,))
+        scope.write(f"real {code}[{math.prod(shape)}];")
+        return Value(code, types.Array(REAL, len(shape), "C"), shape=shape)
     if is_known(*values):
         compute = {"abs": abs, "min": min, "max": max, "float": float}.get(name) or getattr(math, name)
         return number(compute(*[value.known for value in values]))

@@ -173,6 +173,8 @@ def _copied(value: Value) -> Value:
 
 def _store(target: ast.expr, value: Value, scope: Scope) -> None:
     match target:
+        case ast.Name(id="_"):
+            pass
         case ast.Name(id=name):
             scope.assign(name, value)
         case ast.Subscript(value=ast.Name(id=owner)) if owner in scope.variables:
