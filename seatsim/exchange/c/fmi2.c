@@ -48,7 +48,6 @@ FMI2(const char *, fmi2GetVersion)(void) { return "2.0"; }
 
 FMI2(fmi2Status, fmi2SetDebugLogging)(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[])
 {
-    (void)c, (void)on, (void)n, (void)categories;
     return fmi2OK;
 }
 
@@ -56,7 +55,6 @@ FMI2(fmi2Component, fmi2Instantiate)(fmi2String name, fmi2Type type, fmi2String 
     const fmi2CallbackFunctions *callbacks, fmi2Boolean visible, fmi2Boolean logging)
 {
     Instance *i;
-    (void)resources, (void)visible, (void)logging;
     if (!name || !guid || !callbacks || type != fmi2CoSimulation || strcmp(guid, TOKEN) != 0) {
         return NULL;
     }
@@ -73,7 +71,6 @@ FMI2(void, fmi2FreeInstance)(fmi2Component c) { drop_instance(c); }
 FMI2(fmi2Status, fmi2SetupExperiment)(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance,
     fmi2Real start, fmi2Boolean stopDefined, fmi2Real stop)
 {
-    (void)toleranceDefined, (void)tolerance, (void)stopDefined, (void)stop;
     ((Instance *)c)->content.time = start;
     return fmi2OK;
 }
@@ -141,13 +138,11 @@ GET_AND_SET(Boolean, fmi2Boolean, BOOLEAN_VARIABLE)
 
 FMI2(fmi2Status, fmi2GetString)(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2String values[])
 {
-    (void)c, (void)vr, (void)values;
     return status_of(n == 0);
 }
 
 FMI2(fmi2Status, fmi2SetString)(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2String values[])
 {
-    (void)c, (void)vr, (void)values;
     return status_of(n == 0);
 }
 
@@ -171,7 +166,6 @@ FMI2(fmi2Status, fmi2SetFMUstate)(fmi2Component c, fmi2FMUstate state)
 
 FMI2(fmi2Status, fmi2FreeFMUstate)(fmi2Component c, fmi2FMUstate *state)
 {
-    (void)c;
     free(*state);
     *state = NULL;
     return fmi2OK;
@@ -179,14 +173,12 @@ FMI2(fmi2Status, fmi2FreeFMUstate)(fmi2Component c, fmi2FMUstate *state)
 
 FMI2(fmi2Status, fmi2SerializedFMUstateSize)(fmi2Component c, fmi2FMUstate state, size_t *size)
 {
-    (void)c, (void)state;
     *size = sizeof(Content);
     return fmi2OK;
 }
 
 FMI2(fmi2Status, fmi2SerializeFMUstate)(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
 {
-    (void)c;
     if (size < sizeof(Content)) {
         return fmi2Error;
     }
@@ -206,39 +198,33 @@ FMI2(fmi2Status, fmi2DeSerializeFMUstate)(fmi2Component c, const fmi2Byte bytes[
 FMI2(fmi2Status, fmi2GetDirectionalDerivative)(fmi2Component c, const fmi2ValueReference unknown[], size_t n,
     const fmi2ValueReference known[], size_t m, const fmi2Real seed[], fmi2Real result[])
 {
-    (void)c, (void)unknown, (void)n, (void)known, (void)m, (void)seed, (void)result;
     return fmi2Error;
 }
 
 FMI2(fmi2Status, fmi2SetRealInputDerivatives)(fmi2Component c, const fmi2ValueReference vr[], size_t n,
     const fmi2Integer order[], const fmi2Real values[])
 {
-    (void)c, (void)vr, (void)order, (void)values;
     return status_of(n == 0);
 }
 
 FMI2(fmi2Status, fmi2GetRealOutputDerivatives)(fmi2Component c, const fmi2ValueReference vr[], size_t n,
     const fmi2Integer order[], fmi2Real values[])
 {
-    (void)c, (void)vr, (void)order, (void)values;
     return status_of(n == 0);
 }
 
 FMI2(fmi2Status, fmi2DoStep)(fmi2Component c, fmi2Real from, fmi2Real length, fmi2Boolean final)
 {
-    (void)final;
     return status_of(((Instance *)c)->content.phase == STEPPING && go_on(c, from, length));
 }
 
 FMI2(fmi2Status, fmi2CancelStep)(fmi2Component c)
 {
-    (void)c;
     return fmi2Error;
 }
 
 FMI2(fmi2Status, fmi2GetStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value)
 {
-    (void)c, (void)kind, (void)value;
     return fmi2Discard;
 }
 
@@ -253,13 +239,11 @@ FMI2(fmi2Status, fmi2GetRealStatus)(fmi2Component c, const fmi2StatusKind kind, 
 
 FMI2(fmi2Status, fmi2GetIntegerStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value)
 {
-    (void)c, (void)kind, (void)value;
     return fmi2Discard;
 }
 
 FMI2(fmi2Status, fmi2GetBooleanStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value)
 {
-    (void)c;
     if (kind != fmi2Terminated) {
         return fmi2Discard;
     }
@@ -269,6 +253,5 @@ FMI2(fmi2Status, fmi2GetBooleanStatus)(fmi2Component c, const fmi2StatusKind kin
 
 FMI2(fmi2Status, fmi2GetStringStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2String *value)
 {
-    (void)c, (void)kind, (void)value;
     return fmi2Discard;
 }

@@ -48,6 +48,13 @@ typedef double real;
 #define R_NAN ((real)NAN)
 #define R_INFINITY ((real)INFINITY)
 
+/* Most functions are small, and records go into them by value: inlined, nothing is copied. */
+#if defined(__GNUC__)
+#define INLINED static inline __attribute__((always_inline))
+#else
+#define INLINED static inline
+#endif
+
 static inline real least(real a, real b) { return b < a ? b : a; }
 static inline real greatest(real a, real b) { return b > a ? b : a; }
 static inline int least_int(int a, int b) { return b < a ? b : a; }

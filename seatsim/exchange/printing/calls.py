@@ -52,6 +52,7 @@ def print_call(
         return _print_library(thing.__name__, given, node, scope)
     if hasattr(thing, "py_func"):
         thing = thing.py_func
+        scope.program.keep_apart(thing)
     if thing in GENERIC:
         given = _bind(thing, given, named, node, scope) if named else given
         thing = scope.program.form(thing, tuple(value.type for value in given))

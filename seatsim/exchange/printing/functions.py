@@ -76,7 +76,9 @@ def _definition(
 ) -> str:
     """Return the text of a function."""
     listed = ", ".join(f"{program.types.name(p.type)} {p.code}".replace("* ", "*") for p in parameters if p.code)
-    head = f"static inline {program.types.name(result)} {name}({listed or 'void'})"
+    # What is compiled apart for Python is so here: it is seldom called.
+    kind = "static" if program.is_apart(function) else "INLINED"
+    head = f"{kind} {program.types.name(result)} {name}({listed or 'void'})"
     return "\n".join([f"/* {origin(function)} */", head, "{", *scope.declared, *scope.lines, "}", ""])
 
 

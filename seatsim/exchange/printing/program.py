@@ -41,6 +41,7 @@ class Program:
         self._printed: dict[tuple[object, tuple[Signature, ...]], Printed] = {}
         self._forms: dict[tuple[object, tuple[types.Type, ...]], Callable[..., object] | None] = {}
         self._names: set[str] = set()
+        self._apart: set[object] = set()
         self._table_names: dict[bytes, str] = {}
 
     def function(self, function: Callable[..., object], arguments: tuple[Signature, ...]) -> Printed:
@@ -51,6 +52,14 @@ class Program:
             self._names.add(name)
             self._printed[key] = self.translate(self, function, name, arguments)
         return self._printed[key]
+
+    def keep_apart(self, function: Callable[..., object]) -> None:
+        """Print a function such that it is called, not put where it is called."""
+        self._apart.add(function)
+
+    def is_apart(self, function: Callable[..., object]) -> bool:
+        """Return whether a function is to be called."""
+        return function in self._apart
 
     def form(self, generic: Callable[..., object], arguments: tuple[types.Type, ...]) -> Callable[..., object] | None:
         """Return the form of a generic function for arguments of these types, the same one every time."""
