@@ -35,11 +35,10 @@ class Variable(NamedTuple):
 
 def list_variables(block: Block) -> list[Variable]:
     """List the parameters, inputs and outputs of a block, in this order."""
-    parameters = _walk("", "parameters", block.parameters, Variable("", "parameter", 0.0, ""))
-    found = [v for v in parameters if not v.name.startswith(block.hidden or ("\0",))]
+    found = [*_walk("", "parameters", block.parameters, Variable("", "parameter", 0.0, ""))]
     found += _walk("", "inputs", block.inputs, Variable("", "input", 0.0, ""))
     found += _walk("", "outputs", block.outputs, Variable("", "output", 0.0, ""))
-    return found
+    return [variable for variable in found if not variable.name.startswith(block.hidden)]
 
 
 def _walk(name: str, place: str, value: object, what: Variable) -> Iterator[Variable]:

@@ -59,6 +59,12 @@ def read(sensors: Sensing, true: Measurement, noise: Array, sample: int, state: 
     return true, state
 
 
+@hook
+def take(sensors: Sensing, read: Measurement, state: State) -> tuple[Measurement, State]:
+    """Measurement that a law is given of readings that were sampled already, and the state of the sensors after it."""
+    return read, state
+
+
 def wants_force(law: CompiledLaw) -> bool:
     """Whether the law returns a force (for the inverse) rather than a current."""
     return isinstance(law, ForceLaw)

@@ -29,7 +29,7 @@ from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling, Ther
 from seatsim.scenario.scenario import Control, Scenario
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
-from seatsim.schema.registry import initial_state
+from seatsim.schema.registry import initial_state, specification_of
 from seatsim.simulation.effect_hooks import FRAME_FORCE, READING, TEMPERATURE, TRUTH
 from seatsim.simulation.simulate import set_up
 
@@ -246,10 +246,13 @@ def rig_block(scenario: Scenario) -> Block:
     variable = setup.law, setup.inverse_model.damper, setup.sensors
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
     hidden = ["coil.delay", "inverse_model.order", "sensors", "self_heating", "tolerance", "step", "sample_every"]
+    hidden += ["temperature"] if heated else ["thermal", "coil.resistance"]
+    hidden += [] if control.sensors else ["displacement_noise", "frame_noise", "driver_noise", "floor_noise"]
+    hidden += [] if specification_of(type(control.law)).replays else ["replayed_command"]
     return Block(
         f"{scenario.name} rig", "suspension seat with driver, MR damper, coil and control law", parameters, inputs,
         _rest(scenario, control, parameters, inputs, initial, late), start, observe, advance, setup.timing.step, True,
-        parts, (*hidden, *(() if heated else ("thermal", "coil.resistance"))), tuple(_left_out(scenario)),
+        parts, tuple(hidden), tuple(_left_out(scenario)),
     )  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
 from collections.abc import Callable
 from types import FunctionType
@@ -79,7 +80,16 @@ def _definition(
     # What is compiled apart for Python is so here: it is seldom called.
     kind = "static" if program.is_apart(function) else "INLINED"
     head = f"{kind} {program.types.name(result)} {name}({listed or 'void'})"
-    return "\n".join([f"/* {origin(function)} */", head, "{", *scope.declared, *scope.lines, "}", ""])
+    return "\n".join([f"/* {origin(function)} */", head, "{", *scope.declared, *_used(scope.lines), "}", ""])
+
+
+def _used(lines: list[str]) -> list[str]:
+    """Return the lines without constants that nothing uses, such as the state of effects that do not ask for it."""
+    for k in range(len(lines) - 1, -1, -1):
+        found = re.match(r"\s*const \w+ (part\w*) = ", lines[k])
+        if found and not any(re.search(rf"\b{found[1]}\b", line) for line in lines[k + 1 :]):
+            lines = [*lines[:k], *lines[k + 1 :]]
+    return lines
 
 
 def _count_assignments(definition: ast.FunctionDef, names: list[str]) -> dict[str, int]:
@@ -175,7 +185,7 @@ def _copied(value: Value) -> Value:
 
 def _store(target: ast.expr, value: Value, scope: Scope) -> None:
     match target:
-        case ast.Name(id="_"):
+        case ast.Name(id=name) if name.startswith("_"):
             pass
         case ast.Name(id=name):
             scope.assign(name, value)
