@@ -44,7 +44,8 @@ def list_variables(block: Block) -> list[Variable]:
 def _walk(name: str, place: str, value: object, what: Variable) -> Iterator[Variable]:
     """Yield the numbers of a value, of which `what` is known."""
     if isinstance(value, bool | int | float):
-        yield what._replace(name=name, place=place, value=value)
+        # A float of numpy is one of Python's, too, but is not written as one.
+        yield what._replace(name=name, place=place, value=float(value) if isinstance(value, float) else value)
     elif isinstance(value, AugmentedDamper):
         yield from _walk(name, f"{place}.damper", value.damper, what)
         yield from _walk_effects(f"{place}.effects", value.effects, what)

@@ -73,13 +73,13 @@ int main(int argc, char **argv)
     check(set(c, vr, nu, u), "first inputs");
     check(((fmi2ExitInitializationModeTYPE *)find("fmi2ExitInitializationMode"))(c), "end of initialisation");
     check(get(c, vr + nu, ny, y), "first outputs");
-    clock_gettime(CLOCK_MONOTONIC, &first);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &first);
     for (k = 0; k < n; k++) {
         check(set(c, vr, nu, u + k * nu), "inputs");
         check(step(c, (double)k * h, h, fmi2True), "step");
         check(get(c, vr + nu, ny, y + (k + 1) * ny), "outputs");
     }
-    clock_gettime(CLOCK_MONOTONIC, &last);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &last);
     spent = (double)(last.tv_sec - first.tv_sec) + 1e-9 * (double)(last.tv_nsec - first.tv_nsec);
     fwrite(y, sizeof *y, (n + 1) * ny, stdout);
     fwrite(&spent, sizeof spent, 1, stdout);

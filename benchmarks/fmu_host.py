@@ -22,10 +22,11 @@ HERE = Path(__file__).parent
 
 
 class Hosted(NamedTuple):
-    """Outputs of a unit, shape (samples + 1, outputs), and the time that all steps took in s."""
+    """Outputs of a unit, shape (samples + 1, outputs), the time that all steps took in s, and its library."""
 
     outputs: Array
     seconds: float
+    library: Path
 
 
 def headers() -> Path:
@@ -36,9 +37,11 @@ def headers() -> Path:
 
 
 def build_host(version: int, folder: Path) -> Path:
-    """Build the host of a version and return its path."""
+    """Build the host of a version, where it is not there, and return its path."""
     host = folder / f"host{version}"
-    source = HERE / f"host{version}.c"
+    if host.exists():
+        return host
+    source = HERE / f"fmu_host{version}.c"
     command = [find_compiler(), "-std=gnu99", "-Wall", "-Werror", "-O2", f"-I{headers()}", "-o", str(host), str(source)]
     subprocess.run([*command, "-ldl"], check=True, timeout=60)
     return host
@@ -64,4 +67,4 @@ def run_unit(block: Block, version: int, inputs: Mapping[str, Array], folder: Pa
     )  # fmt: skip
     assert done.returncode == 0, done.stderr.decode()
     values = np.frombuffer(done.stdout)
-    return Hosted(values[:-1].reshape(len(samples) + 1, len(outputs)), float(values[-1]))
+    return Hosted(values[:-1].reshape(len(samples) + 1, len(outputs)), float(values[-1]), library)
