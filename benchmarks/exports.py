@@ -175,8 +175,8 @@ def report(
         off.append(float(np.max(np.abs(hosted.outputs[skip:, k] - values))) / scale)
     foreign = [symbol for symbol in symbols if "Py" in symbol or "NRT" in symbol or "numba" in symbol]
     print(
-        f"{name:44} {version:3} {max(off):10.1e} {1e6 * hosted.seconds / steps:8.3f} {1e6 * kernel_seconds / steps:9.3f}"
-        f" {size:5.1f}  {len(findings) + len(foreign)}",
+        f"{name:44} {version:3} {max(off):10.1e} {1e6 * hosted.seconds / steps:8.3f}"
+        f" {1e6 * kernel_seconds / steps:9.3f} {size:5.1f}  {len(findings) + len(foreign)}",
         flush=True,
     )
 

@@ -63,7 +63,8 @@ def run_unit(block: Block, version: int, inputs: Mapping[str, Array], folder: Pa
     done = subprocess.run(
         [str(build_host(version, folder)), str(library), f"{{{token}}}", repr(step), str(len(samples)),
          str(len(inputs)), str(len(outputs))],
-        input=numbers.tobytes() + np.ascontiguousarray(samples).tobytes(), capture_output=True, timeout=120, check=False,
+        input=numbers.tobytes() + np.ascontiguousarray(samples).tobytes(),
+        capture_output=True, timeout=120, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr.decode()
     values = np.frombuffer(done.stdout)

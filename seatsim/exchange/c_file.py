@@ -49,7 +49,9 @@ def print_c(block: Block) -> str:
         "FED": _rows(fed),
         "EXPECTED": _rows(expected),
         "FEED": "".join(f"        m.{v.place} = (real)fed[k][{j}];\n" for j, v in enumerate(inputs)),
-        "CHECK": "".join(f"        off += is_off(m.{v.place}, expected[k][{j}], {j});\n" for j, v in enumerate(outputs)),
+        "CHECK": "".join(
+            f"        off += is_off(m.{v.place}, expected[k][{j}], {j});\n" for j, v in enumerate(outputs)
+        ),
         "INPUT_COUNT": str(len(inputs)),
         "OUTPUT_COUNT": str(len(outputs)),
     }

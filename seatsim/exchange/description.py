@@ -6,7 +6,7 @@ import math
 import platform
 from collections.abc import Sequence
 from typing import NamedTuple
-from xml.etree import ElementTree as xml
+from xml.etree import ElementTree
 
 import seatsim
 from seatsim.exchange.blocks.base import Block
@@ -29,65 +29,65 @@ class Unit(NamedTuple):
 
 def describe_fmi2(unit: Unit) -> bytes:
     """Return the description in version 2.0."""
-    root = xml.Element("fmiModelDescription", _header(unit, "2.0") | {"guid": unit.token})
+    root = ElementTree.Element("fmiModelDescription", _header(unit, "2.0") | {"guid": unit.token})
     root.set("variableNamingConvention", "structured")
     root.set("numberOfEventIndicators", "0")
-    model = xml.SubElement(root, "CoSimulation", {
+    model = ElementTree.SubElement(root, "CoSimulation", {
         "modelIdentifier": unit.identifier, "canHandleVariableCommunicationStepSize": "true",
         "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true", "canNotUseMemoryManagementFunctions": "true",
     })  # fmt: skip
-    xml.SubElement(xml.SubElement(model, "SourceFiles"), "File", {"name": "fmi2.c"})
+    ElementTree.SubElement(ElementTree.SubElement(model, "SourceFiles"), "File", {"name": "fmi2.c"})
     _add_units(root, unit)
     _add_categories(root)
     _add_experiment(root, unit)
-    listed = xml.SubElement(root, "ModelVariables")
+    listed = ElementTree.SubElement(root, "ModelVariables")
     for number, v in enumerate(unit.variables):
-        scalar = xml.SubElement(listed, "ScalarVariable", {"name": v.name, "valueReference": str(number)})
+        scalar = ElementTree.SubElement(listed, "ScalarVariable", {"name": v.name, "valueReference": str(number)})
         scalar.attrib |= _kind(v) | {"description": v.meaning}
-        xml.SubElement(scalar, TYPES_2[type(v.value)], _numbers(v))
-    structure = xml.SubElement(root, "ModelStructure")
+        ElementTree.SubElement(scalar, TYPES_2[type(v.value)], _numbers(v))
+    structure = ElementTree.SubElement(root, "ModelStructure")
     outputs = [str(k + 1) for k, v in enumerate(unit.variables) if v.causality == "output"]
     for name in ("Outputs", "InitialUnknowns"):
-        group = xml.SubElement(structure, name)
+        group = ElementTree.SubElement(structure, name)
         for index in outputs:
-            xml.SubElement(group, "Unknown", {"index": index})
+            ElementTree.SubElement(group, "Unknown", {"index": index})
     return _text(root)
 
 
 def describe_fmi3(unit: Unit) -> bytes:
     """Return the description in version 3.0; the time is a variable there, with the number after the last."""
-    root = xml.Element("fmiModelDescription", _header(unit, "3.0") | {"instantiationToken": unit.token})
+    root = ElementTree.Element("fmiModelDescription", _header(unit, "3.0") | {"instantiationToken": unit.token})
     root.set("variableNamingConvention", "structured")
-    xml.SubElement(root, "CoSimulation", {
+    ElementTree.SubElement(root, "CoSimulation", {
         "modelIdentifier": unit.identifier, "canHandleVariableCommunicationStepSize": "true",
         "canGetAndSetFMUState": "true", "canSerializeFMUState": "true",
     } | ({"fixedInternalStepSize": repr(unit.block.step)} if unit.block.fixed_step else {}))  # fmt: skip
     _add_units(root, unit)
     _add_categories(root)
     _add_experiment(root, unit)
-    listed = xml.SubElement(root, "ModelVariables")
+    listed = ElementTree.SubElement(root, "ModelVariables")
     for number, v in enumerate(unit.variables):
         place = {"name": v.name, "valueReference": str(number), "description": v.meaning}
-        xml.SubElement(listed, TYPES_3[type(v.value)], place | _kind(v) | _numbers(v))
-    xml.SubElement(listed, "Float64", {
+        ElementTree.SubElement(listed, TYPES_3[type(v.value)], place | _kind(v) | _numbers(v))
+    ElementTree.SubElement(listed, "Float64", {
         "name": TIME, "valueReference": str(len(unit.variables)), "causality": "independent",
         "variability": "continuous", "unit": "s", "description": "time",
     })  # fmt: skip
-    structure = xml.SubElement(root, "ModelStructure")
+    structure = ElementTree.SubElement(root, "ModelStructure")
     for name in ("Output", "InitialUnknown"):
         for k, v in enumerate(unit.variables):
             if v.causality == "output":
-                xml.SubElement(structure, name, {"valueReference": str(k)})
+                ElementTree.SubElement(structure, name, {"valueReference": str(k)})
     return _text(root)
 
 
 def describe_build(unit: Unit) -> bytes:
     """Return `buildDescription.xml`, by which a program builds the sources of version 3.0."""
-    root = xml.Element("fmiBuildDescription", {"fmiVersion": "3.0"})
-    build = xml.SubElement(root, "BuildConfiguration", {"modelIdentifier": unit.identifier})
-    files = xml.SubElement(build, "SourceFileSet", {"language": "C99", "compilerOptions": "-ffp-contract=off"})
-    xml.SubElement(files, "SourceFile", {"name": "fmi3.c"})
-    xml.SubElement(build, "Library", {"name": "m"}) if platform.system() != "Windows" else None
+    root = ElementTree.Element("fmiBuildDescription", {"fmiVersion": "3.0"})
+    build = ElementTree.SubElement(root, "BuildConfiguration", {"modelIdentifier": unit.identifier})
+    files = ElementTree.SubElement(build, "SourceFileSet", {"language": "C99", "compilerOptions": "-ffp-contract=off"})
+    ElementTree.SubElement(files, "SourceFile", {"name": "fmi3.c"})
+    ElementTree.SubElement(build, "Library", {"name": "m"}) if platform.system() != "Windows" else None
     return _text(root)
 
 
@@ -95,25 +95,29 @@ def _header(unit: Unit, version: str) -> dict[str, str]:
     return {
         "fmiVersion": version,
         "modelName": unit.block.name,
-        "description": " ".join([unit.block.summary + ".", *(f"{note[0].upper()}{note[1:]}." for note in unit.block.notes)]),
+        "description": " ".join(
+            [unit.block.summary + ".", *(f"{note[0].upper()}{note[1:]}." for note in unit.block.notes)]
+        ),
         "generationTool": f"seatsim {seatsim.__version__}",
     }
 
 
-def _add_units(root: xml.Element, unit: Unit) -> None:
+def _add_units(root: ElementTree.Element, unit: Unit) -> None:
     names = dict.fromkeys(_unit_name(v) for v in unit.variables if _unit_name(v))
-    listed = xml.SubElement(root, "UnitDefinitions")
+    listed = ElementTree.SubElement(root, "UnitDefinitions")
     for name in dict.fromkeys([*names, "s"]):
-        xml.SubElement(listed, "Unit", {"name": name})
+        ElementTree.SubElement(listed, "Unit", {"name": name})
 
 
-def _add_categories(root: xml.Element) -> None:
-    listed = xml.SubElement(root, "LogCategories")
-    xml.SubElement(listed, "Category", {"name": "logStatusError", "description": "what was refused, and why"})
+def _add_categories(root: ElementTree.Element) -> None:
+    listed = ElementTree.SubElement(root, "LogCategories")
+    ElementTree.SubElement(listed, "Category", {"name": "logStatusError", "description": "what was refused, and why"})
 
 
-def _add_experiment(root: xml.Element, unit: Unit) -> None:
-    xml.SubElement(root, "DefaultExperiment", {"startTime": "0", "stopTime": "10", "stepSize": repr(unit.block.step)})
+def _add_experiment(root: ElementTree.Element, unit: Unit) -> None:
+    ElementTree.SubElement(
+        root, "DefaultExperiment", {"startTime": "0", "stopTime": "10", "stepSize": repr(unit.block.step)}
+    )
 
 
 def _unit_name(v: Variable) -> str:
@@ -140,6 +144,6 @@ def _numbers(v: Variable) -> dict[str, str]:
     return found
 
 
-def _text(root: xml.Element) -> bytes:
-    xml.indent(root)
-    return bytes(xml.tostring(root, encoding="utf-8", xml_declaration=True))
+def _text(root: ElementTree.Element) -> bytes:
+    ElementTree.indent(root)
+    return bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True))

@@ -34,8 +34,7 @@ def write_mat(block: Block, scenario: Scenario, path: Path) -> None:
     if scenario.plant is not None:
         content["plant"] = _linear_plant(scenario.plant)
     partial = path.with_name(path.name + ".part")
-    with partial.open("wb") as file:
-        savemat(file, content, long_field_names=False, oned_as="row")
+    savemat(str(partial), content, appendmat=False, oned_as="row")
     partial.replace(path)
 
 

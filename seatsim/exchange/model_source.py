@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib.resources import files
 from typing import cast
 
@@ -11,9 +11,9 @@ import numba
 from numba import types
 
 from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.printing.declarations import is_row
 from seatsim.exchange.printing.functions import print_program
 from seatsim.exchange.printing.program import Program
-from seatsim.exchange.printing.tuples import is_row
 from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, number
 from seatsim.exchange.variables import Variable
 
@@ -66,9 +66,11 @@ def print_variables(variables: Sequence[Variable]) -> str:
     return resource("variables.h").replace("@ROWS@", "\n".join(rows))
 
 
-def _call(program: Program, function: object, kinds: tuple[Signature, ...], codes: tuple[str, ...]) -> str:
+def _call(
+    program: Program, function: Callable[..., object], kinds: tuple[Signature, ...], codes: tuple[str, ...]
+) -> str:
     """Return the call of a function of the block, which is printed."""
-    printed = program.function(function, kinds)  # type: ignore[arg-type]  # a function
+    printed = program.function(function, kinds)
     if printed.passed is not None:
         return codes[printed.passed]
     return f"{printed.name}({', '.join(code for code, k in zip(codes, kinds, strict=True) if not is_empty(k.type))})"

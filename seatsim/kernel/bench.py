@@ -19,6 +19,8 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 
 Array = NDArray[np.float64]
+Samples = Array | tuple[float, float, float]
+"""What goes on in a step: its value at the beginning, in the middle and at the end."""
 
 TOLERANCE = 1e-4
 """Error of the force that a step may add by default, relative to the force plus `FORCE_SCALE`."""
@@ -85,9 +87,9 @@ def run_bench(
 def advance_state(
     damper: DamperModel,
     scaling: TemperatureScaling,
-    x: Array,
-    v: Array,
-    current: Array,
+    x: Samples,
+    v: Samples,
+    current: Samples,
     z: State,
     step: float,
     parts: int,
@@ -113,9 +115,9 @@ def advance_state(
 def _part(
     damper: DamperModel,
     scaling: TemperatureScaling,
-    x: Array,
-    v: Array,
-    current: Array,
+    x: Samples,
+    v: Samples,
+    current: Samples,
     z: State,
     h: float,
     s: float,
@@ -141,7 +143,7 @@ def _part(
 
 
 @jit
-def _between(samples: Array, s: float) -> float:
+def _between(samples: Samples, s: float) -> float:
     """Return the parabola through three samples at the fraction `s` of the step; exact at 0, 1/2 and 1."""
     t = 1.0 - s
     value: float = t * (t - s) * samples[0] + 4.0 * s * t * samples[1] + s * (s - t) * samples[2]

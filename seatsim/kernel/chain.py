@@ -7,6 +7,7 @@ the tuple, one after another; a method `f(self, ..., z)` gets its own part of it
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from typing import Protocol, TypeVar, cast
 
 from numba import types
@@ -58,8 +59,9 @@ def _parts(classes: Sequence[type], name: str) -> Iterator[tuple[int, Callable[.
         start = end
 
 
+@cache
 def _implementation(
-    classes: Sequence[type], name: str, first: str, line: str, last: str, count: int
+    classes: tuple[type, ...], name: str, first: str, line: str, last: str, count: int
 ) -> Callable[..., object]:
     """Build `impl(effects, z, a0, ...)` with `count` arguments: numba cannot loop over a tuple of several classes."""
     arguments = [f"a{k}" for k in range(count)]
@@ -80,13 +82,13 @@ def _chain(name: str, first: str, line: str, last: str) -> Callable[..., object]
     """
 
     def generic(effects: Effects, z: State, *arguments: object) -> object:
-        classes = [type(effect) for effect in effects]
+        classes = tuple(type(effect) for effect in effects)
         return _implementation(classes, name, first, line, last, len(arguments))(effects, z, *arguments)
 
     def resolve(effects: types.Type, z: types.Type, *arguments: types.Type) -> Callable[..., object] | None:
         if not isinstance(effects, types.BaseTuple):
             return None
-        return _implementation([*map(record_class, effects.types)], name, first, line, last, len(arguments))
+        return _implementation(tuple(map(record_class, effects.types)), name, first, line, last, len(arguments))
 
     generic.__name__ = generic.__qualname__ = name
     specialise(generic)(resolve)

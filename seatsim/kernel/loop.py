@@ -119,9 +119,9 @@ def decide(
 ) -> tuple[float, float, float]:
     """Return the command in A, the force in N that the law wants (NaN: it wants a current), whether it is reached."""
     true = leading_state(setup.rig.effects, now.state[MECHANICAL:])
-    ratio = setup.rig.plant.damper_ratio
-    model, top = setup.inverse_model, setup.max_command
-    return command_current(setup.law, model, ratio, top, y, factors, model_state(model, true, followed), law_state, grid)
+    model, ratio = setup.inverse_model, setup.rig.plant.damper_ratio
+    z = model_state(model, true, followed)
+    return command_current(setup.law, model, ratio, setup.max_command, y, factors, z, law_state, grid)
 
 
 @jit

@@ -100,7 +100,10 @@ class Instruments(NamedTuple):
 def derive_velocities(
     derivative: LagStep, leak: LagStep, readings: State, true: Measurement, s: State
 ) -> tuple[Measurement, State]:
-    """Return a measurement of the `readings` (see `READINGS`) with velocities derived from them, and the state after it."""
+    """Return a measurement of the `readings`, in the order of `READINGS`, with velocities derived from them.
+
+    With it comes the state of the instruments after it.
+    """
     x, f, d, z = readings
     slow = advance_lag(derivative, s[X_SLOW], s[X_READ], x)
     frame = leak.keep * s[FRAME_VELOCITY] + (leak.old * s[FRAME_READ] + leak.new * f) / leak.rate

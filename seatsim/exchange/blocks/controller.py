@@ -171,7 +171,7 @@ def controller_block(scenario: Scenario) -> Block:
     hidden += [] if specification_of(type(control.law)).replays else ["replayed_command"]
     hidden += [] if wants_force(setup.law) else ["inverse_model", "wanted_force"]
     notes = []
-    if model.damper._fields and initial_state(type(model.damper)) and wants_force(setup.law):
+    if initial_state(type(model.damper)) and wants_force(setup.law):
         notes.append("the inverse follows the state of its damper from readings of motion and current")
     return Block(
         f"{scenario.name} controller", f"control law {type(control.law).__name__}, with inverse damper and clip",

@@ -16,7 +16,7 @@ from seatsim.kernel.protocols import DamperModel
 from seatsim.kernel.step import relaxed
 from seatsim.rig.coil import Coil
 from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling, Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import param
 from seatsim.simulation.augment import augment_coil, augment_damper, augment_factors, select_in_loop
@@ -65,9 +65,7 @@ def start(p: DamperParameters, u: DamperInputs, rest: DamperState) -> DamperStat
     return rest
 
 
-def advance(
-    p: DamperParameters, u: DamperInputs, state: DamperState, length: float
-) -> tuple[DamperState, bool]:
+def advance(p: DamperParameters, u: DamperInputs, state: DamperState, length: float) -> tuple[DamperState, bool]:
     """Return the state `length` seconds later and whether it is finite; the length is divided into equal steps."""
     steps = max(1, math.ceil(length / p.step - ROUNDING))
     h = length / steps
@@ -81,7 +79,7 @@ def advance(
 
 @jit
 def _advance_once(
-    p: DamperParameters, u: DamperInputs, factors: object, state: DamperState, time: float, h: float
+    p: DamperParameters, u: DamperInputs, factors: TemperatureScaling, state: DamperState, time: float, h: float
 ) -> tuple[DamperState, bool]:
     """Return the state `h` seconds after `time` from the communication point, and whether it is finite."""
     middle, end = _current(p, u, state.current, 0.5 * h), _current(p, u, state.current, h)
@@ -135,6 +133,7 @@ def damper_block(scenario: Scenario) -> Block:
     )
     start_temperature = scenario.temperature
     temperature = start_temperature.start if isinstance(start_temperature, Thermal) else start_temperature
+    inputs = DamperInputs(temperature=float(temperature))
     name = DAMPERS.name_of(type(scenario.damper.record))
     notes = []
     if coil.delay > 0.0:
@@ -143,7 +142,7 @@ def damper_block(scenario: Scenario) -> Block:
         notes.append("the damper does not warm up by itself; its temperature is an input")
 
     return Block(
-        f"{scenario.name} damper", f"MR damper with its coil: {name}", parameters, DamperInputs(temperature=temperature),
-        DamperState(0.0, z, 1), start, observe, advance, scenario.solver.step, False, tuple(classes_of(damper)),
+        f"{scenario.name} damper", f"MR damper with its coil: {name}", parameters, inputs, DamperState(0.0, z, 1),
+        start, observe, advance, scenario.solver.step, False, tuple(classes_of(damper)),
         ("coil.delay", "coil.resistance"), tuple(notes),
     )  # fmt: skip

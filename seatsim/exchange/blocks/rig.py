@@ -129,21 +129,19 @@ def advance(p: RigParameters, u: RigInputs, state: RigState, length: float) -> t
 
 
 @jit
-def _advance_once(p: RigParameters, u: RigInputs, state: RigState, floor: float, velocity: float) -> tuple[RigState, bool]:
+def _advance_once(
+    p: RigParameters, u: RigInputs, state: RigState, floor: float, velocity: float
+) -> tuple[RigState, bool]:
     """Return the state one step later; the law is evaluated before, so that its command acts from this instant."""
     temperature = state.temperature if p.self_heating else u.temperature
     factors = scaling_at(p.temperature_factors, temperature)
     now = state.now
-    if _differs(floor, state.expected.floor) or _differs(u.frame_force, state.expected.frame_force):
-        now = _restart(p, u, now, floor, state.current, factors)
-    elif _differs(u.driver_force, state.expected.driver_force):
+    if _differs(Disturbance(floor, u.frame_force, u.driver_force), state.expected):
         now = _restart(p, u, now, floor, state.current, factors)
     sensed = advance_filters(p.sensors, floor, now.state[DISPLACEMENT], now.rates, state.sensed)
     command, law_state = state.command, state.law_state
     if state.sample % p.sample_every == 0:
-        true = measure(
-            now, state.sample * p.step, floor, velocity, state.current, temperature, u.replayed_command
-        )
+        true = measure(now, state.sample * p.step, floor, velocity, state.current, temperature, u.replayed_command)
         noise = np.empty((1, READINGS))
         noise[0, 0] = u.displacement_noise
         noise[0, 1] = u.frame_noise
@@ -154,7 +152,7 @@ def _advance_once(p: RigParameters, u: RigInputs, state: RigState, floor: float,
         command, _wanted, _served = decide(p, y, now, factors, state.followed, law_state, grid)
         law_state = update(p.law, y, law_state)
     # The oldest command of the state is of no use any more.
-    commands = (command,) + state.commands[:-1]  # noqa: RUF005 - numba has no starred tuples
+    commands = (command,) + state.commands[:-1]
     acting = _step_inputs(p, u, commands, floor, state.current)
     x, v, work = now.state[DISPLACEMENT], now.state[VELOCITY], now.state[DAMPER_WORK]
     later, current, good = advance_rig(p.rig, p.coil, acting, factors, now, p.tolerance)
@@ -205,8 +203,11 @@ def _restart(
 
 
 @jit
-def _differs(value: float, expected: float) -> bool:
-    return abs(value - expected) > SAME * (1.0 + abs(expected))
+def _differs(now: Disturbance, expected: Disturbance) -> bool:
+    """Return whether a disturbance is another one than the last step ended with, by more than rounding."""
+    floor, frame, driver = now.floor - expected.floor, now.frame_force - expected.frame_force, now.driver_force
+    size = abs(floor) + abs(frame) + abs(driver - expected.driver_force)
+    return size > SAME * (1.0 + abs(expected.floor) + abs(expected.frame_force) + abs(expected.driver_force))
 
 
 def observe(p: RigParameters, u: RigInputs, state: RigState, age: float) -> RigOutputs:
@@ -256,9 +257,7 @@ def rig_block(scenario: Scenario) -> Block:
     )  # fmt: skip
 
 
-def _rest(
-    scenario: Scenario, control: Control, p: RigParameters, u: RigInputs, initial: State, late: int
-) -> RigState:
+def _rest(scenario: Scenario, control: Control, p: RigParameters, u: RigInputs, initial: State, late: int) -> RigState:
     """Return the state before the first step; its rates are those without a disturbance."""
     mechanical = (scenario.start.displacement, scenario.start.velocity, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     none = Disturbance(0.0, 0.0, 0.0)
@@ -266,9 +265,7 @@ def _rest(
     now = start_rig(p.rig, mechanical + initial, none, 0.0, factors, p.step)
     sensed: State = () if isinstance(p.sensors, Direct) else at_rest(scenario.start.displacement)
     followed, law_state = initial_state(type(p.inverse_model.damper)), initial_state(type(control.law))
-    return RigState(
-        now, 0.0, u.temperature, 0.0, sensed, followed, law_state, (0.0,) * (late + 2), none, 0
-    )
+    return RigState(now, 0.0, u.temperature, 0.0, sensed, followed, law_state, (0.0,) * (late + 2), none, 0)
 
 
 def _left_out(scenario: Scenario) -> list[str]:

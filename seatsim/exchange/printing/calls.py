@@ -7,6 +7,7 @@ import inspect
 import math
 from collections.abc import Callable, Mapping
 from types import FunctionType
+from typing import Any
 
 import numpy as np
 from numba import types
@@ -30,7 +31,11 @@ from seatsim.exchange.printing.values import (
 )
 
 Evaluate = Callable[[ast.expr, Scope], Value]
-MATHS = ("exp", "log", "sqrt", "sin", "cos", "tan", "atan", "tanh", "sinh", "cosh", "expm1", "copysign", "hypot", "atan2", "pow")
+MATHS = (
+    "exp", "log", "sqrt", "sin", "cos", "tan", "atan", "tanh", "sinh", "cosh", "expm1", "copysign", "hypot", "atan2",
+    "pow",
+)  # fmt: skip
+"""Functions of `math` that C has under the same name."""
 
 
 def print_call(
@@ -39,7 +44,7 @@ def print_call(
     """Return the value of a call."""
     if callee.type is not None or callee.known is None:
         raise scope.refuse(node, "what is called must be a function, a class of records or a method")
-    thing = callee.known
+    thing: Any = callee.known
     if isinstance(thing, tuple):
         thing, owner = thing
         if getattr(thing, "__name__", "") == "_replace":
@@ -70,7 +75,7 @@ def _bind(
     """Return the arguments of a call in the order of the parameters, with defaults."""
     bound = inspect.signature(function).bind(*given, **named)
     bound.apply_defaults()
-    values = []
+    values: list[object] = []
     for value in bound.arguments.values():
         values += value if isinstance(value, tuple) and not isinstance(value, Value) else [value]
     return [value if isinstance(value, Value) else _default(value, node, scope) for value in values]
@@ -111,7 +116,9 @@ def _print_own(function: FunctionType, values: list[Value], scope: Scope, evalua
     return Value(f"{printed.name}({listed})", printed.result, plain=False)
 
 
-def _print_library(name: str, values: list[Value], node: ast.Call, scope: Scope) -> Value:
+def _print_library(  # noqa: PLR0911 - one return per function
+    name: str, values: list[Value], node: ast.Call, scope: Scope
+) -> Value:
     """Return the call of a built-in function or one of `math`."""
     whole = all(value.type != REAL for value in values)
     if name == "len":
@@ -125,7 +132,7 @@ def _print_library(name: str, values: list[Value], node: ast.Call, scope: Scope)
         scope.write(f"real {code}[{math.prod(shape)}];")
         return Value(code, types.Array(REAL, len(shape), "C"), shape=shape)
     if is_known(*values):
-        compute = {"abs": abs, "min": min, "max": max, "float": float}.get(name) or getattr(math, name)
+        compute: Any = {"abs": abs, "min": min, "max": max, "float": float}.get(name) or getattr(math, name)
         return number(compute(*[value.known for value in values]))
     if name in ("min", "max"):
         first, *rest = values
@@ -145,4 +152,3 @@ def _print_library(name: str, values: list[Value], node: ast.Call, scope: Scope)
     if name in MATHS:
         return Value(f"r_{name}({listed})", REAL, plain=False)
     raise scope.refuse(node, f"'{name}' has no counterpart in C")
-

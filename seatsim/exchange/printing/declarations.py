@@ -65,4 +65,3 @@ def free_name(name: str, taken: Collection[str]) -> str:
     if name not in taken:
         return name
     return next(f"{name}_{k}" for k in range(2, len(taken) + 3) if f"{name}_{k}" not in taken)
-

@@ -7,6 +7,7 @@ import math
 import operator
 from collections.abc import Callable
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numba import types
@@ -52,7 +53,7 @@ UNROLLED = 4
 """Greatest power that is printed as a product, as compiled Python code computes it."""
 
 
-def print_expression(node: ast.expr, scope: Scope) -> Value:
+def print_expression(node: ast.expr, scope: Scope) -> Value:  # noqa: PLR0911 - one return per kind
     """Return the value of an expression; what it needs beforehand is written to the scope."""
     match node:
         case ast.Constant(value=bool() | int() | float() as value):
@@ -133,7 +134,7 @@ def arithmetic(op: ast.operator, left: Value, right: Value, node: ast.AST, scope
     if type(op) not in ARITHMETIC or not all(map(_is_number, (left, right))):
         raise scope.refuse(node, "this operation has no counterpart for these types")
     sign, compute = ARITHMETIC[type(op)]
-    whole = not isinstance(op, ast.Div) and left.type != REAL and right.type != REAL
+    whole = not isinstance(op, ast.Div) and REAL not in {left.type, right.type}
     if is_known(left, right) and not (right.known == 0 and sign in "/%"):
         return number(compute(left.known, right.known))  # type: ignore[arg-type]  # both are numbers
     if sign in "/%" and isinstance(op, ast.FloorDiv | ast.Mod) and not whole:
@@ -144,7 +145,7 @@ def arithmetic(op: ast.operator, left: Value, right: Value, node: ast.AST, scope
 
 
 def _is_number(value: Value) -> bool:
-    return value.type == REAL or value.type == BOOLEAN or isinstance(value.type, types.Integer)
+    return value.type in {REAL, BOOLEAN} or isinstance(value.type, types.Integer)
 
 
 def _print_power(base: Value, exponent: Value, scope: Scope) -> Value:
@@ -160,7 +161,11 @@ def _print_power(base: Value, exponent: Value, scope: Scope) -> Value:
 
 def _print_unary(op: ast.unaryop, value: Value, node: ast.AST, scope: Scope) -> Value:
     if isinstance(op, ast.Not):
-        return number(not value.known) if is_known(value) else Value(f"!{within(value, 0)}", BOOLEAN, plain=False, rank=UNARY)
+        return (
+            number(not value.known)
+            if is_known(value)
+            else Value(f"!{within(value, 0)}", BOOLEAN, plain=False, rank=UNARY)
+        )
     if not isinstance(op, ast.USub) or not _is_number(value):
         raise scope.refuse(node, "this operation has no counterpart")
     if is_known(value):
@@ -230,7 +235,8 @@ def _print_subscript(node: ast.Subscript, scope: Scope) -> Value:
 def _array_element(owner: Value, indices: list[Value], scope: Scope) -> Value:
     """Return an element of an array, or the part of it that fewer indices name."""
     if isinstance(owner.known, np.ndarray) and is_known(*indices):
-        found = owner.known[tuple(index.known for index in indices)]
+        place: Any = tuple(index.known for index in indices)
+        found = owner.known[place]
         return number(float(found)) if np.ndim(found) == 0 else scope.program.table(found)
     terms = []
     for position, index in enumerate(indices):
@@ -239,5 +245,8 @@ def _array_element(owner: Value, indices: list[Value], scope: Scope) -> Value:
     rest = owner.shape[len(indices) :]
     if not rest:
         return Value(f"{owner.code}[{' + '.join(terms)}]", REAL)
-    return Value(f"({within(owner, SUM)} + {' + '.join(terms)})", types.Array(REAL, len(rest), "C", readonly=not owner.type.mutable), shape=rest)
-
+    return Value(
+        f"({within(owner, SUM)} + {' + '.join(terms)})",
+        types.Array(REAL, len(rest), "C", readonly=not owner.type.mutable),
+        shape=rest,
+    )

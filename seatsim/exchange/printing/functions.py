@@ -57,7 +57,8 @@ def print_function(
     result = _common_type(scope, definition)
     if len(scope.results) == 1 and _is_straight(definition):
         (only,) = scope.results
-        passed = [k for k, parameter in enumerate(parameters) if parameter is only]
+        kept = [scope.assigned[parameter] == 1 for parameter in names]
+        passed = [k for k, parameter in enumerate(parameters) if parameter is only and kept[k]]
         if passed:
             return Printed(name, result, passed=passed[0])
         if only.known is not UNKNOWN and not is_tuple(only.type):
@@ -84,9 +85,9 @@ def _definition(
 
 
 def _used(lines: list[str]) -> list[str]:
-    """Return the lines without constants that nothing uses, such as the state of effects that do not ask for it."""
+    """Return the lines without variables that nothing uses, such as the state of effects that do not ask for it."""
     for k in range(len(lines) - 1, -1, -1):
-        found = re.match(r"\s*const \w+ (part\w*) = ", lines[k])
+        found = re.match(r"    +(?:const )?\w+ (\w+) = ", lines[k])
         if found and not any(re.search(rf"\b{found[1]}\b", line) for line in lines[k + 1 :]):
             lines = [*lines[:k], *lines[k + 1 :]]
     return lines
@@ -116,10 +117,8 @@ def _is_straight(definition: ast.FunctionDef) -> bool:
 
 def _print_body(body: list[ast.stmt], scope: Scope) -> bool:
     """Print statements; return whether they end by returning a value."""
-    for statement in body:
-        if _print_statement(statement, scope):
-            return True
-    return False
+    # What stands behind a statement that returns is not reached, and not printed.
+    return any(_print_statement(statement, scope) for statement in body)
 
 
 def _print_statement(node: ast.stmt, scope: Scope) -> bool:
@@ -134,7 +133,7 @@ def _print_statement(node: ast.stmt, scope: Scope) -> bool:
         case ast.AnnAssign(target=target, value=ast.expr() as value):
             _assign(target, value, scope)
         case ast.AugAssign(target=target, op=op, value=value):
-            before = print_expression(cast(ast.expr, ast.parse(ast.unparse(target), mode="eval").body), scope)
+            before = print_expression(_as_read(target), scope)
             _store(target, arithmetic(op, before, print_expression(value, scope), node, scope), scope)
         case ast.If():
             return _print_if(node, scope)
@@ -190,10 +189,15 @@ def _store(target: ast.expr, value: Value, scope: Scope) -> None:
         case ast.Name(id=name):
             scope.assign(name, value)
         case ast.Subscript(value=ast.Name(id=owner)) if owner in scope.variables:
-            place = print_expression(cast(ast.expr, ast.parse(ast.unparse(target), mode="eval").body), scope)
+            place = print_expression(_as_read(target), scope)
             scope.write(f"{place.code} = {value.code};")
         case _:
             raise scope.refuse(target, "only variables and elements of arrays are assigned")
+
+
+def _as_read(target: ast.expr) -> ast.expr:
+    """Return what is assigned as an expression that is read."""
+    return ast.parse(ast.unparse(target), mode="eval").body
 
 
 def _print_if(node: ast.If, scope: Scope) -> bool:
@@ -236,7 +240,13 @@ def _print_for(node: ast.For, scope: Scope) -> None:
     if len(values) > 2:
         raise scope.refuse(node.iter, "a loop runs over range(n) or range(m, n)")
     counter = scope.name("k" if name == "_" else name)
-    start, end = (values[0].code if len(values) == 2 else "0"), scope.keep(values[-1]).code
+    # Python reads the ends once: one that the loop changes is held.
+    changed = {
+        n.id for part in node.body for n in ast.walk(part) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
+    }
+    read = {n.id for n in ast.walk(ends[-1]) if isinstance(n, ast.Name)}
+    end = scope.keep(_copied(values[-1]) if changed & read else values[-1]).code
+    start = values[0].code if len(values) == 2 else "0"
     scope.variables[name] = Value(counter, types.int64)
     scope.write(f"for (int {counter} = {start}; {counter} < {end}; {counter}++) {{")
     _print_block(node.body, scope)
@@ -251,4 +261,3 @@ def _print_while(node: ast.While, scope: Scope) -> None:
     scope.write(f"while ({condition.code}) {{")
     _print_block(node.body, scope)
     scope.write("}")
-

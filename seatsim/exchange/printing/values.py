@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from numba import types
 
@@ -29,12 +29,12 @@ class NotPrintableError(InputError):
 class Value(NamedTuple):
     """A value: C expression, type, what it is if that is known, and whether repeating the expression costs nothing.
 
-    `shape` is that of an array, `rank` that of the outermost operator (see `PRODUCT` and the others). A value without type is a Python object that exists while the code is printed only: a
-    module, a function, a class.
+    `shape` is that of an array, `rank` that of the outermost operator (see `PRODUCT` and the others). A value without
+    type is a Python object that exists while the code is printed only: a module, a function, a class.
     """
 
     code: str
-    type: types.Type | None
+    type: Any  # a numba type, or None
     known: object = UNKNOWN
     plain: bool = True
     shape: tuple[int, ...] = ()
@@ -78,12 +78,12 @@ def tuple_type(items: tuple[types.Type, ...], cls: type | None = None) -> types.
     return types.BaseTuple.from_types(items, cls)
 
 
-def is_tuple(kind: types.Type | None) -> bool:
+def is_tuple(kind: object) -> bool:
     """Whether a type is that of a tuple or record."""
     return isinstance(kind, types.BaseTuple)
 
 
-def is_empty(kind: types.Type | None) -> bool:
+def is_empty(kind: Any) -> bool:
     """Whether a type holds no number, so that it has no counterpart in C."""
     return kind is NOTHING or (is_tuple(kind) and all(map(is_empty, kind)))
 
@@ -99,17 +99,18 @@ def field_names(kind: types.Type) -> tuple[str, ...]:
     return tuple(map(identifier, cls._fields)) if cls else tuple(f"item{k}" for k in range(len(kind)))
 
 
-_TAKEN = set(
-    "auto break case char const continue default do double else enum extern float for goto if inline int long register"
-    " restrict return short signed sizeof static struct switch typedef union unsigned void volatile while real R main"
-    " read write time signal exp log pow tanh sin cos tan atan sqrt fabs floor ceil fmod abs round div index gamma"
-    " y0 y1 yn j0 j1 jn remove rename link select least greatest".split()
-)
+_TAKEN = """
+auto break case char const continue default do double else enum extern float for goto if inline int long register
+restrict return short signed sizeof static struct switch typedef union unsigned void volatile while real R main
+read write time signal exp log pow tanh sin cos tan atan sqrt fabs floor ceil fmod abs round div index gamma
+y0 y1 yn j0 j1 jn remove rename link select least greatest
+"""
+"""Words of C and of its library."""
 
 
 def identifier(name: str) -> str:
     """Return a name that C permits and that is not taken by its library."""
-    return f"{name}_" if name in _TAKEN else name
+    return f"{name}_" if name in _TAKEN.split() else name
 
 
 def whole_as_int64(kind: types.Type) -> types.Type:
