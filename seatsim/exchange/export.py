@@ -47,6 +47,9 @@ def export(scenario: Scenario, form: str, what: str, path: Path) -> Block:
     if path.is_dir():
         raise InputError(f"--out {path}: this is a folder; name the file to be written")
     block = BLOCKS[what](scenario)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    FORMATS[form](block, scenario, path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        FORMATS[form](block, scenario, path)
+    except OSError as error:
+        raise InputError(f"--out {path}: cannot be written ({error.strerror}); name another file") from error
     return block

@@ -38,7 +38,8 @@ def list_variables(block: Block) -> list[Variable]:
     found = [*_walk("", "parameters", block.parameters, Variable("", "parameter", 0.0, ""))]
     found += _walk("", "inputs", block.inputs, Variable("", "input", 0.0, ""))
     found += _walk("", "outputs", block.outputs, Variable("", "output", 0.0, ""))
-    return [variable for variable in found if not variable.name.startswith(block.hidden)]
+    # A number that is absent is NaN, which other programs do not take for one.
+    return [v for v in found if not v.name.startswith(block.hidden) and not math.isnan(v.value)]
 
 
 def _walk(name: str, place: str, value: object, what: Variable) -> Iterator[Variable]:

@@ -83,7 +83,9 @@ def test_a_controller_passes_its_test_vector_in_double_and_float(name, settings,
     assert run_vector(tmp_path / "controller.c", "-DSEATSIM_FLOAT").returncode == 0
 
 
-def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path):
+def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path, monkeypatch):
+    # A rig takes its time where Python itself evaluates it.
+    monkeypatch.setattr("seatsim.exchange.c_file.SAMPLES", 60)
     effects = [
         {"effect": "damper.seal_friction", "parameters": {"force": 15.0}},
         {"effect": "damper.remanence", "parameters": {"width": 0.05}},
