@@ -87,7 +87,6 @@ def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path, monkeypa
     # A rig takes its time where Python itself evaluates it.
     monkeypatch.setattr("seatsim.exchange.c_file.SAMPLES", 60)
     effects = [
-        {"effect": "damper.seal_friction", "parameters": {"force": 15.0}},
         {"effect": "damper.remanence", "parameters": {"width": 0.05}},
         {"effect": "driver.biodynamics", "parameters": {"share": 0.2}},
         {"effect": "coil.delay", "parameters": {"time": 0.0043}},
