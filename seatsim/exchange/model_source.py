@@ -12,7 +12,7 @@ from numba import types
 
 from seatsim.exchange.blocks.base import Block
 from seatsim.exchange.printing.declarations import is_row
-from seatsim.exchange.printing.functions import print_program
+from seatsim.exchange.printing.functions import new_program
 from seatsim.exchange.printing.program import Program
 from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, number
 from seatsim.exchange.variables import Variable
@@ -31,7 +31,7 @@ def print_model(block: Block) -> str:
     Raises:
         NotPrintableError: a function of the block uses what has no counterpart in C.
     """
-    program = print_program()
+    program = new_program()
     p, u, s = (Signature(numba.typeof(value)) for value in (block.parameters, block.inputs, block.rest))
     number_ = Signature(REAL)
     start = _call(program, block.start, (p, u, s), ("m->parameters", "m->inputs", "rest_state"))

@@ -12,7 +12,7 @@ import pytest
 from seatsim.compilation.jit import jit
 from seatsim.exchange.compiler import find_compiler
 from seatsim.exchange.model_source import resource
-from seatsim.exchange.printing.functions import print_program
+from seatsim.exchange.printing.functions import new_program
 from seatsim.exchange.printing.values import NotPrintableError, Signature
 
 TABLE = np.array([[1.0, 2.5], [0.1, 1e-9]])
@@ -116,7 +116,7 @@ NUMBERS = (-3.7, -1.0, -0.0, 0.3, 1.0, 2.0, 17.25)
 
 @pytest.fixture(scope="module")
 def compiled(tmp_path_factory):
-    program = print_program()
+    program = new_program()
     number = Signature(numba.float64)
     names = [program.function(function, (number, number)).name for function in FUNCTIONS]
     wrappers = [f"double c_{n}(double a, double b) {{ return {n}(a, b); }}" for n in names]
@@ -179,11 +179,11 @@ def printing(a, b):
 def test_what_has_no_counterpart_is_refused_by_name(function):
     number = Signature(numba.float64)
     with pytest.raises(NotPrintableError, match=f"test_printing.{function.__name__}"):
-        print_program().function(function, (number, number))
+        new_program().function(function, (number, number))
 
 
 def test_a_function_is_printed_once_for_the_same_types():
-    program, number = print_program(), Signature(numba.float64)
+    program, number = new_program(), Signature(numba.float64)
     first = program.function(tuples, (number, number))
     assert program.function(tuples, (number, number)) == first
     assert program.source().count("split(real x)") == 1

@@ -30,7 +30,7 @@ from seatsim.exchange.printing.values import (
 )
 
 
-def print_program() -> Program:
+def new_program() -> Program:
     """Return an empty program."""
     return Program(print_function)
 
@@ -94,7 +94,7 @@ def _used(lines: list[str]) -> list[str]:
 
 
 def _count_assignments(definition: ast.FunctionDef, names: list[str]) -> dict[str, int]:
-    """Return how often each variable is assigned: a parameter once already, in a loop more than once."""
+    """Return in how many places each variable is assigned; a call assigns a parameter once."""
     found = Counter(names)
     for node in ast.walk(definition):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
