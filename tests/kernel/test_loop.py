@@ -9,7 +9,7 @@ import pytest
 from seatsim.kernel import channels, step
 from seatsim.kernel.assumed_model import AssumedModel, TrueModel
 from seatsim.kernel.channels import CHANNELS
-from seatsim.kernel.loop import warm_up, run_loop
+from seatsim.kernel.loop import run_loop, warm_up
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
