@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
+import linecache
 from collections.abc import Callable
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numba
-from numba.extending import register_jitable
+from numba.extending import overload, register_jitable
 
 F = TypeVar("F", bound=Callable[..., object])
+Resolve = Callable[..., Callable[..., object] | None]
 
 ARITHMETIC: dict[str, object] = {"error_model": "numpy", "fastmath": {"contract", "reassoc", "arcp", "nsz"}}
 """Division by zero gives inf or NaN; sums may be fused and reordered, but NaN and inf keep their meaning.
@@ -30,3 +33,29 @@ def jit_apart(function: F) -> F:
     """Return `function` compiled apart from its callers, so that these keep to the registers: it is seldom called."""
     called: F = numba.njit(no_cfunc_wrapper=True, **ARITHMETIC)(function)
     return called
+
+
+GENERIC: dict[object, Resolve] = {}
+"""Functions whose form depends on the types of their arguments, and what gives the form for types of numba."""
+
+
+def specialise(generic: Callable[..., object]) -> Callable[[Resolve], Resolve]:
+    """Return a decorator of the function that gives the form of `generic`, to be inlined, for arguments of types.
+
+    Without numba's `strict` the arguments of both may have different names.
+    """
+
+    def enter(resolve: Resolve) -> Resolve:
+        GENERIC[generic] = resolve
+        overload(generic, strict=False, jit_options=INLINED)(resolve)
+        return resolve
+
+    return enter
+
+
+def define(source: str, name: str, namespace: dict[str, object]) -> Callable[..., object]:
+    """Return the function `name` that a source defines; its lines can be shown and read, as those of a file can."""
+    file = f"<{name} {hashlib.sha256(source.encode()).hexdigest()[:16]}>"
+    linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
+    exec(compile(source, file, "exec"), namespace)
+    return cast("Callable[..., object]", namespace[name])

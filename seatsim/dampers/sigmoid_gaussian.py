@@ -9,10 +9,9 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 from numba import types
-from numba.extending import overload
 from numpy.typing import NDArray
 
-from seatsim.compilation.jit import INLINED, jit
+from seatsim.compilation.jit import jit, specialise
 from seatsim.dampers.base import damper
 from seatsim.dampers.pieces import BRANCH_STATE, CurrentLaw, branch, branch_rate, cubic
 from seatsim.rig.state import State
@@ -59,13 +58,11 @@ def table_row(test: int, current: float) -> Row:
     return _row(_cubics()[test - 1], current)
 
 
+@specialise(table_row)
 def _compile_table_row(test: types.Type, current: types.Type) -> Callable[[int, float], Row]:
     """Return `table_row` for compiled code, of which the cubics are constants."""
     cubics = _cubics()
     return lambda test, current: _row(cubics[test - 1], current)
-
-
-overload(table_row, strict=False, jit_options=INLINED)(_compile_table_row)
 
 
 @jit

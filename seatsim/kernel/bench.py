@@ -20,6 +20,8 @@ from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 
 Array = NDArray[np.float64]
+Samples = Array | tuple[float, float, float]
+"""What goes on in a step: its value at the beginning, in the middle and at the end."""
 
 TOLERANCE = 1e-4
 """Error of the force that a step may add by default, relative to the force plus `FORCE_SCALE`."""
@@ -70,7 +72,7 @@ def run_bench(
             break
         if len(z) > 0:
             span = slice(j, j + 3)
-            z, parts, good = _advance(
+            z, parts, good = advance_state(
                 damper, factor, x[span], v[span], current[span], z, step, parts, most_parts, tolerance
             )
             debt = owe(debt, parts)
@@ -80,12 +82,12 @@ def run_bench(
 
 
 @jit
-def _advance(
+def advance_state(
     damper: DamperModel,
     scaling: TemperatureScaling,
-    x: Array,
-    v: Array,
-    current: Array,
+    x: Samples,
+    v: Samples,
+    current: Samples,
     z: State,
     step: float,
     parts: int,
@@ -111,9 +113,9 @@ def _advance(
 def _part(
     damper: DamperModel,
     scaling: TemperatureScaling,
-    x: Array,
-    v: Array,
-    current: Array,
+    x: Samples,
+    v: Samples,
+    current: Samples,
     z: State,
     h: float,
     s: float,
@@ -139,7 +141,7 @@ def _part(
 
 
 @jit
-def _between(samples: Array, s: float) -> float:
+def _between(samples: Samples, s: float) -> float:
     """Return the parabola through three samples at the fraction `s` of the step; exact at 0, 1/2 and 1."""
     t = 1.0 - s
     value: float = t * (t - s) * samples[0] + 4.0 * s * t * samples[1] + s * (s - t) * samples[2]

@@ -7,12 +7,12 @@ the tuple, one after another; a method `f(self, ..., z)` gets its own part of it
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from typing import Protocol, TypeVar, cast
 
 from numba import types
-from numba.extending import overload
 
-from seatsim.compilation.jit import INLINED, jit
+from seatsim.compilation.jit import define, jit, specialise
 from seatsim.kernel.hooks import method_of, record_class
 from seatsim.kernel.protocols import EffectRecord
 from seatsim.rig.state import State
@@ -59,19 +59,19 @@ def _parts(classes: Sequence[type], name: str) -> Iterator[tuple[int, Callable[.
         start = end
 
 
+@cache
 def _implementation(
-    classes: Sequence[type], name: str, first: str, line: str, last: str, count: int
+    classes: tuple[type, ...], name: str, first: str, line: str, last: str, count: int
 ) -> Callable[..., object]:
     """Build `impl(effects, z, a0, ...)` with `count` arguments: numba cannot loop over a tuple of several classes."""
     arguments = [f"a{k}" for k in range(count)]
-    body, namespace = [first], cast("dict[str, object]", {})
+    body, namespace = [first], cast("dict[str, object]", {"__name__": __name__})
     for index, method, part in _parts(classes, name):
         namespace[f"m{index}"] = jit(method)
         given = ", ".join([f"effects[{index}]", *arguments, f"z[{part.start}:{part.stop}]"])
         body.append(line.format(call=f"m{index}({given})"))
-    source = "\n    ".join([f"def impl({', '.join(['effects', 'z', *arguments])}):", *body, last])
-    exec(source, namespace)
-    return cast("Callable[..., object]", namespace["impl"])
+    source = "\n    ".join([f"def {name}({', '.join(['effects', 'z', *arguments])}):", *body, last])
+    return define(source, name, namespace)
 
 
 def _chain(name: str, first: str, line: str, last: str) -> Callable[..., object]:
@@ -82,16 +82,16 @@ def _chain(name: str, first: str, line: str, last: str) -> Callable[..., object]
     """
 
     def generic(effects: Effects, z: State, *arguments: object) -> object:
-        classes = [type(effect) for effect in effects]
+        classes = tuple(type(effect) for effect in effects)
         return _implementation(classes, name, first, line, last, len(arguments))(effects, z, *arguments)
 
     def resolve(effects: types.Type, z: types.Type, *arguments: types.Type) -> Callable[..., object] | None:
         if not isinstance(effects, types.BaseTuple):
             return None
-        return _implementation([*map(record_class, effects.types)], name, first, line, last, len(arguments))
+        return _implementation(tuple(map(record_class, effects.types)), name, first, line, last, len(arguments))
 
     generic.__name__ = generic.__qualname__ = name
-    overload(generic, strict=False, jit_options=INLINED)(resolve)
+    specialise(generic)(resolve)
     return generic
 
 
@@ -120,13 +120,13 @@ def effect_state(effects: Effects, z: State) -> State:
     return z[len(z) - len(state_at_rest([type(effect) for effect in effects])) :]
 
 
-@overload(leading_state, strict=False, jit_options=INLINED)
+@specialise(leading_state)
 def _leading_state(effects: types.Type, z: types.Type) -> Callable[[Effects, State], State]:
     end = len(z) - len(state_at_rest([*map(record_class, effects.types)]))
     return lambda effects, z: z[:end]
 
 
-@overload(effect_state, strict=False, jit_options=INLINED)
+@specialise(effect_state)
 def _effect_state(effects: types.Type, z: types.Type) -> Callable[[Effects, State], State]:
     start = len(z) - len(state_at_rest([*map(record_class, effects.types)]))
     return lambda effects, z: z[start:]

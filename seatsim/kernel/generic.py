@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from numba import types
-from numba.extending import overload
 
-from seatsim.compilation.jit import INLINED, jit
+from seatsim.compilation.jit import jit, specialise
 from seatsim.kernel.hooks import hook, record_class
 from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.control import CompiledLaw, CurrentLaw, ForceLaw, Measurement
@@ -60,12 +59,18 @@ def read(sensors: Sensing, true: Measurement, noise: Array, sample: int, state: 
     return true, state
 
 
+@hook
+def take(sensors: Sensing, read: Measurement, state: State) -> tuple[Measurement, State]:
+    """Measurement that a law is given of readings that were sampled already, and the state of the sensors after it."""
+    return read, state
+
+
 def wants_force(law: CompiledLaw) -> bool:
     """Whether the law returns a force (for the inverse) rather than a current."""
     return isinstance(law, ForceLaw)
 
 
-@overload(wants_force, strict=False, jit_options=INLINED)
+@specialise(wants_force)
 def _wants_force(law: types.Type) -> Callable[[CompiledLaw], bool]:
     answer = issubclass(record_class(law), ForceLaw)
     return lambda law: answer
@@ -76,7 +81,7 @@ def evaluate_law(law: CompiledLaw, y: Measurement, state: State) -> float:
     return law.wanted_force(y, state) if isinstance(law, ForceLaw) else law.wanted_current(y, state)
 
 
-@overload(evaluate_law, strict=False, jit_options=INLINED)
+@specialise(evaluate_law)
 def _evaluate_law(law: types.Type, y: types.Type, state: types.Type) -> Callable[..., float]:
     cls = record_class(law)
     if issubclass(cls, ForceLaw):

@@ -11,9 +11,8 @@ from collections.abc import Callable
 from typing import ParamSpec, TypeVar, cast
 
 from numba import types
-from numba.extending import overload
 
-from seatsim.compilation.jit import INLINED
+from seatsim.compilation.jit import specialise
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -52,6 +51,5 @@ def hook(default: Callable[P, R]) -> Callable[P, R]:
         return method(record_class(record)) if isinstance(record, types.BaseNamedTuple) else None
 
     generic.__name__ = generic.__qualname__ = name
-    # Without `strict` numba accepts that `resolve` takes any arguments while the method names its own.
-    overload(generic, strict=False, jit_options=INLINED)(resolve)
+    specialise(generic)(resolve)
     return generic

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
 from seatsim.kernel import channels
-from seatsim.kernel.assumed_model import follow_state, model_scaling, model_state
+from seatsim.kernel.assumed_model import InverseModel, follow_state, model_scaling, model_state
 from seatsim.kernel.chain import leading_state
 from seatsim.kernel.generic import advance_filters, evaluate_law, read, scaling_at, update, wants_force
 from seatsim.kernel.inverse import CELLS, invert
@@ -17,7 +17,7 @@ from seatsim.kernel.loop_inputs import ControlledRig, LoopInputs, LoopSetup, sam
 from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import IntegratorState, advance, relaxed, start
 from seatsim.rig.coil import Coil
-from seatsim.rig.control import Measurement
+from seatsim.rig.control import CompiledLaw, Measurement
 from seatsim.rig.state import (
     CUSHION_DISPLACEMENT,
     CUSHION_VELOCITY,
@@ -98,7 +98,7 @@ def run_loop(
         # Temperature is constant over a step: its change within one is far too small to affect the factors.
         if timing.self_heating:
             work = now.state[DAMPER_WORK] - work
-            temperature += _warming(setup.thermal, coil, temperature, work, current, next_current, step)
+            temperature += warm_up(setup.thermal, coil, temperature, work, current, next_current, step)
             factors = scaling_at(setup.factors, temperature)
         elif inputs.temperature[k + 1] != temperature:
             temperature = inputs.temperature[k + 1]
@@ -118,22 +118,31 @@ def decide(
     grid: Array,
 ) -> tuple[float, float, float]:
     """Return the command in A, the force in N that the law wants (NaN: it wants a current), whether it is reached."""
-    law, model, top = setup.law, setup.inverse_model, setup.max_command
+    true = leading_state(setup.rig.effects, now.state[MECHANICAL:])
+    model, ratio = setup.inverse_model, setup.rig.plant.damper_ratio
+    z = model_state(model, true, followed)
+    return command_current(setup.law, model, ratio, setup.max_command, y, factors, z, law_state, grid)
+
+
+@jit
+def command_current(
+    law: CompiledLaw,
+    model: InverseModel,
+    ratio: float,
+    top: float,
+    y: Measurement,
+    factors: TemperatureScaling,
+    z: State,
+    law_state: State,
+    grid: Array,
+) -> tuple[float, float, float]:
+    """Return the same for an inverse whose damper is in the state z; `ratio` is the damper's stroke per travel."""
     answer = evaluate_law(law, y, law_state)
     if not wants_force(law):
         return min(max(answer, 0.0), top), math.nan, math.nan
-    ratio = setup.rig.plant.damper_ratio
-    found = invert(
-        model.damper,
-        model.order,
-        answer,
-        ratio * y.displacement,
-        ratio * y.velocity,
-        model_scaling(model, factors, y.temperature),
-        model_state(model, leading_state(setup.rig.effects, now.state[MECHANICAL:]), followed),
-        top,
-        grid,
-    )
+    scaling = model_scaling(model, factors, y.temperature)
+    x, v = ratio * y.displacement, ratio * y.velocity
+    found = invert(model.damper, model.order, answer, x, v, scaling, z, top, grid)
     return found.current, answer, found.served
 
 
@@ -200,7 +209,7 @@ def _record(
 
 
 @jit
-def _warming(thermal: Thermal, coil: Coil, temperature: float, work: float, i0: float, i1: float, step: float) -> float:
+def warm_up(thermal: Thermal, coil: Coil, temperature: float, work: float, i0: float, i1: float, step: float) -> float:
     """Return the rise of temperature in K over a step: work of the damper and heat of the coil less what is lost.
 
     `(|W| + R (i0^2 + i0 i1 + i1^2) / 3 step - h (T - T_ambient) step) / C`; the mean square is that of a current that

@@ -6,9 +6,8 @@ from collections.abc import Callable
 from typing import cast
 
 from numba import types
-from numba.extending import overload
 
-from seatsim.compilation.jit import INLINED
+from seatsim.compilation.jit import define, specialise
 from seatsim.rig.state import State
 
 
@@ -17,7 +16,7 @@ def axpy(y: State, h: float, k: State) -> State:
     return tuple(a + h * b for a, b in zip(y, k, strict=True))
 
 
-@overload(axpy, strict=False, jit_options=INLINED)
+@specialise(axpy)
 def _axpy(y: types.Type, h: types.Type, k: types.Type) -> Callable[..., State]:
     return _unrolled("y, h, k", "y[{j}] + h * k[{j}]", len(y))
 
@@ -28,7 +27,7 @@ def combine(y: State, h: float, k1: State, k2: State, k3: State, k4: State) -> S
     return tuple(a + h / 6.0 * (b + 2.0 * (c + d) + e) for a, b, c, d, e in stages)
 
 
-@overload(combine, strict=False, jit_options=INLINED)
+@specialise(combine)
 def _combine(
     y: types.Type, h: types.Type, k1: types.Type, k2: types.Type, k3: types.Type, k4: types.Type
 ) -> Callable[..., State]:
@@ -39,6 +38,5 @@ def _combine(
 def _unrolled(arguments: str, term: str, length: int) -> Callable[..., State]:
     """Build a function that returns a tuple of `term` for j = 0 .. length - 1: numba has no tuple comprehension."""
     body = "".join(term.format(j=j) + ", " for j in range(length))
-    namespace: dict[str, object] = {}
-    exec(f"def impl({arguments}): return ({body})", namespace)
-    return cast("Callable[..., State]", namespace["impl"])
+    source = f"def unrolled({arguments}): return ({body})"
+    return cast("Callable[..., State]", define(source, "unrolled", {"__name__": __name__}))

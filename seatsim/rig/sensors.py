@@ -87,15 +87,32 @@ class Instruments(NamedTuple):
         """Return what the law sees at one of its samples, with that row of the `noise`, and the state after it."""
         x, f = s[X_FILTERED] + noise[sample, 0], s[FRAME_FILTERED] + noise[sample, 1]
         d, z = s[DRIVER_FILTERED] + noise[sample, 2], s[FLOOR_FILTERED] + noise[sample, 3] + self.floor
-        slow = advance_lag(self.derivative, s[X_SLOW], s[X_READ], x)
-        leak = self.leak
-        frame = leak.keep * s[FRAME_VELOCITY] + (leak.old * s[FRAME_READ] + leak.new * f) / leak.rate
-        driver = leak.keep * s[DRIVER_VELOCITY] + (leak.old * s[DRIVER_READ] + leak.new * d) / leak.rate
-        v = self.derivative.rate * (x - slow)
-        y = Measurement(
-            true.time, x, v, frame, driver, z, f, d, true.damper_force, true.current, true.temperature, true.replayed
-        )
-        return y, s[:FILTERS] + (x, slow, f, frame, d, driver)  # noqa: RUF005 - numba has no starred tuples
+        return derive_velocities(self.derivative, self.leak, (x, f, d, z), true, s)
+
+    def take(self, read: Measurement, s: State) -> tuple[Measurement, State]:
+        """Return what the law sees of readings that were filtered and sampled elsewhere, and the state after it."""
+        floor = read.floor_acceleration + self.floor
+        readings = (read.displacement, read.frame_acceleration, read.driver_acceleration, floor)
+        return derive_velocities(self.derivative, self.leak, readings, read, s)
+
+
+@jit
+def derive_velocities(
+    derivative: LagStep, leak: LagStep, readings: State, true: Measurement, s: State
+) -> tuple[Measurement, State]:
+    """Return a measurement of the `readings`, in the order of `READINGS`, with velocities derived from them.
+
+    With it comes the state of the instruments after it.
+    """
+    x, f, d, z = readings
+    slow = advance_lag(derivative, s[X_SLOW], s[X_READ], x)
+    frame = leak.keep * s[FRAME_VELOCITY] + (leak.old * s[FRAME_READ] + leak.new * f) / leak.rate
+    driver = leak.keep * s[DRIVER_VELOCITY] + (leak.old * s[DRIVER_READ] + leak.new * d) / leak.rate
+    v = derivative.rate * (x - slow)
+    y = Measurement(
+        true.time, x, v, frame, driver, z, f, d, true.damper_force, true.current, true.temperature, true.replayed
+    )
+    return y, s[:FILTERS] + (x, slow, f, frame, d, driver)  # noqa: RUF005 - numba has no starred tuples
 
 
 Sensing = Direct | Instruments

@@ -30,6 +30,7 @@ COMMANDS = {
     "check": ("check", RECORDING),
     "synthesise": ("synthesise", "h-infinity"),
     "new": ("new", "damper"),
+    "export": ("export", "quickstart", "--to", "c", "--what", "damper"),
 }
 
 
@@ -44,6 +45,7 @@ def check(name, text):
 def test_standard_output_is_one_object(name, seatsim_command, undrawn, tmp_path, monkeypatch):
     monkeypatch.setattr("seatsim.plots.bench.characterisation.plot_characterisation", lambda found: {})
     place = [] if name in ("describe", "check") else [tmp_path / "my_own"] if name == "new" else ["--out", tmp_path]
+    place = ["--out", tmp_path / "damper.c"] if name == "export" else place
     status, out, _ = seatsim_command(*COMMANDS[name], *place, "--json")
     assert status == 0
     found = check(name, out)

@@ -89,7 +89,7 @@ def test_a_stiff_state_is_divided_until_the_tolerance_is_met(tolerance):
 
 def advanced(damper, parts, most, tolerance, step=5e-3, z=(1e-4,)):
     x, v, i = np.zeros(3), np.full(3, 0.3), np.zeros(3)
-    return bench._advance(damper, NONE, x, v, i, z, step, parts, most, tolerance)
+    return bench.advance_state(damper, NONE, x, v, i, z, step, parts, most, tolerance)
 
 
 def test_parts_double_until_the_error_is_small_and_halve_once_it_is_much_smaller():

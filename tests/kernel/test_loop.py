@@ -9,7 +9,7 @@ import pytest
 from seatsim.kernel import channels, step
 from seatsim.kernel.assumed_model import AssumedModel, TrueModel
 from seatsim.kernel.channels import CHANNELS
-from seatsim.kernel.loop import _warming, run_loop
+from seatsim.kernel.loop import run_loop, warm_up
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
@@ -145,7 +145,7 @@ def test_warming_takes_the_mean_square_of_a_current_that_runs_straight():
     heat = 7.0 * np.mean(current**2) * 0.01
     expected = (6.0 + heat - 3.0 * (40.0 - 25.0) * 0.01) / 400.0
     for work in (6.0, -6.0):
-        assert _warming(thermal, coil, 40.0, work, 0.2, 0.8, 0.01) == pytest.approx(expected, rel=1e-6)
+        assert warm_up(thermal, coil, 40.0, work, 0.2, 0.8, 0.01) == pytest.approx(expected, rel=1e-6)
 
 
 def test_an_assumed_damper_is_followed_beside_the_true_one():

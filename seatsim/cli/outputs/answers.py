@@ -326,6 +326,25 @@ class SeatTestAnswer(Answer):
     notes: list[str]
 
 
+class ExportedVariable(TypedDict):
+    """A parameter, input or output of what was exported."""
+
+    name: str
+    causality: str
+    unit: str
+    meaning: str
+    start: float | int | bool
+
+
+class ExportAnswer(Answer):
+    """What was exported, with its step in s."""
+
+    name: str
+    step: float
+    variables: list[ExportedVariable]
+    notes: list[str]
+
+
 class BlindMakeAnswer(Answer):
     """A sealed set; the key is shown this once."""
 
@@ -382,7 +401,7 @@ ANSWERS: Mapping[str, object] = {
     "diagnose": DiagnosisAnswer, "characterise": CharacterisationAnswer,
     "identify": IdentificationAnswer | LeagueAnswer, "describe": DescriptionAnswer, "new": NewAnswer,
     "check": CheckAnswer, "import": ImportAnswer, "inspect": InspectionAnswer, "comfort": ComfortAnswer,
-    "seat-test": SeatTestAnswer, "blind-make": BlindMakeAnswer, "blind-score": BlindScoreAnswer,
+    "seat-test": SeatTestAnswer, "export": ExportAnswer, "blind-make": BlindMakeAnswer, "blind-score": BlindScoreAnswer,
     "blind-power": BlindPowerAnswer, "bench": BenchAnswer, "explore": ExploreAnswer, "error": ErrorAnswer,
 }  # fmt: skip
 """What each command prints; `error` is what any of them prints where it fails."""

@@ -1,0 +1,71 @@
+"""Hosts in C for the units that are exported: built against the headers of the standard, fed with samples."""
+
+from __future__ import annotations
+
+import subprocess
+import zipfile
+from collections.abc import Mapping
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.compiler import find_compiler
+from seatsim.exchange.fmu import write_fmu
+from seatsim.exchange.variables import list_variables
+
+Array = NDArray[np.float64]
+HERE = Path(__file__).parent
+
+
+class Hosted(NamedTuple):
+    """Outputs of a unit, shape (samples + 1, outputs), the time that all steps took in s, and its library."""
+
+    outputs: Array
+    seconds: float
+    library: Path
+
+
+def headers() -> Path:
+    """Return the folder of the headers of the standard."""
+    spec = find_spec("fmpy")
+    assert spec is not None and spec.origin is not None
+    return Path(spec.origin).parent / "c-code"
+
+
+def build_host(version: int, folder: Path) -> Path:
+    """Build the host of a version, where it is not there, and return its path."""
+    host = folder / f"host{version}"
+    if host.exists():
+        return host
+    source = HERE / f"fmu_host{version}.c"
+    command = [find_compiler(), "-std=gnu99", "-Wall", "-Werror", "-O2", f"-I{headers()}", "-o", str(host), str(source)]
+    subprocess.run([*command, "-ldl"], check=True, timeout=60)
+    return host
+
+
+def run_unit(block: Block, version: int, inputs: Mapping[str, Array], folder: Path, step: float) -> Hosted:
+    """Export a block, run it in a host with samples of its inputs, shape (N,) each, and return its outputs."""
+    path = folder / f"unit{version}.fmu"
+    write_fmu(block, version, path)
+    with zipfile.ZipFile(path) as archive:
+        archive.extractall(folder / f"unit{version}")
+    library = next(path for path in (folder / f"unit{version}" / "binaries").rglob("*") if path.is_file())
+    text = (folder / f"unit{version}" / "modelDescription.xml").read_text()
+    token = text.partition("{")[2].partition("}")[0]
+    names = [v.name for v in list_variables(block)]
+    outputs = [v.name for v in list_variables(block) if v.causality == "output"]
+    numbers = np.array([names.index(name) for name in [*inputs, *outputs]], dtype=np.uint32)
+    samples = np.column_stack([np.asarray(values, dtype=float) for values in inputs.values()])
+    done = subprocess.run(
+        [str(build_host(version, folder)), str(library), f"{{{token}}}", repr(step), str(len(samples)),
+         str(len(inputs)), str(len(outputs))],
+        input=numbers.tobytes() + np.ascontiguousarray(samples).tobytes(),
+        capture_output=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr.decode()
+    values = np.frombuffer(done.stdout)
+    return Hosted(values[:-1].reshape(len(samples) + 1, len(outputs)), float(values[-1]), library)

@@ -1,0 +1,18 @@
+/* The variables that can be read and written from outside, by their number. */
+#include <stddef.h>
+
+enum { REAL_VARIABLE, INTEGER_VARIABLE, BOOLEAN_VARIABLE };
+enum { PARAMETER, INPUT, OUTPUT };
+
+typedef struct {
+    const char *name;
+    int kind;
+    int causality;
+    size_t offset;
+    double low;
+    double high;
+} Variable;
+
+static const Variable variables[] = {
+@ROWS@
+};

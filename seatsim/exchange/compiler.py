@@ -1,0 +1,61 @@
+"""The C compiler of the system, which makes libraries of what is printed."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+from seatsim.schema.errors import InputError, RunError
+
+FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-ffp-contract=off")
+"""Without `-ffp-contract=off` a compiler may fuse products and sums, and results would differ between machines."""
+QUICK = ("-fno-math-errno", "-fno-trapping-math")
+"""Nothing reads `errno` or the flags of floating-point exceptions; results stay the same."""
+PERMITTED = """
+exp expm1 log pow sqrt sin cos tan atan atan2 tanh sinh cosh hypot fabs floor ceil fmod copysign
+memcpy memset memmove malloc calloc free strcmp strcpy strlen snprintf __stack_chk_fail __snprintf_chk
+_ITM_deregisterTMCloneTable _ITM_registerTMCloneTable __cxa_finalize __gmon_start__
+"""
+"""What a library may take from outside: functions of C's own library."""
+
+
+def find_compiler() -> str:
+    """Return the path of the C compiler: that of the variable CC, or cc, gcc or clang.
+
+    Raises:
+        InputError: there is none.
+    """
+    for name in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
+        found = shutil.which(name.split()[0]) if name.strip() else None
+        if found:
+            return found
+    raise InputError(
+        "an FMU is compiled, and this machine has no C compiler: install gcc or clang (Debian: apt install gcc),"
+        " or name one by CC; '--to c' needs none"
+    )
+
+
+def compile_library(source: Path, library: Path) -> None:
+    """Compile a C file into a shared library.
+
+    Raises:
+        InputError: there is no compiler.
+        RunError: it refused the source, or the library would need more than C's own library.
+    """
+    command = [find_compiler(), *FLAGS, *QUICK, "-o", str(library), str(source), "-lm", "-s"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RunError(f"{command[0]} could not compile {source.name}: {done.stderr.strip()[:500]}")
+    foreign = undefined_symbols(library) - set(PERMITTED.split())
+    if foreign:
+        raise RunError(f"{source.name} needs what C's own library has not: {', '.join(sorted(foreign))}")
+
+
+def undefined_symbols(library: Path) -> set[str]:
+    """Return the functions that a library takes from outside; empty where the system has no `nm`."""
+    if shutil.which("nm") is None:
+        return set()
+    done = subprocess.run(["nm", "-D", "-u", str(library)], capture_output=True, text=True, check=False)
+    return {line.split()[-1].partition("@")[0] for line in done.stdout.splitlines() if line.split()}

@@ -1,0 +1,252 @@
+"""Expressions: arithmetic, comparisons, elements of tuples and arrays."""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numba import types
+
+from seatsim.exchange.printing.calls import print_call
+from seatsim.exchange.printing.scope import Scope
+from seatsim.exchange.printing.tuples import build_tuple, element, field, part
+from seatsim.exchange.printing.values import (
+    BOOLEAN,
+    CHOICE,
+    COMPARISON,
+    INTEGER,
+    LOGIC,
+    PRODUCT,
+    REAL,
+    SUM,
+    UNARY,
+    Value,
+    is_empty,
+    is_known,
+    is_tuple,
+    number,
+    within,
+)
+
+ARITHMETIC: dict[type[ast.operator], tuple[str, Callable[[float, float], float]]] = {
+    ast.Add: ("+", operator.add),
+    ast.Sub: ("-", operator.sub),
+    ast.Mult: ("*", operator.mul),
+    ast.Div: ("/", operator.truediv),
+    ast.FloorDiv: ("/", operator.floordiv),
+    ast.Mod: ("%", operator.mod),
+}
+COMPARED: dict[type[ast.cmpop], tuple[str, Callable[[float, float], bool]]] = {
+    ast.Lt: ("<", operator.lt),
+    ast.LtE: ("<=", operator.le),
+    ast.Gt: (">", operator.gt),
+    ast.GtE: (">=", operator.ge),
+    ast.Eq: ("==", operator.eq),
+    ast.NotEq: ("!=", operator.ne),
+}
+UNROLLED = 4
+"""Greatest power that is printed as a product, as compiled Python code computes it."""
+
+
+def print_expression(node: ast.expr, scope: Scope) -> Value:  # noqa: PLR0911 - one return per kind
+    """Return the value of an expression; what it needs beforehand is written to the scope."""
+    match node:
+        case ast.Constant(value=bool() | int() | float() as value):
+            return number(value)
+        case ast.Name(id=name):
+            return scope.variables[name] if name in scope.variables else _known(scope.look_up(name), node, scope)
+        case ast.Attribute():
+            return _print_attribute(node, scope)
+        case ast.Tuple(elts=items):
+            return build_tuple(scope, print_items(items, scope))
+        case ast.BinOp(left=left, op=ast.Pow(), right=right):
+            return _print_power(print_expression(left, scope), print_expression(right, scope), scope)
+        case ast.BinOp(left=left, op=op, right=right):
+            return arithmetic(op, print_expression(left, scope), print_expression(right, scope), node, scope)
+        case ast.UnaryOp(op=op, operand=operand):
+            return _print_unary(op, print_expression(operand, scope), node, scope)
+        case ast.Compare():
+            return _print_comparison(node, scope)
+        case ast.BoolOp():
+            return _print_logic(node, scope)
+        case ast.IfExp():
+            return _print_choice(node, scope)
+        case ast.Subscript():
+            return _print_subscript(node, scope)
+        case ast.Call(func=function, args=arguments, keywords=named):
+            callee = print_expression(function, scope)
+            values = print_items(arguments, scope)
+            keywords = {str(given.arg): print_expression(given.value, scope) for given in named}
+            return print_call(callee, values, keywords, node, scope, print_expression)
+    raise scope.refuse(node, "only numbers, tuples and records, arithmetic, comparisons and calls have a counterpart")
+
+
+def print_items(nodes: list[ast.expr], scope: Scope) -> list[Value]:
+    """Return the values of the items of a tuple or call; those of a tuple with a star stand one by one."""
+    values = []
+    for node in nodes:
+        if isinstance(node, ast.Starred):
+            whole = scope.keep(print_expression(node.value, scope))
+            values += [element(scope, whole, k) for k in range(len(whole.type))]
+        else:
+            values.append(print_expression(node, scope))
+    return values
+
+
+def _known(thing: object, node: ast.expr, scope: Scope) -> Value:
+    """Return what a global name or an attribute of a module stands for."""
+    if isinstance(thing, bool | int | float):
+        return number(thing)
+    if isinstance(thing, np.ndarray):
+        return scope.program.table(thing)
+    if isinstance(thing, tuple):
+        values = [_known(item, node, scope) for item in thing]
+        return build_tuple(scope, values, type(thing) if hasattr(thing, "_fields") else None)
+    if callable(thing) or isinstance(thing, ModuleType):
+        return Value("", None, thing)
+    raise scope.refuse(node, "a name must stand for a number, a tuple or array of numbers, a function or a module")
+
+
+def _print_attribute(node: ast.Attribute, scope: Scope) -> Value:
+    owner = print_expression(node.value, scope)
+    if owner.type is None:
+        return _known(getattr(owner.known, node.attr, None), node, scope)
+    if not isinstance(owner.type, types.BaseNamedTuple):
+        raise scope.refuse(node, "only records and modules have attributes")
+    if node.attr in owner.type.fields:
+        return field(scope, owner, node.attr)
+    method = getattr(owner.type.instance_class, node.attr, None)
+    if method is None:
+        raise scope.refuse(node, f"{owner.type.instance_class.__name__} has no such field or method")
+    return Value("", None, (method, owner))
+
+
+def arithmetic(op: ast.operator, left: Value, right: Value, node: ast.AST, scope: Scope) -> Value:
+    """Return the result of an operation on two numbers; two tuples are joined by +."""
+    if is_tuple(left.type) and is_tuple(right.type) and isinstance(op, ast.Add):
+        items = [element(scope, side, k) for side in map(scope.keep, (left, right)) for k in range(len(side.type))]
+        return build_tuple(scope, items)
+    if type(op) not in ARITHMETIC or not all(map(_is_number, (left, right))):
+        raise scope.refuse(node, "this operation has no counterpart for these types")
+    sign, compute = ARITHMETIC[type(op)]
+    whole = not isinstance(op, ast.Div) and REAL not in {left.type, right.type}
+    if is_known(left, right) and not (right.known == 0 and sign in "/%"):
+        return number(compute(left.known, right.known))  # type: ignore[arg-type]  # both are numbers
+    if sign in "/%" and isinstance(op, ast.FloorDiv | ast.Mod) and not whole:
+        raise scope.refuse(node, "// and % are for whole numbers only")
+    rank = SUM if sign in "+-" else PRODUCT
+    first = f"(real){within(left, UNARY)}" if isinstance(op, ast.Div) and left.type != REAL else within(left, rank)
+    return Value(f"{first} {sign} {within(right, rank - 1)}", INTEGER if whole else REAL, plain=False, rank=rank)
+
+
+def _is_number(value: Value) -> bool:
+    return value.type in {REAL, BOOLEAN} or isinstance(value.type, types.Integer)
+
+
+def _print_power(base: Value, exponent: Value, scope: Scope) -> Value:
+    """Return a power; a small whole one is a product, as it is in compiled Python code."""
+    if is_known(base, exponent):
+        return number(base.known**exponent.known)  # type: ignore[operator]  # both are numbers
+    whole = int(exponent.known) if isinstance(exponent.known, int) else 0
+    if 1 <= whole <= UNROLLED:
+        factor = scope.keep(base)
+        return Value(" * ".join([within(factor, UNARY)] * whole), base.type, plain=False, rank=PRODUCT)
+    return Value(f"r_pow({base.code}, {exponent.code})", REAL, plain=False)
+
+
+def _print_unary(op: ast.unaryop, value: Value, node: ast.AST, scope: Scope) -> Value:
+    if isinstance(op, ast.Not):
+        return (
+            number(not value.known)
+            if is_known(value)
+            else Value(f"!{within(value, 0)}", BOOLEAN, plain=False, rank=UNARY)
+        )
+    if not isinstance(op, ast.USub) or not _is_number(value):
+        raise scope.refuse(node, "this operation has no counterpart")
+    if is_known(value):
+        return number(-value.known)  # type: ignore[operator]  # a number
+    return Value(f"-{within(value, 0)}", value.type, plain=False, rank=UNARY)
+
+
+def _print_comparison(node: ast.Compare, scope: Scope) -> Value:
+    values = [print_expression(item, scope) for item in (node.left, *node.comparators)]
+    if any(type(op) not in COMPARED for op in node.ops) or not all(map(_is_number, values)):
+        raise scope.refuse(node, "only numbers are compared")
+    if is_known(*values):
+        pairs = zip(node.ops, values, values[1:], strict=False)
+        return number(all(COMPARED[type(op)][1](a.known, b.known) for op, a, b in pairs))  # type: ignore[arg-type]
+    values[1:-1] = map(scope.keep, values[1:-1])
+    parts = [
+        f"{within(a, SUM)} {COMPARED[type(op)][0]} {within(b, SUM)}"
+        for op, a, b in zip(node.ops, values, values[1:], strict=False)
+    ]
+    return Value(" && ".join(parts), BOOLEAN, plain=False, rank=COMPARISON if len(parts) == 1 else LOGIC)
+
+
+def _print_logic(node: ast.BoolOp, scope: Scope) -> Value:
+    """Return `and` or `or` of conditions; what is known beforehand decides or falls out."""
+    deciding, sign = (False, " && ") if isinstance(node.op, ast.And) else (True, " || ")
+    remaining: list[Value] = []
+    for item in node.values:
+        value = print_expression(item, scope)
+        if not is_known(value):
+            remaining.append(value)
+        elif bool(value.known) is deciding:
+            # What stands before has no side effect, so that the whole is decided.
+            return number(deciding)
+    if len(remaining) < 2:
+        return remaining[0] if remaining else number(not deciding)
+    return Value(sign.join(within(value, COMPARISON) for value in remaining), BOOLEAN, plain=False, rank=LOGIC)
+
+
+def _print_choice(node: ast.IfExp, scope: Scope) -> Value:
+    condition = print_expression(node.test, scope)
+    if is_known(condition):
+        return print_expression(node.body if condition.known else node.orelse, scope)
+    yes, no = print_expression(node.body, scope), print_expression(node.orelse, scope)
+    if yes.type != no.type and not (_is_number(yes) and _is_number(no)):
+        raise scope.refuse(node, f"both branches must have one type, not {yes.type} and {no.type}")
+    if is_empty(yes.type):
+        return yes
+    kind = REAL if REAL in (yes.type, no.type) else yes.type
+    code = f"{within(condition, LOGIC)} ? {within(yes, LOGIC)} : {within(no, CHOICE)}"
+    return Value(code, kind, plain=False, rank=CHOICE)
+
+
+def _print_subscript(node: ast.Subscript, scope: Scope) -> Value:
+    owner = print_expression(node.value, scope)
+    if isinstance(owner.type, types.Array):
+        items = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+        return _array_element(owner, [print_expression(item, scope) for item in items], scope)
+    if not is_tuple(owner.type):
+        raise scope.refuse(node, "only tuples and arrays have elements")
+    if isinstance(node.slice, ast.Slice):
+        ends = [print_expression(end, scope).known if end else None for end in (node.slice.lower, node.slice.upper)]
+        return part(scope, owner, slice(*ends))
+    index = print_expression(node.slice, scope)
+    return element(scope, owner, int(index.known) if is_known(index) else index, node)  # type: ignore[call-overload]
+
+
+def _array_element(owner: Value, indices: list[Value], scope: Scope) -> Value:
+    """Return an element of an array, or the part of it that fewer indices name."""
+    if isinstance(owner.known, np.ndarray) and is_known(*indices):
+        place: Any = tuple(index.known for index in indices)
+        found = owner.known[place]
+        return number(float(found)) if np.ndim(found) == 0 else scope.program.table(found)
+    terms = []
+    for position, index in enumerate(indices):
+        stride = math.prod(owner.shape[position + 1 :])
+        terms.append(f"{within(index, UNARY)} * {stride}" if stride != 1 else index.code)
+    rest = owner.shape[len(indices) :]
+    if not rest:
+        return Value(f"{owner.code}[{' + '.join(terms)}]", REAL)
+    return Value(
+        f"({within(owner, SUM)} + {' + '.join(terms)})",
+        types.Array(REAL, len(rest), "C", readonly=not owner.type.mutable),
+        shape=rest,
+    )

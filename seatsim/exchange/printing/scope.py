@@ -1,0 +1,90 @@
+"""The body of one function while it is printed: its variables, its lines, and where it stands."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections.abc import Callable
+
+from numba import types
+
+from seatsim.exchange.printing.program import Program
+from seatsim.exchange.printing.values import (
+    UNKNOWN,
+    NotPrintableError,
+    Value,
+    identifier,
+    is_empty,
+    whole_as_int64,
+)
+
+
+class Scope:
+    """Variables and lines of the function that is being printed."""
+
+    def __init__(self, program: Program, function: Callable[..., object], assigned: dict[str, int]) -> None:
+        self.program = program
+        self.function = function
+        self.assigned = assigned
+        self.variables: dict[str, Value] = {}
+        self.declared: list[str] = []
+        self.lines: list[str] = []
+        self.depth = 1
+        self.results: list[Value] = []
+        self._names: set[str] = set()
+
+    def refuse(self, node: ast.AST, why: str) -> NotPrintableError:
+        """Return the error of what cannot be printed, with the function and the line of it."""
+        place = f"{self.function.__module__}.{self.function.__qualname__}"
+        return NotPrintableError(f"{place}: '{ast.unparse(node)[:80]}' cannot be exported to C: {why}")
+
+    def write(self, line: str) -> None:
+        """Add a line."""
+        self.lines.append("    " * self.depth + line)
+
+    def name(self, wanted: str) -> str:
+        """Return a name for a variable that is free within the function."""
+        name, k = identifier(wanted), 2
+        while name in self._names:
+            name, k = f"{identifier(wanted)}_{k}", k + 1
+        self._names.add(name)
+        return name
+
+    def assign(self, name: str, value: Value) -> None:
+        """Assign a value to the variable that Python calls `name`."""
+        before = self.variables.get(name)
+        known = value.known if self.assigned.get(name, 0) <= 1 else UNKNOWN
+        if value.type is None or is_empty(value.type) or known is not UNKNOWN or value.shape:
+            # Nothing to compute: the value itself stands for the variable.
+            self.variables[name] = value
+            return
+        kind = whole_as_int64(value.type)
+        if before is None or before.type != kind or before.known is not UNKNOWN:
+            self._declare(name, kind, value.code)
+        else:
+            self.write(f"{before.code} = {value.code};")
+
+    def _declare(self, name: str, kind: types.Type, code: str) -> None:
+        variable = self.name(name)
+        self.variables[name] = Value(variable, kind)
+        if self.depth == 1:
+            self.write(f"{self.program.types.name(kind)} {variable} = {code};")
+        else:
+            self.declared.append(f"    {self.program.types.name(kind)} {variable};")
+            self.write(f"{variable} = {code};")
+
+    def keep(self, value: Value) -> Value:
+        """Return a value whose expression may be repeated, held in a variable of its own where it costs anything."""
+        if value.plain or is_empty(value.type):
+            return value
+        name = self.name("part")
+        self.write(f"const {self.program.types.name(value.type)} {name} = {value.code};")
+        return value._replace(code=name, plain=True, rank=0)
+
+    def look_up(self, name: str) -> object:
+        """Return the Python object of a name outside the function's own variables."""
+        code = self.function.__code__
+        if name in code.co_freevars:
+            return (self.function.__closure__ or ())[code.co_freevars.index(name)].cell_contents
+        found = self.function.__globals__.get(name, UNKNOWN)
+        return getattr(builtins, name, UNKNOWN) if found is UNKNOWN else found

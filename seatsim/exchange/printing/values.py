@@ -1,0 +1,118 @@
+"""Values of the printed code: a C expression with the type that numba gives it, and what is known of it beforehand."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from numba import types
+
+from seatsim.schema.errors import InputError
+
+
+class _Unknown:
+    """What is only known when the code runs."""
+
+
+UNKNOWN = _Unknown()
+REAL, INTEGER, BOOLEAN, NOTHING = types.float64, types.int64, types.boolean, types.none
+
+
+UNARY, PRODUCT, SUM, COMPARISON, LOGIC, CHOICE = range(1, 7)
+"""Ranks of C's operators, from the one that binds most; 0 is a name, a literal or a call."""
+
+
+class NotPrintableError(InputError):
+    """A function uses what has no counterpart in the printed C."""
+
+
+class Value(NamedTuple):
+    """A value: C expression, type, what it is if that is known, and whether repeating the expression costs nothing.
+
+    `shape` is that of an array, `rank` that of the outermost operator (see `PRODUCT` and the others). A value without
+    type is a Python object that exists while the code is printed only: a module, a function, a class.
+    """
+
+    code: str
+    type: Any  # a numba type, or None
+    known: object = UNKNOWN
+    plain: bool = True
+    shape: tuple[int, ...] = ()
+    rank: int = 0
+
+
+class Signature(NamedTuple):
+    """Type of an argument, with the shape of an array."""
+
+    type: types.Type
+    shape: tuple[int, ...] = ()
+
+
+def is_known(*values: Value) -> bool:
+    """Whether all values are known beforehand."""
+    return all(value.known is not UNKNOWN for value in values)
+
+
+def number(value: float | bool) -> Value:
+    """Return a number as a literal."""
+    if isinstance(value, bool):
+        return Value(str(int(value)), BOOLEAN, value)
+    if isinstance(value, int):
+        return Value(str(value), INTEGER, value, rank=0 if value >= 0 else UNARY)
+    value = float(value)
+    if math.isnan(value):
+        return Value("R_NAN", REAL, value)
+    if math.isinf(value):
+        return Value("R_INFINITY", REAL, value) if value > 0 else Value("-R_INFINITY", REAL, value, rank=UNARY)
+    negative = math.copysign(1.0, value) < 0.0
+    return Value(f"-R({-value!r})", REAL, value, rank=UNARY) if negative else Value(f"R({value!r})", REAL, value)
+
+
+def within(value: Value, most: int) -> str:
+    """Return the expression of a value, in brackets where its outermost operator has a rank above `most`."""
+    return f"({value.code})" if value.rank > most else value.code
+
+
+def tuple_type(items: tuple[types.Type, ...], cls: type | None = None) -> types.Type:
+    """Return the type of a tuple, or of a record of a class."""
+    return types.BaseTuple.from_types(items, cls)
+
+
+def is_tuple(kind: object) -> bool:
+    """Whether a type is that of a tuple or record."""
+    return isinstance(kind, types.BaseTuple)
+
+
+def is_empty(kind: Any) -> bool:
+    """Whether a type holds no number, so that it has no counterpart in C."""
+    return kind is NOTHING or (is_tuple(kind) and all(map(is_empty, kind)))
+
+
+def element_types(kind: types.Type) -> tuple[types.Type, ...]:
+    """Return the types of a tuple's elements."""
+    return tuple(kind)
+
+
+def field_names(kind: types.Type) -> tuple[str, ...]:
+    """Return the C names of a record's fields, or of a tuple of several types."""
+    cls = getattr(kind, "instance_class", None)
+    return tuple(map(identifier, cls._fields)) if cls else tuple(f"item{k}" for k in range(len(kind)))
+
+
+_TAKEN = """
+auto break case char const continue default do double else enum extern float for goto if inline int long register
+restrict return short signed sizeof static struct switch typedef union unsigned void volatile while real R main
+read write time signal exp log pow tanh sin cos tan atan sqrt fabs floor ceil fmod abs round div index gamma
+y0 y1 yn j0 j1 jn remove rename link select least greatest
+"""
+"""Words of C and of its library."""
+
+
+def identifier(name: str) -> str:
+    """Return a name that C permits and that is not taken by its library."""
+    return f"{name}_" if name in _TAKEN.split() else name
+
+
+def whole_as_int64(kind: types.Type) -> types.Type:
+    """Return the type of a variable: one type serves all whole numbers."""
+    return INTEGER if isinstance(kind, types.Integer) else kind

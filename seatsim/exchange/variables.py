@@ -1,0 +1,112 @@
+"""The variables of a block as other programs see them: flat names with type, unit, meaning and bounds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple, cast, get_args
+
+import numba
+from numba import types
+
+from seatsim.effects.base import EFFECTS
+from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.printing.declarations import is_row
+from seatsim.exchange.printing.values import field_names as c_names
+from seatsim.exchange.printing.values import is_empty
+from seatsim.kernel.augmented import AugmentedDamper
+from seatsim.kernel.rig import Rig
+from seatsim.kernel.seated_body import SeatedBody
+from seatsim.schema.fields import bounds, describe
+
+
+class Variable(NamedTuple):
+    """A number of a block: its name, what it is, and where C finds it in the model."""
+
+    name: str
+    causality: str
+    value: float | int | bool
+    place: str
+    unit: str = ""
+    meaning: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+
+
+def list_variables(block: Block) -> list[Variable]:
+    """List the parameters, inputs and outputs of a block, in this order."""
+    found = [*_walk("", "parameters", block.parameters, Variable("", "parameter", 0.0, ""))]
+    found += _walk("", "inputs", block.inputs, Variable("", "input", 0.0, ""))
+    found += _walk("", "outputs", block.outputs, Variable("", "output", 0.0, ""))
+    # A number that is absent is NaN, which other programs do not take for one.
+    return [v for v in found if not v.name.startswith(block.hidden) and not math.isnan(v.value)]
+
+
+def _walk(name: str, place: str, value: object, what: Variable) -> Iterator[Variable]:
+    """Yield the numbers of a value, of which `what` is known."""
+    if isinstance(value, bool | int | float):
+        # A float of numpy is one of Python's, too, but is not written as one.
+        yield what._replace(name=name, place=place, value=float(value) if isinstance(value, float) else value)
+    elif isinstance(value, AugmentedDamper):
+        yield from _walk(name, f"{place}.damper", value.damper, what)
+        yield from _walk_effects(f"{place}.effects", value.effects, what)
+    elif isinstance(value, Rig):
+        yield from _walk("plant", f"{place}.plant", value.plant, what)
+        yield from _walk("damper", f"{place}.damper", value.damper, what)
+        yield from _walk_effects(f"{place}.effects", value.effects, what)
+    elif hasattr(value, "_fields"):
+        yield from _walk_record(name, place, value, what)
+    elif isinstance(value, tuple):
+        for k, (item, code) in enumerate(zip(value, _places(value), strict=True)):
+            inner = f"{name[:-1]},{k + 1}]" if name.endswith("]") else f"{name}[{k + 1}]"
+            yield from _walk(inner, f"{place}{code}", item, what)
+
+
+def _walk_record(name: str, place: str, record: object, what: Variable) -> Iterator[Variable]:
+    cls = type(record)
+    for known, code in zip(describe(cls), _places(record), strict=True):
+        inner = f"{name}.{known.name}" if name else known.name
+        value = getattr(record, known.name)
+        meaning = known.meaning or inner.replace("_", " ")
+        low, high = bounds(cls, known.name) if isinstance(value, int | float) else (-math.inf, math.inf)
+        found = what._replace(unit=known.unit, meaning=meaning, low=low, high=high)
+        for variable in _walk(inner, f"{place}{code}", value, found):
+            yield _with_unit_of_element(variable, cls, known.name) if isinstance(value, tuple) else variable
+
+
+def _with_unit_of_element(variable: Variable, cls: type, field: str) -> Variable:
+    """Return a coefficient of a law with its own unit: that of the law per power of the current."""
+    items = get_args(get_args(_hints(cls)[field])[0]) if get_args(_hints(cls)[field]) else ()
+    position = variable.name.rpartition("[")[2].rstrip("]")
+    if not position.isdigit() or not variable.unit or len(items) < int(position):
+        return variable
+    extra = [info.json_schema_extra for info in get_args(items[int(position) - 1])[1:]]
+    unit = str(extra[0].get("unit", "")) if extra and isinstance(extra[0], dict) else ""
+    per = unit.removeprefix("1/")
+    return variable._replace(unit=f"{variable.unit}/{per}") if per else variable
+
+
+def _hints(cls: type) -> dict[str, object]:
+    from typing import get_type_hints
+
+    return get_type_hints(cls, include_extras=True)
+
+
+def _walk_effects(place: str, effects: tuple[object, ...], what: Variable) -> Iterator[Variable]:
+    """Yield the parameters of effects under their names, those of a body on the seat under `driver`."""
+    seen: list[str] = []
+    for effect, code in zip(effects, _places(effects), strict=True):
+        name = "driver" if isinstance(effect, SeatedBody) else f"effects.{EFFECTS.name_of(type(effect))}"
+        seen.append(name)
+        number = f"_{seen.count(name)}" if seen.count(name) > 1 else ""
+        yield from _walk(f"{name}{number}", f"{place}{code}", effect, what)
+
+
+def _places(value: object) -> list[str]:
+    """Return how C reaches the elements of a tuple or record."""
+    kind: types.Type = numba.typeof(value)
+    if is_empty(kind):
+        return [""] * len(cast("tuple[object, ...]", value))
+    if is_row(kind):
+        return [f".at[{k}]" for k in range(len(kind))]
+    return [f".{name}" for name in c_names(kind)]

@@ -1,0 +1,38 @@
+"""The command that exports: one file, or one clear sentence and nothing."""
+
+import pytest
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--to", "fmu4", "--what", "damper", "--out", "x.fmu"), "no such export (did you mean"),
+        (("--to", "c", "--what", "dampr", "--out", "x.c"), "did you mean 'damper'"),
+        (("--to", "c", "--what", "damper", "--out", "."), "this is a folder"),
+        (("--to", "c", "--what", "damper", "--out", "/proc/none/x.c"), "cannot be written"),
+    ],
+)
+def test_a_wrong_word_is_refused_and_nothing_is_written(
+    seatsim_command, kept_seat_file, arguments, said, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    status, _, err = seatsim_command("export", kept_seat_file, *arguments)
+    assert status == 2 and said in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_law_without_counterpart_is_named_and_nothing_is_written(seatsim_command, tmp_path):
+    out = tmp_path / "controller.c"
+    status, _, err = seatsim_command(
+        "export", "quickstart", "--to", "c", "--what", "controller", "--out", out, "--set", "controller={law: mpc}"
+    )
+    assert status == 2 and "controllers.laws.model_predictive.ask_planner" in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_of_several_runs_the_first_is_exported(seatsim_command, tmp_path):
+    out = tmp_path / "here" / "damper.mat"
+    status, said, err = seatsim_command("export", "quickstart", "--to", "mat", "--what", "damper", "--out", out)
+    assert status == 0 and out.is_file()
+    assert "holds 4 runs; the first is exported: quickstart (hybrid skyhook)" in err
+    assert f"written: {out}" in said

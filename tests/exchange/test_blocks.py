@@ -1,0 +1,122 @@
+"""Every damper, every effect and every law but one that solves in a loop has a counterpart in C."""
+
+import dataclasses
+import subprocess
+
+import numpy as np
+import pytest
+from scipy.io import loadmat
+
+from seatsim.dampers.base import DAMPERS
+from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on
+from seatsim.exchange.blocks.controller import controller_block
+from seatsim.exchange.blocks.damper import damper_block
+from seatsim.exchange.blocks.rig import rig_block
+from seatsim.exchange.c_file import print_c, write_c
+from seatsim.exchange.compiler import find_compiler
+from seatsim.exchange.matlab import write_mat
+from seatsim.exchange.model_source import print_model
+from seatsim.exchange.printing.values import NotPrintableError
+from seatsim.exchange.variables import list_variables
+from seatsim.rig.plant import control_system
+from seatsim.scenario.loading import load
+from seatsim.scenario.scenario import DamperChoice
+from seatsim.schema.errors import InputError
+
+
+def run_vector(path, *flags):
+    """Compile a file with its test vector, run it, and return what it prints."""
+    program = path.with_suffix(".out")
+    command = [find_compiler(), "-std=c99", "-Wall", "-Werror", "-O1", "-ffp-contract=off", "-DSEATSIM_TEST", *flags]
+    subprocess.run([*command, "-o", str(program), str(path), "-lm"], check=True, timeout=60)
+    return subprocess.run([str(program)], capture_output=True, text=True, timeout=60, check=False)
+
+
+def test_every_damper_is_printed(seat_file):
+    scenario = load(seat_file)[0]
+    for name in DAMPERS.names():
+        cls = DAMPERS.find(name)
+        choice = DamperChoice(cls(), DAMPERS.specification_of(cls).factors)
+        assert f"{cls.__name__}_force" in print_model(damper_block(dataclasses.replace(scenario, damper=choice)))
+
+
+def test_every_effect_of_the_loop_is_printed(seat_file):
+    found = [EFFECTS.find(name) for name in EFFECTS.names()]
+    carried = [cls for cls in found if acts_on(cls, (*ON_DAMPER, *ON_SEAT))]
+    effects = []
+    for cls in carried:
+        form = EFFECTS.specification_of(cls).forms[0]
+        effects.append({"effect": EFFECTS.name_of(cls), "parameters": dict(form.free) | dict(form.fixed)})
+    block = rig_block(load(seat_file, {"effects": effects})[0])
+    text = print_model(block)
+    names = [v.name for v in list_variables(block)]
+    assert len(names) == len(set(names))
+    for cls in carried:
+        assert f"{cls.__name__}_" in text
+        assert any(name.startswith(f"effects.{EFFECTS.name_of(cls)}.") for name in names)
+
+
+def test_every_law_is_printed_but_one_that_solves_a_programme():
+    left_out = []
+    for scenario in load("laws"):
+        try:
+            print_model(controller_block(scenario))
+        except NotPrintableError as error:
+            left_out.append(str(error))
+    assert len(left_out) == 1
+    assert "controllers.laws.model_predictive.ask_planner" in left_out[0]
+
+
+@pytest.mark.parametrize(
+    "name, settings",
+    [
+        ("quickstart", {}),
+        ("laws", {"controller": {"law": "lqg", "sample_time": 0.005}}),
+        ("laws", {"controller": {"law": "sliding_mode"}, "damper": {"model": "modified_bouc_wen"}}),
+    ],
+)
+def test_a_controller_passes_its_test_vector_in_double_and_float(name, settings, tmp_path):
+    write_c(controller_block(load(name, settings)[0]), tmp_path / "controller.c")
+    done = run_vector(tmp_path / "controller.c")
+    assert done.returncode == 0 and "greatest error is 0 of" in done.stdout
+    assert "malloc" not in (tmp_path / "controller.c").read_text()
+    assert run_vector(tmp_path / "controller.c", "-DSEATSIM_FLOAT").returncode == 0
+
+
+def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path, monkeypatch):
+    # A rig takes its time where Python itself evaluates it.
+    monkeypatch.setattr("seatsim.exchange.c_file.SAMPLES", 60)
+    effects = [
+        {"effect": "damper.remanence", "parameters": {"width": 0.05}},
+        {"effect": "driver.biodynamics", "parameters": {"share": 0.2}},
+        {"effect": "coil.delay", "parameters": {"time": 0.0043}},
+    ]
+    write_c(rig_block(load(seat_file, {"effects": effects})[0]), tmp_path / "rig.c")
+    done = run_vector(tmp_path / "rig.c")
+    assert done.returncode == 0, done.stdout
+
+
+def test_a_changed_number_of_the_test_vector_is_found(seat_file, tmp_path):
+    text = print_c(damper_block(load(seat_file)[0]))
+    (tmp_path / "damper.c").write_text(
+        text.replace("nominal_parameters = {{250.0", "nominal_parameters = {{251.0").replace(
+            "nominal_parameters = {{R(250.0)", "nominal_parameters = {{R(251.0)"
+        )
+    )
+    done = run_vector(tmp_path / "damper.c")
+    assert done.returncode == 1
+
+
+def test_a_mat_file_holds_plant_and_design(seat_file, tmp_path):
+    scenario = load(seat_file)[0]
+    write_mat(controller_block(scenario), scenario, tmp_path / "controller.mat")
+    found = loadmat(tmp_path / "controller.mat", simplify_cells=True)
+    assert np.array_equal(found["plant"]["B"], control_system(scenario.plant).B)
+    assert list(found["plant"]["inputs"]) == ["floor_acceleration", "damper_force"]
+    assert (found["parameters"]["law"]["k1"], found["parameters"]["law"]["k2"]) == (2.0, 2147.6)
+    assert found["step"] == 0.005
+
+
+def test_a_delay_too_long_for_a_block_is_refused(seat_file):
+    with pytest.raises(InputError, match="holds 256 at most"):
+        rig_block(load(seat_file, {"actuator.delay": 0.5})[0])

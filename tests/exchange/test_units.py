@@ -1,0 +1,214 @@
+"""Exported units: equal to the functions that they are printed from, valid, and strict about what they are given."""
+
+import dataclasses
+import zipfile
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.validation import validate_fmu
+
+from seatsim.dampers.base import DAMPERS
+from seatsim.exchange import compiler
+from seatsim.exchange.blocks.damper import damper_block
+from seatsim.exchange.blocks.rig import RigOutputs, rig_block
+from seatsim.exchange.fmu import make_files, write_fmu
+from seatsim.exchange.variables import list_variables
+from seatsim.scenario.loading import load
+from seatsim.scenario.scenario import DamperChoice
+from seatsim.schema.errors import InputError
+from seatsim.simulation.simulate import simulate
+
+STEP, SAMPLES = 1e-3, 300
+
+
+def block_of(name, seat_file):
+    cls = DAMPERS.find(name)
+    choice = DamperChoice(cls(), DAMPERS.specification_of(cls).factors)
+    return damper_block(dataclasses.replace(load(seat_file)[0], damper=choice))
+
+
+@pytest.fixture(scope="module")
+def units(kept_seat_file, tmp_path_factory):
+    """The seat's damper as a unit of each version."""
+    folder, block = tmp_path_factory.mktemp("units"), damper_block(load(kept_seat_file)[0])
+    for version in (2, 3):
+        write_fmu(block, version, folder / f"damper{version}.fmu")
+    return folder
+
+
+@pytest.fixture
+def open_unit(units, tmp_path):
+    """A unit of version 2 as FMPy opens it, instantiated."""
+    description = fmpy.read_model_description(str(units / "damper2.fmu"))
+    folder = fmpy.extract(str(units / "damper2.fmu"), str(tmp_path))
+    told = []
+    logger = fmpy.fmi2.fmi2CallbackLoggerTYPE(lambda *values: told.append(values[2]))
+    unit = fmpy.fmi2.FMU2Slave(
+        guid=description.guid,
+        unzipDirectory=folder,
+        modelIdentifier=description.coSimulation.modelIdentifier,
+        instanceName="damper",
+    )
+    callbacks = fmpy.fmi2.fmi2CallbackFunctions()
+    callbacks.logger = logger
+    callbacks.allocateMemory = fmpy.fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+    callbacks.freeMemory = fmpy.fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
+    unit.instantiate(callbacks=callbacks)
+    unit.setupExperiment(startTime=0.0)
+    unit.numbers = {v.name: v.valueReference for v in description.modelVariables}
+    yield unit
+    unit.freeInstance()
+
+
+def motion():
+    t = STEP * np.arange(SAMPLES)
+    return {
+        "displacement": 0.01 * np.sin(25.0 * t),
+        "velocity": 0.25 * np.cos(25.0 * t),
+        "acceleration": -6.25 * np.sin(25.0 * t),
+        "command": 0.8 * (t > 0.1),
+        "temperature": 20.0 + 100.0 * t,
+    }
+
+
+def evaluate(block, inputs, step):
+    """Return what the functions themselves give, evaluated by Python."""
+    rows, state = [], None
+    for k in range(len(next(iter(inputs.values())))):
+        given = block.inputs._replace(**{name: float(values[k]) for name, values in inputs.items()})
+        state = block.start(block.parameters, given, block.rest) if state is None else state
+        state, good = block.advance(block.parameters, given, state, step)
+        assert good
+        rows.append(block.observe(block.parameters, given, state, step))
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_unit_in_a_host_in_c_equals_the_functions_bit_by_bit(version, host, seat_file, tmp_path):
+    name = {2: "modified_bouc_wen", 3: "hong_sigmoid_gaussian"}[version]
+    block = block_of(name, seat_file)
+    hosted = host.run_unit(block, version, motion(), tmp_path, STEP)
+    assert np.array_equal(hosted.outputs[1:], evaluate(block, motion(), STEP))
+
+
+def test_a_rig_in_a_host_in_c_equals_its_simulation(host, seat_file, tmp_path):
+    scenario = load(seat_file)[0]
+    history = simulate(scenario, carry_all_effects=False)
+    floor = scenario.excitation.floor(scenario.solver.step, scenario.seed)
+    inputs = {
+        "floor_acceleration": floor.acceleration[:-1],
+        "floor_velocity": floor.velocity[:-1],
+        "floor_jerk": np.diff(floor.acceleration) / STEP,
+    }
+    hosted = host.run_unit(rig_block(scenario), 2, inputs, tmp_path, STEP)
+    for k, name in enumerate(RigOutputs._fields):
+        expected = history[name][:-1] if name == "current_command" else history[name][1:]
+        assert hosted.outputs[1:, k] == pytest.approx(expected, abs=1e-11 * np.max(np.abs(expected)))
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_fmpy_finds_nothing_and_simulates(version, units):
+    path = str(units / f"damper{version}.fmu")
+    assert validate_fmu(path) == []
+    inputs = motion()
+    names = ["time", *inputs]
+    table = np.zeros(SAMPLES, dtype=[(name, float) for name in names])
+    table["time"] = STEP * np.arange(SAMPLES)
+    for name, values in inputs.items():
+        table[name] = values
+    result = fmpy.simulate_fmu(
+        path, stop_time=0.2, output_interval=STEP, input=table, output=["force", "current"], step_size=STEP
+    )
+    assert result["current"][-1] == pytest.approx(0.8, rel=1e-5)
+    assert np.max(np.abs(result["force"])) > 100.0
+
+
+def test_a_step_from_a_saved_state_gives_the_same_again(open_unit):
+    unit, force = open_unit, [open_unit.numbers["force"]]
+    unit.enterInitializationMode()
+    unit.exitInitializationMode()
+    unit.setReal([unit.numbers["velocity"], unit.numbers["command"]], [0.2, 0.7])
+    unit.doStep(0.0, 0.01)
+    state = unit.getFMUstate()
+    kept = unit.serializeFMUstate(state)
+    unit.doStep(0.01, 0.01)
+    first = unit.getReal(force)
+    unit.setReal([unit.numbers["velocity"]], [-0.1])
+    unit.doStep(0.02, 0.05)
+    assert unit.getReal(force) != first
+    for again in (state, unit.deSerializeFMUstate(kept)):
+        unit.setFMUstate(again)
+        unit.doStep(0.01, 0.01)
+        assert unit.getReal(force) == first
+        unit.freeFMUstate(again)
+
+
+def test_a_parameter_keeps_its_bounds_and_acts(open_unit):
+    unit, number = open_unit, open_unit.numbers
+    with pytest.raises(fmpy.fmi1.FMICallException):
+        unit.setReal([number["damper.n"]], [25.0])
+    with pytest.raises(fmpy.fmi1.FMICallException):
+        unit.setReal([number["force"]], [1.0])
+    with pytest.raises(fmpy.fmi1.FMICallException):
+        unit.setReal([999], [1.0])
+    unit.setReal([number["damper.f0"]], [33.0])
+    unit.enterInitializationMode()
+    assert unit.getReal([number["force"]]) == [33.0]
+    unit.exitInitializationMode()
+    with pytest.raises(fmpy.fmi1.FMICallException):
+        unit.doStep(0.0, -0.01)
+    unit.reset()
+    assert unit.getReal([number["damper.f0"]]) == [0.0]
+
+
+def test_every_parameter_has_unit_bounds_and_meaning(units):
+    described = fmpy.read_model_description(str(units / "damper2.fmu"))
+    found = {v.name: v for v in described.modelVariables}
+    assert (found["damper.n"].unit, found["damper.n"].min, found["damper.n"].max) == ("1", "1.0", "20.0")
+    assert found["damper.c_a"].description == "viscous damping at zero current"
+    assert found["is_current"].type == "Boolean"
+    assert all(v.description for v in described.modelVariables)
+
+
+def test_a_unit_needs_nothing_of_python_and_is_small(units):
+    for version in (2, 3):
+        path = units / f"damper{version}.fmu"
+        assert path.stat().st_size < 80e3
+        with zipfile.ZipFile(path) as archive:
+            library = next(name for name in archive.namelist() if name.startswith("binaries/"))
+            content = archive.read(library)
+        assert b"Py" not in content and b"NRT_" not in content and b"numba" not in content
+
+
+def test_the_same_model_gives_the_same_unit(kept_seat_file, units, tmp_path):
+    write_fmu(damper_block(load(kept_seat_file)[0]), 2, tmp_path / "again.fmu")
+    assert (tmp_path / "again.fmu").read_bytes() == (units / "damper2.fmu").read_bytes()
+
+
+def test_a_library_that_needs_more_than_c_is_refused(tmp_path):
+    source = tmp_path / "foreign.c"
+    source.write_text("int PyErr_Occurred(void); int f(void) { return PyErr_Occurred(); }\n")
+    flags = compiler.FLAGS
+    assert "-shared" in flags
+    with pytest.raises(Exception, match="PyErr_Occurred"):
+        compiler.compile_library(source, tmp_path / "foreign.so")
+
+
+def test_without_a_compiler_one_sentence_says_so(monkeypatch, seat_file, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+    with pytest.raises(InputError, match="no C compiler: install gcc"):
+        write_fmu(damper_block(load(seat_file)[0]), 2, tmp_path / "unit.fmu")
+    assert list(tmp_path.glob("*.fmu*")) == []
+
+
+@pytest.mark.parametrize("name", sorted({"bingham", "ellis", "yu2019", "li_viscoelastic_plastic"}))
+def test_dampers_are_described_in_both_versions(name, seat_file):
+    block = block_of(name, seat_file)
+    for version in (2, 3):
+        files = make_files(block, version)
+        assert b"modelIdentifier" in files["modelDescription.xml"]
+        assert f"sources/fmi{version}.c" in files
+    names = [v.name for v in list_variables(block)]
+    assert len(names) == len(set(names))
