@@ -14,6 +14,7 @@ from seatsim.cli.commands.blind import blind
 from seatsim.cli.commands.dampers import characterise, identify
 from seatsim.cli.commands.describe import describe
 from seatsim.cli.commands.exchange import export
+from seatsim.cli.commands.explore import explore
 from seatsim.cli.commands.files import check, new, schema
 from seatsim.cli.commands.importing import import_data, inspect_data
 from seatsim.cli.commands.recordings import diagnose, gap
@@ -53,7 +54,7 @@ app = typer.Typer(
 )  # fmt: skip
 for command in (
     run, compare, sweep, sweep_report, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test,
-    export, new, check, schema, bench,
+    export, new, check, schema, bench, explore,
 ):  # fmt: skip
     app.command()(command)
 app.command("import")(import_data)

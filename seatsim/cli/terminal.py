@@ -37,6 +37,13 @@ def answer(content: Mapping[str, object], paths: Iterable[Path] = ()) -> None:
         sys.stdout.write(json.dumps(plain(whole), allow_nan=False) + "\n")
 
 
+def announce(address: str) -> None:
+    """Print the address of a page at once, since the command goes on until it is interrupted."""
+    say(address)
+    answer({"address": address})
+    sys.stdout.flush()
+
+
 def say(text: str) -> None:
     """Print a sentence as it is."""
     out.print(text, markup=False, highlight=False, soft_wrap=True)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.decide import Decision
+from seatsim.diagnosis.every_run import ReplayedRun
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
@@ -16,6 +17,7 @@ from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 from seatsim.diagnosis.validate import make_scenario
 from seatsim.metrics.motion import rms
+from seatsim.recordings.compared import LEFT_OUT
 from seatsim.recordings.gap import measure_gap
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import describe
@@ -95,6 +97,18 @@ def trace_run(problem: DiagnosisProblem, rigs: Sequence[Parameters], run: str) -
         Trace(run, name, problem.recording.channels[name].unit, float(problem.noise[k]), time, measured[k],
               *(outputs[k] for outputs in simulated))
         for k, name in enumerate(problem.channels)
+    ]  # fmt: skip
+
+
+def trace_replayed(problem: DiagnosisProblem, runs: Sequence[ReplayedRun]) -> list[Trace]:
+    """Return the compared channels of runs that were replayed with nominal, calibrated and augmented rig."""
+    noise = dict(zip(problem.channels, problem.noise.tolist(), strict=True))
+    return [
+        Trace(
+            run.name, name, problem.recording.channels[name].unit, noise[name],
+            LEFT_OUT + np.arange(len(values)) / problem.rate, values, *(each[name] for each in run.simulated),
+        )
+        for run in runs for name, values in run.measured.items() if name in noise
     ]  # fmt: skip
 
 

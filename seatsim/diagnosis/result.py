@@ -150,9 +150,10 @@ class ComfortFigure(NamedTuple):
 class Evidence:
     """What the pictures show.
 
-    `traces`: held-out signals. `motion`: of the measured rig on the held-out run, `velocity` and `displacement` of the
-    suspension, `coil_current` and `damper_temperature` where known, shape (N,) each. `discrepancy`: the unexplained
-    signal, if any. `comfort`: figures such as the RMS acceleration of the driver.
+    `traces`: held-out signals; `other_traces`: those of the runs that were fitted, with the same rigs.
+    `motion`: of the measured rig on the held-out run, `velocity` and `displacement` of the suspension, `coil_current`
+    and `damper_temperature` where known, shape (N,) each. `discrepancy`: the unexplained signal, if any. `comfort`:
+    figures such as the RMS acceleration of the driver.
     """
 
     traces: list[Trace]
@@ -160,6 +161,7 @@ class Evidence:
     discrepancy: DiscrepancySignal | None
     collinearity: Collinearity
     comfort: list[ComfortFigure]
+    other_traces: list[Trace] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

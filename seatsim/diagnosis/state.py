@@ -14,7 +14,7 @@ from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
 from seatsim.diagnosis.error_budget import budget_errors
-from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_run
+from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_replayed, trace_run
 from seatsim.diagnosis.every_run import ReplayedRun, list_gaps, measure_gaps, replay_runs, state_model_error
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
@@ -195,4 +195,6 @@ def _collect_evidence(validation: Validation, nuisances: Linearisation, causes: 
     shown = None if found is None else show_discrepancy(problem, found, run)
     relevant = [c.effect for c in causes[: settings.listed] if c.probability > settings.listed_probability]
     collinearity = measure_collinearity(solution.objective, nuisances, relevant)
-    return Evidence(traces, trace_motion(problem, run), shown, collinearity, compare_comfort(traces))
+    others = trace_replayed(problem, [each for each in validation.runs if each.name != run])
+    motion = trace_motion(problem, run)
+    return Evidence(traces, motion, shown, collinearity, compare_comfort(traces), others)

@@ -1,12 +1,7 @@
-"""The frame of the pictures in a report: narrow ones, two beside each other on a wide screen.
-
-Shown at 100 % they are `WIDTH` or `WIDE` inches wide; on a narrow screen they fill it, so that no text gets smaller.
-Titles and captions are not in the picture: the page prints them, where they can be read aloud, searched and copied.
-"""
+"""The frame of the narrow pictures of a diagnosis, `WIDTH` inches wide; their titles and captions stand beside them."""
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -17,15 +12,12 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from seatsim.plots import labels
+from seatsim.plots.quantities import FACTORS, Quantity
 from seatsim.plots.style import LETTER, LINE, MARGIN, SAMPLE, Entry, Grid, Page, add_panels
 
-WIDTH, WIDE = 5.8, 7.6
-DPI = 150
-"""Dots per inch: sharp on a fine screen and in print."""
+WIDTH = 5.8
 FONT = 9.5
 """Size of text in points."""
-FACTORS = {"m": (1e3, "mm")}
-"""Factor and unit of quantities whose values are small in SI units."""
 
 
 class Picture(NamedTuple):
@@ -34,19 +26,6 @@ class Picture(NamedTuple):
     title: str
     caption: str
     figure: Figure
-
-
-class Quantity(NamedTuple):
-    """How a quantity is drawn: its words, the unit shown, and the factor from SI to that unit."""
-
-    words: str
-    unit: str
-    factor: float = 1.0
-
-    @property
-    def axis(self) -> str:
-        """The label of an axis."""
-        return f"{self.words} [{self.unit}]"
 
 
 def format_number(value: float) -> str:
@@ -100,14 +79,6 @@ def draw_bars(axes: Axes, values: ArrayLike, colours: Sequence[str], texts: Sequ
             text, (max(float(value), 0.0), row), xytext=(4, 0), textcoords="offset points", va="center",
             fontsize=FONT, zorder=3,
         )  # fmt: skip
-
-
-def render_png(figure: Figure) -> bytes:
-    """Return a figure as PNG: the same bytes for the same figure."""
-    file = io.BytesIO()
-    # The stated software takes the place of matplotlib's own entry, which holds its version.
-    figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "seatsim"}, pil_kwargs={"compress_level": 6})
-    return file.getvalue()
 
 
 def _count_columns(legend: Sequence[Entry], width: float) -> int:

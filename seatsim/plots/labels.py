@@ -6,7 +6,7 @@ LONGEST = 52
 """Letters of a label; longer ones are cut in the middle, so that its ends stay legible."""
 LONGEST_TITLE = 64
 """Letters of a name in a title, which has the width of the page to itself."""
-PRETTY = {"degC": "°C", "^2": "²", "^3": "³", "ohm": "Ω", " s/m": "·s/m"}
+PRETTY = {"degC": "°C", "^1.75": "¹·⁷⁵", "^2": "²", "^3": "³", "ohm": "Ω", " s/m": "·s/m"}
 """What stands in files and in print, in the order in which it is replaced."""
 
 

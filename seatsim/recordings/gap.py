@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypedDict
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.metrics.motion import rms
-from seatsim.recordings.compared import COMPARED, stands_out
+from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording, load_recording
@@ -58,6 +58,34 @@ class Gap:
         rows = [(name, value, self.floor["channels"][name]) for name, value in self.channels.items()]
         overall = ("overall", self.overall, self.floor["overall"])
         return html_table("Gap in standard deviations", ("channel", "gap", "noise floor"), [*rows, overall])
+
+
+class ReplayedPair(NamedTuple):
+    """A run, measured and replayed: time in s, channels in SI units, shape (N,) each, and the channels' units."""
+
+    time: Array
+    measured: dict[str, Array]
+    simulated: dict[str, Array]
+    units: dict[str, str]
+
+
+def replay_every_run(scenario: str | Path | Scenario, recording: str | Path | Recording) -> dict[str, ReplayedPair]:
+    """Return every run of a recording, measured and replayed, as `gap` compares them.
+
+    Raises:
+        InputError: the scenario does not fit the rig.
+        RunError: a replay could not be carried to its end.
+    """
+    scenario, recording = _load(scenario, recording)
+    recording = without_gravity(recording)
+    units = {name: channel.unit for name, channel in recording.channels.items()}
+    found = {}
+    for run in recording.runs:
+        measured, simulated = replay(scenario, recording, run)
+        rows = len(next(iter(simulated.values())))
+        time = LEFT_OUT + np.arange(rows) / recording.header.sample_rate
+        found[run] = ReplayedPair(time, measured, simulated, units)
+    return found
 
 
 def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs: Sequence[str] = ()) -> Gap:

@@ -1,94 +1,117 @@
-"""Causes of the gap: probabilities, parameters, equivalent effects, and the experiment that would decide."""
+"""Causes of the gap: the blocks it lies in, effects with their probabilities and parameters, and what looks alike."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from seatsim.diagnosis.result import Cause, Diagnosis
-from seatsim.plots.diagnosis.answer import MOST, plot_location, plot_ranking
-from seatsim.plots.diagnosis.collinearity import plot_collinearity
+from seatsim.report.blocks import Bar, Bars, Block, Matrix, Table, Text
 from seatsim.report.formatting import (
+    UNKNOWN,
     describe_effect,
     format_estimate,
+    format_number,
     format_percent,
     format_sentence,
-    format_value,
 )
-from seatsim.report.html import Html, embed_pictures, join, make_list, make_table, tag
+from seatsim.report.gap import shade_share
 from seatsim.schema.text import join_names
 
+MOST = 10
+"""Effects that are shown."""
 LIKELY = 0.05
 """Probability from which on the parameters of a cause are printed."""
 
 
-def render_causes(diagnosis: Diagnosis) -> Html:
+def show_causes(diagnosis: Diagnosis) -> list[Block]:
     """Return where the gap lies, which effects may cause it, and their parameters."""
-    left = join([embed_pictures([plot_location(diagnosis)]), _render_parameters(diagnosis)])
-    return tag("div", tag("div", left), embed_pictures([plot_ranking(diagnosis)]), class_="beside")
+    blocks: list[Block] = []
+    if diagnosis.where:
+        blocks.append(_draw_location(diagnosis))
+    if diagnosis.causes:
+        blocks.append(_draw_ranking(diagnosis))
+    shown = list(_select_causes(diagnosis))
+    if shown:
+        rows = [
+            [cause.effect, format_sentence(describe_effect(cause.effect)) or UNKNOWN, _list_parameters(cause),
+             format_percent(cause.shrink)]
+            for cause in shown
+        ]  # fmt: skip
+        strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
+        head = ["effect", "what it is", "parameters", "alone takes off the refitted gap"]
+        blocks.append(Table("Parameters of the likely effects, ± one standard deviation", head, rows, 3, strong))
+    return blocks
 
 
-def render_confusions(diagnosis: Diagnosis) -> Html:
-    """Return which effects this recording cannot tell apart, in sentences and as a heat map of collinearity."""
-    sentences = [
-        f"This recording cannot distinguish {join_names(group)}: each explains the gap equally well."
+def show_confusions(diagnosis: Diagnosis) -> list[Block]:
+    """Return which effects this recording cannot tell apart, and what would decide."""
+    blocks: list[Block] = [
+        Text(f"This recording cannot distinguish {join_names(group)}: each explains the gap equally well.")
         for group in diagnosis.indistinguishable
         if len(group) > 1
     ]
-    decides, collinear = _render_experiment(diagnosis), embed_pictures([plot_collinearity(diagnosis)])
-    lead = [tag("p", text, class_="lead") for text in sentences]
-    return join([*lead, tag("div", collinear, decides, class_="beside")]) if lead or decides or collinear else Html("")
+    found = diagnosis.experiment
+    if found is not None:
+        rows = [[found.name.replace("_", " "), found.kind, format_number(found.likeness_now),
+                 format_number(found.likeness_then)]]  # fmt: skip
+        head = ["what would decide", "kind", "likeness now", "likeness then"]
+        blocks += [Table("1: alike, 0: nothing in common", head, rows, 2), Text(format_sentence(found.reason))]
+    matrix = _draw_collinearity(diagnosis)
+    return [*blocks, matrix] if matrix else blocks
 
 
-def render_forms(diagnosis: Diagnosis) -> Html:
+def show_forms(diagnosis: Diagnosis) -> list[Block]:
     """Return the table of other forms of the damper, where they were tried."""
     forms = diagnosis.alternatives
     if not forms:
-        return Html("")
+        return []
     own = forms[0].replaces
     lead = (
         f"Other models of the damper in the place of {own}, fitted to the damper force without the held-out run, free"
-        f" of the tolerance. Shares are of the refitted gap on that run; last is {own} itself, fitted as freely."
+        f" of the tolerance. Shares are of the refitted gap on that run; the last column is {own}, fitted as freely."
     )
     rows = [
-        [tag("code", form.model), join_names(form.beside or ["no effect"]), format_percent(form.shrink),
+        [form.model, join_names(form.beside or ["no effect"]), format_percent(form.shrink),
          format_percent(form.refitted)]
         for form in forms
     ]  # fmt: skip
     head = ["model", "together with", "shrinks the gap by", f"{own}, fitted as freely"]
-    return join([tag("p", lead, class_="lead"), make_table(head, rows, 2, [0])])
+    return [Table(lead, head, rows, 2, [0])]
 
 
-def _render_experiment(diagnosis: Diagnosis) -> Html:
-    """Return the experiment that would decide, as it is described."""
-    found = diagnosis.experiment
-    if found is None:
-        return Html("")
-    now, then = format_value(found.likeness_now), format_value(found.likeness_then)
-    rows = [("kind", found.kind), ("likeness now", now), ("likeness then", then)]
-    parts = [
-        tag("p", tag("strong", format_sentence(found.name.replace("_", " ")))),
-        tag("p", format_sentence(found.reason)),
-        tag("dl", *(join([tag("dt", key), tag("dd", text)]) for key, text in rows)),
-    ]
-    if found.scenario is not None:
-        parts.append(tag("p", "Its scenario is written beside this report, ready to run."))
-    return tag("div", tag("h3", "What would decide"), *parts, class_="card")
-
-
-def _render_parameters(diagnosis: Diagnosis) -> Html:
-    shown = list(_select_causes(diagnosis))
-    if not shown:
-        return Html("")
-    rows = [
-        [
-            join([tag("code", cause.effect), tag("small", format_sentence(describe_effect(cause.effect)))]),
-            _list_parameters(cause), format_percent(cause.probability),
-        ]
-        for cause in shown
+def _draw_location(diagnosis: Diagnosis) -> Bars:
+    first = diagnosis.where[0]
+    groups = [group for group in diagnosis.indistinguishable if set(group) & set(diagnosis.selected)]
+    alike = {name.partition(".")[0] for group in groups for name in group}
+    bars = [
+        Bar(each.block, 0.0, round(100 * each.share, 2), format_percent(each.share),
+            "chosen" if k == 0 else "alike" if each.block in alike else "plain")
+        for k, each in enumerate(diagnosis.where)
     ]  # fmt: skip
-    strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
-    heading = tag("h3", "Parameters of the likely effects, ± one standard deviation")
-    return join([heading, make_table(["effect", "parameters", "probability"], rows, 2, strong)])
+    blocks = [share.block for share in diagnosis.where if share.block in alike]
+    if diagnosis.verdict == "unknown":
+        title = f"What stays unexplained lies in the {first.block}"
+    elif first.block in alike and len(blocks) > 1:
+        title = f"The gap lies in the {' or the '.join(blocks)}"
+    else:
+        title = f"{format_percent(first.share)} of the gap lies in the {first.block}"
+    return Bars(title, "Shares of the gap by block of the rig; they add up to 100 %.", "block", bars)
+
+
+def _draw_ranking(diagnosis: Diagnosis) -> Bars:
+    alike = {name for group in diagnosis.indistinguishable for name in group}
+    bars = [
+        Bar(cause.effect, 0.0, round(100 * cause.probability, 2), format_percent(cause.probability),
+            "chosen" if cause.effect in diagnosis.selected else "alike" if cause.effect in alike else "plain")
+        for cause in diagnosis.causes[:MOST]
+    ]  # fmt: skip
+    ends = (("no effect at all", diagnosis.probability_none), ("none of the library", diagnosis.probability_unknown))
+    bars += [Bar(name, 0.0, round(100 * value, 2), format_percent(value)) for name, value in ends]
+    caption = "Bold: selected. Probabilities are of being at work: two can both be near 100 %."
+    return Bars("Which effects are at work", caption, "effect", bars)
 
 
 def _select_causes(diagnosis: Diagnosis) -> Iterator[Cause]:
@@ -99,5 +122,30 @@ def _select_causes(diagnosis: Diagnosis) -> Iterator[Cause]:
             yield cause
 
 
-def _list_parameters(cause: Cause) -> Html:
-    return make_list(f"{name.replace('_', ' ')} {format_estimate(value)}" for name, value in cause.parameters.items())
+def _list_parameters(cause: Cause) -> str:
+    return "; ".join(f"{name.replace('_', ' ')} {format_estimate(value)}" for name, value in cause.parameters.items())
+
+
+def _draw_collinearity(diagnosis: Diagnosis) -> Matrix | None:
+    """Return how alike the likeliest effects look with each other, the cosine between their sensitivities."""
+    names, matrix = diagnosis.evidence.collinearity
+    wanted = [*diagnosis.selected, *(name for group in diagnosis.indistinguishable for name in group)]
+    wanted += [cause.effect for cause in diagnosis.causes[:3]]
+    chosen = list(dict.fromkeys(names.index(name) for name in wanted if name in names))
+    rest = [k for k in range(len(names)) if k not in chosen]
+    if chosen:
+        rest.sort(key=lambda k: -float(np.max(np.abs(matrix[k, chosen]))))
+    chosen = [*chosen, *rest][: MOST - 2]
+    if len(chosen) < 2:
+        return None
+    rows = []
+    for place, k in enumerate(chosen[1:], start=1):
+        values = [float(abs(matrix[k, other])) for other in chosen[:place]]
+        cells = [(f"{value:.2f}", shade_share(value)) if math.isfinite(value) else ("", 0) for value in values]
+        rows.append((f"{place + 1} {names[k]}", [*cells, *[("", 0)] * (len(chosen) - 1 - place)]))
+    columns = [f"{place + 1}" for place in range(len(chosen) - 1)]
+    caption = (
+        f"1 is {names[chosen[0]]}. 0: nothing in common, 1: the same sensitivity in these channels, once the parameters"
+        " within their tolerance are taken out."
+    )
+    return Matrix("How alike the effects look in this recording", caption, "effect", columns, rows)

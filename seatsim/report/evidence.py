@@ -1,121 +1,242 @@
-"""Evidence for the answer: signals, spectra, maps, the model discrepancy, comfort figures, notes."""
+"""Evidence for a diagnosis: signals, spectra, maps, the missing signal, comfort, the error budget, notes."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from seatsim.diagnosis.result import Diagnosis
-from seatsim.plots import labels
-from seatsim.plots.diagnosis.discrepancy import plot_discrepancy
-from seatsim.plots.diagnosis.maps import plot_maps
-from seatsim.plots.diagnosis.signals import plot_signals, plot_spectra
-from seatsim.plots.frame import FACTORS
-from seatsim.report.formatting import UNKNOWN, format_sentence
-from seatsim.report.html import Html, embed_pictures, join, make_list, make_table, tag
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.diagnosis.result import Diagnosis, Trace
+from seatsim.metrics import rms
+from seatsim.plots.diagnosis.bins import (
+    bin_edges,
+    compute_residual,
+    drop_start,
+    find_window,
+    find_worst,
+    map_rms,
+    varies,
+)
+from seatsim.report.blocks import Block, Items, Table, Text
+from seatsim.report.formatting import (
+    UNKNOWN,
+    describe_channel,
+    format_number,
+    format_percent,
+    format_quantity,
+    format_sentence,
+)
+from seatsim.report.packing import Axis, Panel, make_density, pack_signals
+from seatsim.report.planes import Curve, Range, draw_cells, draw_curves
+from seatsim.report.spectra import estimate_spectrum
 from seatsim.schema.text import join_names
 
-COMMAND = "seatsim gap augmented.yaml OTHER_RECORDING"
+Array = NDArray[np.float64]
+
+CLOSE_UP = 2.0
+"""Seconds of the closer look at the held-out run, with every sample."""
+BINS = (22, 13)
+"""Bins of a map over velocity and over the other quantity."""
+DOTS = 2500
+OVER = {
+    "velocity": ("suspension velocity [m/s]", 1.0), "displacement": ("travel [mm]", 1e3),
+    "coil_current": ("coil current [A]", 1.0), "damper_temperature": ("damper temperature [°C]", 1.0),
+}  # fmt: skip
+"""Labels of the axes of measured motion, and factors to their units."""
 
 
-def render_signals(diagnosis: Diagnosis) -> Html:
-    """Return the windows of the held-out signals in which the nominal simulation is most wrong."""
-    return embed_pictures(plot_signals(diagnosis))
+def show_signals(diagnosis: Diagnosis) -> list[Block]:
+    """Return every run over time, the held-out one first, then that one closely where the nominal is most wrong."""
+    traces = _by_run([*diagnosis.evidence.traces, *diagnosis.evidence.other_traces])
+    if not traces:
+        return []
+    lines = [("measured", 0), ("nominal", 1), (_name_last(diagnosis), 2)]
+    channels = _order_channels(diagnosis, next(iter(traces.values())))
+    units = {trace.channel: trace.unit for group in traces.values() for trace in group}
+    axes = {_mark(run, diagnosis): group[0].time for run, group in traces.items()}
+    panels = [
+        Panel(name, units[name], _describe_residual(traces, name, diagnosis),
+              {_mark(run, diagnosis): _lines_of(group, name) for run, group in traces.items()})
+        for name in channels
+    ]  # fmt: skip
+    whole = pack_signals("signals-time", "Whole runs.", lines, Axis("time", "s", axes), panels)
+    return [whole, *_show_close_up(next(iter(traces.values())), channels, lines)]
 
 
-def render_spectra(diagnosis: Diagnosis) -> Html:
-    """Return the spectra of the residuals."""
-    return embed_pictures(plot_spectra(diagnosis))
+def _show_close_up(group: Sequence[Trace], channels: Sequence[str], lines: Sequence[tuple[str, int]]) -> list[Block]:
+    first = next(trace for trace in group if trace.channel == channels[0])
+    window = find_window(first.time, compute_residual(first).before, CLOSE_UP)
+    inside = (first.time >= window.start) & (first.time <= window.end)
+    panels = [
+        Panel(name, trace.unit, "", {"": [signal[inside] for signal in (trace.measured, trace.nominal, trace.after)]})
+        for name in channels for trace in group if trace.channel == name and len(trace.time) == len(first.time)
+    ]  # fmt: skip
+    caption = f"{window} of {first.run}, every sample: where the nominal {channels[0].replace('_', ' ')} is most wrong."
+    return [pack_signals("signals-closely", caption, lines, Axis("time", "s", {"": first.time[inside]}), panels)]
 
 
-def render_maps(diagnosis: Diagnosis) -> Html:
-    """Return the maps of the residual over the operating range."""
-    return embed_pictures(plot_maps(diagnosis))
+def show_spectra(diagnosis: Diagnosis) -> list[Block]:
+    """Return the spectra of what is left on the held-out run, nominal and in the end, beside the measured signal."""
+    traces = _by_run(diagnosis.evidence.traces)
+    group = next(iter(traces.values()), [])
+    found = []
+    frequency: Array = np.empty(0)
+    for name in _order_channels(diagnosis, group):
+        trace = next(each for each in group if each.channel == name)
+        left = compute_residual(trace)
+        spectra = [estimate_spectrum(trace.time, signal) for signal in (trace.measured, left.before, left.after)]
+        known = [each for each in spectra if each is not None]
+        if len(known) == 3:
+            frequency = known[0][0]
+            # The one-sided density of white noise of RMS s, sampled every dt, is 2 s^2 dt.
+            noise = np.full(len(frequency), 2.0 * trace.noise_rms**2 * float(trace.time[1] - trace.time[0]))
+            values = [*(power for _, power in known), noise if trace.noise_rms > 0 else None]
+            found.append(make_density(name, trace.unit, {"": values}))
+    if not found:
+        return []
+    after = f"left, {_name_last(diagnosis)}"
+    lines = [("measured", 0), ("left, nominal", 1), (after, 2), ("noise", 3)]
+    axis = Axis("frequency", "Hz", {"": frequency}, logarithmic=True)
+    return [pack_signals("signals-frequency", f"Run {group[0].run}.", lines, axis, found, logarithmic=True)]
 
 
-def render_discrepancy(diagnosis: Diagnosis) -> Html:
-    """Return the discrepancy that would close the gap, described and drawn, where the cause is unknown."""
-    found = diagnosis.evidence.discrepancy
+def show_maps(diagnosis: Diagnosis) -> list[Block]:
+    """Return maps of what is left of the worst channel over velocity and current (or travel), before and after."""
+    found = find_worst(diagnosis)
     if found is None:
-        return Html("")
-    lead = f"What would close the gap in the {found.block}, estimated from the recording."
-    return join(
-        [
-            tag("p", lead, class_="lead"),
-            make_list(format_sentence(text) for text in found.description),
-            embed_pictures(plot_discrepancy(diagnosis)),
-        ]
+        return []
+    trace, motion = found
+    other = next((name for name in ("coil_current", "displacement") if varies(motion.get(name))), "")
+    if not other or not varies(motion.get("velocity")):
+        return []
+    x, y = (OVER[name][1] * motion[name] for name in ("velocity", other))
+    borders = bin_edges(x, BINS[0]), bin_edges(y, BINS[1])
+    shown, left = describe_channel(trace.channel, trace.unit), compute_residual(trace)
+    cells = [shown.factor * map_rms(x, y, signal, borders) for signal in left]
+    known = np.concatenate([each[np.isfinite(each)] for each in cells])
+    if not known.size or not known.max() > 0:
+        return []
+    noise = shown.factor * trace.noise_rms
+    ends = Range(max(noise, float(known.max()) / 100), float(known.max()) * 1.0001)
+    axes = (OVER["velocity"][0], OVER[other][0])
+    caption = f"RMS of what is left in {shown.unit}, {trace.run}; cells of too few samples stay empty."
+    words = (f"{shown.words}, nominal", f"{shown.words}, {_name_last(diagnosis)}")
+    return [
+        draw_cells(f"{title[:1].upper()}{title[1:]}", caption, axes, borders, values, ends)
+        for title, values in zip(words, cells, strict=True)
+    ]
+
+
+def show_discrepancy(diagnosis: Diagnosis) -> list[Block]:
+    """Return the signal that would close the gap, described, over time and over what may drive it."""
+    found = diagnosis.evidence.discrepancy
+    if found is None or len(found.values) < 2:
+        return []
+    blocks: list[Block] = [
+        Text(f"What would close the gap in the {found.block}, estimated from the recording."),
+        Items([format_sentence(text) for text in found.description]),
+    ]
+    panel = Panel(f"missing {found.quantity}", found.unit, "", {"": [found.values]})
+    blocks.append(
+        pack_signals(
+            "signals-missing", "The held-out run.", [("missing", 6)], Axis("time", "s", {"": found.time}), [panel]
+        )
     )
+    shown = describe_channel(found.quantity, found.unit)
+    every = -(-len(found.values) // DOTS)
+    for name, values in diagnosis.evidence.motion.items():
+        if len(values) == len(found.values) and varies(values):
+            label, factor = OVER.get(name, (name.replace("_", " "), 1.0))
+            curve = Curve("", factor * values[::every], shown.factor * found.values[::every], 6, "dots")
+            title = f"Missing {shown.words} over {label.partition(' [')[0]}"
+            blocks.append(
+                draw_curves(title, "Samples of the held-out run.", (label, f"missing [{shown.unit}]"), [curve])
+            )
+    return blocks
 
 
-def render_comfort(diagnosis: Diagnosis) -> Html:
-    """Return the table of comfort and travel on held-out runs, the figures by which seats are assessed."""
+def show_comfort(diagnosis: Diagnosis) -> list[Block]:
+    """Return comfort and travel on the held-out run, the figures by which seats are assessed."""
     if not diagnosis.evidence.comfort:
-        return Html("")
-    rows = [_make_comfort_row(*row) for row in diagnosis.evidence.comfort]
-    last = "with effects" if diagnosis.selected else "refitted"
-    return make_table(["held-out runs", "unit", "measured", "nominal", "error", last, "error"], rows, words=2)
+        return []
+    last = _name_last(diagnosis)
+    rows = [
+        [each.quantity.replace("_", " "), format_quantity(each.measured, each.unit),
+         format_quantity(each.nominal, each.unit), _format_error(each.nominal, each.measured),
+         format_quantity(each.after, each.unit), _format_error(each.after, each.measured)]
+        for each in diagnosis.evidence.comfort
+    ]  # fmt: skip
+    return [Table("On the held-out run", ["figure", "measured", "nominal", "error", last, "error of that"], rows)]
 
 
-def render_budget(diagnosis: Diagnosis) -> Html:
+def show_budget(diagnosis: Diagnosis) -> list[Block]:
     """Return what the error of the stated scenario is made of on the held-out run, by channel."""
     if not diagnosis.error_budget:
-        return Html("")
+        return []
     lead = (
         "Comparison error E of the scenario stated, in the terms of ASME V&V 20, as RMS: u_num from halving the step of"
         " the integration, u_input from the noise of the recorded inputs, u_D the noise of the sensor; what these leave"
         " is the error of the model's form."
     )
+    rows = []
+    for channel, unit, *parts in diagnosis.error_budget:
+        shown = describe_channel(channel, unit)
+        rows.append([shown.words, shown.unit, *(format_number(shown.factor * part) for part in parts)])
     head = ["channel", "unit", "E", "u_num", "u_input", "u_D", "model form"]
-    rows = [_make_budget_row(*row) for row in diagnosis.error_budget]
-    return join([tag("p", lead, class_="lead"), make_table(head, rows, words=2)])
+    return [Text(lead), Table("Parts of the error", head, rows, 2)]
 
 
-def render_notes(diagnosis: Diagnosis) -> Html:
+def show_notes(diagnosis: Diagnosis) -> list[Block]:
     """Return notes on the data, and the groups of blocks that the recorded channels can tell apart."""
     sentences = [format_sentence(note) for note in diagnosis.notes]
     if diagnosis.held_out:
         sentences.append(f"Held out, no part of any fit: {join_names(diagnosis.held_out)}.")
-    groups = [group for group in diagnosis.isolable if group]
+    groups = [join_names(group, "or") for group in diagnosis.isolable if group]
     if groups:
-        merged = [join_names(group, "or") for group in groups if len(group) > 1]
-        text = (
-            f"These channels can distinguish these groups of blocks: {'; '.join(join_names(g, 'or') for g in groups)}."
-        )
-        mind = " Within a group only the form of an effect can." if merged else ""
-        sentences.append(text + mind)
-    return make_list(sentences)
+        sentences.append(f"These channels can distinguish these groups of blocks: {'; '.join(groups)}.")
+    return [Items(sentences)] if sentences else []
 
 
-def render_use(diagnosis: Diagnosis) -> Html:
-    """Return how the result is checked on another recording."""
-    what = "the refitted parameters and the effects found" if diagnosis.selected else "the refitted parameters"
-    return join(
-        [
-            tag("p", tag("code", "augmented.yaml"), f" is the nominal scenario with {what}. It runs like any scenario;"
-                " this measures its gap on a recording that the diagnosis has not seen:"),
-            tag("pre", tag("code", COMMAND)),
-        ]
-    )  # fmt: skip
+def _by_run(traces: Sequence[Trace]) -> dict[str, list[Trace]]:
+    """Return signals by run, without the first second that no gap counts."""
+    found: dict[str, list[Trace]] = {}
+    for trace in traces:
+        rest = drop_start(trace)
+        if len(rest.time) > 1:
+            found.setdefault(trace.run, []).append(rest)
+    return found
 
 
-def _make_comfort_row(quantity: str, unit: str, measured: float, nominal: float, after: float) -> list[str]:
-    factor, shown = FACTORS.get(unit, (1.0, labels.format_unit(unit)))
-    return [
-        quantity.replace("_", " "), shown, _format_number(factor * measured), _format_number(factor * nominal),
-        _format_error(nominal, measured), _format_number(factor * after), _format_error(after, measured),
-    ]  # fmt: skip
+def _order_channels(diagnosis: Diagnosis, group: Sequence[Trace]) -> list[str]:
+    """Return the channels, the largest nominal gap first."""
+    gaps = diagnosis.gap.before.channels
+    return sorted((trace.channel for trace in group), key=lambda name: -gaps.get(name, 0.0))
 
 
-def _make_budget_row(channel: str, unit: str, *parts: float) -> list[str]:
-    factor, shown = FACTORS.get(unit, (1.0, labels.format_unit(unit)))
-    return [channel.replace("_", " "), shown, *(_format_number(factor * part) for part in parts)]
+def _lines_of(group: Sequence[Trace], channel: str) -> list[Array | None]:
+    trace = next((each for each in group if each.channel == channel), None)
+    return [None, None, None] if trace is None else [trace.measured, trace.nominal, trace.after]
 
 
-def _format_number(value: float) -> str:
-    return f"{value:.3g}" if math.isfinite(value) else UNKNOWN
+def _describe_residual(traces: dict[str, list[Trace]], channel: str, diagnosis: Diagnosis) -> str:
+    trace = next(each for group in traces.values() for each in group if each.channel == channel)
+    before, after = (format_quantity(rms(signal), trace.unit) for signal in compute_residual(trace))
+    noise = f", noise {format_quantity(trace.noise_rms, trace.unit)}" if trace.noise_rms > 0 else ""
+    return f"RMS of what is left on {trace.run}: {before} nominal, {after} {_name_last(diagnosis)}{noise}."
+
+
+def _mark(run: str, diagnosis: Diagnosis) -> str:
+    return f"{run} (held out)" if run in diagnosis.held_out else run
+
+
+def _name_last(diagnosis: Diagnosis) -> str:
+    return "with effects" if len(diagnosis.selected) > 1 else "with effect" if diagnosis.selected else "refitted"
 
 
 def _format_error(value: float, truth: float) -> str:
     if not math.isfinite(value) or not math.isfinite(truth) or truth == 0:
         return UNKNOWN
-    return f"{100 * (value / truth - 1):+.1f} %".replace("-", "−")
+    error = value / truth - 1
+    return f"{'+' if error >= 0 else ''}{format_percent(error)}"

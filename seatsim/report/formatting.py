@@ -3,17 +3,45 @@
 from __future__ import annotations
 
 import inspect
-import json
 import math
 import re
 
 from seatsim.diagnosis.result import Estimate
 from seatsim.plots import labels
+from seatsim.plots.quantities import FACTORS, Quantity
 from seatsim.schema import registry
 from seatsim.schema.errors import InputError
 
 UNKNOWN = "–"
 """Printed in place of a value that is not known."""
+MINUS = "−"
+RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+
+
+def describe_channel(name: str, unit: str) -> Quantity:
+    """Return how a channel in SI units is shown: its words, its unit and the factor to it."""
+    factor, shown = FACTORS.get(unit, (1.0, labels.format_unit(unit)))
+    return Quantity(name.replace("_", " "), shown or "-", factor)
+
+
+def format_number(value: float | None, digits: int = 3) -> str:
+    """Return a number with that many significant digits, in powers of ten only where it is very large or very small."""
+    if value is None or not math.isfinite(value):
+        return UNKNOWN
+    if value == 0:
+        return "0"
+    exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
+    if not -5 < exponent < 7:
+        mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
+        return f"{mantissa} × 10{str(int(power)).translate(RAISED)}".replace("-", MINUS)
+    return f"{value:.{max(0, digits - 1 - exponent)}f}".replace("-", MINUS)
+
+
+def format_quantity(value: float, unit: str, digits: int = 3) -> str:
+    """Return a value in SI units with the unit in which it is shown, as in `12.4 mm`."""
+    shown = describe_channel("", unit)
+    text = format_number(shown.factor * value, digits)
+    return text if shown.unit == "-" or text == UNKNOWN else f"{text} {shown.unit}"
 
 
 def format_percent(share: float | None) -> str:
@@ -21,21 +49,24 @@ def format_percent(share: float | None) -> str:
     if share is None or not math.isfinite(share):
         return UNKNOWN
     value = 100.0 * share
-    return f"{value:.0f} %" if abs(value) >= 9.95 or value == 0 else f"{value:.1f} %"
+    text = f"{value:.0f} %" if abs(value) >= 9.95 or value == 0 else f"{value:.1f} %"
+    return text.replace("-", MINUS)
 
 
 def format_estimate(value: Estimate | str) -> str:
     """Return a parameter with its standard deviation, rounded to two digits of that, and its unit."""
     if isinstance(value, str):
         return value
-    unit = "" if value.unit in ("", "-") else f" {labels.format_unit(value.unit)}"
+    shown = describe_channel("", value.unit)
+    unit = "" if shown.unit == "-" else f" {shown.unit}"
+    value = value._replace(value=shown.factor * value.value, std=shown.factor * value.std)
     if not math.isfinite(value.std) or value.std <= 0:
-        return f"{value.value:.4g}{unit}"
+        return f"{format_number(value.value, 4)}{unit}"
     decimals = max(0, 1 - math.floor(math.log10(value.std)))
     # With more than seven decimals, leading zeros would hide the significant digits.
     if decimals > 7:
-        return f"{value.value:.4g} ± {value.std:.2g}{unit}"
-    return f"{value.value:.{decimals}f} ± {value.std:.{decimals}f}{unit}"
+        return f"{format_number(value.value, 4)} ± {format_number(value.std, 2)}{unit}"
+    return f"{value.value:.{decimals}f} ± {value.std:.{decimals}f}{unit}".replace("-", MINUS)
 
 
 def format_sentence(text: str) -> str:
@@ -56,14 +87,3 @@ def describe_effect(effect: str) -> str:
     except InputError:
         return ""
     return re.split(r"[.:;](?:\s|$)", text, maxsplit=1)[0].replace("`", "").strip()
-
-
-def format_value(value: object) -> str:
-    """Return any value of a proposed experiment as text."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    if isinstance(value, list | tuple) and all(isinstance(item, str) for item in value):
-        return ", ".join(value)
-    return json.dumps(value, ensure_ascii=False, default=str)

@@ -15,7 +15,7 @@ from seatsim.cli.outputs.schemas import FILES
 from seatsim.diagnosis.result import Cause
 from seatsim.schema.registry import find
 
-from ..diagnosis.test_report import CASES
+from ..report.diagnoses import CASES
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = [path for path in sorted((ROOT / "scenarios").rglob("*.yaml")) if path.parent.name != "bench"]

@@ -14,7 +14,7 @@ from seatsim.cli.outputs.answers import ANSWERS
 from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.schema.files import plain
 
-from ..diagnosis.test_report import CASES
+from ..report.diagnoses import CASES
 
 ROOT = Path(__file__).resolve().parents[2]
 RECORDING = ROOT / "scenarios" / "data" / "recording"

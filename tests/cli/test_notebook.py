@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 import seatsim
 from seatsim.recordings.gap import Gap, NoiseFloor
 
-from ..diagnosis.test_report import CASES
+from ..report.diagnoses import CASES
 
 GAP = Gap(0.2, {"damper_force": 0.2, "<b>": 0.1}, NoiseFloor(overall=0.0, channels={"damper_force": 0.01, "<b>": 0.0}))
 

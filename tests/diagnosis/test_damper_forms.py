@@ -22,7 +22,7 @@ from seatsim.effects.sensor import Gain
 from seatsim.excitations.recording import interpolate_floor
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS
-from seatsim.report import write_report
+from seatsim.report.diagnosis import write_report
 from seatsim.scenario.loading import single
 from seatsim.simulation.inputs import BenchInputs, SeatInputs
 from seatsim.simulation.respond import respond
@@ -212,7 +212,7 @@ def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form, tmp_path):
     assert set(content["alternatives"][0]["parameters"]) == set(TRUE)
     assert [table.title for table in make_tables(found)][-1] == "other forms of the damper than bingham"
     page = write_report(found, tmp_path / "report.html").read_text()
-    assert "Other forms of the damper" in page and "<code>bouc_wen</code>" in page
+    assert "Other forms of the damper" in page and '<th scope="row">bouc_wen</th>' in page
 
 
 def test_that_no_form_can_be_judged_is_noted_where_they_were_asked_for(tmp_path):

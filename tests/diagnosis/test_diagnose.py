@@ -35,8 +35,7 @@ def test_a_faultless_rig_has_no_gap(made):
     assert diagnosis.selected == [] and diagnosis.where == []
 
 
-def test_a_hidden_effect_is_named_and_written(made, tmp_path, monkeypatch):
-    monkeypatch.setattr("seatsim.report.html.render_png", lambda figure: b"picture")
+def test_a_hidden_effect_is_named_and_written(made, tmp_path):
     folder, labels = made
     name, label = labels["one"]
     diagnosis = seatsim.diagnose(folder / name)

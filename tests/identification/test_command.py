@@ -22,7 +22,7 @@ from seatsim.schema.errors import InputError, RunError
 
 from .benches import BINGHAM, made, sines, write
 
-FILES = {"parameters.yaml", "fit.json", "loops.png"}
+FILES = {"parameters.yaml", "fit.json", "report.html", "loops.png"}
 SCENARIO = """\
 plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
         cushion_stiffness: 60000.0, cushion_damping: 1500.0}

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.result import Trace
+from seatsim.plots.averaging import average_bands
 from seatsim.plots.diagnosis import bins
-from seatsim.plots.diagnosis.discrepancy import _explained_share
 from seatsim.plots.frame import describe_quantity, format_number
 
 RATE = 200.0
@@ -37,12 +37,10 @@ def test_the_first_second_is_dropped():
     assert {name: len(group) for name, group in groups.items()} == {"damper_force": 2, "b": 1}
 
 
-def test_means_and_levels_in_bins():
+def test_levels_in_bins():
     x = np.repeat([0.5, 1.5], bins.FEWEST)
     values = np.where(x < 1, 3.0, -4.0) + np.tile([1.0, -1.0], bins.FEWEST)
     borders = np.array([0.0, 1.0, 2.0])
-    np.testing.assert_allclose(bins.bin_mean(x, values, borders), [3.0, -4.0])
-    np.testing.assert_allclose(bins.bin_rms(x, values, borders), np.sqrt([10.0, 17.0]))
     cells = bins.map_rms(x, np.zeros_like(x), values, (borders, np.array([-1.0, 1.0, 3.0])))
     assert cells.shape == (2, 2)
     np.testing.assert_allclose(cells, [[np.sqrt(10.0), np.sqrt(17.0)], [np.nan, np.nan]])
@@ -69,19 +67,10 @@ def test_the_spectrum_of_white_noise_is_two_variances_a_sample():
 
 def test_bands_keep_their_mean_density():
     frequency, power = np.arange(1.0, 33.0), np.arange(1.0, 33.0)
-    centres, density, count = bins.average_bands(frequency, power, 1.0, 1)
+    centres, density, count = average_bands(frequency, power, 1.0, 1)
     assert count.tolist() == [1, 2, 4, 8, 16, 1]
     np.testing.assert_allclose(density, centres)
     np.testing.assert_allclose(centres, [1.0, 2.5, 5.5, 11.5, 23.5, 32.0])
-
-
-def test_a_loop_explains_what_a_curve_does_not():
-    x = np.cos(TIME)
-    rising = np.gradient(x) > 0
-    values, borders = np.where(rising, 1.0, -1.0), np.linspace(-1, 1, 17)
-    assert _explained_share([np.ones_like(rising)], x, values, borders) < 0.05
-    assert _explained_share([rising, ~rising], x, values, borders) == pytest.approx(1.0)
-    assert _explained_share([rising], x, np.zeros_like(x), borders) == 0.0
 
 
 def test_numbers_and_units_of_an_axis():

@@ -1,14 +1,11 @@
 """The commands: what they print and write, engines that are not there, scripts for clusters."""
 
-import base64
-import io
 import json
 import os
 import re
 import subprocess
 import sys
 
-import matplotlib.image
 import pytest
 from pydantic import TypeAdapter
 
@@ -36,13 +33,10 @@ def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
     assert status == 0 and answer_of("sweep", text)["counts"]["done"] == 24
     status, text, _ = seatsim_command("sweep-report", out, "--json")
     content = answer_of("sweep-report", text)
-    assert status == 0 and re.match("Of 2 tolerances plant.* matters most to driver, Wk RMS", content["sentence"])
+    assert status == 0 and re.match("Of 2 tolerances plant.* matters most to driver, weighted RMS", content["sentence"])
     assert {row["group"]["excitation.spectral_class"] for row in content["exceeded"]} == {"EM1", "EM5"}
     page = (out / "report.html").read_text()
-    assert len(page) < 5e6 and "http" not in page.replace("http-equiv", "")
-    for picture in re.findall('base64,([^"]+)"', page):
-        image = matplotlib.image.imread(io.BytesIO(base64.b64decode(picture)))
-        assert max(image.shape) < 2000 and image.shape[0] < 1080 * 150 / 96
+    assert len(page) < 600_000 and all(link.startswith("#") for link in re.findall('(?:href|src)="([^"]*)"', page))
     table = (out / "table.csv").read_text().splitlines()
     assert table[0].startswith("excitation.spectral_class,metric,unit,runs,mean") and len(table) > 20
     assert (out / "sensitivity.csv").read_text().startswith("metric,key,first,first_low")

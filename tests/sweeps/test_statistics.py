@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from scipy.stats import qmc
 
-from seatsim.plots.sweeps.pareto import find_front
+from seatsim.report.sweep import find_front
 from seatsim.sweeps.statistics.exceedance import count_exceedances
 from seatsim.sweeps.statistics.inputs import SweepRows
 from seatsim.sweeps.statistics.quantiles import tabulate_quantiles

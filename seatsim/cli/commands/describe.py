@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -11,11 +12,14 @@ from seatsim.cli.options import Json, OwnCode
 from seatsim.cli.terminal import answer, say, wrote_one
 from seatsim.schema.errors import InputError
 
+ENDINGS = (".png", ".svg", ".pdf")
+
 
 def describe(
     name: Annotated[str, typer.Argument(help="A name, such as bouc_wen or road.")] = "",
     picture: Annotated[
-        Path | None, typer.Option("--picture", metavar="FILE.png", help="Draw the loops of a damper.")
+        Path | None,
+        typer.Option("--picture", metavar="FILE", help="Draw the loops of a damper, as .png, .svg or .pdf."),
     ] = None,
     own_code: OwnCode = None,
     as_json: Json = False,
@@ -25,9 +29,9 @@ def describe(
     from seatsim.scenario.describe import find_page, list_pages
 
     pages = [find_page(name)] if name else list_pages()
-    if picture is not None and (not name or pages[0].kind != "damper" or picture.suffix != ".png"):
+    if picture is not None and (not name or pages[0].kind != "damper" or picture.suffix not in ENDINGS):
         raise InputError(
-            f"--picture {picture}: a PNG of one damper, as in seatsim describe bouc_wen --picture loops.png"
+            f"--picture {picture}: one damper, as {', '.join(ENDINGS)}: seatsim describe bouc_wen --picture loops.svg"
         )
     say(describe_name(name))
     paths = _draw_loops(name, picture) if picture else []
@@ -41,9 +45,10 @@ def _draw_loops(model: str, picture: Path) -> list[Path]:
     from seatsim.characterisation.model_tests import characterise_model
     from seatsim.characterisation.settings import choose_settings
     from seatsim.characterisation.specimen import load_specimen
-    from seatsim.cli.outputs.runs import write_pictures
     from seatsim.plots.bench.loops import plot_loops
+    from seatsim.plots.saving import save_figure
+    from seatsim.schema.files import write_whole
 
     tested = load_specimen(model, None)
     found = characterise_model(tested, choose_settings(tested))
-    return write_pictures({picture.stem: plot_loops(found)}, picture.parent)
+    return [write_whole(picture, partial(save_figure, plot_loops(found)))]

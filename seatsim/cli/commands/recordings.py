@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from seatsim.cli.options import Json, OneScenario, Out, OwnCode
-from seatsim.cli.terminal import answer, say, show_progress, warn, wrote, wrote_one
+from seatsim.cli.terminal import answer, say, show_progress, warn, wrote
+
+if TYPE_CHECKING:
+    from seatsim.recordings.gap import Gap
 
 
 def gap(
@@ -24,22 +27,25 @@ def gap(
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
     from seatsim.cli.gap_table import forecast_table, gap_table
+    from seatsim.cli.outputs.gap import write_gap
     from seatsim.cli.show_table import show_table
     from seatsim.recordings.forecast import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
-    from seatsim.schema.files import write_json
 
     if predict is None:
         found = find_gap(scenario, recording)
         table, notes, content = gap_table(found), found.notes, found.as_dict()
+        drawn: Gap | None = found
     else:
         forecast = forecast_gap(scenario, recording, predict)
         table, notes, content = forecast_table(forecast), forecast.notes, forecast.as_dict()
+        drawn = forecast.measured.after if forecast.measured is not None else None
     show_table(table)
     warn(notes)
-    path = write_json((out_folder or Path("out") / f"gap-{Path(recording).name}") / "gap.json", content)
-    wrote_one(path)
-    answer(content, [path])
+    folder = out_folder or Path("out") / f"gap-{Path(recording).name}"
+    paths = write_gap(content, drawn, scenario, recording, folder)
+    wrote(folder, paths)
+    answer(content, paths)
 
 
 def diagnose(

@@ -365,6 +365,12 @@ class BlindPowerAnswer(Answer):
     effects: list[dict[str, object]]
 
 
+class ExploreAnswer(Answer):
+    """A page that is served until the command is interrupted."""
+
+    address: str
+
+
 class RunCost(TypedDict):
     """What something costs, and its ratio to the cost of what stands in `beside`."""
 
@@ -396,7 +402,7 @@ ANSWERS: Mapping[str, object] = {
     "identify": IdentificationAnswer | LeagueAnswer, "describe": DescriptionAnswer, "new": NewAnswer,
     "check": CheckAnswer, "import": ImportAnswer, "inspect": InspectionAnswer, "comfort": ComfortAnswer,
     "seat-test": SeatTestAnswer, "export": ExportAnswer, "blind-make": BlindMakeAnswer, "blind-score": BlindScoreAnswer,
-    "blind-power": BlindPowerAnswer, "bench": BenchAnswer, "error": ErrorAnswer,
+    "blind-power": BlindPowerAnswer, "bench": BenchAnswer, "explore": ExploreAnswer, "error": ErrorAnswer,
 }  # fmt: skip
 """What each command prints; `error` is what any of them prints where it fails."""
 

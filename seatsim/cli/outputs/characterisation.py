@@ -16,6 +16,8 @@ from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row, row_columns
 from seatsim.characterisation.summary import Characterisation, contents
 from seatsim.cli.outputs.runs import write_pictures
+from seatsim.report.characterisation import report_characterisation
+from seatsim.report.rendering import write_html
 from seatsim.schema.files import write_json, write_whole
 
 LISTED = 45
@@ -54,7 +56,7 @@ COLUMNS = (
 
 
 def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
-    """Write `cycles.csv`, `characterisation.json` and the pictures of a characterisation; return their paths."""
+    """Write `cycles.csv`, `characterisation.json`, `report.html` and the pictures; return their paths."""
     import pandas as pd
 
     from seatsim.plots.bench.characterisation import plot_characterisation
@@ -64,6 +66,9 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
         write_whole(folder / "cycles.csv", partial(table.to_csv, index=False)),
         write_json(folder / "characterisation.json", contents(found)),
     ]
+    command = f"seatsim characterise {found.source}" if found.measured else f"seatsim characterise --model {found.name}"
+    report = report_characterisation(found, collect_remarks(found), command)
+    paths.append(write_html(report, folder / "report.html"))
     return [*paths, *write_pictures(plot_characterisation(found), folder)]
 
 

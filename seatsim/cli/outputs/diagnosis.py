@@ -14,7 +14,7 @@ from seatsim.blind.processes import run_jobs
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.result import Diagnosis, GapFigures, RunGaps
 from seatsim.effects.base import EFFECTS
-from seatsim.report import write_report
+from seatsim.report.diagnosis import write_report
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import plain, write_json, write_whole

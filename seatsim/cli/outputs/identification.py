@@ -19,6 +19,8 @@ from seatsim.dampers.base import OWN, find_confidence
 from seatsim.identification.agreement import Agreement
 from seatsim.identification.identify import Identification
 from seatsim.identification.model_benchmark import BenchmarkEntry
+from seatsim.report.identification import report_identification
+from seatsim.report.rendering import write_html
 from seatsim.schema.files import write_json, write_text, write_whole
 
 LISTED = 40
@@ -31,7 +33,7 @@ NO_COIL = "# No command that changes was recorded: the rates of the actuator are
 
 
 def write_identification(found: Identification, folder: str | Path) -> list[Path]:
-    """Write `parameters.yaml`, `fit.json` and the picture of an identification; return their paths."""
+    """Write `parameters.yaml`, `fit.json`, `report.html` and the picture of an identification; return their paths."""
     from seatsim.plots.bench.identification import plot_predictions
 
     folder = Path(folder)
@@ -44,6 +46,8 @@ def write_identification(found: Identification, folder: str | Path) -> list[Path
         write_text(folder / "parameters.yaml", text.getvalue()),
         write_json(folder / "fit.json", encode_identification(found)),
     ]
+    report = report_identification(found, f"seatsim identify DATA --model {found.model}")
+    paths.append(write_html(report, folder / "report.html"))
     return [*paths, *write_pictures({"loops": plot_predictions(found)}, folder)]
 
 

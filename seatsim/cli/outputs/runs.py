@@ -10,6 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from seatsim.report.rendering import write_html
+from seatsim.report.runs import report_runs
 from seatsim.schema.files import write_json, write_whole
 from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.performance_bounds import measure_distance
@@ -18,14 +20,12 @@ from seatsim.simulation.result import Result, Run
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-DPI = 110
-"""Dots per inch of a picture: 1100 over the width of a page."""
-COMPRESSION = 3
-"""Level of zlib, 0 to 9: fast rather than small."""
 
+def write_result(result: Result, folder: Path, command: str = "seatsim run SCENARIO") -> list[Path]:
+    """Write `summary.csv`, `summary.json`, `history.parquet`, `report.html` and the pictures; return their paths.
 
-def write_result(result: Result, folder: Path) -> list[Path]:
-    """Write `summary.csv`, `summary.json`, `history.parquet` and the pictures of a result; return their paths."""
+    `command`: what makes the files again, for the report.
+    """
     with ThreadPoolExecutor(max_workers=1) as pool:
         # Compressing the histories, in a thread of its own, releases Python's lock to the drawing of the pictures.
         history = pool.submit(write_histories, result.runs, folder / "history.parquet")
@@ -34,6 +34,7 @@ def write_result(result: Result, folder: Path) -> list[Path]:
         paths = [
             write_whole(folder / "summary.csv", partial(_write_table, result.rows)),
             write_json(folder / "summary.json", _encode_runs(result)),
+            write_html(report_runs(result.runs, command, folder.name), folder / "report.html"),
         ]
         pictures = write_pictures(plot_result(result), folder)
         if result.brackets:
@@ -52,12 +53,9 @@ def _encode_runs(result: Result) -> dict[str, object]:
 
 def write_pictures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     """Write figures as `NAME.png` and return their paths; the same figure gives the same bytes."""
-    # The stated software takes the place of matplotlib's own entry, which holds its version.
-    metadata, options = {"Software": "seatsim"}, {"compress_level": COMPRESSION}
-    return [
-        write_whole(folder / f"{name}.png", partial(figure.savefig, dpi=DPI, metadata=metadata, pil_kwargs=options))
-        for name, figure in figures.items()
-    ]
+    from seatsim.plots.saving import save_figure
+
+    return [write_whole(folder / f"{name}.png", partial(save_figure, figure)) for name, figure in figures.items()]
 
 
 def _encode_brackets(result: Result) -> list[dict[str, object]]:

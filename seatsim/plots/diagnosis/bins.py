@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics import power_spectral_density, rms
@@ -110,20 +109,6 @@ def varies(values: Array | None) -> bool:
     return bool(np.isfinite(low) and high - low > 1e-3 * max(abs(low), abs(high)))
 
 
-def bin_rms(x: Array, values: Array, borders: Array) -> Array:
-    """Return the RMS of values in bins over x; NaN in bins of too few."""
-    count, _ = np.histogram(x, borders)
-    energy, _ = np.histogram(x, borders, weights=np.square(values))
-    return _root_where_enough(energy, count)
-
-
-def bin_mean(x: Array, values: Array, borders: Array) -> Array:
-    """Return the mean of values in bins over x; NaN in bins of too few."""
-    count, _ = np.histogram(x, borders)
-    total, _ = np.histogram(x, borders, weights=values)
-    return np.asarray(np.where(count >= FEWEST, total / np.maximum(count, 1), np.nan))
-
-
 def map_rms(x: Array, y: Array, values: Array, borders: tuple[Array, Array]) -> Array:
     """Return the RMS of values in bins over x and y, shape (bins of y, bins of x); NaN in bins of too few."""
     ends = list(borders)
@@ -142,16 +127,6 @@ def estimate_spectrum(time: Array, signals: list[Array]) -> tuple[Array, Array]:
     length = max(8, min(round(SEGMENT * rate), 2 * shortest // (AVERAGES + 1)))
     found = [power_spectral_density(values, rate, min(length, shortest)) for values in signals]
     return found[0][0][1:], np.mean([power for _, power in found], axis=0)[1:]
-
-
-def average_bands(
-    frequency: Array, power: Array, lowest: float, per_octave: int
-) -> tuple[Array, Array, NDArray[np.int64]]:
-    """Return mean frequency, mean density and number of lines of bands of equal width on a logarithmic axis."""
-    inside = frequency >= lowest
-    band = np.floor(per_octave * np.log2(frequency[inside] / lowest)).astype(int)
-    _, index, count = np.unique(band, return_inverse=True, return_counts=True)
-    return np.bincount(index, frequency[inside]) / count, np.bincount(index, power[inside]) / count, count
 
 
 def _first_row(time: Array) -> int:

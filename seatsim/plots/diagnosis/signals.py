@@ -9,10 +9,10 @@ from matplotlib.ticker import LogLocator, NullLocator
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics import rms
 from seatsim.plots import style
+from seatsim.plots.averaging import average_bands
 from seatsim.plots.diagnosis.bins import (
     LOWEST,
     SHORTEST,
-    average_bands,
     compute_residual,
     estimate_spectrum,
     find_window,
@@ -20,7 +20,8 @@ from seatsim.plots.diagnosis.bins import (
     nominal_gap,
 )
 from seatsim.plots.diagnosis.frame import MEASURED, NOISE, NOMINAL, choose_after_look, scale_frequency_axis
-from seatsim.plots.frame import FONT, Picture, Quantity, describe_quantity, format_number, make_frame
+from seatsim.plots.frame import FONT, Picture, describe_quantity, format_number, make_frame
+from seatsim.plots.quantities import Quantity
 from seatsim.plots.style import GREY, Entry, Grid
 from seatsim.plots.thinning import Array, Window
 

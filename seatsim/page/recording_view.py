@@ -1,0 +1,164 @@
+"""A recording on the page: its gap, effects that are switched on and off, and how far the gap shrinks with them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.diagnosis.augmented import write_augmented
+from seatsim.diagnosis.candidates import Candidate, list_candidates
+from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.problem import pose_problem
+from seatsim.metrics import rms
+from seatsim.page.controls import Choice, Slider, Switch, read_number
+from seatsim.page.scenario_view import View
+from seatsim.recordings.quality.examination import examine, refuse
+from seatsim.recordings.recording import load_recording
+from seatsim.report.blocks import Bar, Bars, Table
+from seatsim.report.formatting import describe_channel, describe_effect, format_percent, format_sentence
+from seatsim.report.packing import Axis, Panel, pack_signals
+from seatsim.schema.errors import InputError
+from seatsim.schema.fields import describe
+
+Array = NDArray[np.float64]
+
+REACH = 4.0
+"""How far a slider reaches, in sizes of the effect as a fit would start with it."""
+PROCESSES = 2
+
+
+class RecordingView:
+    """One recording, its nominal scenario replayed, and the effects that it could lack."""
+
+    choices: Sequence[Choice] = ()
+    sliders: Sequence[Slider] = ()
+
+    def __init__(self, folder: Path) -> None:
+        """Read a recording and replay its nominal scenario.
+
+        Raises:
+            InputError: the recording has a fault.
+            RunError: the nominal scenario cannot be replayed.
+        """
+        recording = load_recording(folder)
+        refuse(examine(recording))
+        self.name = folder.resolve().name
+        self.problem = pose_problem(recording, ThreadPoolExecutor(PROCESSES))
+        first: dict[str, Candidate] = {}
+        for candidate in list_candidates(self.problem):
+            first.setdefault(_name(candidate), candidate)
+        self.candidates = first
+        self.switches = [_make_switch(name, candidate) for name, candidate in first.items()]
+        self.nominal = self._simulate(Parameters(self.problem.nominal))
+
+    def show(self, request: Mapping[str, Any]) -> View:
+        """Return the gap with the effects of a request.
+
+        Raises:
+            InputError: there is no such effect, or a value is not permitted.
+            RunError: a replay cannot be carried to its end.
+        """
+        parameters = self.choose(request)
+        after = self._simulate(parameters) if parameters.terms else self.nominal
+        return View(self._say(parameters, after), [self._draw_gaps(after), self._tabulate(after)], self._pack(after))
+
+    def choose(self, request: Mapping[str, Any]) -> Parameters:
+        """Return the effects of a request with their values."""
+        wanted = request.get("effects", {})
+        if not isinstance(wanted, dict):
+            raise InputError("effects: a mapping of effects to the values of their parameters")
+        found = Parameters(self.problem.nominal)
+        switches = {switch.name: switch for switch in self.switches}
+        for name, values in wanted.items():
+            if name not in switches or not isinstance(values, dict):
+                raise InputError(f"{name!r} is no effect that this recording can show")
+            found = found.add(
+                self.candidates[name], np.array([read_number(values, slider) for slider in switches[name].sliders])
+            )
+        return found
+
+    def encode(self, request: Mapping[str, Any]) -> dict[str, object]:
+        """Return the nominal scenario with the effects of a request, as the content of a file."""
+        return write_augmented(self.problem, self.choose(request))
+
+    def _simulate(self, parameters: Parameters) -> dict[str, Array]:
+        problem = self.problem
+        jobs = [problem.pool.submit(problem.simulated, run, parameters.deviations, parameters.effects)
+                for run in problem.runs]  # fmt: skip
+        return {run: job.result() for run, job in zip(problem.runs, jobs, strict=True)}
+
+    def _measure(self, simulated: Mapping[str, Array]) -> Array:
+        """Return the gap of each channel over all runs, shape (channels,)."""
+        problem = self.problem
+        left = np.concatenate([problem.measured[run] - simulated[run] for run in problem.runs], axis=1)
+        return np.array([rms(row) for row in left]) / problem.spread
+
+    def _say(self, parameters: Parameters, after: Mapping[str, Array]) -> str:
+        before, now = (float(np.sqrt(np.mean(self._measure(each) ** 2))) for each in (self.nominal, after))
+        noise = format_percent(float(np.sqrt(np.mean((self.problem.noise / self.problem.spread) ** 2))))
+        if not parameters.terms:
+            return f"The nominal simulation is off by {format_percent(before)}; noise alone makes {noise}."
+        change = "shrinks" if now < before else "grows"
+        return (
+            f"With {len(parameters.terms)} effect{'s' * (len(parameters.terms) > 1)} the gap {change} from"
+            f" {format_percent(before)} to {format_percent(now)}; noise alone makes {noise}."
+        )
+
+    def _draw_gaps(self, after: Mapping[str, Array]) -> Bars:
+        before, now = self._measure(self.nominal), self._measure(after)
+        most = float(max(before.max(), now.max(), 1e-9))
+        rows = [
+            Bar(f"{channel.replace('_', ' ')}, {words}", 0.0, round(100 * float(value) / most, 2),
+                format_percent(float(value)), look)
+            for channel, *values in zip(self.problem.channels, before, now, strict=True)
+            for words, value, look in zip(("nominal", "with effects"), values, ("high", "low"), strict=True)
+        ]  # fmt: skip
+        caption = "RMS of measured less simulated over the spread of the measured signal, over all runs."
+        return Bars("Gap of each channel", caption, "channel", rows)
+
+    def _tabulate(self, after: Mapping[str, Array]) -> Table:
+        before, now, floor = self._measure(self.nominal), self._measure(after), self.problem.noise / self.problem.spread
+        rows = [
+            [channel.replace("_", " "), *map(format_percent, map(float, (old, new, noise, 1 - new / old)))]
+            for channel, old, new, noise in zip(self.problem.channels, before, now, floor, strict=True)
+        ]
+        return Table("The same as a table", ["channel", "nominal", "with effects", "noise floor", "shrinks by"], rows)
+
+    def _pack(self, after: Mapping[str, Array]) -> Any:
+        problem = self.problem
+        panels = [
+            Panel(channel, problem.recording.channels[channel].unit, "",
+                  {run: [problem.measured[run][k], self.nominal[run][k], after[run][k]] for run in problem.runs})
+            for k, channel in enumerate(problem.channels)
+        ]  # fmt: skip
+        time = {run: (problem.skip + np.arange(problem.measured[run].shape[1])) / problem.rate for run in problem.runs}
+        lines = [("measured", 0), ("nominal", 1), ("with effects", 2)]
+        return pack_signals("signals-time", "Every run.", lines, Axis("time", "s", time), panels)
+
+
+def _name(candidate: Candidate) -> str:
+    channel = candidate.fixed.get("channel")
+    return f"{candidate.effect}:{channel}" if channel else candidate.effect
+
+
+def _make_switch(name: str, candidate: Candidate) -> Switch:
+    units = {field.name: field for field in describe(candidate.cls)}
+    sliders = [
+        Slider(free, units[free].meaning, describe_channel("", units[free].unit).unit, *ends, start)
+        for free, start, ends in zip(candidate.free, candidate.start, _reach(candidate), strict=True)
+    ]
+    return Switch(name, name.replace(":", ", "), format_sentence(describe_effect(candidate.effect)), sliders)
+
+
+def _reach(candidate: Candidate) -> list[tuple[float, float]]:
+    """Return the range of each slider: within the bounds, from off to some sizes of the effect."""
+    found = []
+    for start, low, high in zip(candidate.start, candidate.low, candidate.high, strict=True):
+        size = REACH * abs(start) or 1.0
+        found.append((max(low, -size if low < 0 else 0.0), min(high, size)))
+    return [(min(a, s), max(b, s)) for (a, b), s in zip(found, candidate.start, strict=True)]

@@ -1,0 +1,138 @@
+"""A scenario on the page: driver mass, temperature, road and controller are moved, and the run follows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from seatsim.page.controls import Choice, Slider, read_choice, read_number
+from seatsim.report.blocks import Block, Table
+from seatsim.report.formatting import format_quantity
+from seatsim.report.runs import TABLE as METRICS_SHOWN
+from seatsim.report.runs import describe_run, show_signals
+from seatsim.scenario.loading import load, read_scenario
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.errors import InputError
+from seatsim.schema.files import plain
+from seatsim.simulation.result import Run
+from seatsim.simulation.runs import run_one
+
+OWN = "file"
+LAWS = (
+    "skyhook", "on_off_skyhook", "no_jerk_skyhook", "groundhook", "hybrid", "skyhook_add", "acceleration_driven",
+    "power_driven",
+)  # fmt: skip
+"""Laws that need no design before they run, so that a change is seen at once."""
+ROADS = "ABCDEF"
+SPEED, DURATION = 10.0, 20.0
+"""m/s and s of a road that is chosen on the page."""
+
+
+class View(NamedTuple):
+    """What the page shows: a sentence, tables, and the pictures."""
+
+    answer: str
+    tables: list[Block]
+    signals: Any
+
+
+class ScenarioView:
+    """One scenario file and what of it can be moved."""
+
+    def __init__(self, path: Path) -> None:
+        """Read a scenario file; of one with several runs, the first is shown until another is chosen.
+
+        Raises:
+            InputError: the file is wrong, or holds a damper bench, which has neither driver nor road.
+        """
+        self.path = path
+        scenarios = load(path)
+        first = scenarios[0]
+        if first.plant is None:
+            raise InputError(f"{path}: is a damper bench; seatsim characterise shows it")
+        self.name = first.name
+        titles = [str(scenario.title) for scenario in scenarios]
+        roads = [(OWN, "as in the file"), *((road, f"ISO 8608 class {road}, {SPEED:g} m/s") for road in ROADS)]
+        laws = [(OWN, "as in the file"), ("off", "no current"), *((law, law.replace("_", " ")) for law in LAWS)]
+        temperature = first.temperature if isinstance(first.temperature, int | float) else 20.0
+        mass = first.plant.driver_mass
+        self.sliders = [
+            Slider("mass", "Driver mass", "kg", min(30.0, mass), max(150.0, mass), mass),
+            Slider("temperature", "Damper temperature", "°C", -20.0, 100.0, float(temperature)),
+        ]
+        self.choices = [Choice("road", "Road", roads), Choice("law", "Controller", laws)]
+        if len(titles) > 1:
+            self.choices.insert(
+                0, Choice("run", "Run of the file", [(str(k), title) for k, title in enumerate(titles)])
+            )
+
+    def show(self, request: Mapping[str, Any]) -> View:
+        """Return the run of a request.
+
+        Raises:
+            InputError: a value is not permitted.
+            RunError: the run cannot be carried to its end.
+        """
+        run, own = run_one(self.choose(request)), self._own
+        signals = show_signals([own, run], [("as in the file", 0), ("as set", 2)])
+        return View(describe_run(run), [_compare(own, run)], signals)
+
+    def choose(self, request: Mapping[str, Any]) -> Scenario:
+        """Return the scenario that a request describes."""
+        chosen = {choice.name: read_choice(request, choice) for choice in self.choices}
+        numbers = {slider.name: read_number(request, slider) for slider in self.sliders}
+        index = int(chosen.get("run", "0"))
+        base = load(self.path)[index]
+        settings: dict[str, object] = {}
+        if numbers["mass"] != self.sliders[0].value:
+            settings["plant.driver_mass"] = numbers["mass"]
+        if numbers["temperature"] != self.sliders[1].value:
+            settings["temperature"] = numbers["temperature"]
+        if chosen["road"] != OWN:
+            road = {"kind": "road", "road_class": chosen["road"], "speed": SPEED, "duration": DURATION}
+            settings["excitation"] = road
+        if chosen["law"] != OWN:
+            settings["controller"] = self._state_law(base, chosen["law"])
+        if not settings:
+            return base
+        label = dict(base.label) | ({"variant": chosen["law"].replace("_", " ")} if chosen["law"] != OWN else {})
+        return self._reload(base, settings, label)
+
+    def encode(self, request: Mapping[str, Any]) -> dict[str, object]:
+        """Return the scenario of a request as the content of a file."""
+        source = self.choose(request).source
+        assert source is not None
+        content = plain(dict(source.data))
+        assert isinstance(content, dict)
+        return content
+
+    def _state_law(self, base: Scenario, law: str) -> dict[str, object]:
+        """Return the section of a law, with what the scenario states of sensors and sampling."""
+        stated = base.source.data.get("controller", {}) if base.source is not None else {}
+        shared = ("sample_time", "sensors", "inverse")
+        kept = {key: stated[key] for key in shared if isinstance(stated, dict) and key in stated}
+        return {"law": "constant", "current": 0.0} if law == "off" else {"law": law, **kept}
+
+    def _reload(self, base: Scenario, settings: Mapping[str, object], label: Mapping[str, object]) -> Scenario:
+        """Return a run of the file with some values replaced, whatever its variant states."""
+        assert base.source is not None
+        source = base.source.with_changes()
+        for key, value in settings.items():
+            source.put(key, value, f"the page, {key}")
+        return read_scenario(source, label)
+
+    @cached_property
+    def _own(self) -> Run:
+        """The first run as the file has it."""
+        return run_one(load(self.path)[0])
+
+
+def _compare(own: Run, run: Run) -> Table:
+    rows = []
+    for name, words in METRICS_SHOWN.items():
+        known = [each.metrics[name] for each in (own, run) if name in each.metrics]
+        if len(known) == 2:
+            rows.append([words, *(format_quantity(metric.value, metric.unit) for metric in known)])
+    return Table("First run of the file, and the run as set", ["figure", "as in the file", "as set"], rows)

@@ -1,1 +1,0 @@
-"""Pictures of a sweep: comfort against travel, sensitivities, maps over two keys; none is taller than a screen."""

@@ -1,0 +1,154 @@
+"""The report of a characterisation: what a bench shows of a damper before anything is modelled."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatsim.characterisation.response import Response
+from seatsim.characterisation.rows import Row
+from seatsim.characterisation.summary import Characterisation, group_by_setting
+from seatsim.report.blocks import Block, Items, Report, Section, Table
+from seatsim.report.formatting import format_number, format_percent, format_quantity, format_sentence
+from seatsim.report.method import describe_method
+from seatsim.report.packing import Axis, Panel, pack_signals
+from seatsim.report.planes import Curve, draw_curves
+
+MOST_SETTINGS = 6
+"""Settings of amplitude and frequency whose loops are drawn."""
+MOST_ROWS = 60
+POINTS = 240
+ROUNDING = 1e-9
+"""Share of the peak force below which an offset is no finding."""
+METHOD = (
+    "A loop is the mean of a record's steady cycles; energy is its area, damping that of a dashpot that dissipates as"
+    " much, E / (pi w X²).",
+    "Asymmetry: RMS of the difference from the centrosymmetric loop over that of the force.",
+    "t95 is the time from a step of the current to 95 % of the change of force; its ± is one standard deviation by"
+    " resampling the steps.",
+)
+
+
+def report_characterisation(found: Characterisation, remarks: Sequence[str], command: str) -> Report:
+    """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
+    sections = [
+        Section("figures", "Figures of each record", [_make_table(found.rows)]),
+        Section("loops", "Loops", _draw_loops(found.rows)),
+        Section("steps", "Response to steps of the current", _show_steps(found.responses)),
+        Section("notes", "Notes", [Items([format_sentence(text) for text in remarks])] * bool(remarks)),
+        describe_method(METHOD, {"source": found.source}, command),
+    ]
+    return Report(f"Characterisation: {found.name}", say_character(found), [], _advise(found), sections)
+
+
+def say_character(found: Characterisation) -> str:
+    """Return in a sentence what the damper does: how its force grows with current, and how fast it follows."""
+    group = max(group_by_setting(found.rows), key=lambda rows: len({row.current for row in rows}), default=[])
+    said = f"{len(found.rows)} records were characterised"
+    if group:
+        low, high = min(group, key=lambda row: row.current), max(group, key=lambda row: row.current)
+        force = f"up to {format_quantity(high.peak_rebound, 'N')} at {format_number(high.current)} A"
+        motion = f"±{format_quantity(high.amplitude, 'm')} and {format_number(high.frequency)} Hz"
+        said = f"At {motion} the damper gives {force}"
+        if high.current > low.current and low.peak_rebound > 0:
+            ratio = format_number(high.peak_rebound / low.peak_rebound, 2)
+            said += f", {ratio} times its force at {format_number(low.current)} A"
+    times = [answer.t95 for answer in found.responses if math.isfinite(answer.t95)]
+    if times:
+        said += f"; it follows a step of the current within {format_number(1e3 * float(np.median(times)))} ms"
+    return f"{said}."
+
+
+def _advise(found: Characterisation) -> list[str]:
+    if not found.measured:
+        return ["Compare it with a measured damper: seatsim characterise takes a folder of bench tables, too."]
+    texts = ["Fit a model to these records: seatsim identify takes the same folder."]
+    if not any(math.isfinite(answer.t95) for answer in found.responses):
+        texts.append("Record steps of the current at constant speed: nothing here shows how fast the force follows.")
+    if len({round(row.current, 2) for row in found.rows}) < 3:
+        texts.append("Record at three currents or more: the force's growth with current is a curve.")
+    return texts
+
+
+def _make_table(rows: Sequence[Row]) -> Table:
+    head = [
+        "record", "current [A]", "amplitude [mm]", "frequency [Hz]", "speed [m/s]", "rebound [N]", "compression [N]",
+        "energy [J]", "damping [N·s/m]", "offset [N]", "asymmetry",
+    ]  # fmt: skip
+    lines = [
+        [row.record,
+         *map(format_number, (row.current, 1e3 * row.amplitude, row.frequency, row.peak_speed, row.peak_rebound,
+                              row.peak_compression, row.energy, row.damping, _clean(row))),
+         format_percent(row.asymmetry)]
+        for row in rows[:MOST_ROWS]
+    ]  # fmt: skip
+    more = f"; {len(rows) - MOST_ROWS} more in cycles.csv" if len(rows) > MOST_ROWS else ""
+    return Table(f"Peaks, energy and damping of the mean cycle{more}", head, lines)
+
+
+def _clean(row: Row) -> float:
+    """Return the offset of a loop, 0 where it is rounding."""
+    return 0.0 if abs(row.offset) < ROUNDING * abs(row.peak_rebound) else row.offset
+
+
+def _draw_loops(rows: Sequence[Row]) -> list[Block]:
+    """Return the loops of each setting over velocity and over displacement, and clouds of records without cycles."""
+    blocks: list[Block] = []
+    for group in group_by_setting(rows)[:MOST_SETTINGS]:
+        title = f"±{format_quantity(group[0].amplitude, 'm')}, {format_number(group[0].frequency)} Hz"
+        loops = [(f"{row.current:.2f} A", row.loop, k % 8) for k, row in enumerate(group[:8]) if row.loop is not None]
+        over_velocity = [Curve(name, _thin(loop.velocity), _thin(loop.force), look) for name, loop, look in loops]
+        over_travel = [
+            Curve(name, 1e3 * _thin(loop.displacement), _thin(loop.force), look) for name, loop, look in loops
+        ]
+        caption = "Mean cycle by current."
+        blocks.append(draw_curves(f"{title}: over velocity", caption, ("velocity [m/s]", "force [N]"), over_velocity))
+        blocks.append(draw_curves(f"{title}: over travel", caption, ("travel [mm]", "force [N]"), over_travel))
+    clouds = [row for row in rows if row.cloud is not None][:8]
+    if clouds:
+        curves = [
+            Curve(f"{row.current:.2f} A", row.cloud.velocity, row.cloud.force, k % 8, "dots")
+            for k, row in enumerate(clouds) if row.cloud is not None
+        ]  # fmt: skip
+        axes = ("velocity [m/s]", "force [N]")
+        blocks.append(draw_curves("Records without steady cycles", "Samples by mean current.", axes, curves))
+    return blocks
+
+
+def _thin(values: np.ndarray) -> np.ndarray:
+    return np.asarray(values)[:: max(1, len(values) // POINTS)]
+
+
+def _show_steps(answers: Sequence[Response]) -> list[Block]:
+    if not answers:
+        return []
+    rows = [
+        [each.record or "model", format_number(each.before), format_number(each.after), str(each.steps),
+         *(format_number(1e3 * value) for value in (each.t90, each.t95, each.t95_sd, each.delay)),
+         format_number(each.rate_95), each.method or each.note or "not determined"]
+        for each in answers
+    ]  # fmt: skip
+    head = [
+        "record",
+        "from [A]",
+        "to [A]",
+        "steps",
+        "t90 [ms]",
+        "t95 [ms]",
+        "± [ms]",
+        "delay [ms]",
+        "rate [1/s]",
+        "how",
+    ]
+    blocks: list[Block] = [Table("Times from the step of the current", head, rows)]
+    known = [each for each in answers if each.time is not None and each.share is not None][:8]
+    if known:
+        time = max((np.asarray(each.time) for each in known), key=len)
+        lines = [(f"{each.before:.2f} to {each.after:.2f} A", k % 8) for k, each in enumerate(known)]
+        values = [np.interp(time, np.asarray(each.time), np.asarray(each.share)) for each in known]
+        panel = Panel("share of the change of force", "-", "", {"": list(values)})
+        axis = Axis("time from the step", "s", {"": time})
+        blocks.append(pack_signals("signals-steps", "Mean over the steps.", lines, axis, [panel]))
+    return blocks

@@ -1,0 +1,144 @@
+"""The report of a diagnosis: what is the matter, what to do, how far the gap shrinks, and the evidence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from seatsim.diagnosis.result import Cause, Diagnosis
+from seatsim.report.blocks import Report, Section
+from seatsim.report.causes import show_causes, show_confusions, show_forms
+from seatsim.report.effect_words import say_action, say_cause
+from seatsim.report.evidence import (
+    show_budget,
+    show_comfort,
+    show_discrepancy,
+    show_maps,
+    show_notes,
+    show_signals,
+    show_spectra,
+)
+from seatsim.report.formatting import format_percent, format_sentence
+from seatsim.report.gap_stages import show_gaps
+from seatsim.report.method import describe_method
+from seatsim.report.rendering import write_html
+from seatsim.report.spectra import METHOD as SPECTRA
+from seatsim.schema.text import join_names
+
+BADGES = {
+    "none": ("No material gap", "Nothing to explain beyond noise and the tolerance of the parameters."),
+    "known": ("Cause known", "Effects of the library explain the gap on a run that took no part in the fit."),
+    "ambiguous": ("Ambiguous", "Two or more effects explain the gap equally well on this recording."),
+    "unknown": ("Cause unknown", "A material gap stays that no effect of the library explains."),
+}
+NEARLY_ALL = 0.98
+METHOD = (
+    "Every candidate effect is fitted together with the parameters that are known only within their tolerance, on all"
+    " runs but one; figures are of that run, which took no part in the fit.",
+    "The gap of a channel is the RMS of measured less simulated over the standard deviation of the measured signal; the"
+    " first second of each run is left out.",
+    "A parameter's ± is one standard deviation; 1.645 of them on either side are meant to hold the truth on nine of ten"
+    " rigs. The documentation of the diagnosis says how often they and the interval of the shrink did in trials.",
+    SPECTRA,
+)
+
+
+def write_report(diagnosis: Diagnosis, path: Path) -> Path:
+    """Write the report of a diagnosis as one self-contained HTML file, whole or not at all; return its path.
+
+    The same diagnosis gives the same bytes. Sections without content are left out.
+
+    Raises:
+        InputError: the folder or the file cannot be written.
+    """
+    return write_html(report_diagnosis(diagnosis), path)
+
+
+def report_diagnosis(diagnosis: Diagnosis) -> Report:
+    """Return the report of a diagnosis; without a gap it has no evidence for causes."""
+    sections = [
+        Section("gaps", "How far: gaps before and after", show_gaps(diagnosis)),
+        Section("causes", "Where it lies and what causes it", show_causes(diagnosis)),
+        Section("signals", "Measured and simulated, before and after", show_signals(diagnosis)),
+        Section("missing", "What is missing", show_discrepancy(diagnosis)),
+        Section("forms", "Other forms of the damper", show_forms(diagnosis)),
+        Section("confusions", "Which effects look alike", show_confusions(diagnosis)),
+        Section("maps", "Where in the operating range", show_maps(diagnosis)),
+        Section("spectra", "What is left over frequency", show_spectra(diagnosis)),
+        Section("budget", "What the remaining error is made of", show_budget(diagnosis)),
+        Section("comfort", "Comfort and travel", show_comfort(diagnosis)),
+        Section("notes", "Notes on the data", show_notes(diagnosis)),
+        describe_method(METHOD, {}, f"seatsim diagnose {diagnosis.name}"),
+    ]
+    if diagnosis.verdict == "none":
+        sections = [
+            section for section in sections if section.anchor not in ("causes", "missing", "confusions", "maps")
+        ]
+    words, explanation = BADGES.get(diagnosis.verdict, (diagnosis.verdict, ""))
+    badge = (diagnosis.verdict, words, explanation)
+    lead = [format_sentence(diagnosis.sentence)]
+    return Report(f"Diagnosis: {diagnosis.name}", say_diagnosis(diagnosis), lead, advise(diagnosis), sections, badge)
+
+
+def say_diagnosis(diagnosis: Diagnosis) -> str:
+    """Return the answer as an engineer says it: what is the matter, and how much of the gap that explains."""
+    gap = diagnosis.gap
+    size, noise = format_percent(gap.before.overall), format_percent(gap.floor.overall)
+    if diagnosis.verdict == "none":
+        return (
+            f"The simulation fits the recording: it is off by {size} of the signals' spread, of which noise alone makes"
+            f" {noise} and the tolerance of the parameters the rest."
+        )
+    causes = _select(diagnosis)
+    if not causes:
+        where = f", in the {diagnosis.where[0].block}" if diagnosis.where else ""
+        return f"Something that no known effect explains makes the gap of {size}{where}; noise alone makes {noise}."
+    clauses = join_names([say_cause(cause) for cause in causes])
+    if diagnosis.verdict == "ambiguous":
+        others = [name for group in diagnosis.indistinguishable for name in group if name not in diagnosis.selected]
+        if others:
+            clauses = f"either {clauses}, or it is {join_names(others, 'or')}, which look the same here"
+    return f"{clauses[0].upper()}{clauses[1:]}. {_say_share(diagnosis)}"
+
+
+def advise(diagnosis: Diagnosis) -> list[str]:
+    """Return what to do next: look at the rig, decide between equals, use the scenario."""
+    if diagnosis.verdict == "none":
+        return ["Use the nominal scenario as it is; test it on a recording of another road or driver."]
+    found = [say_action(name) for name in diagnosis.selected]
+    experiment = diagnosis.experiment
+    if experiment is not None:
+        file = "; its scenario is experiment.yaml beside this report" if experiment.scenario is not None else ""
+        what = f"to tell the likely causes apart: {experiment.name.replace('_', ' ')}{file}. {experiment.reason}"
+        found.append(format_sentence(what))
+    if diagnosis.verdict == "unknown":
+        found.append(
+            "Record what the section on the missing signal points at, or describe it as an effect of your own."
+        )
+        if diagnosis.where:
+            found.append(f"Look at the {diagnosis.where[0].block} of the rig first: most of what is left lies there.")
+    at_bound = [each.name for each in diagnosis.parameters if each.at_bound]
+    if at_bound:
+        found.append(f"Measure {join_names(at_bound)}: the refit stops at the bound of its tolerance.")
+    what = "the refitted parameters and the effects found" if diagnosis.selected else "the refitted parameters"
+    found.append(f"Check the result on another recording: seatsim gap augmented.yaml OTHER_RECORDING (the nominal"
+                 f" scenario with {what}).")  # fmt: skip
+    return found
+
+
+def _select(diagnosis: Diagnosis) -> list[Cause]:
+    by_name = {cause.effect: cause for cause in diagnosis.causes}
+    return [by_name.get(name, Cause(name, 1.0, 0.0, {})) for name in diagnosis.selected]
+
+
+def _say_share(diagnosis: Diagnosis) -> str:
+    """Return how much of the gap that can be removed is gone, on the run held out."""
+    gap = diagnosis.gap
+    removable = gap.before.overall - gap.floor.overall
+    if not removable > 0 or gap.after.overall >= gap.before.overall:
+        return "That takes nothing off the gap of the run held out."
+    share = min(1.0, (gap.before.overall - gap.after.overall) / removable)
+    subject = "That explains" if len(diagnosis.selected) == 1 else "Together that explains"
+    if diagnosis.verdict == "unknown":
+        return f"{subject} {format_percent(share)} of the gap; no known effect explains the rest."
+    rest = "" if share > NEARLY_ALL else f"; what is left is {format_percent(gap.after.overall)} of the signals' spread"
+    return f"{subject} {format_percent(share)} of the gap beyond noise{rest}."

@@ -1,0 +1,155 @@
+"""The report of an identification: how well a model predicts a damper, and which parameters the data determine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatsim.identification.agreement import Agreement
+from seatsim.identification.assessment import Assessment
+from seatsim.identification.identify import Identification
+from seatsim.report.blocks import Block, Items, Report, Section, Table
+from seatsim.report.formatting import format_number, format_quantity, format_sentence
+from seatsim.report.method import describe_method
+from seatsim.report.packing import Axis, Panel, pack_signals
+from seatsim.report.planes import Curve, draw_curves
+from seatsim.schema.text import join_names
+
+MOST = 6
+"""Most records that are drawn."""
+ROWS = 3000
+"""Most rows of a record that are drawn over time, from the stretch with the highest speed."""
+POINTS = 1200
+PARTS = {"train": "fitted", "test": "held out", "predicted": "predicted only"}
+GOOD, FAIR = 90.0, 75.0
+"""Fits in per cent from which on a model is called good, or usable."""
+METHOD = (
+    "Minimised is the mean over records of the squared error of the force over the variance of the measured one: a"
+    " global search on short stretches, then least squares on all records that are fitted.",
+    "Fit: 100 (1 - |measured - predicted| / |measured - its mean|), in the norm over the samples; R² is of the same"
+    " error; MD is the mean deviation over the measured force where that is above 5 % of its peak.",
+    "A parameter's ± is 1.96 standard deviations, which respect that neighbouring residuals are alike; not identified:"
+    " its standard deviation is above a tenth of its size.",
+)
+
+
+def report_identification(found: Identification, command: str) -> Report:
+    """Return the report of an identified damper; `command` makes it again."""
+    chosen = _select_records(found.assessments)
+    sections = [
+        Section("figures", "How well the force is predicted", [_make_table(found)]),
+        Section("loops", "Measured and predicted loops", _draw_loops(chosen)),
+        Section("signals", "Measured and predicted over time", [_show_time(chosen)]),
+        Section("parameters", "Parameters", _show_parameters(found)),
+        Section("notes", "Notes", [Items([format_sentence(note) for note in found.notes])] * bool(found.notes)),
+        describe_method(METHOD, {}, command),
+    ]
+    return Report(f"Identification: {found.model}", say_fit(found), [], _advise(found), sections)
+
+
+def say_fit(found: Identification) -> str:
+    """Return in a sentence how well a model predicts the force, on held-out records where there are some."""
+    test, train = found.mean("test"), found.mean("train")
+    mean = test or train
+    if mean is None:
+        return f"{found.model} was fitted, but no record assesses it."
+    word = "well" if mean.fit_percent >= GOOD else "usably" if mean.fit_percent >= FAIR else "poorly"
+    where = "on records that took no part in the fit" if test else "on the records it was fitted to; none was held out"
+    return (
+        f"{found.model} predicts the damper's force {word}: a fit of {format_number(mean.fit_percent)} %, an error of"
+        f" {format_quantity(mean.rmse, 'N')} RMS, {where}."
+    )
+
+
+def _advise(found: Identification) -> list[str]:
+    texts = []
+    loose = [each.name for each in found.information.estimates if not each.identified]
+    if found.mean("test") is None:
+        texts.append("Hold out records with --test, or the last part of each with --test-fraction, before trusting it.")
+    mean = found.mean("test") or found.mean("train")
+    if mean is not None and mean.fit_percent < FAIR:
+        texts.append("Try other models: --model all compares them on the same records.")
+    if loose:
+        texts.append(f"Fix {join_names(loose)} with --fix, or record motion that shows them: the data do not.")
+    texts.append("Put damper and actuator of parameters.yaml into a scenario, and run it.")
+    return texts
+
+
+def _make_table(found: Identification) -> Table:
+    rows = [
+        [
+            each.record.name,
+            PARTS[each.part],
+            format_number(each.record.mean_current),
+            *_format_agreement(each.agreement),
+        ]
+        for each in found.assessments
+    ]
+    strong = []
+    for part, words in PARTS.items():
+        mean = found.mean(part)
+        if mean is not None:
+            strong.append(len(rows))
+            rows.append([f"mean, {words}", words, "", *_format_agreement(mean)])
+    head = ["record", "part", "current [A]", "fit [%]", "R²", "RMSE [N]", "MD"]
+    return Table("Agreement of the predicted force with the measured one", head, rows, 2, strong)
+
+
+def _format_agreement(found: Agreement) -> list[str]:
+    figures = (found.fit_percent, found.rmse, found.md)
+    fit, error, deviation = map(format_number, figures)
+    return [fit, format_number(found.r2, 5), error, deviation]
+
+
+def _select_records(judged: Sequence[Assessment]) -> list[Assessment]:
+    """Return records spread evenly over the held-out ones, since only they show how well the model predicts."""
+    first = [each for each in judged if each.part != "train"] or list(judged)
+    places = np.unique(np.linspace(0, len(first) - 1, min(MOST, len(first))).round().astype(int))
+    return [first[place] for place in places]
+
+
+def _draw_loops(chosen: Sequence[Assessment]) -> list[Block]:
+    blocks: list[Block] = []
+    for each in chosen:
+        record = each.record
+        start, stop = record.liveliest(POINTS)
+        part = slice(start, stop)
+        curves = [
+            Curve("measured", record.velocity[part], record.force[part], 0, "broad"),
+            Curve("predicted", record.velocity[part], each.predicted[part], 1),
+        ]
+        title = f"{record.name} ({PARTS[each.part]}), fit {format_number(each.agreement.fit_percent)} %"
+        blocks.append(draw_curves(title, "Its stretch of highest speed.", ("velocity [m/s]", "force [N]"), curves))
+    return blocks
+
+
+def _show_time(chosen: Sequence[Assessment]) -> Block:
+    names = [f"{k + 1}: {each.record.name}" for k, each in enumerate(chosen)]
+    parts = [slice(*each.record.liveliest(ROWS)) for each in chosen]
+    times = {name: each.record.time[part] for name, each, part in zip(names, chosen, parts, strict=True)}
+    force = {
+        name: [each.record.force[part], each.predicted[part]]
+        for name, each, part in zip(names, chosen, parts, strict=True)
+    }
+    current = {name: [each.record.current[part], None] for name, each, part in zip(names, chosen, parts, strict=True)}
+    panels = [Panel("damper force", "N", "", force), Panel("current", "A", "", current)]
+    lines = [("measured", 0), ("predicted", 1)]
+    caption = "The stretch of highest speed of each record."
+    return pack_signals("signals-time", caption, lines, Axis("time", "s", times), panels)
+
+
+def _show_parameters(found: Identification) -> list[Block]:
+    known = found.information
+    rows = [
+        [each.name, format_number(each.value, 5), format_number(1.96 * each.std, 2), each.unit,
+         "identified" if each.identified else "not identified"]
+        for each in known.estimates
+    ]  # fmt: skip
+    strong = [k for k, each in enumerate(known.estimates) if not each.identified]
+    head = ["parameter", "value", "±", "unit", "the data"]
+    blocks: list[Block] = [Table("In bold what the data do not determine", head, rows, 1, strong)]
+    if known.correlated:
+        pairs = [[first, second, format_number(value)] for first, second, value in known.correlated]
+        blocks.append(Table("Parameters that stand in for each other", ["one", "other", "correlation"], pairs, 2))
+    return blocks

@@ -1,0 +1,158 @@
+"""The local page: who may ask, what may be read, what is shown of values, what is saved."""
+
+import asyncio
+from pathlib import Path
+
+import httpx
+import numpy as np
+import pytest
+
+from seatsim.page.app import make_app
+from seatsim.page.controls import Choice, Slider, read_choice, read_number
+from seatsim.page.folder import Folder, NotInFolderError, TooLargeError
+from seatsim.page.scenario_view import View
+from seatsim.page.serve import open_target
+from seatsim.report.blocks import Table
+from seatsim.report.packing import Axis, Panel, pack_signals
+from seatsim.scenario.loading import EXAMPLES, load, single
+from seatsim.schema.errors import InputError
+from seatsim.schema.files import plain
+
+TOKEN, PORT = "a-token", 8123
+HOME = f"http://127.0.0.1:{PORT}"
+
+
+class Plain:
+    """A target that simulates nothing."""
+
+    name = "</script><script>alert(1)</script>"
+    sliders = (Slider("mass", "Driver mass", "kg", 30.0, 150.0, 80.0),)
+    choices = (Choice("law", "Controller", [("file", "as in the file"), ("off", "no current")]),)
+
+    def show(self, request):
+        mass = read_number(request, self.sliders[0])
+        time = np.arange(10.0)
+        panel = Panel("damper_force", "N", "", {"": [mass * time]})
+        signals = pack_signals("signals-time", "", [("as set", 0)], Axis("time", "s", {"": time}), [panel])
+        return View(f"{mass:g} kg <b>", [Table("t", ["a", "b"], [["<i>", f"{mass:g}"]])], signals)
+
+    def encode(self, request):
+        return plain(dict(load("road-b")[0].source.data))
+
+
+@pytest.fixture
+def app(tmp_path):
+    return make_app(Plain(), Folder(tmp_path), TOKEN, PORT)
+
+
+def ask(app, method, path, token=TOKEN, base=HOME, **options):
+    """Return the answer to one request."""
+
+    async def send():
+        cookies = {"seatsim": token} if token else {}
+        transport = httpx.ASGITransport(app=app)
+        async with httpx.AsyncClient(transport=transport, base_url=base, cookies=cookies) as client:
+            return await client.request(method, path, **options)
+
+    return asyncio.run(send())
+
+
+def test_a_token_opens_the_page_and_leaves_the_address(app):
+    assert ask(app, "GET", "/", token="").status_code == 403
+    assert ask(app, "GET", "/", token="another").status_code == 403
+    assert ask(app, "GET", "/?token=another", token="").status_code == 403
+    opened = ask(app, "GET", f"/?token={TOKEN}", token="")
+    assert opened.status_code == 303 and opened.headers["location"] == "/"
+    assert "HttpOnly" in opened.headers["set-cookie"] and "SameSite=strict" in opened.headers["set-cookie"]
+    page = ask(app, "GET", "/")
+    assert page.status_code == 200 and "default-src 'none'" in page.headers["content-security-policy"]
+    assert "<script>alert" not in page.text and "80 kg &lt;b&gt;" in page.text
+
+
+@pytest.mark.parametrize("host", ["evil.example", f"evil.example:{PORT}", "127.0.0.1:1", f"[::1]:{PORT}", ""])
+def test_a_foreign_host_is_refused(app, host):
+    assert ask(app, "GET", "/", headers={"host": host}).status_code == 403
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "null", f"https://127.0.0.1:{PORT}", "http://127.0.0.1"])
+def test_a_foreign_origin_is_refused(app, origin):
+    assert ask(app, "POST", "/view", json={}, headers={"origin": origin}).status_code == 403
+    assert ask(app, "POST", "/view", json={}, headers={"origin": HOME}).status_code == 200
+
+
+@pytest.mark.parametrize(
+    "path", ["/files/../secret.yaml", "/files/%2e%2e/secret.yaml", "/files/..%2fsecret.yaml", "/files//etc/passwd",
+             "/files/link.yaml", "/files/.hidden.yaml", "/files/none.yaml", "/files/a%00.yaml", "/files/run.csv"],
+)  # fmt: skip
+def test_only_the_folder_is_read(tmp_path, path):
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    (tmp_path / "secret.yaml").write_text("secret")
+    (inside / ".hidden.yaml").write_text("secret")
+    (inside / "run.csv").write_text("secret")
+    (inside / "link.yaml").symlink_to(tmp_path / "secret.yaml")
+    (inside / "own.yaml").write_text("own")
+    app = make_app(Plain(), Folder(inside), TOKEN, PORT)
+    assert ask(app, "GET", "/files/own.yaml").text == "own"
+    answer = ask(app, "GET", path)
+    assert answer.status_code == 404 and "secret\n" not in answer.text
+
+
+def test_large_files_and_requests_are_refused(tmp_path, monkeypatch, app):
+    (tmp_path / "large.yaml").write_text("x" * 2000)
+    monkeypatch.setattr("seatsim.page.folder.LARGEST", 1000)
+    with pytest.raises(TooLargeError):
+        Folder(tmp_path).find("large.yaml")
+    assert ask(app, "GET", "/files/large.yaml").status_code == 413
+    assert ask(app, "POST", "/view", json={"x": "y" * 200_000}).status_code == 413
+    with pytest.raises(NotInFolderError):
+        Folder(tmp_path).find("../large.yaml")
+
+
+def test_values_are_shown_and_wrong_ones_are_said(app):
+    found = ask(app, "POST", "/view", json={"mass": 95.0}).json()
+    assert found["answer"] == "95 kg <b>" and "&lt;i&gt;" in found["tables"] and found["signals"]["panels"]
+    wrong = ask(app, "POST", "/view", json={"mass": 1e9})
+    assert wrong.status_code == 422 and "30 to 150 kg" in wrong.json()["error"]
+    assert ask(app, "POST", "/view", content=b"{", headers={"content-type": "application/json"}).status_code == 422
+    assert ask(app, "POST", "/view", content=b"{}", headers={"content-type": "text/plain"}).status_code == 422
+    assert ask(app, "GET", "/view").status_code == 405
+
+
+def test_a_scenario_is_saved_once_under_a_plain_name(tmp_path, app):
+    assert ask(app, "POST", "/save", json={"name": "mine"}).json() == {"saved": "mine.yaml"}
+    assert single(tmp_path / "mine.yaml").name == "mine"
+    assert "not replaced" in ask(app, "POST", "/save", json={"name": "mine"}).json()["error"]
+    for name in ("../mine", "", "a/b", ".hidden"):
+        assert ask(app, "POST", "/save", json={"name": name}).status_code == 422
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.yaml"]
+
+
+def test_numbers_and_choices_are_checked():
+    slider, choice = Plain.sliders[0], Plain.choices[0]
+    assert read_number({}, slider) == 80.0 and read_choice({}, choice) == "file"
+    for value in (True, "80", None, float("nan"), 29.0):
+        with pytest.raises(InputError, match="Driver mass"):
+            read_number({"mass": value}, slider)
+    with pytest.raises(InputError, match="Controller"):
+        read_choice({"law": "none"}, choice)
+
+
+def test_a_scenario_follows_what_is_moved():
+    view = open_target(Path("road-b"))
+    changed = view.choose({"mass": 95.0, "road": "C", "law": "off"})
+    assert changed.plant.driver_mass == 95.0 and changed.excitation.road_class == "C"
+    assert changed.excitation.duration == 20.0 and changed.title.endswith("(off)")
+    assert view.encode({"mass": 95.0})["plant"]["driver_mass"] == 95.0
+
+
+def test_an_effect_that_is_not_there_makes_the_gap_grow():
+    folder = next(path for path in EXAMPLES if path.is_dir()) / "data" / "recording"
+    view = open_target(folder)
+    name = next(switch.name for switch in view.switches if switch.name == "damper.seal_friction")
+    before, after = view.show({}), view.show({"effects": {name: {"force": 60.0}}})
+    assert before.answer.startswith("The nominal simulation is off by") and "grows" in after.answer
+    saved = view.encode({"effects": {name: {"force": 60.0}}})
+    assert saved["effects"][-1]["effect"] == name and saved["effects"][-1]["parameters"]["force"] == 60.0
+    with pytest.raises(InputError, match="no effect"):
+        view.show({"effects": {"damper.none": {}}})

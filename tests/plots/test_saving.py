@@ -1,0 +1,19 @@
+"""Figures as files: by their ending, and with equal bytes for equal figures."""
+
+import pytest
+from matplotlib.figure import Figure
+
+from seatsim.plots.saving import OPTIONS, save_figure
+
+STARTS = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
+
+
+@pytest.mark.parametrize("ending", OPTIONS)
+def test_the_ending_chooses_the_format_and_equal_figures_give_equal_bytes(tmp_path, ending):
+    contents = []
+    for name in ("a", "b"):
+        figure = Figure()
+        figure.add_subplot().plot([0, 1], [1, 0], label="line")
+        save_figure(figure, tmp_path / f"{name}{ending}")
+        contents.append((tmp_path / f"{name}{ending}").read_bytes())
+    assert contents[0].startswith(STARTS[ending]) and contents[0] == contents[1]

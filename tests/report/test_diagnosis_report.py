@@ -1,0 +1,215 @@
+"""The report of a diagnosis: the answer first, then every section with content; safe, small, the same twice."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.result import (
+    Cause,
+    Collinearity,
+    ComfortFigure,
+    Estimate,
+    Evidence,
+    GapFigures,
+    Gaps,
+    ProposedExperiment,
+    Share,
+)
+from seatsim.report.diagnosis import report_diagnosis, say_diagnosis, write_report
+from seatsim.report.effect_words import WORDS, say_action, say_cause
+from seatsim.report.formatting import (
+    describe_effect,
+    format_estimate,
+    format_number,
+    format_percent,
+    format_quantity,
+    format_sentence,
+)
+from seatsim.report.gap_stages import list_stages, read_gap
+from seatsim.report.rendering import render_report
+from seatsim.schema.registry import names
+
+from .diagnoses import CASES, ambiguous, known, none, unknown
+from .outline import Outline
+
+SHORT = ["gaps", "signals", "spectra", "comfort", "notes", "method"]
+FULL = ["gaps", "causes", "signals", "confusions", "maps", "spectra", "comfort", "notes", "method"]
+SHOWN = {
+    "none": SHORT,
+    "known": FULL,
+    "ambiguous": FULL,
+    "unknown": ["gaps", "causes", "signals", "missing", "confusions", "maps", "spectra", "comfort", "notes", "method"],
+    "bench": [name for name in FULL if name != "comfort"],
+}
+ANSWERS = {
+    "none": "The simulation fits the recording",
+    "known": "The damper remembers past current (0.0812 A stays behind). That explains ",
+    "ambiguous": "Either the linkage of the suspension rubs with 45.2 N, or it is damper.seal_friction",
+    "unknown": "Something that no known effect explains makes the gap of ",
+    "bench": "The damper remembers past current",
+}
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """Diagnosis and page of each case."""
+    folder, found = tmp_path_factory.mktemp("pages"), {}
+    for case, make in CASES.items():
+        diagnosis = make()
+        found[case] = diagnosis, write_report(diagnosis, folder / f"{case}.html").read_text(encoding="utf-8")
+    return found
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_answer_comes_first_and_empty_sections_vanish(case, pages):
+    diagnosis, text = pages[case]
+    outline = Outline(text)
+    assert outline.headings[0].startswith(ANSWERS[case])
+    assert text.index("<h1>") < text.index("What to do next") < text.index("<section")
+    assert outline.anchors == SHOWN[case]
+    assert format_sentence(diagnosis.sentence) in outline.words
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_page_is_small_and_asks_for_nothing(case, pages):
+    text = pages[case][1]
+    assert len(text.encode()) < 600_000
+    assert "default-src &#39;none&#39;" in text and "connect-src" not in text
+    assert all(reference.startswith("#") for reference in Outline(text).references)
+
+
+def test_the_same_diagnosis_gives_the_same_page(pages):
+    assert render_report(report_diagnosis(CASES["known"]())) == pages["known"][1]
+
+
+def test_the_table_has_the_gaps_of_each_channel(pages):
+    diagnosis, text = pages["known"]
+    cells = Outline(text).rows("Gaps on run-c")
+    gap = diagnosis.gap
+    stages = [gap.before, gap.calibrated, gap.after, gap.floor]
+    assert cells["overall"] == [*(format_percent(stage.overall) for stage in stages), format_percent(gap.shrink)]
+    force = [stage.channels["damper_force"] for stage in stages]
+    assert cells["damper force"] == [*map(format_percent, force), format_percent(1 - force[2] / force[0])]
+
+
+def test_refitted_parameters_stand_between_their_bounds_and_are_flagged_there(pages):
+    cells = Outline(pages["known"][1]).rows("Refitted parameters")
+    assert cells["plant.suspension_damping"] == ["150.0", "147.0", "147.0 to 153.0", "at its bound"]
+    assert cells["plant.frame_mass"] == ["20.00", "20.20", "19.60 to 20.40", "inside"]
+
+
+def test_every_run_is_drawn_and_the_held_out_one_is_named(pages):
+    block = next(
+        block for section in report_diagnosis(pages["known"][0]).sections for block in section.blocks
+        if block.kind == "signals" and block.identity == "signals-time"
+    )  # fmt: skip
+    assert list(block.runs) == ["run-c (held out)", "run-a", "run-b"]
+    assert len(block.data["panels"]) == 5 and all(len(panel["runs"]) == 3 for panel in block.data["panels"])
+
+
+def test_hostile_names_are_text(tmp_path):
+    bad = "</script><script>alert('x')</script>$a$ & \"b\" {{ 7 * 7 }}"
+    found = known(("damper_force",))
+    traces = [replace(trace, run=bad, channel=bad, unit=bad) for trace in found.evidence.traces]
+    found = replace(
+        found, name=bad, sentence=bad, notes=[bad], held_out=[bad], selected=[bad], isolable=[[bad]],
+        where=[Share(bad, 1.0)], causes=[Cause(bad, 0.9, 0.8, {bad: Estimate(1.0, 0.1, bad), "in": bad})],
+        indistinguishable=[[bad, "coil.lag"]], experiment=ProposedExperiment("none", bad, bad, 1.0, 1.0),
+        evidence=replace(
+            found.evidence, traces=traces, comfort=[ComfortFigure(bad, bad, 1.0, 1.0, 1.0)],
+            collinearity=Collinearity([bad, "b"], np.eye(2)),
+        ),
+    )  # fmt: skip
+    text = write_report(found, tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "<script>alert" not in text and "49" not in text.partition("<nav")[0].partition("<main")[2]
+    outline = Outline(text)
+    assert any("<script>" in words for words in outline.words)
+    # The scripts of the page are its own one and data, which no browser runs.
+    assert set(re.findall(r"<script[^>]*>", text)) == {"<script>", '<script type="application/json">'}
+    assert text.count("<script>") == 1
+
+
+def test_little_is_known(tmp_path):
+    """No traces, no motion, no gaps by channel, numbers that are none: what is left is printed."""
+    found = known()
+    nothing = Evidence([], {}, None, Collinearity([], np.zeros((0, 0))), [])
+    gap = Gaps(*[GapFigures(size, {}) for size in (0.3, 0.29, 0.1, np.nan)], np.nan, (np.nan, np.nan))
+    found = replace(
+        found, evidence=nothing, gap=gap, notes=[], held_out=[], isolable=[], where=[], selected=[], parameters=[]
+    )
+    outline = Outline(write_report(found, tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert outline.anchors == ["gaps", "causes", "method"]
+    assert "–" in outline.words and not any("nan" in words for words in outline.words)
+
+
+def test_short_runs_and_motion_that_stands_still(tmp_path):
+    found = known(("damper_force", "coil_current"))
+    cut = slice(0, 560)
+    fields = ("time", "measured", "nominal", "calibrated", "after")
+    traces = [replace(t, **{name: getattr(t, name)[cut] for name in fields}) for t in found.evidence.traces]
+    motion = {"velocity": np.zeros(560), "coil_current": np.zeros(560)}
+    found = replace(found, evidence=replace(found.evidence, traces=traces, motion=motion))
+    outline = Outline(write_report(found, tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert "signals" in outline.anchors and "maps" not in outline.anchors
+
+
+def test_a_group_names_both_blocks_and_what_would_decide(pages):
+    outline = Outline(pages["ambiguous"][1])
+    assert "The gap lies in the suspension or the damper" in outline.headings
+    assert outline.rows("1: alike")["add load cell"] == ["intervention", "0.988", "0.346"]
+    assert any("cannot distinguish suspension.friction and damper.seal_friction" in words for words in outline.words)
+    assert any("To tell the likely causes apart: add load cell" in text for text in outline.words)
+
+
+def test_the_nominal_simulation_is_not_called_one_with_effects(pages):
+    outline = Outline(pages["unknown"][1])
+    assert not any("with effect" in words for words in outline.words)
+
+
+def test_every_effect_is_said_in_plain_words():
+    assert set(WORDS) == set(names("effect"))
+    late = {"shift": Estimate(0.0166, 0.0001, "s")}
+    assert say_cause(Cause("sensor.clock_skew", 1.0, 0.9, late)) == "the controller's log is 16.6 ms late"
+    early = {"shift": Estimate(-0.0166, 0.0001, "s")}
+    assert say_cause(Cause("sensor.clock_skew", 1.0, 0.9, early)).endswith("16.6 ms early")
+    gain = {"channel": "driver_acceleration", "error": Estimate(0.1, 0.01, "-")}
+    assert say_cause(Cause("sensor.gain", 1.0, 0.9, gain)) == "the channel driver acceleration reads with a wrong scale"
+    assert all("{" not in say_cause(Cause(name, 1.0, 0.9, {})) and say_action(name) for name in WORDS)
+    assert say_cause(Cause("own.effect", 1.0, 0.9, {})).startswith("own.effect is at work")
+
+
+def test_a_share_of_the_gap_is_said():
+    assert say_diagnosis(known()).endswith("of the gap beyond noise; what is left is 3.5 % of the signals' spread.")
+    assert "noise alone makes" in say_diagnosis(none()) and "noise alone makes" in say_diagnosis(unknown())
+    assert "which look the same here" in say_diagnosis(ambiguous())
+
+
+def test_numbers_as_they_are_printed():
+    assert [format_percent(value) for value in (0.314, 0.0314, 0.0, None, np.nan)] == ["31 %", "3.1 %", "0 %", "–", "–"]
+    assert [format_number(value) for value in (0.0, -0.01234, 1234.5, 9.999, 1e-7, -2.5e9, np.inf)] == [
+        "0", "−0.0123", "1234", "10.0", "1.00 × 10⁻⁷", "−2.50 × 10⁹", "–",
+    ]  # fmt: skip
+    assert format_quantity(0.0123, "m") == "12.3 mm" and format_quantity(0.5, "-") == "0.500"
+    assert format_estimate(Estimate(0.08124, 0.0041, "A")) == "0.0812 ± 0.0041 A"
+    assert format_estimate(Estimate(0.000686, 0.0000094, "m")) == "0.6860 ± 0.0094 mm"
+    assert format_estimate(Estimate(4512.3, 130.0, "N s/m")) == "4512 ± 130 N·s/m"
+    assert format_estimate(Estimate(1.5, np.inf, "-")) == "1.500"
+    assert format_estimate("driver_acceleration") == "driver_acceleration"
+    assert format_sentence("no run is warmer than 35 degC") == "No run is warmer than 35 °C."
+    assert format_sentence("damper.remanence is at work.") == "damper.remanence is at work."
+
+
+def test_words_as_they_are_printed():
+    assert describe_effect("no.such_effect") == ""
+    assert describe_effect("suspension.friction") and "`" not in describe_effect("suspension.friction")
+
+
+def test_the_gap_of_a_stage_is_read_by_channel():
+    gaps = known().gap
+    assert read_gap(gaps, "after", "overall") == gaps.after.overall
+    assert read_gap(gaps, "before", "damper_force") == gaps.before.channels["damper_force"]
+    assert read_gap(gaps, "floor", "no_such_channel") is None
+    assert list_stages(known()) == ["before", "calibrated", "after", "floor"]
+    assert list_stages(none()) == ["before", "calibrated", "floor"]

@@ -1,0 +1,148 @@
+"""Reports of runs, comparisons, gaps, identifications, characterisations: the answer, what to do, the figures."""
+
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from seatsim.characterisation.response import Response
+from seatsim.characterisation.rows import Row
+from seatsim.characterisation.summary import Characterisation
+from seatsim.identification.agreement import Agreement
+from seatsim.identification.assessment import Assessment
+from seatsim.identification.information import Information, ParameterEstimate
+from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.recordings.gap import Gap, NoiseFloor, ReplayedPair
+from seatsim.report.characterisation import report_characterisation
+from seatsim.report.gap import report_gap, say_gap
+from seatsim.report.identification import report_identification
+from seatsim.report.rendering import render_report
+from seatsim.report.runs import report_runs
+from seatsim.scenario.loading import load
+from seatsim.simulation.damper_bench import SineTest
+from seatsim.simulation.runs import run_one
+
+from .outline import Outline
+
+
+@cache
+def runs():
+    scenarios = load("quickstart", {"excitation.duration": 5.0})
+    return [run_one(scenario) for scenario in scenarios]
+
+
+def test_a_run_says_comfort_and_travel():
+    outline = Outline(render_report(report_runs(runs()[:1], "seatsim run quickstart.yaml", "quickstart")))
+    assert "the driver feels" in outline.headings[0] and "m/s² (weighted RMS)" in outline.headings[0]
+    assert outline.anchors[:4] == ["figures", "signals", "spectra", "loops"] and outline.anchors[-1] == "method"
+    assert outline.rows("Every figure of the run")["RMS suspension travel"][0].endswith(" mm")
+    assert "seatsim run quickstart.yaml" in outline.words
+    assert outline.rows("Settings")["plant.driver_mass [kg]"]
+
+
+def test_a_comparison_names_the_most_comfortable_run_and_marks_it():
+    text = render_report(report_runs(runs(), "seatsim compare quickstart.yaml", "quickstart"))
+    best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
+    assert f"{best.scenario.title} is the most comfortable" in Outline(text).headings[0]
+    assert text.count('<tr class="strong">') == 1 and len(text) < 600_000
+
+
+def test_a_run_that_cannot_be_relied_on_is_marked_and_never_the_best():
+    best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
+    doubted = [replace(run, unverified=("a reason",)) if run is best else run for run in runs()]
+    outline = Outline(render_report(report_runs(doubted, "seatsim compare quickstart.yaml", "quickstart")))
+    assert f"{best.scenario.title} is the most comfortable" not in outline.headings[0]
+    assert f"{best.scenario.title} (unverified)" in outline.rows("Figures of each run")
+    assert any(words.endswith("is unverified: a reason.") for words in outline.words)
+
+
+def pair(noise):
+    time = 1.0 + np.arange(2000) / 500
+    measured = {"damper_force": 100 * np.sin(9 * time)}
+    rng = np.random.default_rng(0)
+    simulated = {"damper_force": measured["damper_force"] + noise * rng.standard_normal(2000)}
+    return ReplayedPair(time, measured, simulated, {"damper_force": "N"})
+
+
+def gap(size, floor=0.02):
+    return Gap(size, {"damper_force": size}, NoiseFloor(overall=floor, channels={"damper_force": floor}), ("a note",))
+
+
+def test_a_gap_says_where_it_is_largest_and_what_to_do():
+    report = report_gap("nominal against rig", gap(0.3), {"run-a": pair(20.0), "run-b": pair(5.0)}, "seatsim gap a b")
+    outline = Outline(render_report(report))
+    assert "furthest off in the damper force, by 30 %" in outline.headings[0]
+    assert any("seatsim diagnose" in words for words in outline.words) and "A note." in outline.words
+    assert "Gap of each run" in outline.headings
+    assert say_gap(gap(0.021)).endswith("there is nothing left to explain.")
+
+
+def test_a_short_recording_has_no_spectrum_and_says_so():
+    short = pair(1.0)
+    short = short._replace(
+        time=short.time[:40], measured={"damper_force": short.measured["damper_force"][:40]},
+        simulated={"damper_force": short.simulated["damper_force"][:40]},
+    )  # fmt: skip
+    outline = Outline(render_report(report_gap("x", gap(0.3), {"run-a": short}, "seatsim gap a b")))
+    assert "The runs are too short for a spectrum." in outline.words
+
+
+def identification(parts):
+    rng = np.random.default_rng(1)
+    x = 0.01 * np.sin(np.arange(900) / 30)
+    force = 500 * np.gradient(x) * 500
+    record = BenchRecord("sine, 1 A", "sine.csv", 500.0, x, np.gradient(x) * 500, force, np.ones(900), False, None)
+    judged = [
+        Assessment(record, part, force + rng.standard_normal(900), Agreement(0.99, 0.02, 5.0, 93.2)) for part in parts
+    ]
+    known = [ParameterEstimate("c_a", 500.0, 2.0, "N s/m", True), ParameterEstimate("k0", 3.0, 30.0, "N/m", False)]
+    return SimpleNamespace(
+        model="bouc_wen", assessments=judged, information=Information(known, [("c_a", "k0", 0.99)], 100.0), notes=[],
+        mean=lambda part: Agreement(0.99, 0.02, 5.0, 93.2) if part in parts else None,
+    )  # fmt: skip
+
+
+def test_an_identification_says_how_well_it_predicts_and_what_the_data_leave_open():
+    outline = Outline(render_report(report_identification(identification(["train", "test"]), "seatsim identify")))
+    assert outline.headings[0].startswith("bouc_wen predicts the damper's force well: a fit of 93.2 %")
+    assert outline.headings[0].endswith("on records that took no part in the fit.")
+    assert any("Fix k0 with --fix" in words for words in outline.words)
+    assert outline.rows("In bold")["k0"] == ["3.0000", "59", "N/m", "not identified"]
+    assert outline.rows("Parameters that stand in")["c_a"] == ["k0", "0.990"]
+
+
+def test_an_identification_without_held_out_records_asks_for_some():
+    outline = Outline(render_report(report_identification(identification(["train"]), "seatsim identify")))
+    assert "none was held out" in outline.headings[0] and any("Hold out records" in words for words in outline.words)
+
+
+def test_a_characterisation_says_force_and_response():
+    angle = np.linspace(0, 2 * np.pi, 300)
+    loop = SineTest(angle, 0.01 * np.sin(angle), 0.06 * np.cos(angle), 300 * np.cos(angle))
+    row = Row("a", "a.csv", 3, 0, 0.0, amplitude=0.01, frequency=1.0, peak_rebound=100.0, offset=1e-12, loop=loop)
+    rows = [row, row._replace(record="b", current=1.0, peak_rebound=450.0)]
+    step = Response("a", 0.0, 1.0, 5, "constant speed", t95=0.0231, time=np.linspace(0, 0.1, 50), share=np.ones(50))
+    found = Characterisation("rig", "data", True, rows, [step], [])
+    outline = Outline(render_report(report_characterisation(found, ["a remark"], "seatsim characterise data")))
+    assert outline.headings[0] == (
+        "At ±10.0 mm and 1.00 Hz the damper gives up to 450 N at 1.00 A, 4.5 times its force at 0 A; it follows a step"
+        " of the current within 23.1 ms."
+    )
+    assert outline.rows("Peaks, energy")["a"][8] == "0" and "steps" in outline.anchors
+    assert any("three currents" in words for words in outline.words)
+
+
+@pytest.mark.parametrize("text", ["<img src=x onerror=alert(1)>", "</script><script>alert(1)</script>", "{{ 7*7 }}"])
+def test_text_of_files_stays_text_in_every_kind(text):
+    hostile = identification(["test"])
+    hostile.model, hostile.notes = text, [text]
+    hostile.assessments[0] = hostile.assessments[0]._replace(record=hostile.assessments[0].record._replace(name=text))
+    pages = [
+        render_report(report_identification(hostile, text)),
+        render_report(report_gap(text, gap(0.3), {text: pair(3.0)}, text)),
+        render_report(report_characterisation(Characterisation(text, text, True, [], [], [text]), [text], text)),
+    ]
+    for page in pages:
+        assert text in " ".join(Outline(page).words) and page.count("<script>") == 1 and "<img" not in page
