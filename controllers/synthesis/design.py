@@ -9,12 +9,12 @@ from typing import TypedDict, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from controllers.synthesis.certify import Certificate
 from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_whole
+from seatsim.schema.yaml_source import Source
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,15 +89,12 @@ class Design:
         Raises:
             InputError: the file is missing, is not YAML, or lacks a key; file and key are named.
         """
+        plain = Source(Path(path)).data
         try:
-            plain = _yaml().load(Path(path))
-        except (OSError, YAMLError) as error:
-            raise InputError(f"{path}: cannot read the design: {error}") from error
-        try:
-            return _from_plain(plain)
+            return _from_plain(cast("_PlainDesign", plain))
         except KeyError as error:
             raise InputError(f"{path}: the design lacks the key {error}") from error
-        except (TypeError, ValueError, InputError) as error:
+        except (TypeError, ValueError, IndexError, AttributeError, InputError) as error:
             raise InputError(f"{path}: not a design: {error}") from error
 
 

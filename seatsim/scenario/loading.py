@@ -21,8 +21,10 @@ from seatsim.scenario.published import check_published
 from seatsim.scenario.scenario import Control, DamperChoice, Inverse, Scenario, Solver, Start
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.registry import Record, Registry
+from seatsim.schema.text import explain_bad_name
 from seatsim.schema.validation import build, check_keys, chosen_class, mapping, sweep_hint
-from seatsim.schema.yaml_source import KeyPath, Source
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import KeyPath
 
 if TYPE_CHECKING:
     from seatsim.excitations.base import Excitation
@@ -94,8 +96,19 @@ def read_scenario(source: Source, label: Mapping[str, object]) -> Scenario:
             raise source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator, temperature,"
                                    " controller and excitation")  # fmt: skip
     sections = {section: read(data[section], source) for section, read in _READERS.items() if section in data}
-    name = str(data.get("name", source.path.stem))
+    name = _name(data, source)
     return Scenario(name=name, label=label, source=source, **_by_field(sections))
+
+
+def _name(data: Mapping[str, object], source: Source) -> str:
+    """Return the name of a scenario, which its folder of results has."""
+    name = data.get("name", source.path.stem)
+    if isinstance(name, dict | list) or name is None:
+        raise source.error(("name",), f"{name!r} is no name; write it as text")
+    problem = explain_bad_name(str(name)) if "name" in data else ""
+    if problem:
+        raise source.error(("name",), f"{str(name)!r} {problem}")
+    return str(name)
 
 
 def reread(scenario: Scenario, sections: Iterable[str], source: Source, label: Mapping[str, object]) -> Scenario:

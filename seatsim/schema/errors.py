@@ -2,6 +2,7 @@
 
 SeatsimError            everything that seatsim raises on purpose
 ├── InputError          a file, a value or a name is wrong (exit status 2, nothing written)
+├── OutputError         a file could not be written, such as on a full disk (exit status 1, nothing half-written)
 ├── RunError            a simulation could not be carried to its end (exit status 1)
 └── SynthesisError      a controller with the wanted property does not exist or was not found (exit status 1)
 """
@@ -22,6 +23,10 @@ class InputError(SeatsimError):
     """A file, a value or a name from the user is wrong."""
 
     exit_status = 2
+
+
+class OutputError(SeatsimError):
+    """A file could not be written, although its place permits it: the disk is full, or failed."""
 
 
 class RunError(SeatsimError):

@@ -16,7 +16,7 @@ from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row, row_columns
 from seatsim.characterisation.summary import Characterisation, contents
 from seatsim.cli.outputs.runs import write_pictures
-from seatsim.schema.files import write_json, write_whole
+from seatsim.schema.files import write_json, write_together, write_whole
 
 LISTED = 45
 """Most rows of the table on the terminal."""
@@ -60,11 +60,14 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
     from seatsim.plots.bench.characterisation import plot_characterisation
 
     table = pd.DataFrame([row_columns(row) for row in found.rows])
-    paths = [
-        write_whole(folder / "cycles.csv", partial(table.to_csv, index=False)),
-        write_json(folder / "characterisation.json", contents(found)),
-    ]
-    return [*paths, *write_pictures(plot_characterisation(found), folder)]
+    return write_together(
+        folder,
+        lambda part: [
+            write_whole(part / "cycles.csv", partial(table.to_csv, index=False)),
+            write_json(part / "characterisation.json", contents(found)),
+            *write_pictures(plot_characterisation(found), part),
+        ],
+    )
 
 
 def make_tables(found: Characterisation) -> list[Table]:

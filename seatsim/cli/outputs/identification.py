@@ -19,7 +19,7 @@ from seatsim.dampers.base import OWN, find_confidence
 from seatsim.identification.agreement import Agreement
 from seatsim.identification.identify import Identification
 from seatsim.identification.model_benchmark import BenchmarkEntry
-from seatsim.schema.files import write_json, write_text, write_whole
+from seatsim.schema.files import write_json, write_text, write_together, write_whole
 
 LISTED = 40
 """Most records of the table on the terminal."""
@@ -34,17 +34,19 @@ def write_identification(found: Identification, folder: str | Path) -> list[Path
     """Write `parameters.yaml`, `fit.json` and the picture of an identification; return their paths."""
     from seatsim.plots.bench.identification import plot_predictions
 
-    folder = Path(folder)
     text = io.StringIO(HEAD + ("" if found.commanded else NO_COIL))
     text.seek(0, io.SEEK_END)
     yaml = YAML()
     yaml.default_flow_style = False
     yaml.dump(encode_parameters(found), text)
-    paths = [
-        write_text(folder / "parameters.yaml", text.getvalue()),
-        write_json(folder / "fit.json", encode_identification(found)),
-    ]
-    return [*paths, *write_pictures({"loops": plot_predictions(found)}, folder)]
+    return write_together(
+        Path(folder),
+        lambda part: [
+            write_text(part / "parameters.yaml", text.getvalue()),
+            write_json(part / "fit.json", encode_identification(found)),
+            *write_pictures({"loops": plot_predictions(found)}, part),
+        ],
+    )
 
 
 def encode_parameters(found: Identification) -> dict[str, object]:

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from seatsim.schema.files import write_json, write_whole
+from seatsim.schema.files import write_json, write_together, write_whole
 from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Result, Run
@@ -26,6 +26,10 @@ COMPRESSION = 3
 
 def write_result(result: Result, folder: Path) -> list[Path]:
     """Write `summary.csv`, `summary.json`, `history.parquet` and the pictures of a result; return their paths."""
+    return write_together(folder, partial(_write_files, result))
+
+
+def _write_files(result: Result, folder: Path) -> list[Path]:
     with ThreadPoolExecutor(max_workers=1) as pool:
         # Compressing the histories, in a thread of its own, releases Python's lock to the drawing of the pictures.
         history = pool.submit(write_histories, result.runs, folder / "history.parquet")

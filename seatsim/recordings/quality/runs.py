@@ -14,6 +14,7 @@ from seatsim.recordings.quality.noise_level import check_noise
 from seatsim.recordings.quality.residual import filter_band, find_delay
 from seatsim.recordings.quality.run_under_test import LATE, MOTION, RunUnderTest
 from seatsim.rig.temperature import Thermal
+from seatsim.schema.tables import numbers, read_table
 
 SLOWEST, FASTEST = 10.0, 200_000.0
 """Hz; rates of loggers of vibration lie between: below, nothing of a seat's resonances is left."""
@@ -23,13 +24,11 @@ SHORTEST, SHORT = 4.0, 10.0
 
 def check_clock(run: RunUnderTest) -> Iterator[Issue]:
     """Compare the column `time` of a run, where there is one, with the stated sample rate."""
-    import pandas as pd
-
     path, interval = run.recording.folder / run.recording.runs[run.name].file, 1.0 / run.rate
-    frame = pd.read_csv(path, usecols=lambda column: column == "time")
+    frame = read_table(path)
     if "time" not in frame:
         return
-    time = pd.to_numeric(frame["time"], errors="coerce").to_numpy(dtype=np.float64)
+    time, _ = numbers(frame, "time")
     steps = np.diff(time) / interval
     is_even = np.abs(steps - 1.0) <= 0.75
     jumps = np.flatnonzero(~is_even)

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from seatsim.schema.errors import InputError, RunError
-from seatsim.schema.modules import use_all, used_files
+from seatsim.schema.modules import started_elsewhere, use_all, used_files
 from seatsim.sweeps.engines.base import Work, simulate_one
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Selection
@@ -77,6 +77,7 @@ class ClusterEngine(NamedTuple):
         # What goes wrong is said once, by the error that reaches the user.
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         if self.address is None:
+            stack.enter_context(started_elsewhere())
             cluster = LocalCluster(
                 n_workers=self.jobs, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
             )
