@@ -185,12 +185,15 @@ def _to_plain_proof(proof: Certificate) -> _PlainProof:
 
 
 def _from_plain(plain: _PlainDesign) -> Design:
-    return Design(
-        gain=np.array(plain["gain"], dtype=float),
-        max_gain=float(plain["max_gain"]),
-        lower_bound=float(plain["lower_bound"]),
-        loops=tuple(_from_plain_loop(loop) for loop in plain["loops"]),
-    )
+    gain, loops = np.array(plain["gain"], dtype=float), tuple(_from_plain_loop(loop) for loop in plain["loops"])
+    if not np.isfinite(gain).all():
+        raise ValueError("an entry of gain is not a finite number")
+    if not loops:
+        raise ValueError("loops is empty")
+    wanted = (loops[0].plant.B2.shape[1], loops[0].plant.C2.shape[0])
+    if gain.shape != wanted:
+        raise ValueError(f"gain has the shape {gain.shape}; the plant of its loop has {wanted}, a row for each control")
+    return Design(gain, float(plain["max_gain"]), float(plain["lower_bound"]), loops)
 
 
 def _from_plain_loop(plain: _PlainLoop) -> ClosedLoop:

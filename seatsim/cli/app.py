@@ -6,6 +6,7 @@ import os
 import shlex
 import sys
 import traceback
+import warnings
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,7 +23,7 @@ from seatsim.cli.commands.runs import compare, run
 from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.sweeps import sweep, sweep_report
 from seatsim.cli.commands.synthesis import synthesise
-from seatsim.cli.terminal import answer_as_json, answer_error, complain, fail, print_any_letter
+from seatsim.cli.terminal import answer_as_json, answer_error, complain, fail, print_any_letter, warn
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.modules import MissingModuleError
 
@@ -84,6 +85,7 @@ def _seatsim(
 def main() -> None:
     """Run the command line: exit 0 done, 1 a run failed, 2 bad input (nothing written)."""
     print_any_letter()
+    warnings.showwarning = lambda message, *_, **__: warn([str(message)], "warning")
     try:
         _refuse_settings_of_libraries()
         app(prog_name="seatsim")

@@ -69,7 +69,7 @@ def test_nothing_is_left_where_writing_fails(design, tmp_path):
         ("a: [", "line 2: did not find"),
         ("", "holds no mapping"),
         ("{gain: [[.nan]], max_gain: 1, lower_bound: 0, loops: []}", "not a finite number"),
-        ("{gain: [1.0], max_gain: 1, lower_bound: 0, loops: []}", "a row for each control"),
+        ("{gain: [1.0], max_gain: 1, lower_bound: 0, loops: []}", "loops is empty"),
     ],
 )
 def test_broken_files_are_named(tmp_path, text, words):
