@@ -122,7 +122,7 @@ def digest(modules: Iterable[ModuleType]) -> str:
     Raises:
         OSError: a source cannot be read any more.
     """
-    state = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
+    state = hashlib.sha256(f"checked {numba.__version__} {sys.version}".encode())
     for module in sorted(_reachable(modules), key=lambda module: module.__name__):
         state.update(f"{module.__file__}".encode() + Path(str(module.__file__)).read_bytes())
         for part in _loaded(module):

@@ -12,6 +12,7 @@ from seatsim.recordings.quality.gravity import check_constants
 from seatsim.recordings.quality.issue import Issue, Severity, issue_in_all_runs
 from seatsim.recordings.quality.noise_level import check_noise
 from seatsim.recordings.quality.residual import filter_band, find_delay
+from seatsim.recordings.quality.rows import check_stated
 from seatsim.recordings.quality.run_under_test import LATE, MOTION, RunUnderTest
 from seatsim.rig.temperature import Thermal
 from seatsim.schema.tables import numbers, read_table
@@ -49,7 +50,7 @@ def check_clock(run: RunUnderTest) -> Iterator[Issue]:
 
 def check_all_runs(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Report faults that need all runs together."""
-    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, check_constants, _fahrenheit):
+    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, check_constants, check_stated, _fahrenheit):
         yield from check(runs)
 
 
