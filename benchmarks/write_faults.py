@@ -1,6 +1,6 @@
 """A full disk at every moment: each call that writes fails once, for every command, and nothing may be half-written.
 
-    python benchmarks/write_faults.py [--only gap]
+    python benchmarks/write_faults.py [--only gap] [--every 1]
 
 Each command runs once as it is, which counts its calls of open, write, fsync, mkdir, link and rename below the folder
 of its results. Then it runs as often again, and the n-th of these calls fails as on a full disk: into a folder that is
@@ -52,13 +52,14 @@ def main() -> None:
     """Start this file again with the library preloaded, or, where it is, fail the calls of each command."""
     options = argparse.ArgumentParser()
     options.add_argument("--only", nargs="*", default=list(COMMANDS), help="commands to try")
+    options.add_argument("--every", type=int, default=1, help="fail only every so-manieth call")
     asked = options.parse_args()
     if ROOT not in os.environ:
         with tempfile.TemporaryDirectory() as place:
             raise SystemExit(start_again(Path(place), sys.argv[1:]))
     faults = ctypes.CDLL(os.environ[LIBRARY])
     faults.fault_arm.argtypes, faults.fault_count.restype = [ctypes.c_long], ctypes.c_long
-    broken = [f"{name}: {problem}" for name in asked.only for problem in try_command(name, faults)]
+    broken = [f"{name}: {problem}" for name in asked.only for problem in try_command(name, faults, asked.every)]
     print("\n".join(broken) or "nothing was half-written", flush=True)
     raise SystemExit(bool(broken))
 
@@ -71,7 +72,7 @@ def start_again(place: Path, arguments: Sequence[str]) -> int:
     return subprocess.run([sys.executable, __file__, *arguments], env=environment, check=False).returncode
 
 
-def try_command(name: str, faults: ctypes.CDLL) -> list[str]:
+def try_command(name: str, faults: ctypes.CDLL, every: int = 1) -> list[str]:
     """Return what is wrong after each call of a command has failed once."""
     root = Path(os.environ[ROOT])
     problems = []
@@ -86,13 +87,17 @@ def try_command(name: str, faults: ctypes.CDLL) -> list[str]:
         reset(root, before)
         run(name, root, faults, 0)
         calls = int(faults.fault_count())
-        for number in range(1, calls + 1):
+        for number in range(1, calls + 1, every):
             reset(root, before)
             said = run(name, root, faults, number)
             problem = judge(said, contents(root), before, set(whole), name in KEEPING)
             if problem:
                 problems.append(f"call {number} of {calls}{' over old files' * is_replaced}: {problem}")
-        print(f"{name}{', over old files' * is_replaced}: {calls} calls failed, {len(problems)} problems", flush=True)
+        tried = len(range(1, calls + 1, every))
+        print(
+            f"{name}{', over old files' * is_replaced}: {tried} of {calls} calls failed, {len(problems)} problems",
+            flush=True,
+        )
     return problems
 
 

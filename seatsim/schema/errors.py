@@ -12,11 +12,20 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+LONGEST = 200
+"""Letters of a name from which on none is sought that is near: that takes ever longer, and it is none."""
+
+
+LONGEST_MESSAGE = 2000
+
 
 class SeatsimError(Exception):
-    """Base of all errors that seatsim raises on purpose."""
+    """Base of all errors that seatsim raises on purpose; a message that repeats an endless value is shortened."""
 
     exit_status = 1
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message if len(message) <= LONGEST_MESSAGE else f"{message[:1000]} ... {message[-500:]}")
 
 
 class InputError(SeatsimError):
@@ -39,5 +48,7 @@ class SynthesisError(SeatsimError):
 
 def nearest(name: object, known: Iterable[str]) -> str:
     """Return `" (did you mean 'x'?)"` for the known name closest to `name`, or an empty string."""
+    if len(str(name)) > LONGEST:
+        return ""
     matches = difflib.get_close_matches(str(name), [str(k) for k in known], n=1, cutoff=0.5)
     return f" (did you mean '{matches[0]}'?)" if matches else ""

@@ -113,6 +113,8 @@ def check_folder(folder: Path) -> None:
         InputError: it is a file or lies in one, may not be written, or its name cannot be used.
     """
     try:
+        if "\0" in str(folder):
+            raise ValueError("it holds a zero byte")
         there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
     except (OSError, ValueError) as error:
         raise InputError(f"{str(folder)!r}: cannot be written: {error}; give another --out") from error

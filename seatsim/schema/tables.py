@@ -62,6 +62,7 @@ def read_table(path: Path) -> pd.DataFrame:
 
     content = unpack(read_bytes(path, LARGEST_FILE, "a table"), path)
     content = content.removeprefix(b"\xef\xbb\xbf")
+    _check_text(content, path)
     names = _read_names(content, path)
     rows = content.count(b"\n")
     check_memory(8.0 * NUMBERS_OF_VALUE * rows * len(names) + len(content), f"{path}: {rows} rows", "split the table")
@@ -119,6 +120,17 @@ def numbers(frame: pd.DataFrame, column: str) -> tuple[NDArray[np.float64], NDAr
     return values, np.flatnonzero(~np.isfinite(values))
 
 
+def _check_text(content: bytes, path: Path) -> None:
+    """Raise InputError where content is not UTF-8: pyarrow passes over rows that are not, and over their length."""
+    try:
+        content.isascii() or content.decode()
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(
+            f"{path}, line {line}: cannot be read as a table: is not UTF-8 text; save it as such"
+        ) from error
+
+
 def _only_member(packed: io.BytesIO) -> IO[bytes]:
     archive = zipfile.ZipFile(packed)
     names = archive.namelist()
@@ -144,7 +156,7 @@ def _read_names(content: bytes, path: Path) -> list[str]:
         raise InputError(f"{path}: its first line does not end within {in_mib(LONGEST_LINE)}; it is no table")
     try:
         row = next(csv.reader([head.decode("utf-8")]), [])
-    except (UnicodeDecodeError, csv.Error) as error:
+    except csv.Error as error:
         raise InputError(f"{path}: cannot be read as a table: {error}; its first line holds no names") from error
     names = [name.strip() or f"column {number}" for number, name in enumerate(row, 1)]
     if not names:

@@ -133,6 +133,7 @@ class _Composer:
         if event.tag is not None:
             raise YamlError(f"the tag '{event.tag}' is not permitted; write the plain value", line)
         if isinstance(event, yaml.ScalarEvent):
+            _check_signs(event.value, line)
             node = _Node(line, _read_scalar(event.value, line) if event.implicit[0] else event.value)
         elif depth >= DEEPEST:
             raise YamlError(f"lists and mappings nest more than {DEEPEST} deep", line)
@@ -155,6 +156,7 @@ class _Composer:
             at = _line(event)
             if not isinstance(event, yaml.ScalarEvent) or event.tag is not None:
                 raise YamlError("a key is no text; write each key as 'key: value'", at)
+            _check_signs(event.value, at)
             key, value = event.value, self._node(next(self.events), depth + 1)
             if key == "<<" and event.implicit[0]:
                 merged += _mappings(value)
@@ -195,6 +197,12 @@ def _read_scalar(text: str, line: int) -> Scalar:
             raise YamlError(f"a whole number of {len(text)} digits; permitted: at most {LONGEST_NUMBER}", line)
         return int(text, 0) if text[:2] in ("0x", "0o") else int(text)
     return float(text) if _FLOAT.fullmatch(text) else text
+
+
+def _check_signs(text: str, line: int) -> None:
+    """Raise YamlError at a zero byte, which `"\\0"` puts into a text: no path, name or unit may have one."""
+    if "\0" in text:
+        raise YamlError(f"'{_short(text)!r}' holds a zero byte; leave it out", line)
 
 
 def _short(text: str) -> str:

@@ -44,7 +44,7 @@ def test_numbers_are_read_to_the_last_bit(tmp_path):
 
 
 def test_what_is_no_finite_number_is_told_by_its_row(tmp_path):
-    (tmp_path / "a.csv").write_bytes(b"a,b\n1,\n,x\ninf,3\n1_0,\xff\n")
+    (tmp_path / "a.csv").write_bytes(b"a,b\n1,\n,x\ninf,3\n1_0,\xc3\xbf\n")
     frame = read_table(tmp_path / "a.csv")
     assert numbers(frame, "a")[1].tolist() == [1, 2, 3]
     assert numbers(frame, "b")[1].tolist() == [0, 1, 3]
@@ -58,6 +58,7 @@ def test_what_is_no_finite_number_is_told_by_its_row(tmp_path):
         (b"a,b\n1,2,\n", "line 2: has 3 columns"),
         (b"a,a\n1,2\n", "line 1: column 'a' stands twice"),
         (b"", "the file is empty"),
+        (b"a,b\n1,\xff\n", "line 2: cannot be read as a table: is not UTF-8 text"),
         (b"\xff\xfea\0,\0b\0\n\0", "cannot be read as a table"),
         (b"x" * 2**21, "first line does not end"),
         (b",".join([b"a"] * 5000) + b"\n", "5000 columns"),

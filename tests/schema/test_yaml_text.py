@@ -64,6 +64,8 @@ def test_keys_that_are_merged_stand_below_the_own_ones_and_the_first_mapping_win
         ("a: 1\n---\nb: 2", "a second document begins", 2),
         ("a: " + "9" * 5000, "a whole number of 5000 digits", 1),
         ("a: b\x00c", "is not permitted in YAML", 1),
+        ('a: 1\nb: "x\\0y"', "holds a zero byte", 2),
+        ('"x\\0y": 1', "holds a zero byte", 1),
         ("<<: 3", "'<<' takes a mapping", 1),
         ("a: [1", "did not find expected", None),
         ("a:\n\t- 1", "cannot start any token", 2),
