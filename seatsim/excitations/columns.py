@@ -9,6 +9,7 @@ import numpy as np
 
 from seatsim.excitations.base import Array
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.guarded import is_there
 from seatsim.schema.tables import numbers, read_table
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def read_record(path: str, axis: str, column: str, start: float) -> EvenSeries:
 
 
 def _read(path: str, axis: str, column: str) -> pd.DataFrame:
-    if not Path(path).exists():
+    if not is_there(Path(path)):
         raise InputError(f"{path}: no such file{_neighbour(Path(path))}")
     table = read_table(Path(path))
     for name in (axis, column):

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from seatsim.recordings.bench_columns import DRIVES, KNOWN, check_needed, columns_of, constants, numbers
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.guarded import is_there
 from seatsim.schema.tables import read_table
 from seatsim.schema.yaml_source import Source
 
@@ -89,7 +90,7 @@ def load_bench(path: str | Path) -> list[BenchRecord]:
         InputError: nothing is there, or a table is short of a column, not numeric, too short or unevenly sampled.
     """
     path = Path(path)
-    if not path.exists():
+    if not is_there(path):
         beside = [other.name for other in path.parent.iterdir()] if path.parent.is_dir() else []
         hint = nearest(path.name, beside)
         raise InputError(f"{path}: no such file or folder{hint}; give a bench table, or a folder of them")

@@ -104,7 +104,7 @@ def _stamp(path: Path) -> Stamp:
     """Return a value that changes with the content of a file, None where there is no file."""
     try:
         status = path.stat()
-    except OSError:
+    except (OSError, ValueError):
         return None
     return status.st_ino, status.st_size, status.st_mtime_ns
 

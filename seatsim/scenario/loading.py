@@ -20,6 +20,7 @@ from seatsim.scenario.expansion import expand
 from seatsim.scenario.published import check_published
 from seatsim.scenario.scenario import Control, DamperChoice, Inverse, Scenario, Solver, Start
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.guarded import is_there
 from seatsim.schema.registry import Record, Registry
 from seatsim.schema.text import explain_bad_name
 from seatsim.schema.validation import build, check_keys, chosen_class, mapping, sweep_hint
@@ -66,13 +67,13 @@ def find_file(path: Path) -> Path:
     Raises:
         InputError: there is neither.
     """
-    if path.exists():
+    if is_there(path):
         return path
     if not path.is_absolute():
         inside = Path(*path.parts[1:]) if path.parts[:1] == ("scenarios",) else path
         for folder in EXAMPLES:
             for name in (inside, inside.with_name(f"{inside.name}.yaml")):
-                if (folder / name).is_file():
+                if is_there(folder / name):
                     return folder / name
     found = {path.relative_to(folder) for folder in EXAMPLES if folder.is_dir() for path in folder.rglob("*.yaml")}
     known = sorted(str(path.with_suffix("")) for path in found if "data" not in path.parts)

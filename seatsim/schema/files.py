@@ -127,6 +127,8 @@ def check_folder(folder: Path) -> None:
 def _check_place(path: Path, is_folder: bool = False) -> None:
     """Make the folder above a place, and refuse a place that is taken."""
     check_folder(path if is_folder else path.parent)
+    if "\0" in path.name:
+        raise InputError(f"{str(path)!r}: cannot be written: it holds a zero byte; give another --out")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         if not is_folder and path.is_dir():

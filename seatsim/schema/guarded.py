@@ -36,6 +36,14 @@ def read_bytes(path: Path, largest: int, what: str) -> bytes:
         raise InputError(f"{str(path)!r}: is no path: {error}; give the path of {what}") from error
 
 
+def is_there(path: Path) -> bool:
+    """Return whether there is a file or folder; nothing is where a path is longer than the system permits."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
+
+
 @contextmanager
 def expect(path: Path | str, what: str) -> Iterator[None]:
     """Raise InputError where the content of a file, which is taken apart meanwhile, is not `what` it should be."""

@@ -200,7 +200,7 @@ def _read_scalar(text: str, line: int) -> Scalar:
 
 
 def _check_signs(text: str, line: int) -> None:
-    """Raise YamlError at a zero byte, which `"\\0"` puts into a text: no path, name or unit may have one."""
+    """Raise YamlError at a zero byte, which an escape puts into a text: no path, name or unit may have one."""
     if "\0" in text:
         raise YamlError(f"'{_short(text)!r}' holds a zero byte; leave it out", line)
 

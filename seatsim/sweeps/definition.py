@@ -18,7 +18,7 @@ from typing import Literal, NamedTuple, cast, get_args
 from seatsim.metrics.table import METRICS
 from seatsim.scenario.loading import find_file
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.guarded import read_bytes
+from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.validation import check_keys, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import YamlError, parse_value
@@ -115,7 +115,7 @@ def _read_scenario(source: Source) -> Source:
         raise source.error(("scenario",), "state a scenario file, the name of an example, or a whole scenario")
     beside = source.path.parent / stated
     try:
-        return Source(beside if beside.is_file() else find_file(Path(stated)))
+        return Source(beside if is_there(beside) else find_file(Path(stated)))
     except InputError as error:
         raise source.error(("scenario",), str(error)) from error
 

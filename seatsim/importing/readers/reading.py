@@ -12,7 +12,7 @@ import numpy as np
 
 from seatsim.importing.signals import DataFile, Group
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.guarded import in_mib, read_bytes
+from seatsim.schema.guarded import in_mib, is_there, read_bytes
 from seatsim.schema.tables import LARGEST_FILE, unpack
 
 LARGEST_SHEETS = 2**30
@@ -89,7 +89,7 @@ def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
 
 def _content(path: Path) -> bytes:
     """Return the bytes of a file, unpacked where it is packed."""
-    if not path.exists():
+    if not is_there(path):
         beside = [each.name for each in path.parent.iterdir()] if path.parent.is_dir() else []
         raise InputError(f"{path}: cannot be read: no such file{nearest(path.name, beside)}")
     content = read_bytes(path, LARGEST_FILE, "a file of measured data")
