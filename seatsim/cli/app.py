@@ -99,6 +99,9 @@ def main() -> None:
     except MemoryError as error:
         fail(f"the memory is exhausted ({error}); shorten the run, raise solver.step, or split the files")
         sys.exit(1)
+    except OSError as error:
+        fail(f"{error.filename or 'a file'}: {error.strerror or error}")
+        sys.exit(1)
     except Exception as error:
         if os.environ.get(TRACEBACK):
             raise

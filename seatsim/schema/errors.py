@@ -20,12 +20,13 @@ LONGEST_MESSAGE = 2000
 
 
 class SeatsimError(Exception):
-    """Base of all errors that seatsim raises on purpose; a message that repeats an endless value is shortened."""
+    """Base of all errors that seatsim raises on purpose; a message is one line, shortened where a value is endless."""
 
     exit_status = 1
 
     def __init__(self, message: str) -> None:
-        super().__init__(message if len(message) <= LONGEST_MESSAGE else f"{message[:1000]} ... {message[-500:]}")
+        said = " ".join(message.splitlines())
+        super().__init__(said if len(said) <= LONGEST_MESSAGE else f"{said[:1000]} ... {said[-500:]}")
 
 
 class InputError(SeatsimError):

@@ -106,6 +106,19 @@ def _put_in_place(part: Path, folder: Path, names: Iterable[Path]) -> None:
         raise
 
 
+def make_folder(folder: Path) -> None:
+    """Make a folder with those above it.
+
+    Raises:
+        InputError: it cannot be written. OutputError: the disk is full, or failed.
+    """
+    check_folder(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be made: {error.strerror}") from error
+
+
 def check_folder(folder: Path) -> None:
     """Refuse a folder that could not be written, before anything is done.
 

@@ -72,6 +72,7 @@ def read_table(path: Path) -> pd.DataFrame:
     except ArrowInvalid as error:
         raise InputError(f"{path}: cannot be read as a table: {str(error).splitlines()[0]}") from error
     check_rows(bad, path)
+    _check_quotes(content, table.num_rows, path)
     frame: pd.DataFrame = table.to_pandas()
     return frame
 
@@ -129,6 +130,14 @@ def _check_text(content: bytes, path: Path) -> None:
         raise InputError(
             f"{path}, line {line}: cannot be read as a table: is not UTF-8 text; save it as such"
         ) from error
+
+
+def _check_quotes(content: bytes, rows: int, path: Path) -> None:
+    """Raise InputError where a quotation mark is closed in another line only: all rows between would be one text."""
+    if b'"' in content and rows != sum(bool(line.strip()) for line in content.splitlines()) - 1:
+        lines = enumerate(content.splitlines(), 1)
+        line = next((number for number, text in lines if text.count(b'"') % 2), 1)
+        raise InputError(f"{path}, line {line}: a quotation mark is not closed in its line; remove it")
 
 
 def _only_member(packed: io.BytesIO) -> IO[bytes]:

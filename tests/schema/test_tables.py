@@ -56,6 +56,7 @@ def test_what_is_no_finite_number_is_told_by_its_row(tmp_path):
         (b"a,b\n1,2\n1,2,3\n", "line 3: has 3 columns where the others have 2"),
         (b"a,b\n1,2\n1\n1,2,3\n", r"line 3: has 1 columns where the others have 2 \(and 1 more lines\)"),
         (b"a,b\n1,2,\n", "line 2: has 3 columns"),
+        (b'a,b\n1,"\n2,3\n4,"\n5,6\n', "line 2: a quotation mark is not closed in its line"),
         (b"a,a\n1,2\n", "line 1: column 'a' stands twice"),
         (b"", "the file is empty"),
         (b"a,b\n1,\xff\n", "line 2: cannot be read as a table: is not UTF-8 text"),
