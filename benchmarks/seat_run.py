@@ -44,7 +44,7 @@ def seatsim_run(acceleration: np.ndarray, parts: LoopSetup) -> tuple[Callable[[]
     """Return a function that runs seatsim's compiled loop, and the history that it fills."""
     none, samples = np.zeros(0), len(acceleration)
     inputs = LoopInputs(acceleration, np.zeros(samples), np.full(samples, 20.0), none, none, none, none)
-    history = np.empty((samples, len(CHANNELS)))
+    history = np.empty((len(CHANNELS), samples)).T
     loop = compiled(run_loop, (ModifiedBoucWen, OutputFeedback))
 
     def run() -> None:

@@ -22,11 +22,12 @@ from seatsim.diagnosis.movement import share_removable
 from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Linearisation
 from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment
+from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment, RunGaps
 from seatsim.diagnosis.sentences import write_answer
 from seatsim.diagnosis.solve import Solution
 from seatsim.diagnosis.validate import (
     choose_held_out_run,
+    choose_typical_run,
     make_scenario,
     refit_without,
     shrink_by_run,
@@ -70,9 +71,11 @@ def validate_on_held_out(solution: Solution) -> Validation:
     objective, decision, selection = solution.objective, solution.decision, solution.selection
     problem, chosen = objective.problem, decision.chosen
     shrink = shrink_by_run(problem, selection.nominal, chosen)
-    # Beside an unknown cause runs differ in how much of the gap is its own; the run in the middle speaks for all.
-    quantile = problem.settings.validation.quantile if decision.verdict != "unknown" else 0.5
-    run = choose_held_out_run(problem, chosen, shrink, quantile)
+    if decision.verdict == "unknown":
+        # Runs differ in how much of the gap is the unknown cause's own.
+        run = choose_typical_run(problem, selection.nominal, chosen)
+    else:
+        run = choose_held_out_run(problem, chosen, shrink, problem.settings.validation.quantile)
     calibrated, augmented = refit_without(objective, chosen, run)
     if decision.verdict == "unknown" and not chosen.parameters.terms:
         augmented = selection.nominal
@@ -88,13 +91,18 @@ def validate_on_held_out(solution: Solution) -> Validation:
     # A single run has no spread: its standard deviation with n - 1 degrees of freedom would be NaN.
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
     gaps = measure_gaps(problem, next(each for each in runs if each.name == run), spread)
-    if decision.verdict == "unknown" and chosen.parameters.terms and gaps.shrink < 0.0:
-        return validate_on_held_out(_give_up(solution, f"raises the gap of {run}, without which it was fitted"))
+    if decision.verdict == "unknown" and chosen.parameters.terms and _raises_gap(list_gaps(problem, runs)):
+        return validate_on_held_out(_give_up(solution, f"raises the gap of all runs as fitted without {run}"))
     if not solution.stochastic and decision.verdict in ("known", "ambiguous"):
         taken = share_removable(objective.on_runs([run]), gaps.before.overall, gaps.after.overall)
         if taken < problem.settings.decision.least_taken:
             solution = solution._replace(decision=call_unknown(problem.settings.decision, decision))
     return Validation(solution, nominal, run, calibrated, augmented, (first, second, third), runs, gaps)
+
+
+def _raises_gap(runs: Sequence[RunGaps]) -> bool:
+    """Whether the augmented scenario leaves more of all runs together than the nominal one."""
+    return sum(run.after.overall**2 for run in runs) > sum(run.before.overall**2 for run in runs)
 
 
 def _give_up(solution: Solution, reason: str) -> Solution:

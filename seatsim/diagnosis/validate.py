@@ -30,20 +30,39 @@ def choose_held_out_run(problem: DiagnosisProblem, chosen: Evaluation, shrink: A
 
     The gap of a new excitation shrinks less than that of the runs in which the effect was found, hence a low quantile.
     """
-    settings, runs = problem.settings.validation, problem.runs
-    if not chosen.parameters.terms or len(runs) < 2:
-        return runs[-1]
-    shares = []
-    for run in runs:
-        moves = measure_movements(problem.on_runs([run]), chosen)
-        shares.append([float(np.mean(move**2)) for move in moves])
-    share = np.array(shares) / np.maximum(np.sum(shares, axis=0), 1e-12)
-    largest = share.max(axis=1)
-    # Where every run has more than the permitted share of some effect, the one with the least is held out.
-    spared = largest < max(settings.most_share, 1.001 * largest.min())
-    moved = spared & (share.min(axis=1) > settings.least_share)
+    if not chosen.parameters.terms or len(problem.runs) < 2:
+        return problem.runs[-1]
+    share = _share_movements(problem, chosen)
+    spared = _spare(problem, share)
+    moved = spared & (share.min(axis=1) > problem.settings.validation.least_share)
     suitable = sorted(np.flatnonzero(moved if moved.any() else spared), key=lambda k: shrink[k])
-    return runs[suitable[int(quantile * (len(suitable) - 1))]]
+    return problem.runs[suitable[int(quantile * (len(suitable) - 1))]]
+
+
+def choose_typical_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: Evaluation) -> str:
+    """Return the run to hold out whose gap shrinks most nearly as much as that of all runs together."""
+    if not chosen.parameters.terms or len(problem.runs) < 2:
+        return problem.runs[-1]
+    after, before = (normalise_rms_errors(problem, each.residuals) for each in (chosen, nominal))
+    overall = 1.0 - float(np.linalg.norm(after) / np.linalg.norm(before))
+    spared = np.flatnonzero(_spare(problem, _share_movements(problem, chosen)))
+    return problem.runs[min(spared, key=lambda k: abs(1.0 - after[k] / before[k] - overall))]
+
+
+def _share_movements(problem: DiagnosisProblem, chosen: Evaluation) -> Array:
+    """Return each run's share of what each effect moves in all runs, shape (runs, effects)."""
+    moves = [measure_movements(problem.on_runs([run]), chosen) for run in problem.runs]
+    shares = np.array([[float(np.mean(move**2)) for move in of_run] for of_run in moves])
+    return np.asarray(shares / np.maximum(np.sum(shares, axis=0), 1e-12))
+
+
+def _spare(problem: DiagnosisProblem, share: Array) -> NDArray[np.bool_]:
+    """Return which runs a fit can do without.
+
+    Where every run has more than the permitted share of some effect, the one with the least is held out.
+    """
+    largest = share.max(axis=1)
+    return np.asarray(largest < max(problem.settings.validation.most_share, 1.001 * largest.min()))
 
 
 def refit_without(objective: Objective, evaluation: Evaluation, run: str) -> tuple[Evaluation, Evaluation]:

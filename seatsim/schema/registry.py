@@ -58,6 +58,10 @@ class Registry(Generic[P, S]):
         """List the registered names, sorted."""
         return names(self.kind)
 
+    def classes(self) -> tuple[type[P], ...]:
+        """Return the registered classes, sorted by name."""
+        return tuple(cast("type[P]", _classes[self.kind][name]) for name in self.names())
+
     def find(self, name: str, beside: Path | None = None) -> type[P]:
         """Return the class called `name`, or the one that `"package.module:Class"` points to; see `find`.
 

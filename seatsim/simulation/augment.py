@@ -127,7 +127,7 @@ def _chosen(effects: Sequence[object], hooks: tuple[str, ...]) -> Effects:
 
 
 def _carried(chosen: Effects, hooks: tuple[str, ...]) -> Effects:
-    registered = _acting(tuple(EFFECTS.find(name) for name in EFFECTS.names()), hooks)
+    registered = _acting(EFFECTS.classes(), hooks)
     first = {type(effect): effect for effect in reversed(chosen)}
     carried = [first.get(cls) or off(cls) for cls in registered]
     further = [effect for effect in chosen if not any(effect is kept for kept in carried)]

@@ -57,7 +57,7 @@ def run(
     setup = LoopSetup(
         Rig(plant, damper, effects), coil, factors, thermal or Thermal(), law, model, timing, coil.max_current
     )
-    out = np.empty((rows, len(CHANNELS)))
+    out = np.empty((len(CHANNELS), rows)).T
     loop = compiled(run_loop, (type(damper), type(law), type(model.damper), *map(type, effects)))
     rest, followed = (specification_of(type(part)).initial for part in (damper, model.damper))
     reached = loop(setup, inputs, rest + state_at_rest([type(effect) for effect in effects]), followed, (), out)

@@ -216,7 +216,7 @@ def test_no_fit_leaves_the_range_of_an_effect(listed):
 def test_starts_and_off_values_are_within_the_range(listed):
     for found in listed.values():
         assert all(np.all(np.array(c.start) >= c.low) and np.all(np.array(c.start) <= c.high) for c in found)
-    for cls in (EFFECTS.find(name) for name in EFFECTS.names()):
+    for cls in EFFECTS.classes():
         for name, value in EFFECTS.specification_of(cls).off.items():
             low, high = bounds(cls, name)
             assert low <= value <= high, (cls, name)

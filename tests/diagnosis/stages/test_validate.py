@@ -12,6 +12,7 @@ from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.validate import (
     choose_held_out_run,
+    choose_typical_run,
     make_scenario,
     refit_without,
     shrink_by_run,
@@ -32,12 +33,13 @@ def test_shrink_is_the_share_of_the_rms_that_is_gone_by_run(folder):
 
 @dataclasses.dataclass(frozen=True)
 class Moved:
-    """A problem that knows by how much each effect moves its one channel in each run."""
+    """A problem that knows by how much each effect moves its one channel in each run, and what all of them leave."""
 
     moves: dict
     runs: tuple
     settings: DiagnosisSettings
-    spread: tuple = (1.0,)
+    left: tuple = ()
+    spread: np.ndarray = dataclasses.field(default_factory=lambda: np.ones(1))
 
     def on_runs(self, runs):
         return dataclasses.replace(self, runs=tuple(runs))
@@ -47,7 +49,8 @@ class Moved:
 
     def _gone(self, run, effects):
         present = {effect.cause for effect in effects}
-        return sum(move for cause, move in self.moves[run].items() if cause not in present)
+        gone = sum(move for cause, move in self.moves[run].items() if cause not in present)
+        return gone + dict(self.left).get(run, 0.0)
 
 
 def choose(shares, shrink, effects=("one",), quantile=0.25, **changed):
@@ -83,6 +86,27 @@ def choose(shares, shrink, effects=("one",), quantile=0.25, **changed):
 )
 def test_the_held_out_run_by_the_shares_of_one_effect(shares, shrink, chosen):
     assert choose({"one": shares}, shrink) == chosen
+
+
+@pytest.mark.parametrize(
+    ("shares", "after", "chosen"),
+    [
+        # The RMS of all runs falls from 1 to 0.5.
+        ([0.4, 0.3, 0.3], [0.1, 0.495, 0.7], "run 1"),
+        # A run that the fit needs is not held out, however typical it is.
+        ([0.1, 0.7, 0.2], [0.1, 0.495, 0.7], "run 2"),
+    ],
+)
+def test_the_typical_run_shrinks_as_all_runs_together(shares, after, chosen):
+    runs = ("run 0", "run 1", "run 2")
+    moves = {run: {"one": np.sqrt(share)} for run, share in zip(runs, shares, strict=True)}
+    problem = Moved(moves, runs, DiagnosisSettings(), tuple(zip(runs, after, strict=True)))
+    rig = Parameters(np.zeros(0)).add(offer("x.one", "one"), np.array([1.0]))
+    residuals = [
+        {run: np.full((1, 4), left) for run, left in zip(runs, each, strict=True)} for each in ([1.0] * 3, after)
+    ]
+    rigs = [Evaluation(rig, of_rig, {}, 0.0) for of_rig in residuals]
+    assert choose_typical_run(problem, *rigs) == chosen
 
 
 def test_every_effect_counts_for_itself():
