@@ -25,7 +25,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 HERE = Path(__file__).resolve().parents[1]
 EXAMPLES = HERE / "scenarios"
@@ -338,7 +338,7 @@ def _formats(table: bytes) -> dict[str, bytes]:
         write(packed)
         files[name] = packed.getvalue()
     packed = io.BytesIO()
-    scipy.io.savemat(packed, {str(name): frame[name].to_numpy() for name in frame})
+    scipy.io.savemat(cast("str", packed), {str(name): frame[name].to_numpy() for name in frame})
     files["a.mat"] = packed.getvalue()
     return files
 
@@ -375,7 +375,7 @@ def _sealed() -> dict[str, bytes]:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "set"
         folder.mkdir()
-        seal(Path(place) / "sealed", folder, KEY, Sealed({}, {"case-0001": {"run.csv": b"a\n1\n"}}, {"seed": 1}))  # type: ignore[typeddict-item]
+        seal(Path(place) / "sealed", folder, KEY, Sealed({}, {"case-0001": {"run.csv": b"a\n1\n"}}, {"seed": 1}))
         return {"sealed": (Path(place) / "sealed").read_bytes(), "folder-seal.txt": (folder / SEAL).read_bytes()}
 
 

@@ -26,8 +26,8 @@ class CheckedCache(FunctionCache):  # type: ignore[misc]  # numba has no types
 
     def __init__(self, function: Callable[..., object]) -> None:
         super().__init__(function)
-        file = self._cache_file
-        self._cache_file = _CheckedFile(file._cache_path, file._index_name.removesuffix(".nbi"), file._source_stamp)
+        locator = self._impl.locator
+        self._cache_file = _CheckedFile(self._cache_path, self._impl.filename_base, locator.get_source_stamp())
 
     def save_overload(self, sig: object, data: object) -> None:
         """Keep a compiled function; where that fails it is compiled again by the next process."""

@@ -55,7 +55,7 @@ def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = Fal
 
 
 def write_together(folder: Path, write: Callable[[Path], Iterable[Path]]) -> list[Path]:
-    """Let `write` fill a folder beside `folder` and return its files there; then put them in place, all or none.
+    """Let `write` fill a temporary folder and return its files there; then put them in `folder`, all or none.
 
     A file of the same name is replaced, others in the folder stay. Returns the files in `folder`, in the same order.
 
@@ -64,8 +64,10 @@ def write_together(folder: Path, write: Callable[[Path], Iterable[Path]]) -> lis
     """
     folder = Path(folder)
     _check_place(folder, is_folder=True)
-    remove_left(folder.parent)
-    part = _name_part(folder)
+    # Within a folder that is there: the one above it may not be writable.
+    above = folder if folder.is_dir() else folder.parent
+    remove_left(above)
+    part = _name_part(above / os.path.basename(os.path.abspath(folder)))
     try:
         part.mkdir()
         names = [path.relative_to(part) for path in write(part)]
@@ -93,8 +95,11 @@ def _put_in_place(part: Path, folder: Path, names: Iterable[Path]) -> None:
             place.parent.mkdir(parents=True, exist_ok=True)
             is_there = place.exists()
             if is_there:
-                # A second name: the file stays in its place until the new one takes it.
-                os.link(place, kept)
+                # A second name, where the disk has such: the file stays in its place until the new one takes it.
+                try:
+                    os.link(place, kept)
+                except OSError:
+                    shutil.copy2(place, kept)
             moved.append((place, kept if is_there else None))
             (part / name).replace(place)
     except BaseException:

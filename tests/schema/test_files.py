@@ -88,6 +88,12 @@ def test_files_that_belong_together_replace_others_together(tmp_path):
     assert list(tmp_path.iterdir()) == [folder]
 
 
+def test_the_current_folder_is_a_place_as_well(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_together(Path(), write_two)
+    assert contents(tmp_path) == {"a.txt": "new", "b/c.txt": "new"}
+
+
 def test_where_one_cannot_be_put_in_place_all_stay_as_they_were(tmp_path):
     folder = tmp_path / "set"
     (folder / "b" / "c.txt").mkdir(parents=True)

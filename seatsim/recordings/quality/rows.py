@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from seatsim.recordings.quality.damage import ALONE, AROUND
-from seatsim.recordings.quality.issue import Issue, issue_in_all_runs
+from seatsim.recordings.quality.issue import Issue, Severity, issue_in_all_runs
 from seatsim.recordings.quality.run_under_test import LATE, MOTION, RunUnderTest
 from seatsim.recordings.quality.shapes import Array, measure_level, quantum
 
@@ -43,7 +43,7 @@ def _doubled(run: RunUnderTest) -> Iterator[Issue]:
     _, first = np.unique(marks, return_index=True)
     again = np.setdiff1d(np.arange(run.rows), first)
     if len(again):
-        severity = "warning" if len(again) / run.rate <= LATE else "error"
+        severity: Severity = "warning" if len(again) / run.rate <= LATE else "error"
         text = f"{len(again)} rows hold in every channel what another row holds, the first is row {again[0] + 1}"
         yield run.issue(severity, "doubled", f"{text}; they were written twice: remove them")
 
