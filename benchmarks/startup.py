@@ -24,10 +24,10 @@ import time
 start = time.perf_counter()
 import numpy as np
 import seatsim.simulation.simulate
-from seat_run import floor, seatsim_run, setup
-acceleration, parts = np.zeros(2), setup(1)
+from seatsim.benchmark.seat_run import make_setup, prepare_run
+acceleration, parts = np.zeros(2), make_setup(1)
 imported = time.perf_counter()
-seatsim_run(acceleration, parts)[0]()
+prepare_run(acceleration, parts)
 print(imported - start, time.perf_counter() - imported)
 """
 RUN = """

@@ -13,6 +13,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from seatsim.cli.commands.bench import bench
 from seatsim.cli.commands.blind import blind
 from seatsim.cli.commands.dampers import characterise, identify
 from seatsim.cli.commands.describe import describe
@@ -57,7 +58,7 @@ app = typer.Typer(
 )  # fmt: skip
 for command in (
     run, compare, sweep, sweep_report, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test,
-    new, check, schema,
+    new, check, schema, bench,
 ):  # fmt: skip
     app.command()(command)
 app.command("import")(import_data)

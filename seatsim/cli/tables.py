@@ -35,18 +35,27 @@ COLUMNS = (
 )
 COMPARED = COLUMNS[:-1]
 """Columns of which the smallest value is the best."""
+UNVERIFIED_MARK = " *"
+UNVERIFIED_NOTE = "* not verified, and never the best: a warning says why"
 
 
 def comparison(runs: Sequence[Run], title: str) -> Table:
-    """Return the table of runs: what sets them apart, then comfort, travel and effort; best comfort and travel bold."""
+    """Return the table of runs: what sets them apart, then comfort, travel and effort; best comfort and travel bold.
+
+    Runs whose figures are unverified are marked, and never the best.
+    """
     labels = _label_keys(runs)
     table = _headed(title, labels)
     for column in COLUMNS:
         table.add_column(column.heading, justify="right", vertical="bottom", no_wrap=True)
-    best = {column.metric: _best(runs, column.metric) for column in COMPARED}
+    verified = [run for run in runs if not run.unverified]
+    best = {column.metric: _best(verified, column.metric) for column in COMPARED}
+    if len(verified) < len(runs):
+        table.caption, table.caption_justify = UNVERIFIED_NOTE, "left"
     for run in runs:
         cells = [escape(_label(run, key)) for key in labels]
-        cells += [_cell(run, column, best.get(column.metric)) for column in COLUMNS]
+        cells[0] += UNVERIFIED_MARK if run.unverified else ""
+        cells += [_cell(run, column, None if run.unverified else best.get(column.metric)) for column in COLUMNS]
         table.add_row(*cells)
     return table
 

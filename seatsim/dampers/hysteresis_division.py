@@ -43,8 +43,9 @@ class Yu2017(NamedTuple):
         S = c1 + c2 / (1 + exp(c3 vm)) + cI1 exp(cI2 I),   b1, b2 < 0
 
     vm is the peak speed of the cycle, here the causal envelope `e' = (|v| - e) / tau`, tau = 0.01 s where |v|
-    > e and 2 s below; sgn(x) is smoothed and taken about the recent mean (`pieces.branch`). Read otherwise
-    than printed: eq 5 has v in the Gaussian, which for d2 != 0 would make the symmetric model asymmetric.
+    > e and 2 s below; sgn(x) is smoothed and taken about the recent mean (`pieces.branch`). S is held at 0 where
+    its terms fall below (ours), since a damper of negative height would push. Read otherwise than printed: eq 5 has
+    v in the Gaussian, which for d2 != 0 would make the symmetric model asymmetric.
 
     No parameters are published. The defaults are derived by us, from measurement: one steady cycle each of 2
     mm 5 Hz, 5 mm 3 and 4 Hz, 10 mm 1 and 2 Hz, 25 mm 0.1, 0.25 and 0.5 Hz at 0, 0.25, 0.5, 0.75, 1 A, offset
@@ -67,7 +68,9 @@ class Yu2017(NamedTuple):
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         speed = abs(v)
-        height = self.c1 + self.c2 / (1.0 + math.exp(self.c3 * z[1])) + self.c_i1 * math.exp(self.c_i2 * i)
+        # 1 / (1 + exp(q)), written so that it cannot overflow.
+        share = 0.5 - 0.5 * math.tanh(0.5 * self.c3 * z[1])
+        height = max(0.0, self.c1 + self.c2 * share + self.c_i1 * math.exp(self.c_i2 * i))
         backbone = (1.0 - math.exp(self.b1 * speed)) / (1.0 + math.exp(self.b2 * speed))
         loop = self.d1 * math.exp(-((speed - self.d2) ** 2) / self.d3) * branch(z)
         return height * scaling.yielding * (math.copysign(backbone, v) + loop)

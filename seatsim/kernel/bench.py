@@ -15,6 +15,7 @@ from seatsim.kernel.generic import force, rates, scaling_at
 from seatsim.kernel.inverse import total_force
 from seatsim.kernel.protocols import DamperModel
 from seatsim.kernel.tuples import axpy, combine
+from seatsim.kernel.work import MOST_DEBT, owe
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 
@@ -26,10 +27,6 @@ FORCE_SCALE = 10.0
 """N added to the force that the tolerance is relative to, so that a force near zero needs no finer steps."""
 MOST_PARTS = 4096
 """Most parts that a step is divided into; at 1 ms a part of 0.24 us, as short as any damper of the library needs."""
-MOST_WORK = 100
-"""Mean number of parts of a step at which a run is given up: it would take minutes, where others take milliseconds."""
-FEWEST_STEPS = 1000
-"""Steps that a short run counts as, so that a stiff start does not end it."""
 MARGIN = 32.0
 """Half as many parts are tried once the error is this much below the tolerance; twice the 16 of a method of order 4."""
 DIVERGED = 1e8
@@ -53,13 +50,14 @@ def run_bench(
 
     x [m], v [m/s], current [A] and temperature [degC] have shape (2 n + 1,), sampled every half step;
     temperature is constant over a step. `initial_state` is the damper's at the first sample, `step` in s. The number
-    returned is n + 1 on success; otherwise the damper's state has diverged at the last sample reached, or is too stiff.
+    returned is n + 1 on success; otherwise the damper's state has diverged at the last sample reached, or is too stiff
+    (`seatsim.kernel.work`).
     Set-valued friction acts as `coulomb sgn(v)`, zero at v = 0. A step is divided into at most `most_parts` parts, so
     that it adds an error of `tolerance` at most, relative to the force plus `FORCE_SCALE`. To be compiled by
     `compiled`.
     """
     z = initial_state
-    parts, spent = 1, 0
+    parts, debt = 1, 0.0
     now = temperature[0]
     factor = scaling_at(factors, now)
     for k in range(out.shape[0]):
@@ -75,8 +73,8 @@ def run_bench(
             z, parts, good = _advance(
                 damper, factor, x[span], v[span], current[span], z, step, parts, most_parts, tolerance
             )
-            spent += parts
-            if not good or spent > MOST_WORK * max(out.shape[0], FEWEST_STEPS):
+            debt = owe(debt, parts)
+            if not good or debt > MOST_DEBT:
                 return k + 1
     return int(out.shape[0])
 

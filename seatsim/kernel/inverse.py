@@ -19,8 +19,11 @@ Array = NDArray[np.float64]
 CELLS = 16
 """Cells of the grid on which a non-polynomial force-current map is searched for its first crossing.
 
-Two crossings within one cell, a sixteenth of the permitted range of current, are missed.
+A turn towards the force and back within one cell, of which no point of the grid is nearer, is missed.
 """
+INSIDE = 1e-4
+"""Distance in cells from an end of the grid at which is seen whether the force turns within the last cell."""
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 SERVED = 1e-6
 """Difference of given and wanted force, over the wanted force plus 1 N, up to which it counts as reached."""
 STRAIGHT = 1e-10
@@ -59,12 +62,13 @@ def invert(
     Outside the dissipative quadrant (`wanted v <= 0`) the current is zero; inside, the wanted force is clipped to the
     range of forces over the permitted currents at this motion, temperature and state. Where the force is a polynomial
     in the current of `order` 1 or 2 it is recovered exactly from three values and solved in closed form. Any other map,
-    which need not be monotone, is searched from zero current upward for the first cell that holds the force, then
-    bracketed there; where no cell does, the grid's closest point is refined by a parabola.
+    which need not be monotone, is searched from zero current upward for the first cell, or the first turn, that reaches
+    the force, then bracketed there; where none does, the closest turn or end is taken. So is a map of that order whose
+    set-valued friction vanishes at some current, since it has a corner there.
     """
     if wanted * v <= 0.0:
         current = 0.0
-    elif order > 0:
+    elif order > 0 and not _friction_vanishes(damper, v, scaling, z, max_current):
         current = _closed_form(damper, wanted, x, v, scaling, z, max_current)
     else:
         current = _search(damper, wanted, x, v, scaling, z, max_current, grid)
@@ -79,6 +83,13 @@ def total_force(damper: DamperModel, x: float, v: float, i: float, scaling: Temp
     smooth = force(damper, x, v, i, scaling, z)
     friction = friction_limit(damper, v, i, scaling, z)
     return smooth + friction * (0.0 if v == 0.0 else math.copysign(1.0, v))
+
+
+@jit
+def _friction_vanishes(damper: DamperModel, v: float, scaling: TemperatureScaling, z: State, top: float) -> bool:
+    """Return whether the set-valued friction is zero at one end of the range of currents, but not at the other."""
+    first, last = friction_limit(damper, v, 0.0, scaling, z), friction_limit(damper, v, top, scaling, z)
+    return min(first, last) <= 0.0 < max(first, last)
 
 
 @jit
@@ -136,25 +147,29 @@ def _search(
     # The whole grid is evaluated first: without an early exit the compiler can evaluate several currents at once.
     for j in range(CELLS + 1):
         grid[j] = total_force(damper, x, v, top * j / CELLS, scaling, z) - target
-    if grid[0] == 0.0:
-        return 0.0
-    for j in range(CELLS):
-        if grid[j] * grid[j + 1] <= 0.0:
-            left, right = top * j / CELLS, top * (j + 1) / CELLS
-            return _bracket(damper, target, x, v, scaling, z, left, grid[j], right, grid[j + 1])
-    closest = abs(grid[0])
-    for j in range(1, CELLS + 1):
-        closest = min(closest, abs(grid[j]))
-    best = 0
-    while best < CELLS and abs(grid[best]) > closest:
-        best += 1
-    if 0 < best < CELLS:
-        return _turn(damper, target, x, v, scaling, z, top, grid, best)
-    return top * best / CELLS
+    best, closest = 0.0, abs(grid[0])
+    if closest <= CLOSE:
+        return best
+    side = math.copysign(1.0, grid[0])
+    for j in range(CELLS + 1):
+        left, right = top * max(j - 1, 0) / CELLS, top * min(j + 1, CELLS) / CELLS
+        if j > 0 and side * grid[j] < 0.0:
+            return _bracket(damper, target, x, v, scaling, z, left, grid[j - 1], top * j / CELLS, grid[j])
+        current, missed = top * j / CELLS, grid[j]
+        if _turns_near(damper, target, x, v, scaling, z, top, grid, side, j):
+            current, missed = _closest(damper, target, x, v, scaling, z, side, left, right)
+            # The turn may lie beyond the target, which is then met before it.
+            if side * missed < 0.0:
+                return _bracket(damper, target, x, v, scaling, z, left, grid[max(j - 1, 0)], current, missed)
+        if abs(missed) < closest:
+            best, closest = current, abs(missed)
+        if closest <= CLOSE:
+            return best
+    return best
 
 
 @jit
-def _turn(
+def _turns_near(
     damper: DamperModel,
     target: float,
     x: float,
@@ -163,18 +178,59 @@ def _turn(
     z: State,
     top: float,
     grid: Array,
-    best: int,
-) -> float:
-    """Return the current near the grid's `best`, where the force turns, that comes closest to the target.
+    side: float,
+    j: int,
+) -> bool:
+    """Return whether the force comes closest to the target, or passes it, about the grid's point `j`.
 
-    The turn of the parabola through three points may lie beyond the target, which is then met before it.
+    `side` is the sign of force less target up to there. A force that stays the same from some current on comes closest
+    where that begins. At an end of the grid, a current just inside tells whether the force turns within the last cell.
     """
-    a, b = grid[best - 1] - grid[best], grid[best + 1] - grid[best]
-    turn = top * (best + 0.5 * (a - b) / (a + b)) / CELLS if a + b != 0.0 else top * best / CELLS
-    f_turn = total_force(damper, x, v, turn, scaling, z) - target
-    if grid[best] * f_turn <= 0.0:
-        return _bracket(damper, target, x, v, scaling, z, top * (best - 1) / CELLS, grid[best - 1], turn, f_turn)
-    return turn if abs(f_turn) < abs(grid[best]) else top * best / CELLS
+    here = side * grid[j]
+    if j > 0 and side * grid[j - 1] <= here:
+        return False
+    if j < CELLS and side * grid[j + 1] < here:
+        return False
+    if 0 < j < CELLS:
+        return True
+    inside = INSIDE if j == 0 else CELLS - INSIDE
+    near = side * (total_force(damper, x, v, top * inside / CELLS, scaling, z) - target)
+    turns: bool = near < here if j == 0 else near <= here
+    return turns
+
+
+@jit
+def _closest(
+    damper: DamperModel,
+    target: float,
+    x: float,
+    v: float,
+    scaling: TemperatureScaling,
+    z: State,
+    side: float,
+    left: float,
+    right: float,
+) -> tuple[float, float]:
+    """Return the least current in `[left, right]` whose force is closest to the target, and force less target there.
+
+    By golden section search, which ends as soon as the target is passed: `side` is the sign of the difference before.
+    """
+    low, high = right - GOLDEN * (right - left), left + GOLDEN * (right - left)
+    f_low = total_force(damper, x, v, low, scaling, z) - target
+    f_high = total_force(damper, x, v, high, scaling, z) - target
+    for _ in range(TRIALS):
+        if side * f_low < 0.0:
+            return low, f_low
+        # Of two equal forces the lesser current is kept.
+        if side * f_low <= side * f_high:
+            right, high, f_high = high, low, f_low
+            low = right - GOLDEN * (right - left)
+            f_low = total_force(damper, x, v, low, scaling, z) - target
+        else:
+            left, low, f_low = low, high, f_high
+            high = left + GOLDEN * (right - left)
+            f_high = total_force(damper, x, v, high, scaling, z) - target
+    return high, f_high
 
 
 @jit

@@ -22,6 +22,7 @@ from seatsim.kernel.loop import decide, measure
 from seatsim.kernel.loop_inputs import Timing
 from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import IntegratorState, StepInputs, advance, estimate_error, start, take_substep
+from seatsim.kernel.work import owe
 from seatsim.rig.state import (
     CUSHION_DISPLACEMENT,
     CUSHION_VELOCITY,
@@ -184,14 +185,14 @@ def _advance(
     for lane in range(LANES):
         own, at = gather(setup, setups, lane), gather(state, states, lane)
         inputs = _step_inputs(own, step, floor, acting, lane, at.current)
-        now = IntegratorState(at.now.state, at.now.rates, at.now.forces, 0.0, step)
+        now = IntegratorState(at.now.state, at.now.rates, at.now.forces, 0.0, step, at.now.debt)
         reached, rates, forces, k4, current = take_substep(own.rig, own.coil, inputs, own.factors, now, 0.0, step)
         error = estimate_error(reached, rates, k4, step, timing.tolerance)
         # Written so that a NaN masks the lane.
         smooth = 1.0 if error <= 1.0 else 0.0
         whole = 1.0 if at.now.substep == step else 0.0
         free = 1.0 if max(at.now.forces.friction_limit, forces.friction_limit) <= 0.0 else 0.0
-        after = IntegratorState(reached, rates, forces, 0.0, step)
+        after = IntegratorState(reached, rates, forces, 0.0, step, owe(at.now.debt, 1.0))
         scatter(Lane(after, current, 1.0 - smooth * whole * free), next_states, lane)
 
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from seatsim.compilation.jit import jit, jit_apart
 from seatsim.kernel.rig import STICKING, Disturbance, Rig, RigForces, derivative
 from seatsim.kernel.tuples import axpy, combine
+from seatsim.kernel.work import MOST_DEBT, owe
 from seatsim.rig.coil import Coil, relax
 from seatsim.rig.state import CUSHION_DISPLACEMENT, CUSHION_VELOCITY, VELOCITY, State
 from seatsim.rig.temperature import TemperatureScaling
@@ -24,8 +25,6 @@ SHORTEST = 2.0**-18
 """Shortest sub-step as a fraction of the step; at 1 ms some 4 ns, in which no rig of a seat moves."""
 EVENT_TOLERANCE = 1e-10
 """m/s and N; tolerances on speed and friction with which the ends of sliding and of sticking are found."""
-MOST_SUBSTEPS = 1_000_000
-"""Most sub-steps of a step: a run that needs more has failed. Four times what SHORTEST alone allows, for events."""
 MOST_TRIALS = 60
 """Most iterations in finding the end of a phase; bisection alone would be at rounding error by then."""
 SAFETY, LEAST, GREATEST = 0.9, 0.2, 4.0
@@ -69,7 +68,8 @@ class StepInputs(NamedTuple):
 class IntegratorState(NamedTuple):
     """State of the integration: state of the rig, its rates and forces, phase of the friction, next sub-step in s.
 
-    `slip` is 0 without set-valued friction, -1 or 1 where the suspension slides, STICKING where it is stuck.
+    `slip` is 0 without set-valued friction, -1 or 1 where the suspension slides, STICKING where it is stuck; `debt` the
+    sub-steps owed (`seatsim.kernel.work.owe`).
     """
 
     state: State
@@ -77,6 +77,7 @@ class IntegratorState(NamedTuple):
     forces: RigForces
     slip: float
     substep: float
+    debt: float
 
 
 @jit
@@ -122,7 +123,7 @@ def start(
     `disturbance` and `current` [A] act at that instant; `substep` [s] is the first sub-step that is tried.
     """
     rates, forces = derivative(rig, state, disturbance, current, scaling, 0.0)
-    return IntegratorState(state, rates, forces, _phase(state, rates, forces), substep)
+    return IntegratorState(state, rates, forces, _phase(state, rates, forces), substep, 0.0)
 
 
 @jit
@@ -169,15 +170,16 @@ def advance(
     """Return the state of the integration after one step, the current then in A, and whether the step succeeded.
 
     A step fails where the error stays beyond `DIVERGED` even in the shortest sub-step, or is NaN; the last valid state
-    is then returned. `tolerance` is the error in the velocities that a sub-step may add, relative to their size plus
-    `SPEED_SCALE`; above about 0.1 it has no effect.
+    is then returned. So does one by which the run takes more work than `seatsim.kernel.work` grants. `tolerance` is the
+    error in the velocities that a sub-step may add, relative to their size plus `SPEED_SCALE`; above about 0.1 it has
+    no effect.
     """
     h = now.substep
     # The common case, a rig without set-valued friction that needs one sub-step, has a short path of its own.
     if h == inputs.length and now.forces.friction_limit <= 0.0:
         state, rates, forces, k4, i_end = take_substep(rig, coil, inputs, scaling, now, 0.0, h)
         if forces.friction_limit <= 0.0 and estimate_error(state, rates, k4, h, tolerance) <= 1.0:
-            return IntegratorState(state, rates, forces, 0.0, h), i_end, True
+            return IntegratorState(state, rates, forces, 0.0, h, owe(now.debt, 1.0)), i_end, True
     return _advance_divided(rig, coil, inputs, scaling, now, tolerance)
 
 
@@ -197,8 +199,9 @@ def _advance_divided(
 ) -> tuple[IntegratorState, float, bool]:
     """Advance by one step in as many sub-steps as it needs, with the set-valued friction."""
     time, current, h = 0.0, inputs.current, now.substep
-    remaining = inputs.length
-    for _ in range(MOST_SUBSTEPS):
+    remaining, parts = inputs.length, 0.0
+    while parts <= MOST_DEBT:
+        parts += 1.0
         last = h >= remaining * (1.0 - REMAINDER)
         if last:
             h = remaining
@@ -222,13 +225,14 @@ def _advance_divided(
             rates, forces = derivative(rig, state, disturbance_at(inputs, time + h), i_end, scaling, slip)
         if slip == 0.0 or forces.friction_limit <= 0.0:
             slip = _phase(state, rates, forces)
-        now = IntegratorState(state, rates, forces, slip, h)
+        now = IntegratorState(state, rates, forces, slip, h, now.debt)
         time += h
         current = i_end
         remaining = 0.0 if last else inputs.length - time
         h = _longer(tried, error, inputs.length)
         if remaining <= 0.0:
-            return IntegratorState(now.state, now.rates, now.forces, now.slip, h), current, True
+            debt = owe(now.debt, parts)
+            return IntegratorState(now.state, now.rates, now.forces, now.slip, h, debt), current, debt <= MOST_DEBT
     return now, current, False
 
 

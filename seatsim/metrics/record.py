@@ -39,7 +39,7 @@ class RunChannels:
         """
         # A channel of NaN is how a history says that a law wants no force: there is nothing to average.
         values = self._channels.get(name)
-        if values is None or np.isnan(values).all():
+        if values is None or (math.isnan(values[0]) and np.isnan(values).all()):
             raise MissingInput(name)
         return values
 

@@ -88,9 +88,9 @@ def _render_head(sentence: str, rows: SweepRows) -> Html:
     ended = len(rows.every)
     states = {state: int((rows.every.state == state).sum()) for state in (FAILED, UNVERIFIED)}
     facts = (
-        f"{ended} of {counts['runs']} runs have ended; {states[FAILED]} of them failed and take no part in any figure"
+        f"{ended} of {counts['runs']} runs have ended; {states[FAILED]} of them failed and {states[UNVERIFIED]} are"
+        " unverified, which take no part in any figure."
     )
-    facts += f", {states[UNVERIFIED]} are unverified and do." if states[UNVERIFIED] else "."
     return tag(
         "header",
         tag("p", f"Sweep {rows.folder.name}, identity {rows.manifest['identity'][:12]}", class_="eyebrow"),

@@ -98,12 +98,13 @@ def chosen_class(
 
 def _check_finite(value: object, source: Source, keys: KeyPath) -> None:
     """Raise InputError at the first number that is infinite or not a number."""
-    if isinstance(value, Mapping | list):
+    if isinstance(value, float):
+        if not math.isfinite(value):
+            raise source.error(keys, f"{value} is not permitted; it must be a finite number")
+    elif isinstance(value, Mapping | list):
         items = value.items() if isinstance(value, Mapping) else enumerate(value)
         for key, item in items:
             _check_finite(item, source, (*keys, key))
-    elif isinstance(value, float) and not math.isfinite(value):
-        raise source.error(keys, f"{value} is not permitted; it must be a finite number")
 
 
 def _problem(record: type, error: ErrorDetails) -> str:
@@ -136,6 +137,8 @@ def _shown(value: object) -> str:
 
 def _tuples(value: object) -> object:
     """Return the value with lists as tuples, which strict validation of records asks for."""
-    if isinstance(value, Mapping):
-        return {key: _tuples(item) for key, item in value.items()}
-    return tuple(_tuples(item) for item in value) if isinstance(value, list | tuple) else value
+    if isinstance(value, list | tuple):
+        return tuple(_tuples(item) for item in value)
+    if isinstance(value, float) or not isinstance(value, Mapping):
+        return value
+    return {key: _tuples(item) for key, item in value.items()}

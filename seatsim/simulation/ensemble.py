@@ -101,7 +101,7 @@ def _as_lane(place: int, scenario: Scenario) -> _Lane | None:
     if not _has_room(setup, late):
         return None
     start = (*scenario.start, *(0.0,) * (MECHANICAL - len(scenario.start)), *initial)
-    rest = IntegratorState(start, (0.0,) * len(start), RigForces(0.0, 0.0, 0.0), 0.0, setup.timing.step)
+    rest = IntegratorState(start, (0.0,) * len(start), RigForces(0.0, 0.0, 0.0), 0.0, setup.timing.step, 0.0)
     memory = specification_of(type(control.law)).initial
     return _Lane(place, scenario, _lane_setup(setup, late, temperature), Lane(rest, 0.0, 0.0), memory, setup.timing)
 

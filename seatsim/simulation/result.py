@@ -61,12 +61,17 @@ class Channel(np.ndarray[tuple[int, ...], np.dtype[np.float64]]):
 
 @dataclass(frozen=True)
 class Run:
-    """One simulated run: its scenario, its history, its metrics by name, and what its user is warned of."""
+    """One simulated run: its scenario, its history, its metrics by name, and what its user is warned of.
+
+    `unverified` are the reasons why its figures cannot be relied on, none where they can
+    (`seatsim.simulation.validity.list_reasons`).
+    """
 
     scenario: Scenario
     history: History
     metrics: dict[str, Metric]
     warnings: tuple[str, ...] = ()
+    unverified: tuple[str, ...] = ()
 
     def __getitem__(self, name: str) -> Channel:
         """Return a channel with its unit, such as `driver_acceleration`."""
@@ -86,9 +91,14 @@ class Result:
 
     @property
     def rows(self) -> list[dict[str, object]]:
-        """The metrics of every run by name, after what sets the runs apart; SI units."""
+        """The metrics of every run by name, after what sets the runs apart, and why they are unverified; SI units."""
         return [
-            {"scenario": run.scenario.name, **run.scenario.label, **{name: m.value for name, m in run.metrics.items()}}
+            {
+                "scenario": run.scenario.name,
+                **run.scenario.label,
+                **{name: m.value for name, m in run.metrics.items()},
+                "unverified": "; ".join(run.unverified),
+            }
             for run in self.runs
         ]
 

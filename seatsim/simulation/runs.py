@@ -11,11 +11,12 @@ from typing import TypeVar
 
 from seatsim.metrics import Metric, summarise
 from seatsim.scenario.loading import load
+from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, RunError, SynthesisError
 from seatsim.simulation.result import Result, Run
 from seatsim.simulation.simulate import History, simulate
-from seatsim.simulation.validity import list_warnings
+from seatsim.simulation.validity import list_reasons
 
 R = TypeVar("R")
 
@@ -52,7 +53,9 @@ def share_a_loop(scenarios: Iterable[Scenario]) -> bool | None:
 def run_one(scenario: Scenario, carry_all_effects: bool | None = False) -> Run:
     """Simulate one scenario and work out its metrics; `carry_all_effects` as for `simulate`."""
     history = simulate(scenario, carry_all_effects=carry_all_effects)
-    return Run(scenario, history, measure_run(scenario, history), list_warnings(scenario, history))
+    metrics = measure_run(scenario, history)
+    reasons = list_reasons(scenario, history, metrics)
+    return Run(scenario, history, metrics, (*list_doubts(scenario), *reasons), reasons)
 
 
 def measure_run(scenario: Scenario, history: History) -> dict[str, Metric]:

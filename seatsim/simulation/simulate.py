@@ -18,6 +18,7 @@ from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
+from seatsim.kernel.work import MOST_WORK
 from seatsim.rig.control import LawWithNotes, prepare_law
 from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.rig.plant import Plant
@@ -75,7 +76,7 @@ def simulate(
 
     Raises:
         InputError: the scenario has no plant, or its times do not fit each other.
-        RunError: the solution grew beyond all bounds.
+        RunError: the solution grew beyond all bounds, or took more work than `seatsim.kernel.work` grants.
     """
     if scenario.plant is None or scenario.control is None:
         raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")
@@ -103,9 +104,10 @@ def simulate(
 
 
 def diverged(scenario: Scenario, reached: int) -> RunError:
-    """Return the error of a run that leaves all bounds after the samples `reached`."""
+    """Return the error of a run that leaves all bounds, or takes too much work, after the samples `reached`."""
     return RunError(
-        f"{scenario.title}: no solution beyond {reached * scenario.solver.step:.3f} s, where it leaves all bounds;"
+        f"{scenario.title}: no solution beyond {reached * scenario.solver.step:.3f} s, where it leaves all bounds"
+        f" or is too stiff (on average more than {MOST_WORK} parts of a step);"
         " check the signs of gains and stiffnesses, and the damper's parameters"
     )
 

@@ -1,11 +1,14 @@
-"""What the user of a run is warned of: doubtful values, and a model used outside the range of the data behind it."""
+"""Why the figures of a run cannot be relied on: a model outside its range, an open balance, a figure without value."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+
 import numpy as np
 
+from seatsim.metrics import Metric
 from seatsim.rig.plant import USUAL_TRAVEL, Plant
-from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import default_values
 from seatsim.schema.registry import name_of, specification_of
@@ -14,11 +17,22 @@ from seatsim.simulation.simulate import History
 
 SHARE = 0.01
 """Share of the run that may lie outside a range before it is worth a warning: a single peak changes no metric."""
+LARGEST_RESIDUAL = 1e-3
+"""Share of the energy that may be unaccounted for before the figures of a run cannot be relied on."""
 
 
-def list_warnings(scenario: Scenario, history: History) -> tuple[str, ...]:
-    """Return the doubts about a scenario, and a sentence for every range that its run leaves."""
-    return (*list_doubts(scenario), *list_ranges_left(scenario, history))
+def list_reasons(scenario: Scenario, history: History, metrics: Mapping[str, Metric]) -> tuple[str, ...]:
+    """Return why the figures of a run are unverified; nothing where they can be relied on.
+
+    A model was used outside the range of its data, a figure has no value, or more than `LARGEST_RESIDUAL` of the energy
+    is unaccounted for. A driver of several masses has no energy balance, which is no reason by itself.
+    """
+    found = list(list_ranges_left(scenario, history))
+    found += [f"{name} has no finite value" for name, metric in metrics.items() if not math.isfinite(metric.value)]
+    residual = metrics.get("energy_residual")
+    if residual is not None and residual.value > LARGEST_RESIDUAL:
+        found.append(f"{residual.value:.2g} of the energy is unaccounted for; choose a smaller solver.step")
+    return tuple(found)
 
 
 def list_ranges_left(scenario: Scenario, history: History) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from pathlib import Path
 from typing import NamedTuple
 
@@ -115,8 +116,9 @@ def execute(
         rows = _Rows(folder, plan, share, progress)
         try:
             histories = folder / "histories" if keep_histories else None
-            for outcomes in engine(Work(plan, rows.missing(), histories)):
-                rows.add(outcomes)
+            with closing(engine(Work(plan, rows.missing(), histories))) as arriving:
+                for outcomes in arriving:
+                    rows.add(outcomes)
             if left := sum(map(len, rows.missing())):
                 raise RunError(f"{folder}: the engine ended without {left} of its runs; go on with --resume")
         finally:

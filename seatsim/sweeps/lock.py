@@ -37,9 +37,12 @@ def hold_file(path: Path, alone: bool = True, wait: bool = False) -> Iterator[No
     Raises:
         InputError: another process holds it.
     """
-    # Windows has no flock; everything else of seatsim works there.
-    import fcntl
-
+    try:
+        import fcntl
+    except ImportError as error:
+        raise InputError(
+            "a sweep locks its folder with flock, which this system has not; use Linux, macOS, or Windows' WSL"
+        ) from error
     try:
         opened = path.open("a+", encoding="utf-8")
     except OSError as error:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -11,19 +10,17 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.excitations.base import Excitation, Floor
-from seatsim.metrics.table import METRICS, Metric
+from seatsim.metrics.table import METRICS
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import SeatsimError
 from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.result import Run
 from seatsim.simulation.runs import measure_run
-from seatsim.simulation.simulate import History, simulate
-from seatsim.simulation.validity import list_ranges_left
+from seatsim.simulation.simulate import simulate
+from seatsim.simulation.validity import list_reasons
 
 DONE, FAILED, UNVERIFIED = "done", "failed", "unverified"
 STATES = (DONE, FAILED, UNVERIFIED)
-LARGEST_RESIDUAL = 0.01
-"""Share of the energy that may be unaccounted for before a run counts as unverified."""
 FLOORS_KEPT = 8
 """Floors that are kept for the next runs; of 60 s at 1 kHz each takes 1.5 MB."""
 
@@ -31,8 +28,8 @@ FLOORS_KEPT = 8
 class Outcome(NamedTuple):
     """The outcome of a run by its number.
 
-    `done` has metrics that can be used; `unverified` has metrics that nothing confirms, or that come from outside the
-    range of a model; `failed` has none. `metrics` are in the order of `METRICS`, None where there is no such figure.
+    `done` has metrics that can be used; those of `unverified` cannot be relied on, and `failed` has none. `metrics` are
+    in the order of `METRICS`, None where there is no such figure.
     """
 
     run: int
@@ -57,7 +54,7 @@ def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: 
             metrics = measure_run(scenario, history)
         if histories is not None:
             write_histories([Run(scenario, history, metrics)], history_path(histories, number))
-        reason = "; ".join(_list_doubts(scenario, history, metrics))
+        reason = "; ".join(list_reasons(scenario, history, metrics))
     except SeatsimError as error:
         return Outcome(number, FAILED, str(error), seed, (None,) * len(METRICS))
     except Exception as error:  # a model of the user's own may raise anything, and the other runs go on
@@ -69,18 +66,6 @@ def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: 
 def history_path(folder: Path, number: int) -> Path:
     """Return the file that keeps the channels of a run."""
     return folder / f"run-{number:07d}.parquet"
-
-
-def _list_doubts(scenario: Scenario, history: History, metrics: Mapping[str, Metric]) -> list[str]:
-    """Return why the metrics of a run cannot be relied on; nothing where they can."""
-    found = list(list_ranges_left(scenario, history))
-    found += [f"{name} is infinite" for name, metric in metrics.items() if math.isinf(metric.value)]
-    residual = metrics.get("energy_residual")
-    if residual is None or math.isnan(residual.value):
-        found.append("the energy balance cannot be formed, so that nothing confirms the solution")
-    elif residual.value > LARGEST_RESIDUAL:
-        found.append(f"{residual.value:.2g} of the energy is unaccounted for; choose a smaller solver.step")
-    return found
 
 
 def _floor_of(scenario: Scenario) -> Floor | None:

@@ -5,13 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from seatsim.cli.tables import comparison
+from seatsim.metrics import Metric
 from seatsim.scenario.loading import load, single
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.result import UNITS, Channel, Result
 from seatsim.simulation.runs import compare, run, run_many, run_one
 from seatsim.simulation.simulate import History, simulate
-from seatsim.simulation.validity import list_warnings
+from seatsim.simulation.validity import LARGEST_RESIDUAL, list_ranges_left, list_reasons
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +103,7 @@ def warned(scenario, share, speed=0.0, current=0.0):
     """The warnings of a run of which a share is at a speed and a current."""
     at = np.arange(1000) < 1000 * share
     still = np.zeros(1000)
-    return list_warnings(scenario, History(0.001, {"suspension_velocity": speed * at, "coil_current": current * at,
+    return list_ranges_left(scenario, History(0.001, {"suspension_velocity": speed * at, "coil_current": current * at,
                                                    "suspension_displacement": still}))  # fmt: skip
 
 
@@ -118,3 +120,36 @@ def test_a_range_left_for_more_than_a_hundredth_of_the_run_is_warned_of(kept_sea
     if np.isfinite(stated.max_current):
         (sentence,) = warned(scenario, 0.011, current=strong)
         assert f"above {stated.max_current:g} A" in sentence
+
+
+def figures(**values):
+    """Metrics with the given values."""
+    return {name: Metric(value, "-", name) for name, value in values.items()}
+
+
+def test_a_figure_without_value_and_an_open_energy_balance_are_reasons(kept_seat_file):
+    scenario, still = single(kept_seat_file), np.zeros(100)
+    names = ("suspension_velocity", "coil_current", "suspension_displacement")
+    history = History(0.001, dict.fromkeys(names, still))
+    assert list_reasons(scenario, history, figures(driver_vdv=1.0, energy_residual=0.9 * LARGEST_RESIDUAL)) == ()
+    for value in (np.nan, np.inf):
+        (reason,) = list_reasons(scenario, history, figures(driver_vdv=value))
+        assert reason == "driver_vdv has no finite value"
+    (reason,) = list_reasons(scenario, history, figures(energy_residual=1.1 * LARGEST_RESIDUAL))
+    assert "0.0011 of the energy is unaccounted for" in reason
+
+
+def test_a_run_says_why_its_figures_are_unverified(kept_seat_file):
+    sure, (doubtful,) = (
+        run(kept_seat_file).runs[0],
+        run(kept_seat_file, {"excitation": {"kind": "rest", "duration": 4.0}}).runs,
+    )
+    assert sure.unverified == ()
+    assert "seat_factor has no finite value" in doubtful.unverified and set(doubtful.unverified) <= set(
+        doubtful.warnings
+    )
+    assert Result([sure, doubtful]).rows[1]["unverified"] == "; ".join(doubtful.unverified)
+    quiet = comparison([sure, doubtful], "both")
+    assert [next(iter(quiet.columns[0].cells)), list(quiet.columns[0].cells)[1][-1]] == ["seat", "*"]
+    best = [cell for column in quiet.columns for cell in column.cells if "bold" in str(cell)]
+    assert best and all("bold" not in str(list(column.cells)[1]) for column in quiet.columns)

@@ -3,7 +3,7 @@
 import pytest
 from ruamel.yaml import YAML
 
-from seatsim.sweeps.engines.threads import ThreadEngine
+from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.execute import execute, prepare
 
 from ..cli.conftest import seatsim_command
@@ -33,7 +33,7 @@ def carry_out(tmp_path):
     """Return a function that carries out a sweep file on threads in a folder of `tmp_path`."""
 
     def carry(path, name="out", jobs=2, **options):
-        return execute(prepare(path), tmp_path / name, ThreadEngine(jobs), **options)
+        return execute(prepare(path), tmp_path / name, LocalEngine(jobs), **options)
 
     return carry
 

@@ -95,7 +95,7 @@ def test_a_cluster_gives_the_same_bytes(where, write_sweep, tmp_path, seatsim_co
     # More tasks than are sent at once.
     monkeypatch.setattr(parts, "RUNS_OF_PART", 10)
     path = write_sweep(runs=203)
-    assert seatsim_command("sweep", path, "--out", tmp_path / "threads")[0] == 0
+    assert seatsim_command("sweep", path, "--out", tmp_path / "local")[0] == 0
     options = ["--engine", "dask", "--jobs", "2"]
     if where == "embedded":
         assert seatsim_command("sweep", path, "--out", tmp_path / "dask", *options)[0] == 0
@@ -103,4 +103,20 @@ def test_a_cluster_gives_the_same_bytes(where, write_sweep, tmp_path, seatsim_co
         with distributed.LocalCluster(2, processes=False, protocol="tcp", dashboard_address=":0") as cluster:
             options += ["--address", cluster.scheduler_address]
             assert seatsim_command("sweep", path, "--out", tmp_path / "dask", *options)[0] == 0
-    assert bytes_of(tmp_path / "dask") == bytes_of(tmp_path / "threads")
+    assert bytes_of(tmp_path / "dask") == bytes_of(tmp_path / "local")
+
+
+def test_an_engine_that_cannot_be_reached_leaves_nothing(write_sweep, tmp_path, seatsim_command, monkeypatch):
+    pytest.importorskip("distributed")
+    from seatsim.sweeps.engines import cluster
+
+    monkeypatch.setattr(cluster, "LONGEST_SEARCH", 0.3)
+    options = ["--engine", "dask", "--address", "tcp://127.0.0.1:9"]
+    status, _, err = seatsim_command("sweep", write_sweep(), "--out", tmp_path / "out", *options)
+    assert status == 2 and "no dask scheduler answers there" in err and not (tmp_path / "out").exists()
+
+
+def test_a_system_without_flock_is_named(write_sweep, tmp_path, seatsim_command, monkeypatch):
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    status, _, err = seatsim_command("sweep", write_sweep(), "--out", tmp_path / "out")
+    assert status == 2 and "flock, which this system has not" in err

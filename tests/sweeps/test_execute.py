@@ -10,6 +10,7 @@ import pytest
 import seatsim
 from seatsim.metrics.table import METRICS
 from seatsim.sweeps import parts
+from seatsim.sweeps.engines.base import simulate_one
 from seatsim.sweeps.execute import Share
 from seatsim.sweeps.lock import hold_folder
 
@@ -72,11 +73,13 @@ def test_what_is_done_is_not_done_again(write_sweep, carry_out, tmp_path, small_
     carry_out(path)
     (tmp_path / "out" / "runs" / "part-000001.parquet").unlink()
     simulated = []
-    monkeypatch.setattr(
-        "seatsim.sweeps.engines.threads.simulate_one", lambda plan, run, number, histories: simulated.append(run)
-    )
-    with pytest.raises(AttributeError):
-        carry_out(path, resume=True)
+
+    def simulate(plan, run, number, histories):
+        simulated.append(number)
+        return simulate_one(plan, run, number, histories)
+
+    monkeypatch.setattr("seatsim.sweeps.engines.worker.simulate_one", simulate)
+    carry_out(path, resume=True)
     assert simulated == [4, 5, 6, 7]
 
 

@@ -23,7 +23,7 @@ def sweep(
     file: SweepFile,
     out_folder: Out = None,
     engine: Annotated[
-        Literal["local", "dask", "cuda"], typer.Option("--engine", help="Threads, a cluster, or a CUDA device.")
+        Literal["local", "dask", "cuda"], typer.Option("--engine", help="This machine, a cluster, or a CUDA device.")
     ] = "local",
     address: Annotated[
         str | None, typer.Option("--address", metavar="URL", help="Running dask scheduler, such as tcp://host:8786.")
@@ -45,7 +45,7 @@ def sweep(
     as_json: Json = False,
 ) -> None:
     """Simulate a scenario with many values of its keys, and keep the metrics of every run."""
-    from seatsim.sweeps.engines.choice import choose_engine
+    from seatsim.sweeps.engines.choice import open_engine
     from seatsim.sweeps.execute import execute, prepare, read_share
     from seatsim.sweeps.slurm import write_slurm
 
@@ -58,9 +58,11 @@ def sweep(
         wrote_one(path)
         say(f"next: sbatch {path}, then seatsim sweep-report {folder}")
         return answer({"runs": prepared.plan.runs}, [path])
-    carry_out = choose_engine(engine, jobs or os.cpu_count() or 1, address)
     try:
-        with count_progress("simulating", prepared.plan.runs) as count:
+        with (
+            open_engine(engine, jobs or os.cpu_count() or 1, address) as carry_out,
+            count_progress("simulating", prepared.plan.runs) as count,
+        ):
             result = execute(prepared, folder, carry_out, resume, keep == "histories", part, count)
     except KeyboardInterrupt:
         complain(f"interrupted: {folder} keeps what has ended; go on with --resume")

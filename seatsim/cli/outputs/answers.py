@@ -36,12 +36,13 @@ class MetricFigure(TypedDict):
 
 
 class RunSummary(TypedDict):
-    """A run: its scenario, what sets it apart (variant, swept values), its metrics by name."""
+    """A run: its scenario, what sets it apart (variant, swept values), its metrics by name, why they are unverified."""
 
     scenario: str
     label: dict[str, object]
     metrics: dict[str, MetricFigure]
     warnings: list[str]
+    unverified: list[str]
     notes: list[str]
 
 
@@ -345,6 +346,24 @@ class BlindPowerAnswer(Answer):
     effects: list[dict[str, object]]
 
 
+class RunCost(TypedDict):
+    """What something costs, and its ratio to the cost of what stands in `beside`."""
+
+    part: str
+    what: str
+    value: float
+    unit: str
+    ratio: float
+    beside: str
+
+
+class BenchAnswer(Answer):
+    """Costs of runs on this machine, and the parts that were left out with the reason."""
+
+    costs: list[RunCost]
+    left_out: dict[str, str]
+
+
 class ErrorAnswer(TypedDict):
     """What any command prints where it ends with an error."""
 
@@ -358,7 +377,7 @@ ANSWERS: Mapping[str, object] = {
     "identify": IdentificationAnswer | LeagueAnswer, "describe": DescriptionAnswer, "new": NewAnswer,
     "check": CheckAnswer, "import": ImportAnswer, "inspect": InspectionAnswer, "comfort": ComfortAnswer,
     "seat-test": SeatTestAnswer, "blind-make": BlindMakeAnswer, "blind-score": BlindScoreAnswer,
-    "blind-power": BlindPowerAnswer, "error": ErrorAnswer,
+    "blind-power": BlindPowerAnswer, "bench": BenchAnswer, "error": ErrorAnswer,
 }  # fmt: skip
 """What each command prints; `error` is what any of them prints where it fails."""
 

@@ -84,6 +84,7 @@ def _encode_summary(run: Run) -> dict[str, object]:
     return _encode_name(run) | {
         "metrics": metrics,
         "warnings": list(run.warnings),
+        "unverified": list(run.unverified),
         "notes": list(run.history.notes),
     }
 

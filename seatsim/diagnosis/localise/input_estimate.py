@@ -125,15 +125,16 @@ def respond_to_error(weights: Array, k: int) -> Spectra:
 def estimate_nonrepeatable_force(objective: Objective, evaluation: Evaluation) -> dict[str, Array] | None:
     """Return a random force on the frame by run, shape (samples,), by which repeated runs differ; None without repeats.
 
-    The difference of two repeats has twice the power of the non-repeatable disturbance.
+    The residuals of two repeats differ by twice the power of the non-repeatable disturbance. Residuals, because each
+    repeat has a floor and a command of its own, which a real rig does not repeat exactly.
     """
     problem, settings = objective.problem, objective.settings
     for run, entry in problem.recording.runs.items():
-        first = problem.measured.get(entry.repeat_of or "", np.zeros(0))
-        second = problem.measured[run]
+        first = evaluation.residuals.get(entry.repeat_of or "", np.zeros(0))
+        second = evaluation.residuals[run]
         if first.shape == second.shape:
             rig = reconstruct(objective, evaluation.parameters, run, PORTS["suspension"])
-            response = rig.measure_response(np.zeros(rig.samples), second - evaluation.residuals[run])
+            response = rig.measure_response(np.zeros(rig.samples), problem.measured[run] - second)
             residuals = as_complex(objective.weights((first - second) / np.sqrt(2.0), run))
             size = np.sum(np.abs(response) ** 2, axis=0)
             spectrum = np.sum(response.conj() * residuals, axis=0) / (size + 2.0 / rig.plausible_power())

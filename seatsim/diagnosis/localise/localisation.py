@@ -56,14 +56,15 @@ def localise_remainder(
     """Return what is unexplained, and the rig that lacks it: the calibrated one where a single block explains the gap.
 
     Effects that were chosen but do not explain the gap are dropped for one unknown input that explains it, unless that
-    leaves more than one beside them. Where the form of the rig is wrong everywhere no such input explains it.
+    leaves more than one beside them. Where the form of the rig is wrong everywhere no such input explains it, and where
+    the gap is less than noise and disturbance nothing shows that there is one.
     """
+    settings, beside = objective.settings, _weigh_blocks(objective, chosen)
+    if not chosen.parameters.terms or calibrated.excess < settings.localisation.above_noise:
+        return beside, chosen
     alone = _weigh_blocks(objective, calibrated)
-    if not chosen.parameters.terms:
-        return alone, chosen
-    beside = _weigh_blocks(objective, chosen)
-    little = objective.settings.decision.explained * calibrated.excess
-    slight = objective.settings.localisation.slight * calibrated.excess
+    little = settings.decision.explained * calibrated.excess
+    slight = settings.localisation.slight * calibrated.excess
     if alone.likeliest.negative_log_evidence < min(little, beside.likeliest.negative_log_evidence + slight):
         return alone, calibrated
     return beside, chosen

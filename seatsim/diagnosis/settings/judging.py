@@ -213,9 +213,9 @@ class CrossValidationSettings(NamedTuple):
             "-",
             "ratio of the evidences of two sets below which they help as much",
             "higher: larger groups",
-            "on measured rigs",
+            "a Bayes factor below 3 is not worth more than a bare mention (Kass and Raftery, 1995)",
         ),
-    ] = 5.0
+    ] = 3.0
     prior_of_sensor: Annotated[
         float,
         Threshold(

@@ -69,6 +69,15 @@ class LocalisationSettings(NamedTuple):
             SIMULATED_RIGS,
         ),
     ] = 0.1
+    above_noise: Annotated[
+        float,
+        Threshold(
+            "-",
+            "reduced chi-square less 1 from which an unknown input may take the place of effects",
+            "lower: noise passes for an input, which gives up effects that runs left out support",
+            "as much as noise itself leaves",
+        ),
+    ] = 1.0
     slight: Annotated[
         float,
         Threshold(

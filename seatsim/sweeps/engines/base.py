@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from seatsim.sweeps.outcome import Outcome, simulate_run
 from seatsim.sweeps.plan import Plan
+
+KEEP_FREED_MEMORY = {"MALLOC_TRIM_THRESHOLD_": str(1 << 28), "MALLOC_MMAP_THRESHOLD_": str(1 << 25)}
+"""Environment of a process that simulates: bytes that glibc keeps of what a run has freed, and the largest array that
+it keeps. Otherwise it returns arrays to the system, which clears their pages again: a third of a run's time."""
 
 
 class Work(NamedTuple):
@@ -24,7 +28,7 @@ class Work(NamedTuple):
 class Engine(Protocol):
     """Carries out work; one that takes lanes of one combination of models regroups the runs of several tasks."""
 
-    def __call__(self, work: Work) -> Iterator[list[Outcome]]:
+    def __call__(self, work: Work) -> Generator[list[Outcome]]:
         """Yield outcomes as they come, in any order and in lists of any length; each run of the work has one.
 
         Where the iterator is closed, as on an interrupt, nothing of it keeps the process from ending.

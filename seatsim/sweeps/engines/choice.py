@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
+
 from seatsim.schema.errors import InputError
 from seatsim.sweeps.engines.base import Engine
-from seatsim.sweeps.engines.threads import ThreadEngine
+from seatsim.sweeps.engines.local import LocalEngine
 
 
-def choose_engine(name: str, jobs: int, address: str | None) -> Engine:
-    """Return the engine that is called `name`, for so many runs at once or on the scheduler at an address.
+def open_engine(name: str, jobs: int, address: str | None) -> AbstractContextManager[Engine]:
+    """Return what opens the engine that is called `name`: so many runs at once, or on the scheduler at an address.
 
     Raises:
         InputError: the engine is not available here, or an address is given to one that takes none.
@@ -18,7 +20,7 @@ def choose_engine(name: str, jobs: int, address: str | None) -> Engine:
     if name == "cuda":
         raise InputError("--engine cuda: no CUDA device can be used here; choose --engine local or dask")
     if name == "dask":
-        from seatsim.sweeps.engines.cluster import make_cluster_engine
+        from seatsim.sweeps.engines.cluster import open_cluster
 
-        return make_cluster_engine(jobs, address)
-    return ThreadEngine(jobs)
+        return open_cluster(jobs, address)
+    return nullcontext(LocalEngine(jobs))

@@ -7,15 +7,17 @@ the scenario names and the user's own code, at the same paths. A task whose work
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+import os
+import signal
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.modules import started_elsewhere, use_all, used_files
-from seatsim.sweeps.engines.base import Work, simulate_one
+from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY, Work, simulate_one
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Selection
 
@@ -29,66 +31,84 @@ LONGEST_SEARCH = 10
 """Seconds in which a scheduler must answer."""
 
 
-def make_cluster_engine(jobs: int, address: str | None) -> ClusterEngine:
-    """Return the engine.
+@contextmanager
+def open_cluster(jobs: int, address: str | None) -> Iterator[ClusterEngine]:
+    """Connect with the scheduler at an address, or start a cluster of `jobs` processes, which ends with the block.
 
     Raises:
-        InputError: dask is not installed.
+        InputError: dask is not installed, no scheduler answers at the address, or it has no worker.
     """
     try:
         import distributed  # noqa: F401
     except ImportError as error:
         raise InputError(EXTRA) from error
-    return ClusterEngine(jobs, address)
+    # What goes wrong is said once, by the error that reaches the user.
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    with _embed(jobs) if address is None else _connect(address) as client:
+        _await_workers(client)
+        yield ClusterEngine(client)
 
 
 class ClusterEngine(NamedTuple):
-    """Simulates runs on a dask cluster: of `jobs` processes on this machine, or the one at an address."""
+    """Simulates runs on the dask cluster of a client."""
 
-    jobs: int
-    address: str | None
+    client: Client
 
-    def __call__(self, work: Work) -> Iterator[list[Outcome]]:
+    def __call__(self, work: Work) -> Generator[list[Outcome]]:
         """Yield the outcomes of each task as it ends.
 
         Raises:
-            InputError: no scheduler answers at the address, or it has no worker. RunError: the cluster was lost.
+            RunError: the cluster was lost.
         """
         from distributed import as_completed
 
-        with ExitStack() as stack:
-            client = self._connect(stack)
-            _await_workers(client)
-            waiting = iter(work.tasks)
+        waiting = iter(work.tasks)
 
-            def submit(count: int) -> list[Any]:
-                return [client.submit(_simulate, *_pack(work, task), pure=False) for task in islice(waiting, count)]
+        def submit(count: int) -> list[Any]:
+            return [self.client.submit(_simulate, *_pack(work, task), pure=False) for task in islice(waiting, count)]
 
-            ahead = AHEAD * max(self.jobs, len(client.scheduler_info()["workers"]))
-            running = as_completed(submit(ahead))
-            for future in running:
-                yield _await_outcomes(future)
-                future.release()
-                running.update(submit(1))
+        running = as_completed(submit(AHEAD * len(self.client.scheduler_info()["workers"])))
+        for future in running:
+            yield _await_outcomes(future)
+            future.release()
+            running.update(submit(1))
 
-    def _connect(self, stack: ExitStack) -> Client:
-        from distributed import Client, LocalCluster
 
-        # What goes wrong is said once, by the error that reaches the user.
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)
-        if self.address is None:
-            stack.enter_context(started_elsewhere())
-            cluster = LocalCluster(
-                n_workers=self.jobs, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
-            )
-            return stack.enter_context(Client(stack.enter_context(cluster)))
+@contextmanager
+def _embed(jobs: int) -> Iterator[Client]:
+    import dask
+    from distributed import Client, LocalCluster
+
+    environment = {f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in KEEP_FREED_MEMORY.items()}
+    options = {"dashboard_address": ":0", "silence_logs": logging.CRITICAL}
+    with (
+        started_elsewhere(),
+        dask.config.set(environment),
+        LocalCluster(n_workers=jobs, threads_per_worker=1, **options) as cluster,
+        Client(cluster) as client,
+    ):
         try:
-            return stack.enter_context(Client(self.address, timeout=LONGEST_SEARCH))
-        except (OSError, ValueError) as error:
-            raise InputError(
-                f"--address {self.address}: no dask scheduler answers there; start one with 'dask scheduler', and"
-                f" workers with 'dask worker {self.address}'"
-            ) from error
+            yield client
+        finally:
+            # By itself a worker ends its task first; nobody waits for it any more.
+            for nanny in cluster.workers.values():
+                if nanny.pid:
+                    os.kill(nanny.pid, signal.SIGKILL)
+
+
+@contextmanager
+def _connect(address: str) -> Iterator[Client]:
+    from distributed import Client
+
+    try:
+        client = Client(address, timeout=LONGEST_SEARCH)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"--address {address}: no dask scheduler answers there; start one with 'dask scheduler', and workers with"
+            f" 'dask worker {address}'"
+        ) from error
+    with client:
+        yield client
 
 
 def _await_workers(client: Client) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from seatsim.metrics.table import METRICS
 from seatsim.sweeps.axes import DISTRIBUTIONS
 from seatsim.sweeps.manifest import read_manifest
-from seatsim.sweeps.outcome import FAILED
+from seatsim.sweeps.outcome import DONE
 from seatsim.sweeps.parts import LEADING
 from seatsim.sweeps.read import read_sweep
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class SweepRows(NamedTuple):
-    """The rows of a sweep: `usable` without those of failed runs; `keys` that have more than one value.
+    """The rows of a sweep: `usable` without those of failed and unverified runs; `keys` that have more than one value.
 
     `drawn` are the keys whose values come from a distribution. `metrics` are those that some run has.
     """
@@ -50,7 +50,7 @@ def read_rows(folder: Path) -> SweepRows:
         InputError: the folder holds no sweep, or none of its runs has ended.
     """
     manifest, frame = read_manifest(folder), read_sweep(folder)
-    usable = frame[frame.state != FAILED]
+    usable = frame[frame.state == DONE]
     named = [name for name in frame.columns if name not in (*LEADING, *METRICS)]
     vary = manifest["configuration"].get("vary", {})
     return SweepRows(

@@ -225,6 +225,18 @@ def repeat(folder, forces, noise=LOUD):
 
 
 @pytest.mark.usefixtures("gains")
+def test_what_a_repeat_answers_to_a_floor_of_its_own_is_no_disturbance(folder):
+    own = np.random.default_rng(5).standard_normal(SKIP + SAMPLES)
+    runs = {"first": own + np.random.default_rng(6).standard_normal(len(own)), "again": own}
+    objective = weigh_stated(
+        pose(record(folder, runs=runs, channels=CHANNELS[:3], noise=LOUD, repeats={"again": "first"}))
+    )
+    nominal = objective.evaluate([Parameters(objective.problem.nominal)])[0]
+    assert np.std(objective.problem.measured["first"] - objective.problem.measured["again"]) > 0.5
+    assert np.std(estimate_nonrepeatable_force(objective, nominal)["again"]) < 0.01
+
+
+@pytest.mark.usefixtures("gains")
 def test_a_force_by_which_repeats_differ_is_half_the_power_of_their_difference(folder):
     forces = {"first": slow_force(SAMPLES, 30.0, 1), "again": slow_force(SAMPLES, 30.0, 2)}
     objective, nominal = repeat(folder, forces)

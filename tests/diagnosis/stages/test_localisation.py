@@ -151,17 +151,29 @@ def test_where_no_block_explains_anything_they_still_have_shares(weigh):
 )  # fmt: skip
 def test_effects_are_kept_where_an_input_beside_them_explains_enough_more(objective, monkeypatch, alone, beside, kept):
     # Enough is 2 % of the calibrated excess, which is 3.
+    remainder, is_kept = localise_effect(objective, monkeypatch, 3.0, alone, beside)
+    assert is_kept is kept
+    assert remainder.likeliest.negative_log_evidence == (beside if kept else alone)
+
+
+@pytest.mark.parametrize(("excess", "kept"), [(1.01, False), (0.99, True)])
+def test_effects_are_kept_where_the_gap_stands_below_the_noise(objective, monkeypatch, excess, kept):
+    assert localise_effect(objective, monkeypatch, excess, -0.1, 0.2)[1] is kept
+
+
+def localise_effect(objective, monkeypatch, excess, alone, beside):
+    """Return the remainder of a rig with one effect, and whether it is kept, from evidences of an input."""
     calibrated, chosen = rig(objective), rig(objective, ("a.x", "one", 1.0))
-    calibrated = Evaluation(calibrated.parameters, calibrated.residuals, calibrated.whitened, 4.0 * calibrated.rows)
+    cost = (1.0 + excess) * calibrated.rows
+    calibrated = Evaluation(calibrated.parameters, calibrated.residuals, calibrated.whitened, cost)
 
     def evaluate(objective, nuisances):
         evidence = beside if nuisances.evaluation is chosen else alone
         return {"driver": hypothesis(2.0), "coil": hypothesis(evidence), "damper": hypothesis(9.0)}
 
     monkeypatch.setattr(localisation, "evaluate_hypotheses", evaluate)
-    remainder, missing = localise_remainder(objective, calibrated, chosen)
-    assert missing is (chosen if kept else calibrated)
-    assert remainder.likeliest.negative_log_evidence == (beside if kept else alone)
+    remainder, found = localise_remainder(objective, calibrated, chosen)
+    return remainder, found is chosen
 
 
 def test_without_effects_the_rig_is_the_one_chosen(objective, monkeypatch):

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from seat_run import DAMPER, GAIN, PLANT
 
+from seatsim.benchmark.seat_run import DAMPER, GAIN, PLANT
 from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.loop_inputs import LoopSetup
 
@@ -29,8 +29,8 @@ class _Setup(ctypes.Structure):
     _fields_ = (("values", ctypes.c_double * 34), ("sample_every", ctypes.c_long))
 
 
-def available() -> bool:
-    """Whether the machine has gcc."""
+def has_compiler() -> bool:
+    """Return whether the machine has gcc."""
     return shutil.which("gcc") is not None
 
 

@@ -13,8 +13,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
-from seat_run import DAMPER, GAIN, PLANT, STEP
 
+from seatsim.benchmark.seat_run import DAMPER, GAIN, PLANT, STEP
 from seatsim.rig.coil import Coil
 
 MS, M, KF, CF, KC, CC = PLANT[:6]
@@ -141,6 +141,10 @@ class IntegrationMethod(NamedTuple):
     rtol: float
 
 
+Simulate = Callable[[IntegrationMethod, Array, int], dict[str, Array]]
+"""Simulates with a method under a floor acceleration, with the law every so many steps; returns the channels."""
+
+
 def simulate(model: Model, method: IntegrationMethod, acceleration: Array, sample_every: int) -> dict[str, Array]:
     """Simulate from rest; return the channels at the law's samples, shape (N - 1) // sample_every + 1."""
     floor, state = model.floor(acceleration), np.zeros(7)
@@ -155,10 +159,11 @@ def simulate(model: Model, method: IntegrationMethod, acceleration: Array, sampl
         )  # fmt: skip
         state = solution.y[:, -1]
         states.append(state)
-    return _channels(np.array(states), acceleration[::sample_every])
+    return list_channels(np.array(states), acceleration[::sample_every])
 
 
-def _channels(states: Array, floor: Array) -> dict[str, Array]:
+def list_channels(states: Array, floor: Array) -> dict[str, Array]:
+    """Return the channels at the law's samples: `states` in rows of (x, v, xc, vc, y, z, i), `floor` likewise."""
     x, v, xc, vc, y, z, i = states.T
     force, _ = damper(x, v, i, y, z)
     cushion = KC * xc + CC * vc
