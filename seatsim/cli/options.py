@@ -22,7 +22,10 @@ def _use_files(files: list[Path] | None) -> list[Path]:
 
 def check_out(folder: Path | None) -> Path | None:
     """Refuse a folder that could not be written, while options are read and before anything runs."""
-    check_folder(folder or Path("out"))
+    try:
+        check_folder(folder or Path("out"))
+    except InputError as error:
+        raise InputError(f"--out {error}") from error
     return folder
 
 
