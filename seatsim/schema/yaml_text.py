@@ -202,7 +202,7 @@ def _read_scalar(text: str, line: int) -> Scalar:
 def _check_signs(text: str, line: int) -> None:
     """Raise YamlError at a zero byte, which an escape puts into a text: no path, name or unit may have one."""
     if "\0" in text:
-        raise YamlError(f"'{_short(text)!r}' holds a zero byte; leave it out", line)
+        raise YamlError(f"{_short(text)!r} holds a zero byte; leave it out", line)
 
 
 def _short(text: str) -> str:
