@@ -117,6 +117,25 @@ def constant(channel, value=0.0):
     return lambda frame: frame.assign(**{channel: value})
 
 
+def spiked(channel):
+    """Let five rows jump by 50 standard deviations."""
+
+    def spoil(frame):
+        values = frame[channel].to_numpy(copy=True)
+        values[[402, 690, 1001, 1313, 1755]] += 50.0 * values.std() * np.array([1, -1, 1, -1, 1])
+        return frame.assign(**{channel: values})
+
+    return spoil
+
+
+def doubled(frame):
+    return frame.iloc[np.sort([*range(len(frame)), *range(700, 705)])]
+
+
+def without_time(fault):
+    return lambda frame: fault(frame).drop(columns="time")
+
+
 def stuck(channel, start, end):
     """Hold a channel between two instants."""
     return lambda f: f.assign(**{channel: f[channel].mask((f.time > start) & (f.time <= end)).ffill()})
@@ -212,6 +231,19 @@ WARNINGS = {
     "half a metre per square second": (shifted("floor_acceleration", 0.5), "floor_acceleration", "an offset"),
     "a travel of another zero": (shifted("suspension_displacement", 0.1), "suspension_displacement", "sensor's zero"),
     "a dropout": (dropped("damper_force", 3.0, 3.2), "damper_force", "a dropout"),
+    "halved command": (scaled("current_command", 0.5), "coil_current", "the scale of one of both is wrong"),
+    "no command at all": (constant("current_command"), "current_command", "is 0 throughout while coil_current changes"),
+    "a hot thermometer": (shifted("damper_temperature", 130.0), "damper_temperature", "stands 130 degC"),
+    "doubled rows": (without_time(doubled), None, "hold in every channel what another row holds"),
+    "lost rows": (without_time(without(2.8, 2.88)), "suspension_displacement", "rows were lost"),
+    "a rate that is twice too low": (
+        without_time(lambda f: f.iloc[::2]),
+        "suspension_displacement",
+        "or the sample rate",
+    ),
+    "spikes of the floor": (spiked("floor_acceleration"), "floor_acceleration", "spikes of up to"),
+    "spikes of the driver": (spiked("driver_acceleration"), "driver_acceleration", "spikes of up to"),
+    "spikes of the force": (spiked("damper_force"), "damper_force", "spikes of up to"),
     "late current": (late(0.15, "coil_current"), "coil_current", "s late"),
 }
 """Faults that are said while diagnosis and gap go on."""

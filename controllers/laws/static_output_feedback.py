@@ -78,6 +78,10 @@ class StaticOutputFeedback(NamedTuple):
         from controllers.synthesis import Design
 
         gain = (Design.load(Path(self.design)) if self.design else self.synthesis(plant)).gain
+        if gain.shape != (1, 2):
+            raise InputError(
+                f"{self.design}: a gain of shape {gain.shape}; this law takes (1, 2), for one damper on (x, v)"
+            )
         return OutputFeedback(float(gain[0, 0]), float(gain[0, 1]))
 
     def synthesis(self, plant: Plant, progress: Callable[[str], object] = lambda text: None) -> Design:

@@ -9,12 +9,12 @@ from typing import TypedDict, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from controllers.synthesis.certify import Certificate
 from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_whole
+from seatsim.schema.yaml_source import Source
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,15 +89,12 @@ class Design:
         Raises:
             InputError: the file is missing, is not YAML, or lacks a key; file and key are named.
         """
+        plain = Source(Path(path)).data
         try:
-            plain = _yaml().load(Path(path))
-        except (OSError, YAMLError) as error:
-            raise InputError(f"{path}: cannot read the design: {error}") from error
-        try:
-            return _from_plain(plain)
+            return _from_plain(cast("_PlainDesign", plain))
         except KeyError as error:
             raise InputError(f"{path}: the design lacks the key {error}") from error
-        except (TypeError, ValueError, InputError) as error:
+        except (TypeError, ValueError, IndexError, AttributeError, InputError) as error:
             raise InputError(f"{path}: not a design: {error}") from error
 
 
@@ -188,12 +185,15 @@ def _to_plain_proof(proof: Certificate) -> _PlainProof:
 
 
 def _from_plain(plain: _PlainDesign) -> Design:
-    return Design(
-        gain=np.array(plain["gain"], dtype=float),
-        max_gain=float(plain["max_gain"]),
-        lower_bound=float(plain["lower_bound"]),
-        loops=tuple(_from_plain_loop(loop) for loop in plain["loops"]),
-    )
+    gain, loops = np.array(plain["gain"], dtype=float), tuple(_from_plain_loop(loop) for loop in plain["loops"])
+    if not np.isfinite(gain).all():
+        raise ValueError("an entry of gain is not a finite number")
+    if not loops:
+        raise ValueError("loops is empty")
+    wanted = (loops[0].plant.B2.shape[1], loops[0].plant.C2.shape[0])
+    if gain.shape != wanted:
+        raise ValueError(f"gain has the shape {gain.shape}; the plant of its loop has {wanted}, a row for each control")
+    return Design(gain, float(plain["max_gain"]), float(plain["lower_bound"]), loops)
 
 
 def _from_plain_loop(plain: _PlainLoop) -> ClosedLoop:

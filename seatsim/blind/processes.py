@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
+from threading import Thread
 from typing import TypeVar, TypeVarTuple
 
-from seatsim.schema.modules import use_all, used_files
+from seatsim.schema.modules import started_elsewhere, use_all, used_files
 
 Result = TypeVar("Result")
 Arguments = TypeVarTuple("Arguments")
@@ -29,8 +31,9 @@ def run_jobs(
     if processes <= 1 or len(jobs) <= 1:
         return _run_here(function, jobs, progress)
     workers, files = min(processes, len(jobs)), (used_files(),)
-    pool = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_start_worker, initargs=files)
-    futures = [pool.submit(function, *job) for job in jobs]
+    with started_elsewhere():
+        pool = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_start_worker, initargs=files)
+        futures = [pool.submit(function, *job) for job in jobs]
     waiting = set(futures)
     try:
         while waiting:
@@ -39,6 +42,10 @@ def run_jobs(
                 future.result()
             if progress:
                 progress(len(jobs) - len(waiting), len(jobs))
+    except KeyboardInterrupt:
+        for worker in active_children():
+            worker.terminate()
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
     return [future.result() for future in futures]
@@ -56,6 +63,14 @@ def _run_here(
 
 
 def _start_worker(files: tuple[Path, ...]) -> None:
-    """Load the user's own files, and leave Ctrl-C to the parent, which ends its children in order."""
-    use_all(files)
+    """Load the user's own files, leave Ctrl-C to the parent, which ends its children, and end where it was killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_end_with_parent, daemon=True).start()
+    use_all(files)
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

@@ -15,7 +15,11 @@ from cryptography.fernet import Fernet, InvalidToken
 from seatsim.blind.labels import Label
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_text, write_whole
+from seatsim.schema.guarded import read_bytes
+from seatsim.schema.text import explain_bad_name
 
+LARGEST = 2**30
+"""Bytes of a sealed file."""
 LABELS = "labels.json"
 """Name of the labels inside the sealed file."""
 SEAL = "seal.txt"
@@ -88,10 +92,7 @@ def unseal(path: Path, key: str, folder: Path | None = None) -> Sealed:
     Raises:
         InputError: the file cannot be read, is not the one sealed for the folder, or the key does not open it.
     """
-    try:
-        token = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    token = read_bytes(path, LARGEST, "a sealed file")
     if folder is not None:
         _check_hash(path, token, folder)
     try:
@@ -104,7 +105,9 @@ def unseal(path: Path, key: str, folder: Path | None = None) -> Sealed:
         unseen: dict[str, dict[str, bytes]] = {}
         for entry in archive.namelist():
             if entry.startswith("unseen/"):
-                _, case, name = entry.split("/")
+                case, _, name = entry.removeprefix("unseen/").partition("/")
+                if problem := explain_bad_name(case) or explain_bad_name(name):
+                    raise InputError(f"{path}: the file {entry!r} in it {problem}")
                 unseen.setdefault(case, {})[name] = archive.read(entry)
     return Sealed(head["cases"], unseen, head["made"])
 
@@ -113,6 +116,6 @@ def _check_hash(path: Path, token: bytes, folder: Path) -> None:
     note = folder / SEAL
     if not note.is_file():
         raise InputError(f"{note}: not there; {folder} is not a folder that `blind make` finished")
-    words = note.read_text(encoding="utf-8").split()  # "sha256 HASH  NAME"
+    words = read_bytes(note, LARGEST, "a seal").decode(errors="replace").split()  # "sha256 HASH  NAME"
     if len(words) < 2 or words[1] != hashlib.sha256(token).hexdigest():
         raise InputError(f"{path}: is not the file sealed for {folder} (its SHA-256 differs from {SEAL})")

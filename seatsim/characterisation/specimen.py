@@ -11,7 +11,8 @@ from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.damper import stated_damper
 from seatsim.schema.registry import name_of, specification_of
 from seatsim.schema.validation import build, mapping
-from seatsim.schema.yaml_source import KeyPath, Source
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import KeyPath
 
 
 class DamperSpecimen(NamedTuple):

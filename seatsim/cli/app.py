@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import sys
+import traceback
+import warnings
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -22,13 +26,15 @@ from seatsim.cli.commands.runs import compare, run
 from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.sweeps import sweep, sweep_report
 from seatsim.cli.commands.synthesis import synthesise
-from seatsim.cli.terminal import answer_as_json, answer_error, complain, fail
-from seatsim.schema.errors import SeatsimError
+from seatsim.cli.terminal import answer_as_json, answer_error, complain, fail, print_any_letter, warn
+from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.modules import MissingModuleError
 
 UsageError: Any = typer.BadParameter.__bases__[0]
 """What is raised for options and arguments that a command does not have, before any of them is read."""
 ASKED = "seatsim.json"
+TRACEBACK = "SEATSIM_TRACEBACK"
+"""Set in the environment, it lets Python print what led to an error that was not foreseen."""
 
 
 class _Commands(TyperGroup):
@@ -81,7 +87,10 @@ def _seatsim(
 
 def main() -> None:
     """Run the command line: exit 0 done, 1 a run failed, 2 bad input (nothing written)."""
+    print_any_letter()
+    warnings.showwarning = lambda message, *_, **__: warn([str(message)], "warning")
     try:
+        _refuse_settings_of_libraries()
         app(prog_name="seatsim")
     except SeatsimError as error:
         fail(str(error))
@@ -90,6 +99,37 @@ def main() -> None:
     except KeyboardInterrupt:
         fail("interrupted")
         sys.exit(130)
+    except MemoryError as error:
+        fail(f"the memory is exhausted ({error}); shorten the run, raise solver.step, or split the files")
+        sys.exit(1)
+    except OSError as error:
+        fail(f"{error.filename or 'a file'}: {error.strerror or error}")
+        sys.exit(1)
+    except Exception as error:
+        if os.environ.get(TRACEBACK):
+            raise
+        fail(_describe_fault(error))
+        sys.exit(1)
+
+
+def _describe_fault(error: Exception) -> str:
+    """Say where what nobody foresaw went wrong, in place of a traceback."""
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    said = str(error).split("\n")[0]
+    return (
+        f"seatsim failed at what it does not foresee: {type(error).__name__}: {said} ({Path(last.filename).name}, line"
+        f" {last.lineno}); please report the command with its files; {TRACEBACK}=1 shows the whole traceback"
+    )
+
+
+def _refuse_settings_of_libraries() -> None:
+    """Raise InputError where the current folder, perhaps a stranger's, holds what libraries obey that lies there.
+
+    The one can name a folder of compiled code, the other a preamble of TeX.
+    """
+    for name in (".numba_config.yaml", "matplotlibrc"):
+        if Path(name).exists():
+            raise InputError(f"{name}: changes how libraries work in this folder; start seatsim in another one")
 
 
 def _show_command_with_file(error: BaseException) -> None:

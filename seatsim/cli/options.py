@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -11,6 +10,7 @@ import typer
 
 from seatsim.cli.terminal import answer_as_json
 from seatsim.schema.errors import InputError
+from seatsim.schema.files import check_folder
 from seatsim.schema.modules import use_all
 
 
@@ -20,20 +20,21 @@ def _use_files(files: list[Path] | None) -> list[Path]:
     return files or []
 
 
-def _check_folder(folder: Path | None) -> Path | None:
+def check_out(folder: Path | None) -> Path | None:
     """Refuse a folder that could not be written, while options are read and before anything runs."""
-    chosen = folder or Path("out")
-    there = next(path for path in (chosen, *chosen.absolute().parents) if path.exists())
-    if not there.is_dir():
-        raise InputError(f"--out {chosen}: {there} is a file; give a folder that is there or can be made")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise InputError(f"--out {chosen}: {there} cannot be written; give another --out")
+    try:
+        check_folder(folder or Path("out"))
+    except InputError as error:
+        raise InputError(f"--out {error}") from error
     return folder
 
 
 Out = Annotated[
     Path | None,
-    typer.Option("--out", help="Folder for the files.", show_default="out/NAME", callback=_check_folder),
+    typer.Option("--out", help="Folder for the files.", show_default="out/NAME", callback=check_out),
+]
+NewFolder = Annotated[
+    Path, typer.Option("--out", help="Folder of the recordings.", show_default=False, callback=check_out)
 ]
 Scenarios = Annotated[list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)]
 OneScenario = Annotated[str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)]
@@ -66,8 +67,7 @@ def pairs(texts: Sequence[str] | None, option: str, example: str) -> dict[str, o
     Raises:
         InputError: a text is no such pair.
     """
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
+    from seatsim.schema.yaml_text import YamlError, parse_value
 
     values: dict[str, object] = {}
     for text in texts or []:
@@ -75,7 +75,7 @@ def pairs(texts: Sequence[str] | None, option: str, example: str) -> dict[str, o
         if not sign or not key:
             raise InputError(f"{option} {text}: write KEY=VALUE, such as {option} {example}")
         try:
-            values[key] = YAML(typ="safe").load(value)
-        except YAMLError as error:
-            raise InputError(f"{option} {text}: '{value}' is not a YAML value") from error
+            values[key] = parse_value(value)
+        except YamlError as error:
+            raise InputError(f"{option} {text}: '{value}' is not a YAML value: {error}") from error
     return values

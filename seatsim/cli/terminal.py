@@ -2,18 +2,44 @@
 
 from __future__ import annotations
 
+import io
 import json
+import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TextIO
 
 from rich.console import Console
 
 from seatsim.compilation.watch import watch_compilation
 
-out = Console()
-err = Console(stderr=True)
+
+class _Terminal(Console):
+    """A console whose reader may go away, as that of `| head` does, without the command coming to its end."""
+
+    def on_broken_pipe(self) -> None:
+        """Go on without printing."""
+        drop_output(sys.stdout if not self.stderr else sys.stderr)
+
+
+def drop_output(stream: TextIO) -> None:
+    """Let what is still printed to a stream whose reader has gone away go nowhere."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)
+
+
+def print_any_letter() -> None:
+    """Let a terminal that knows ASCII alone show a question mark for other letters, where Python would fail."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+out = _Terminal()
+err = _Terminal(stderr=True)
 
 COMPILING = "compiling (first time only)"
 Report = Callable[[str], None]
@@ -34,7 +60,7 @@ def answer(content: Mapping[str, object], paths: Iterable[Path] = ()) -> None:
         from seatsim.schema.files import plain
 
         whole = {**content, "files": [str(path) for path in paths]}
-        sys.stdout.write(json.dumps(plain(whole), allow_nan=False) + "\n")
+        _write_line(json.dumps(plain(whole), allow_nan=False))
 
 
 def announce(address: str) -> None:
@@ -79,7 +105,15 @@ def fail(text: str) -> None:
 def answer_error(text: str) -> None:
     """Print why a command came to its end as the one object, where `--json` asks for it."""
     if out.quiet:
-        sys.stdout.write(json.dumps({"error": text}) + "\n")
+        _write_line(json.dumps({"error": text}))
+
+
+def _write_line(text: str) -> None:
+    try:
+        sys.stdout.write(f"{text}\n")
+        sys.stdout.flush()
+    except BrokenPipeError:
+        drop_output(sys.stdout)
 
 
 @contextmanager

@@ -14,6 +14,7 @@ import os
 import sys
 import sysconfig
 import threading
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from importlib.util import resolve_name
@@ -26,6 +27,7 @@ import numpy as np
 import platformdirs
 from numba.core import event
 
+from seatsim.compilation.checked_cache import CheckedCache, is_own
 from seatsim.compilation.jit import ARITHMETIC
 from seatsim.compilation.watch import report
 
@@ -89,7 +91,9 @@ def _compiled(function: Callable[..., object], plugged: frozenset[type]) -> Call
     previous = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(folder)
     try:
-        dispatcher: Callable[..., object] = numba.njit(cache=on_disk, nogil=True, **ARITHMETIC)(function)
+        dispatcher: Callable[..., object] = numba.njit(nogil=True, **ARITHMETIC)(function)
+        if on_disk:
+            vars(dispatcher)["_cache"] = CheckedCache(function)
     finally:
         numba.config.CACHE_DIR = previous
     return dispatcher
@@ -98,6 +102,9 @@ def _compiled(function: Callable[..., object], plugged: frozenset[type]) -> Call
 def _usable(folder: Path) -> bool:
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        if not is_own(folder.parent):
+            warnings.warn(f"{folder.parent} may be written by others; compiled code is not taken from it", stacklevel=2)
+            return False
     except OSError:
         return False
     return os.access(folder, os.W_OK | os.X_OK)
@@ -115,7 +122,7 @@ def digest(modules: Iterable[ModuleType]) -> str:
     Raises:
         OSError: a source cannot be read any more.
     """
-    state = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
+    state = hashlib.sha256(f"checked {numba.__version__} {sys.version}".encode())
     for module in sorted(_reachable(modules), key=lambda module: module.__name__):
         state.update(f"{module.__file__}".encode() + Path(str(module.__file__)).read_bytes())
         for part in _loaded(module):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -10,6 +9,8 @@ import numpy as np
 
 from seatsim.excitations.base import Array
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.guarded import is_there
+from seatsim.schema.tables import numbers, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,8 +46,8 @@ def read_record(path: str, axis: str, column: str, start: float) -> EvenSeries:
     table = _read(path, axis, column)
     if len(table) < LEAST_ROWS:
         raise InputError(f"{path}: {len(table)} rows are too few; permitted: at least {LEAST_ROWS}")
-    position = _numbers(path, table[axis])
-    whole = EvenSeries(_interval(path, axis, position), _numbers(path, table[column]))
+    position = _numbers(path, table, axis)
+    whole = EvenSeries(_interval(path, axis, position), _numbers(path, table, column))
     record = whole.after(start)
     if len(record.values) < LEAST_ROWS:
         raise InputError(f"{path}: start {start:g} leaves fewer than {LEAST_ROWS} rows of {whole.length:g} (s or m)")
@@ -54,19 +55,12 @@ def read_record(path: str, axis: str, column: str, start: float) -> EvenSeries:
 
 
 def _read(path: str, axis: str, column: str) -> pd.DataFrame:
-    import pandas as pd
-
-    try:
-        known = list(pd.read_csv(path, nrows=0, skipinitialspace=True).columns)
-        for name in (axis, column):
-            _check_column(path, name, known)
-        return pd.read_csv(path, usecols=[axis, column], skipinitialspace=True)
-    except FileNotFoundError as error:
-        raise InputError(f"{path}: no such file{_neighbour(Path(path))}") from error
-    except pd.errors.EmptyDataError as error:
-        raise InputError(f"{path}: the file is empty; expected a header line and rows of numbers") from error
-    except (pd.errors.ParserError, UnicodeDecodeError, OSError, EOFError, zlib.error) as error:
-        raise InputError(f"{path}: cannot be read as a CSV or CSV.gz table: {error}") from error
+    if not is_there(Path(path)):
+        raise InputError(f"{path}: no such file{_neighbour(Path(path))}")
+    table = read_table(Path(path))
+    for name in (axis, column):
+        _check_column(path, name, list(map(str, table)))
+    return table
 
 
 def _check_column(path: str, name: str, known: list[str]) -> None:
@@ -79,17 +73,14 @@ def _neighbour(path: Path) -> str:
     return nearest(path.name, (p.name for p in path.parent.iterdir())) if path.parent.is_dir() else ""
 
 
-def _numbers(path: str, column: pd.Series) -> Array:
-    import pandas as pd
-
-    numbers = pd.to_numeric(column, errors="coerce").to_numpy(dtype=float)
-    bad = np.flatnonzero(~np.isfinite(numbers))
+def _numbers(path: str, table: pd.DataFrame, name: str) -> Array:
+    values, bad = numbers(table, name)
     if len(bad):
         raise InputError(
-            f"{path}, line {bad[0] + 2}: column '{column.name}' holds '{column.iloc[bad[0]]}', not a number "
-            f"({len(bad)} of {len(numbers)} rows); choose another column or mend the table"
+            f"{path}, line {bad[0] + 2}: column '{name}' holds '{table[name].iloc[bad[0]]}', not a number "
+            f"({len(bad)} of {len(values)} rows); choose another column or mend the table"
         )
-    return numbers
+    return values
 
 
 def _interval(path: str, axis: str, position: Array) -> float:

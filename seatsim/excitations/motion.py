@@ -8,6 +8,7 @@ import numpy as np
 
 from seatsim.excitations.base import Array, Floor
 from seatsim.schema.errors import InputError
+from seatsim.schema.memory import check_steps
 
 SOFT_START = 1.0
 
@@ -73,8 +74,9 @@ def samples(duration: float, step: float) -> int:
     """Return `round(duration/step) + 1`, the number of samples of a run from 0 to `duration`, both included.
 
     Raises:
-        InputError: the run is shorter than two steps.
+        InputError: the run is shorter than two steps, or does not fit into the memory.
     """
+    check_steps(duration / step)
     count = round(duration / step) + 1
     if count < 3:
         raise InputError(f"duration {duration:g} s holds fewer than two steps of {step:g} s; lengthen it")

@@ -11,6 +11,7 @@ import numpy as np
 from seatsim.excitations.base import Array, Floor, excitation
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
+from seatsim.schema.memory import check_steps
 
 CORNER = 0.05
 """Hz; below it the floor velocity, an integral of a measured acceleration, is attenuated as unreliable."""
@@ -53,6 +54,7 @@ class RecordedRun(NamedTuple):
 
 def interpolate_floor(table: Mapping[str, Array], parts: int, step: float) -> Floor:
     """Return the recorded inputs of a seat, sampled every `step` seconds, `parts` of which are a row of the table."""
+    check_steps(float(parts) * len(table["floor_acceleration"]))
     floor, command = _linear(table["floor_acceleration"], parts), table.get("current_command")
     velocity = _leaky_integral(floor, step)
     finer = {name: _linear(table[name], parts) for name in ("coil_current", "damper_temperature") if name in table}

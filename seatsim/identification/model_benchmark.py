@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from seatsim.compilation.cached import digest
 from seatsim.dampers.base import find_confidence
@@ -23,6 +22,7 @@ from seatsim.identification.split import split_records
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.schema.errors import InputError, SeatsimError, nearest
 from seatsim.schema.files import write_json
+from seatsim.schema.guarded import expect, read_json
 from seatsim.schema.registry import names
 
 ALL = "all"
@@ -128,9 +128,10 @@ def rank_entries(entries: Sequence[BenchmarkEntry]) -> list[BenchmarkEntry]:
 
 def _read_entry(path: Path) -> BenchmarkEntry:
     """Return an entry from its file, where a figure that does not exist is null."""
-    kept = json.loads(path.read_text(encoding="utf-8"))
-    values = (kept[name] for name in BenchmarkEntry._fields)
-    return BenchmarkEntry._make(math.nan if value is None else value for value in values)
+    with expect(path, "entry of a league; remove it, and its model is identified again"):
+        kept = cast("dict[str, object]", read_json(path, "entry of a league"))
+        values = (kept[name] for name in BenchmarkEntry._fields)
+        return BenchmarkEntry._make(math.nan if value is None else value for value in values)
 
 
 def _check_fixed(fix: Mapping[str, float], models: Sequence[str]) -> None:

@@ -11,6 +11,7 @@ from seatsim.importing.readers.reading import TextLayout
 from seatsim.recordings.channel_units import CHANNELS
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
+from seatsim.schema.text import explain_bad_name
 from seatsim.schema.units import conversion
 from seatsim.schema.validation import build, check_keys, mapping
 from seatsim.schema.yaml_source import Source
@@ -178,6 +179,9 @@ def _check_unit(name: str, entry: ChannelMap, wanted: str, source: Source) -> No
 def _runs(data: Mapping[str, object], source: Source) -> dict[str, list[str]]:
     runs = mapping(data.get("runs", {}), source, ("runs",))
     for name, files in runs.items():
+        problem = explain_bad_name(name)
+        if problem:
+            raise source.error(("runs", name), f"{name!r} {problem}")
         if not isinstance(files, list) or not files or not all(isinstance(file, str) for file in files):
             raise source.error(("runs", name), "is no list of files; write run-a: [file1.csv, file2.csv]")
     return cast("dict[str, list[str]]", dict(runs))

@@ -16,7 +16,7 @@ from seatsim.importing.nominal import NOMINAL
 from seatsim.importing.road import DISTANCE
 from seatsim.importing.signals import Array
 from seatsim.recordings.channel_units import CHANNELS
-from seatsim.schema.files import write_whole
+from seatsim.schema.files import write_together, write_whole
 
 HEADER = "recording.yaml"
 ROAD, EXCITATION = "road.csv.gz", "excitation.yaml"
@@ -25,7 +25,11 @@ SPEED = 12.0
 
 
 def write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
-    """Write tables, nominal scenario, map and last the header of a recording, each whole."""
+    """Write tables, nominal scenario, map and header of a recording, all or none."""
+    return write_together(folder, lambda part: _write_recording(part, assembled, nominal))
+
+
+def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
     paths = [_write_table(folder / f"{run.name}.csv.gz", run.table, assembled.rate) for run in assembled.runs]
     if nominal is not None:
         paths.append(_write_yaml(folder / NOMINAL, nominal))
@@ -69,13 +73,15 @@ def write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> li
     tracks = [name for name in road if name != DISTANCE]
     excitation = {"excitation": {"kind": "table", "path": ROAD, "distance_column": DISTANCE,
                                  "column": tracks[len(tracks) // 2], "speed": SPEED}}  # fmt: skip
-    return [
-        write_whole(
-            folder / ROAD, lambda part: frame.to_csv(part, index=False, float_format="%.9g", compression="gzip")
-        ),
-        write_map(folder / FILE, stated),
-        _write_yaml(folder / EXCITATION, excitation),
-    ]
+    write_table = partial(frame.to_csv, index=False, float_format="%.9g", compression="gzip")
+    return write_together(
+        folder,
+        lambda part: [
+            write_whole(part / ROAD, write_table),
+            write_map(part / FILE, stated),
+            _write_yaml(part / EXCITATION, excitation),
+        ],
+    )
 
 
 def _write_yaml(path: Path, content: Mapping[str, object]) -> Path:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.schema import tables
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import OWN_SPELLINGS, USUAL, conversion
 from seatsim.schema.yaml_source import Source
@@ -134,11 +135,8 @@ def numbers(frame: pd.DataFrame, column: str, file: Path) -> Array:
     Raises:
         InputError: a row of it is no finite number.
     """
-    import pandas as pd
-
     known = meaning(column)
-    values = pd.to_numeric(frame[column], errors="coerce").to_numpy(dtype=float)
-    bad = np.flatnonzero(~np.isfinite(values))
+    values, bad = tables.numbers(frame, column)
     if bad.size:
         more = f" (and {bad.size - 1} more rows)" if bad.size > 1 else ""
         raise InputError(

@@ -8,13 +8,10 @@ where the time jumps and where the column `segment` changes; rows whose `valid` 
 
 from __future__ import annotations
 
-import lzma
-import zipfile
-import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +19,9 @@ from numpy.typing import NDArray
 from seatsim.recordings.bench_columns import DRIVES, KNOWN, check_needed, columns_of, constants, numbers
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.guarded import is_there
+from seatsim.schema.tables import read_table
 from seatsim.schema.yaml_source import Source
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 Table = dict[str, Array]
@@ -94,7 +90,7 @@ def load_bench(path: str | Path) -> list[BenchRecord]:
         InputError: nothing is there, or a table is short of a column, not numeric, too short or unevenly sampled.
     """
     path = Path(path)
-    if not path.exists():
+    if not is_there(path):
         beside = [other.name for other in path.parent.iterdir()] if path.parent.is_dir() else []
         hint = nearest(path.name, beside)
         raise InputError(f"{path}: no such file or folder{hint}; give a bench table, or a folder of them")
@@ -118,7 +114,7 @@ def unused_columns(records: Sequence[BenchRecord]) -> list[str]:
 
 
 def _records(file: Path) -> Iterator[BenchRecord]:
-    frame = read_frame(file)
+    frame = read_table(file)
     columns = columns_of(map(str, frame), file)
     sidecar = file.with_name(stem(file.name) + ".yaml")
     stated = constants(Source(sidecar)) if sidecar.exists() else {}
@@ -138,22 +134,6 @@ def _records(file: Path) -> Iterator[BenchRecord]:
         current = {} if at is None else {"current": np.full(len(frame), at)}
         for record in _split({**table, "force": numbers(frame, column, file), **current}, file, lines):
             yield record._replace(unused=columns.unused)
-
-
-def read_frame(file: Path) -> pd.DataFrame:
-    """Return a CSV table with its columns called by text.
-
-    Raises:
-        InputError: it cannot be read.
-    """
-    import pandas as pd
-
-    try:
-        frame = pd.read_csv(file, low_memory=False)
-    except (OSError, ValueError, EOFError, zlib.error, zipfile.BadZipFile, lzma.LZMAError) as error:
-        reason = str(error).strip()
-        raise InputError(f"{file}: cannot be read as a table: {reason}; give a CSV file with a row of names") from error
-    return frame.set_axis([str(name) for name in frame.columns], axis=1)
 
 
 def _split(table: Table, file: Path, lines: NDArray[np.int64]) -> Iterator[BenchRecord]:

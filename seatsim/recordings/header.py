@@ -9,6 +9,7 @@ from seatsim.scenario.numbers import PARAMETERS, check_key, check_number, list_n
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import nearest
 from seatsim.schema.fields import param
+from seatsim.schema.text import explain_bad_name
 from seatsim.schema.validation import build, check_value
 from seatsim.schema.yaml_source import Source
 
@@ -95,6 +96,9 @@ def read_runs(entries: object, source: Source) -> dict[str, RunEntry]:
     runs: dict[str, RunEntry] = {}
     for index, entry in enumerate(entries):
         run: RunEntry = build(RunEntry, entry, source, ("runs", index))
+        problem = explain_bad_name(run.name)
+        if problem:
+            raise source.error(("runs", index, "name"), f"{run.name!r} {problem}")
         if run.name in runs:
             raise source.error(("runs", index, "name"), f"'{run.name}' is the name of two runs; name each once")
         runs[run.name] = run

@@ -13,7 +13,6 @@ change more here than they explained of a diagnosed run, they are extrapolated, 
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -32,6 +31,7 @@ from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import bounds, replace_fields
+from seatsim.schema.guarded import expect, read_json
 from seatsim.schema.registry import Record
 
 Array = NDArray[np.float64]
@@ -102,12 +102,14 @@ def predict_gap(
     recording = recording if isinstance(recording, Recording) else load_recording(recording)
     augmented = scenario if isinstance(scenario, Scenario) else single(scenario)
     stated, names = _read_diagnosis(Path(diagnosis)), list(runs) or list(recording.runs)
-    error = read_model_error(stated, str(diagnosis))
+    with expect(diagnosis, "diagnosis"):
+        error = read_model_error(stated, str(diagnosis))
+        causes, explained = _read_causes(stated), _read_explained(stated, error.runs, str(diagnosis))
     after = _simulate(augmented, recording, names)
     before = _simulate(single(recording.nominal), recording, names)
-    shifted = [_simulate(other, recording, names) for other in _move_parameters(augmented, _read_causes(stated))]
+    shifted = [_simulate(other, recording, names) for other in _move_parameters(augmented, causes)]
     simulated = SimulatedRigs(recording.header.sample_rate, before, after, shifted)
-    return _combine(error, _read_explained(stated, error.runs, str(diagnosis)), simulated, str(recording.folder))
+    return _combine(error, explained, simulated, str(recording.folder))
 
 
 def _combine(error: ModelError, explained: Array, rigs: SimulatedRigs, place: str) -> Prediction:
@@ -209,10 +211,7 @@ def _read_explained(content: Mapping[str, object], runs: Sequence[str], place: s
 
 def _read_diagnosis(path: Path) -> Mapping[str, object]:
     """Return the content of a `diagnosis.json`."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: cannot be read as a diagnosis: {error}; name the diagnosis.json") from error
+    content = read_json(path, "diagnosis")
     if not isinstance(content, dict):
         raise InputError(f"{path}: is no diagnosis; name the diagnosis.json that 'seatsim diagnose' wrote")
     return content

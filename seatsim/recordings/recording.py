@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import lzma
-import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -21,6 +18,7 @@ from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
+from seatsim.schema.tables import numbers, read_table
 from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import build, check_keys, mapping
 from seatsim.schema.yaml_source import Source
@@ -106,7 +104,7 @@ def _stamp(path: Path) -> Stamp:
     """Return a value that changes with the content of a file, None where there is no file."""
     try:
         status = path.stat()
-    except OSError:
+    except (OSError, ValueError):
         return None
     return status.st_ino, status.st_size, status.st_mtime_ns
 
@@ -171,12 +169,7 @@ def _channels(
 
 @lru_cache(maxsize=KEPT)
 def _read_table(path: Path, channels: tuple[str, ...], stamp: Stamp) -> dict[str, Array]:
-    import pandas as pd
-
-    try:
-        frame = pd.read_csv(path)
-    except (OSError, ValueError, EOFError, zlib.error, zipfile.BadZipFile, lzma.LZMAError) as error:
-        raise InputError(f"{path}: cannot be read as a table: {error}") from error
+    frame = read_table(path)
     if len(frame) < 2:
         raise InputError(f"{path}: holds {len(frame)} rows; a run has at least two")
     missing = [name for name in channels if name not in frame]
@@ -186,8 +179,7 @@ def _read_table(path: Path, channels: tuple[str, ...], stamp: Stamp) -> dict[str
         )
     table = {}
     for name in channels:
-        values = pd.to_numeric(frame[name], errors="coerce").to_numpy(dtype=np.float64)
-        bad = np.flatnonzero(~np.isfinite(values))
+        values, bad = numbers(frame, name)
         if bad.size:
             raise InputError(f"{path}, line {bad[0] + 2}, {name}: not a finite number; {bad.size} rows are not")
         values.flags.writeable = False

@@ -14,7 +14,7 @@ from seatsim.recordings.channel_units import SEAT_CHANNELS
 from seatsim.recordings.header import USUAL, Tolerances
 from seatsim.scenario.numbers import PARAMETERS, TEMPERATURE, list_numbers
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.files import write_whole
+from seatsim.schema.files import write_together, write_whole
 from seatsim.simulation.result import Result, Run
 
 
@@ -51,11 +51,17 @@ def save_recording(
     }
     if model_error is not None:
         header["model_error"] = model_error
-    for name, run in files.items():
-        frame = pd.DataFrame({key: np.asarray(run[key]) for key in ("time", *channels)})
-        write_whole(folder / f"{name}.csv.gz", partial(frame.to_csv, index=False, float_format="%.7g"))
-    for file, content in (("nominal.yaml", nominal), ("recording.yaml", header)):
-        write_whole(folder / file, partial(YAML(typ="safe").dump, content))
+    tables = {f"{name}.csv.gz": pd.DataFrame({key: np.asarray(run[key]) for key in ("time", *channels)})
+              for name, run in files.items()}  # fmt: skip
+    scenarios = {"nominal.yaml": nominal, "recording.yaml": header}
+    write_together(
+        folder,
+        lambda part: [
+            *(write_whole(part / name, partial(table.to_csv, index=False, float_format="%.7g"))
+              for name, table in tables.items()),
+            *(write_whole(part / name, partial(YAML(typ="safe").dump, content)) for name, content in scenarios.items()),
+        ],
+    )  # fmt: skip
     return folder
 
 

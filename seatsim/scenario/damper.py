@@ -6,7 +6,8 @@ from seatsim.dampers.base import DAMPERS, Damper
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.fields import field_names
 from seatsim.schema.validation import build, check_keys, chosen_class, mapping
-from seatsim.schema.yaml_source import KeyPath, Source
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import KeyPath
 
 
 def stated_damper(

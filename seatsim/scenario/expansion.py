@@ -14,7 +14,8 @@ import json
 from collections.abc import Iterator, Mapping
 
 from seatsim.schema.validation import mapping
-from seatsim.schema.yaml_source import KeyPath, Source
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import KeyPath
 
 
 def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Source, dict[str, object]]]:

@@ -20,9 +20,12 @@ from seatsim.scenario.expansion import expand
 from seatsim.scenario.published import check_published
 from seatsim.scenario.scenario import Control, DamperChoice, Inverse, Scenario, Solver, Start
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.guarded import is_there
 from seatsim.schema.registry import Record, Registry
+from seatsim.schema.text import explain_bad_name
 from seatsim.schema.validation import build, check_keys, chosen_class, mapping, sweep_hint
-from seatsim.schema.yaml_source import KeyPath, Source
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import KeyPath
 
 if TYPE_CHECKING:
     from seatsim.excitations.base import Excitation
@@ -64,13 +67,13 @@ def find_file(path: Path) -> Path:
     Raises:
         InputError: there is neither.
     """
-    if path.exists():
+    if is_there(path):
         return path
     if not path.is_absolute():
         inside = Path(*path.parts[1:]) if path.parts[:1] == ("scenarios",) else path
         for folder in EXAMPLES:
             for name in (inside, inside.with_name(f"{inside.name}.yaml")):
-                if (folder / name).is_file():
+                if is_there(folder / name):
                     return folder / name
     found = {path.relative_to(folder) for folder in EXAMPLES if folder.is_dir() for path in folder.rglob("*.yaml")}
     known = sorted(str(path.with_suffix("")) for path in found if "data" not in path.parts)
@@ -94,8 +97,19 @@ def read_scenario(source: Source, label: Mapping[str, object]) -> Scenario:
             raise source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator, temperature,"
                                    " controller and excitation")  # fmt: skip
     sections = {section: read(data[section], source) for section, read in _READERS.items() if section in data}
-    name = str(data.get("name", source.path.stem))
+    name = _name(data, source)
     return Scenario(name=name, label=label, source=source, **_by_field(sections))
+
+
+def _name(data: Mapping[str, object], source: Source) -> str:
+    """Return the name of a scenario, which its folder of results has."""
+    name = data.get("name", source.path.stem)
+    if isinstance(name, dict | list) or name is None:
+        raise source.error(("name",), f"{name!r} is no name; write it as text")
+    problem = explain_bad_name(str(name)) if "name" in data else ""
+    if problem:
+        raise source.error(("name",), f"{str(name)!r} {problem}")
+    return str(name)
 
 
 def reread(scenario: Scenario, sections: Iterable[str], source: Source, label: Mapping[str, object]) -> Scenario:

@@ -16,7 +16,8 @@ from seatsim.schema.errors import nearest
 from seatsim.schema.fields import field_names, replace_fields
 from seatsim.schema.registry import Record
 from seatsim.schema.validation import check_value
-from seatsim.schema.yaml_source import KeyPath, Source
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import KeyPath
 
 PARAMETERS = ("plant", "damper.parameters", "actuator")
 """Sections of a file whose numbers are parameters of the rig; those of the others are conditions of a run."""

@@ -2,6 +2,7 @@
 
 SeatsimError            everything that seatsim raises on purpose
 ├── InputError          a file, a value or a name is wrong (exit status 2, nothing written)
+├── OutputError         a file could not be written, such as on a full disk (exit status 1, nothing half-written)
 ├── RunError            a simulation could not be carried to its end (exit status 1)
 └── SynthesisError      a controller with the wanted property does not exist or was not found (exit status 1)
 """
@@ -11,17 +12,31 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+LONGEST = 200
+"""Letters of a name from which on none is sought that is near: that takes ever longer, and it is none."""
+
+
+LONGEST_MESSAGE = 2000
+
 
 class SeatsimError(Exception):
-    """Base of all errors that seatsim raises on purpose."""
+    """Base of all errors that seatsim raises on purpose; a message is one line, shortened where a value is endless."""
 
     exit_status = 1
+
+    def __init__(self, message: str) -> None:
+        said = " ".join(message.splitlines())
+        super().__init__(said if len(said) <= LONGEST_MESSAGE else f"{said[:1000]} ... {said[-500:]}")
 
 
 class InputError(SeatsimError):
     """A file, a value or a name from the user is wrong."""
 
     exit_status = 2
+
+
+class OutputError(SeatsimError):
+    """A file could not be written, although its place permits it: the disk is full, or failed."""
 
 
 class RunError(SeatsimError):
@@ -34,5 +49,7 @@ class SynthesisError(SeatsimError):
 
 def nearest(name: object, known: Iterable[str]) -> str:
     """Return `" (did you mean 'x'?)"` for the known name closest to `name`, or an empty string."""
+    if len(str(name)) > LONGEST:
+        return ""
     matches = difflib.get_close_matches(str(name), [str(k) for k in known], n=1, cutoff=0.5)
     return f" (did you mean '{matches[0]}'?)" if matches else ""

@@ -1,18 +1,26 @@
-"""Files that are written whole or not at all."""
+"""Files that are written whole or not at all: single ones, and all that a command writes together.
+
+What is not yet whole lies beside its place under a name that begins with `.` and ends in `.part`, and that holds the
+number of the process that writes it. What a killed process has left is removed when something is written there again.
+"""
 
 from __future__ import annotations
 
 import json
 import math
 import os
-import tempfile
-from collections.abc import Callable, Mapping
+import re
+import secrets
+import shutil
+import socket
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
-import numpy as np
+from seatsim.schema.errors import InputError, OutputError
 
-from seatsim.schema.errors import InputError
+_HOST = re.sub(r"[^0-9A-Za-z]", "_", socket.gethostname())[:40]
+_PART = re.compile(rf"\..+\.{_HOST}-(\d+)-[0-9a-f]{{8}}\.part(\..*)?")
 
 
 @runtime_checkable
@@ -28,24 +36,154 @@ def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = Fal
     A `lasting` file is on the disk before it is put in place, so that it survives a loss of power.
 
     Raises:
-        InputError: the folder or the file cannot be written.
+        InputError: the folder or the file cannot be written. OutputError: the disk is full, or failed.
     """
+    _check_place(path)
+    part = _name_part(path)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=path.suffix)
-        os.close(handle)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}; give another --out") from error
-    part = Path(name)
-    try:
+        # As any file of the user: its mode is what the umask leaves of 0o666.
+        os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
         write(part)
-        part.chmod(0o644)
         if lasting:
             _synchronise(part)
         part.replace(path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing of it is left") from error
     finally:
         part.unlink(missing_ok=True)
     return path
+
+
+def write_together(folder: Path, write: Callable[[Path], Iterable[Path]]) -> list[Path]:
+    """Let `write` fill a temporary folder and return its files there; then put them in `folder`, all or none.
+
+    A file of the same name is replaced, others in the folder stay. Returns the files in `folder`, in the same order.
+
+    Raises:
+        InputError: the folder cannot be written. OutputError: the disk is full, or failed.
+    """
+    folder = Path(folder)
+    _check_place(folder, is_folder=True)
+    # Within a folder that is there: the one above it may not be writable.
+    above = folder if folder.is_dir() else folder.parent
+    remove_left(above)
+    part = _name_part(above / os.path.basename(os.path.abspath(folder)))
+    try:
+        part.mkdir()
+        names = [path.relative_to(part) for path in write(part)]
+        _put_in_place(part, folder, names)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be written: {error.strerror or error}; it is as it was") from error
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    return [folder / name for name in names]
+
+
+def _put_in_place(part: Path, folder: Path, names: Iterable[Path]) -> None:
+    """Move a folder to its place, or where something is there already its files, and all of them back if one fails."""
+    if not folder.exists():
+        part.rename(folder)
+        return
+    before = part / ".before"
+    before.mkdir()
+    moved: list[tuple[Path, Path | None]] = []
+    try:
+        for number, name in enumerate(names):
+            place, kept = folder / name, before / str(number)
+            if place.is_dir():
+                raise IsADirectoryError(f"{place} is a folder")
+            place.parent.mkdir(parents=True, exist_ok=True)
+            is_there = place.exists()
+            if is_there:
+                # A second name, where the disk has such: the file stays in its place until the new one takes it.
+                try:
+                    os.link(place, kept)
+                except OSError:
+                    shutil.copy2(place, kept)
+            moved.append((place, kept if is_there else None))
+            (part / name).replace(place)
+    except BaseException:
+        for place, old in reversed(moved):
+            if old is None:
+                place.unlink(missing_ok=True)
+            else:
+                old.replace(place)
+        raise
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder with those above it.
+
+    Raises:
+        InputError: it cannot be written. OutputError: the disk is full, or failed.
+    """
+    check_folder(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be made: {error.strerror}") from error
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a folder that could not be written, before anything is done.
+
+    Raises:
+        InputError: it is a file or lies in one, may not be written, or its name cannot be used.
+    """
+    try:
+        if "\0" in str(folder):
+            raise ValueError("it holds a zero byte")
+        there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    except (OSError, ValueError) as error:
+        raise InputError(f"{str(folder)!r}: cannot be written: {error}; give another --out") from error
+    if not there.is_dir():
+        raise InputError(f"{folder}: cannot be written: {there} is a file; give another --out")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(f"{folder}: cannot be written: {there} is not yours to write in; give another --out")
+
+
+def _check_place(path: Path, is_folder: bool = False) -> None:
+    """Make the folder above a place, and refuse a place that is taken."""
+    check_folder(path if is_folder else path.parent)
+    if "\0" in path.name:
+        raise InputError(f"{str(path)!r}: cannot be written: it holds a zero byte; give another --out")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if not is_folder and path.is_dir():
+            raise InputError(f"{path}: is a folder, where a file is to be written; remove it, or give another --out")
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{str(path)!r}: cannot be written: {reason}; give another --out") from error
+
+
+def _name_part(path: Path) -> Path:
+    """Return the place of what is not yet whole; its ending is kept for those who write by ending."""
+    token = f"{_HOST}-{os.getpid()}-{secrets.token_hex(4)}"
+    # A name may have 255 bytes.
+    return path.with_name(f".{path.name[:50]}.{token}.part{path.suffix[:10]}")
+
+
+def remove_left(folder: Path) -> None:
+    """Remove from a folder what processes of this machine that are no more have left there half-written."""
+    for each in folder.iterdir() if folder.is_dir() else ():
+        found = _PART.fullmatch(each.name)
+        if found and not _is_running(int(found[1])):
+            if each.is_dir():
+                shutil.rmtree(each, ignore_errors=True)
+            else:
+                each.unlink(missing_ok=True)
+
+
+def _is_running(process: int) -> bool:
+    if os.name != "posix":  # there a signal of 0 would end it
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return True
 
 
 def _synchronise(path: Path) -> None:
@@ -68,6 +206,8 @@ def write_json(path: Path, value: object, lasting: bool = False) -> Path:
 
 def plain(value: object) -> object:
     """Return nested values as JSON has them; a record becomes an object."""
+    import numpy as np  # takes longer to load than the commands that check their options
+
     if isinstance(value, _Named):
         return plain(value._asdict())
     if isinstance(value, dict):

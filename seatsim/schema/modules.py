@@ -11,11 +11,13 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import os
 import pkgutil
 import shlex
 import sys
 import traceback
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from importlib.machinery import ModuleSpec
 from pathlib import Path
@@ -41,6 +43,7 @@ class _UsedFile(NamedTuple):
     content: bytes
 
 
+SAFE_PATH = "PYTHONSAFEPATH"
 HOME = Path(__file__).resolve().parents[2]
 """The folder that seatsim lies in."""
 _used: dict[str, _UsedFile] = {}
@@ -114,7 +117,10 @@ def import_named(name: str, beside: Path | None = None) -> ModuleType:
     Raises:
         InputError: there is no such module (`MissingModuleError`), or its import fails.
     """
-    top = name.partition(".")[0]
+    top, *below = name.split(".")
+    # Importing `antigravity` opens a browser, `pip.__main__` starts a program.
+    if name not in sys.modules and top not in _used and (top in sys.stdlib_module_names or "__main__" in below):
+        raise InputError(f"module '{name}' is part of Python or a program; permitted: the module of a class of seatsim")
     try:
         if top not in sys.modules:
             _import_installed(top)
@@ -125,6 +131,23 @@ def import_named(name: str, beside: Path | None = None) -> ModuleType:
         raise InputError(f"module '{name}' cannot be imported: {error}") from error
     except ImportError as error:
         raise InputError(f"module '{name}' cannot be imported: {error}") from error
+
+
+@contextmanager
+def started_elsewhere() -> Iterator[None]:
+    """Let Python processes that are started meanwhile not search the current folder for modules.
+
+    The child of a spawn is started with `python -c`, which searches it first, even for modules of Python itself.
+    """
+    previous = os.environ.get(SAFE_PATH)
+    os.environ[SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        if previous is None:
+            del os.environ[SAFE_PATH]
+        else:
+            os.environ[SAFE_PATH] = previous
 
 
 def _read(path: Path) -> bytes:

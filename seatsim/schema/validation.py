@@ -13,7 +13,8 @@ from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import describe, field_names, validated
 from seatsim.schema.plausible import guess
 from seatsim.schema.registry import Record, Registry
-from seatsim.schema.yaml_source import KeyPath, Source
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import KeyPath
 
 R = TypeVar("R")
 P = TypeVar("P")

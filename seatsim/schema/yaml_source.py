@@ -6,13 +6,9 @@ import copy
 from pathlib import Path
 from typing import Any, Self
 
-from ruamel.yaml import YAML
-from ruamel.yaml.comments import CommentedMap, CommentedSeq
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
-
 from seatsim.schema.errors import InputError, nearest
-
-KeyPath = tuple[str | int, ...]
+from seatsim.schema.guarded import read_bytes
+from seatsim.schema.yaml_text import LARGEST, KeyPath, YamlError, parse
 
 
 class Source:
@@ -24,24 +20,19 @@ class Source:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        content = read_bytes(path, LARGEST, "a YAML file")
         try:
-            text = path.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
-            raise InputError(f"{path}: cannot be read: {reason}; give the path of a YAML file") from error
+            text = content.decode("utf-8-sig")
+        except UnicodeDecodeError as error:
+            raise InputError(f"{path}: cannot be read: not UTF-8 text; give the path of a YAML file") from error
         try:
-            tree = YAML(typ="rt").load(text)
-        except MarkedYAMLError as error:
-            mark = error.problem_mark or error.context_mark
-            line = f", line {mark.line + 1}" if mark else ""
-            problem = (error.problem or "not YAML").split("\n")[0]
-            raise InputError(f"{path}{line}: {problem}; write each key once, as 'key: value'") from error
-        except YAMLError as error:
-            raise InputError(f"{path}: not YAML: {error}") from error
-        if not isinstance(tree, CommentedMap):
-            raise InputError(f"{path}: holds no mapping; a file has keys such as 'plant:' and 'damper:' at its top")
-        self.places: dict[KeyPath, str] = {(): self._line(1)}
-        self.data = self._plain_mapping(tree, ())
+            data, lines = parse(text)
+        except YamlError as error:
+            raise InputError(f"{path}, line {error.line}: {error}") from error
+        if not isinstance(data, dict):
+            raise InputError(f"{path}: holds no mapping; a YAML file has keys at its top, each as 'key: value'")
+        self.places: dict[KeyPath, str] = {keys: self._line(line) for keys, line in {(): 1, **lines}.items()}
+        self.data: dict[str, object] = data
 
     def with_changes(self) -> Self:
         """Return a copy whose content may be changed by `put`; what is not changed is shared with this one."""
@@ -106,27 +97,6 @@ class Source:
 
     def _line(self, number: int) -> str:
         return f"{self.path}, line {number}"
-
-    def _plain_mapping(self, node: CommentedMap, keys: KeyPath) -> dict[str, object]:
-        for key in node:
-            # A key that came with a merge (`<<`) has no place of its own: it stands where its mapping does.
-            line = node.lc.key(key)[0] if key in (node.lc.data or ()) else node.lc.line
-            self.places[(*keys, key)] = self._line(line + 1)
-        return {key: self._plain(value, (*keys, key)) for key, value in node.items()}
-
-    def _plain(self, node: object, keys: KeyPath) -> object:
-        if isinstance(node, CommentedMap):
-            return self._plain_mapping(node, keys)
-        if isinstance(node, CommentedSeq):
-            for index in range(len(node)):
-                self.places[(*keys, index)] = self._line(node.lc.item(index)[0] + 1)
-            return [self._plain(value, (*keys, index)) for index, value in enumerate(node)]
-        if isinstance(node, bool) or node is None:
-            return node
-        for kind in (int, float, str):
-            if isinstance(node, kind):
-                return kind(node)
-        return node
 
 
 def _find_key(node: Any, name: str, dotted: str, place: str) -> str | int:

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future
 from pathlib import Path
+from threading import Lock, Thread
+from typing import TypeVar
 
 from seatsim.metrics import Metric, summarise
 from seatsim.scenario.loading import load
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
-from seatsim.schema.errors import RunError, SynthesisError
+from seatsim.schema.errors import InputError, RunError, SynthesisError
 from seatsim.simulation.result import Result, Run
 from seatsim.simulation.simulate import History, simulate
 from seatsim.simulation.validity import list_reasons
+
+R = TypeVar("R")
 
 
 def run(scenario: str | Path | Scenario, settings: Mapping[str, object] | None = None) -> Result:
@@ -80,11 +84,42 @@ def run_many(
             return run_one(scenario, carry_all)
         except (RunError, SynthesisError) as error:
             return error
+        except InputError:
+            raise
+        except Exception as error:  # a model of the user's own may raise anything, and is not to end the other runs
+            said = str(error).strip().split("\n")[0]
+            return RunError(f"{scenario.title}: {type(error).__name__}: {said}")
         finally:
             done(scenario)
 
-    pool = ThreadPoolExecutor(max_workers=os.cpu_count())
+    yield from zip(scenarios, _map_on_threads(attempt, scenarios), strict=True)
+
+
+def _map_on_threads(function: Callable[[Scenario], R], scenarios: Sequence[Scenario]) -> Iterator[R]:
+    """Call a function with each scenario on as many threads as there are processors, and yield what it returns.
+
+    The threads are daemons: an interrupt does not wait for runs that have begun.
+    """
+    futures: list[Future[R]] = [Future() for _ in scenarios]
+    waiting = iter(zip(scenarios, futures, strict=True))
+    taking = Lock()
+
+    def work() -> None:
+        while True:
+            with taking:
+                scenario, future = next(waiting, (None, None))
+            if scenario is None or future is None or not future.set_running_or_notify_cancel():
+                return
+            try:
+                future.set_result(function(scenario))
+            except BaseException as error:
+                future.set_exception(error)
+
+    for _ in range(min(os.cpu_count() or 1, len(scenarios))):
+        Thread(target=work, daemon=True).start()
     try:
-        yield from zip(scenarios, pool.map(attempt, scenarios), strict=True)
+        for future in futures:
+            yield future.result()
     finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+        for future in futures:
+            future.cancel()

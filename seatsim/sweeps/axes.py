@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.schema.validation import check_keys, mapping
-from seatsim.schema.yaml_source import KeyPath, Source
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import KeyPath, parse_value
 
 Array = NDArray[np.float64]
 DISTRIBUTIONS = {
@@ -143,7 +144,7 @@ def _read_choice(stated: object, source: Source, where: KeyPath) -> Callable[[Ar
     probabilities = np.array(list(shares.values()), dtype=float)
     if not shares or abs(probabilities.sum() - 1) > SLIGHTLY:
         raise source.error(where, f"the probabilities sum to {probabilities.sum():g}; they must sum to 1")
-    return _choose(list(shares), probabilities)
+    return _choose([parse_value(value) for value in shares], probabilities)
 
 
 def _log(value: float) -> float:

@@ -18,8 +18,10 @@ from typing import Literal, NamedTuple, cast, get_args
 from seatsim.metrics.table import METRICS
 from seatsim.scenario.loading import find_file
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.validation import check_keys, mapping
 from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import YamlError, parse_value
 from seatsim.sweeps.axes import Axis, read_axis
 
 DesignName = Literal["cross", "zip", "lhs", "sobol", "table"]
@@ -27,6 +29,10 @@ DESIGNS: tuple[str, ...] = get_args(DesignName)
 KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
 MOST_RUNS = 10_000_000
 """Runs of a sweep: their numbers have this many digits, and more would be a slip of the keyboard."""
+
+
+LARGEST_DESIGN = 2**30
+"""Bytes of a table of runs."""
 
 
 class Table(NamedTuple):
@@ -109,7 +115,7 @@ def _read_scenario(source: Source) -> Source:
         raise source.error(("scenario",), "state a scenario file, the name of an example, or a whole scenario")
     beside = source.path.parent / stated
     try:
-        return Source(beside if beside.is_file() else find_file(Path(stated)))
+        return Source(beside if is_there(beside) else find_file(Path(stated)))
     except InputError as error:
         raise source.error(("scenario",), str(error)) from error
 
@@ -140,9 +146,9 @@ def _read_table(source: Source) -> Table:
         raise source.error(("table",), "design 'table' needs the path of a CSV file whose columns are keys")
     path = source.path.parent / stated
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            rows = list(csv.reader(file))
-    except (OSError, UnicodeDecodeError) as error:
+        text = read_bytes(path, LARGEST_DESIGN, "a CSV file").decode("utf-8-sig")
+        rows = list(csv.reader(text.splitlines()))
+    except (UnicodeDecodeError, csv.Error, InputError) as error:
         raise source.error(("table",), f"{path} cannot be read: {error}") from error
     head, body = (rows[0], [row for row in rows[1:] if row]) if rows else ([], [])
     if not head or not body or len(set(head)) < len(head):
@@ -155,15 +161,7 @@ def _read_table(source: Source) -> Table:
 
 def _read_cell(text: str) -> object:
     """Return a cell as YAML reads it: a number, a truth value, or text."""
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
     try:
-        return cast("object", YAML(typ="safe").load(text))
-    except YAMLError:
+        return parse_value(text)
+    except YamlError:
         return text

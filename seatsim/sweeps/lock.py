@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import socket
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, OutputError
+from seatsim.schema.files import make_folder
 
 
 @contextmanager
@@ -20,7 +21,7 @@ def hold_folder(folder: Path, share: str = "") -> Iterator[None]:
     Raises:
         InputError: another process holds the folder, or the same share of it; the message names that process.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     if not share:
         with hold_file(folder / ".lock"):
             yield
@@ -42,7 +43,11 @@ def hold_file(path: Path, alone: bool = True, wait: bool = False) -> Iterator[No
         raise InputError(
             "a sweep locks its folder with flock, which this system has not; use Linux, macOS, or Windows' WSL"
         ) from error
-    with path.open("a+", encoding="utf-8") as file:
+    try:
+        opened = path.open("a+", encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
+    with opened as file:
         how = (fcntl.LOCK_EX if alone else fcntl.LOCK_SH) | (0 if wait else fcntl.LOCK_NB)
         try:
             fcntl.flock(file, how)
@@ -53,6 +58,7 @@ def hold_file(path: Path, alone: bool = True, wait: bool = False) -> Iterator[No
                 f"{path.parent}: {owner} works on this sweep; wait for it, end it, or choose another --out"
             ) from error
         file.truncate(0)
-        file.write(f"process {os.getpid()} on {socket.gethostname()}" if alone else "a command for a share of it")
-        file.flush()
+        with suppress(OSError):  # who holds a folder is told where the disk lets it
+            file.write(f"process {os.getpid()} on {socket.gethostname()}" if alone else "a command for a share of it")
+            file.flush()
         yield

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_json
+from seatsim.schema.guarded import expect, read_json
 from seatsim.sweeps.identity import GROWING, Identity, digest_design, list_differences
 from seatsim.sweeps.outcome import STATES
 from seatsim.sweeps.plan import Plan
 
 NAME = "manifest.json"
+FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limits": dict, "configuration": dict}
+"""What a manifest states, and of which kind each is."""
 
 
 def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float], counts: Mapping[str, int]) -> Path:
@@ -33,9 +35,13 @@ def read_manifest(folder: Path) -> dict[str, Any]:
         InputError: the folder holds no sweep.
     """
     try:
-        content: dict[str, Any] = json.loads((folder / NAME).read_text(encoding="utf-8"))
-        content["identity"], content["counts"]["runs"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        with expect(folder / NAME, "manifest of a sweep"):
+            content = cast("dict[str, Any]", read_json(folder / NAME, "manifest of a sweep"))
+            for key, kind in FIELDS.items():
+                if not isinstance(content[key], kind):
+                    raise TypeError(f"{key} is {content[key]!r}")
+            content["counts"]["runs"]
+    except InputError as error:
         raise InputError(f"{folder}: holds no sweep; 'seatsim sweep FILE --out {folder}' makes one") from error
     return content
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from seatsim.metrics.table import METRICS
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import write_whole
+from seatsim.schema.files import remove_left, write_whole
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Plan
 
@@ -44,8 +44,8 @@ def part_path(folder: Path, part: int) -> Path:
 
 def remove_unfinished(folder: Path) -> None:
     """Remove what a process that was killed had not finished writing; nobody else may be writing."""
-    for path in (folder / "runs").glob(".*.parquet"):
-        path.unlink()
+    for path in (folder, folder / "runs", folder / "histories"):
+        remove_left(path)
 
 
 def read_outcomes(folder: Path, part: int) -> list[Outcome]:

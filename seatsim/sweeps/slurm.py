@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
-from seatsim.schema.files import write_text
+from seatsim.schema.files import make_folder, write_text
 from seatsim.sweeps.parts import part_of
 from seatsim.sweeps.plan import Plan
 
@@ -32,7 +32,7 @@ def write_slurm(
     Raises:
         InputError: the script or the folder cannot be written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     words = ["seatsim", "sweep", str(file.resolve()), "--out", str(folder.resolve())]
     words += ["--keep", "histories"] if keep_histories else []
     words += [word for path in own_code for word in ("--with", str(path.resolve()))]

@@ -68,13 +68,13 @@ def test_a_folder_that_cannot_be_is_refused_before_anything_runs(inside, seatsim
     monkeypatch.setattr("seatsim.simulation.runs.run_many", None)
     out = seat_file / "deeper" if inside else seat_file
     status, _, err = seatsim_command("run", seat_file, "--out", out)
-    assert status == 2 and f"--out {out}: {seat_file} is a file" in err
+    assert status == 2 and f"--out {out}: cannot be written: {seat_file} is a file" in err
 
 
 def test_a_folder_without_permission_is_refused(seatsim_command, seat_file, monkeypatch):
-    monkeypatch.setattr("seatsim.cli.options.os.access", lambda path, mode: False)
+    monkeypatch.setattr("seatsim.schema.files.os.access", lambda path, mode: False)
     status, _, err = seatsim_command("run", seat_file, "--out", seat_file.parent / "new")
-    assert status == 2 and f"{seat_file.parent} cannot be written; give another --out" in err
+    assert status == 2 and f"{seat_file.parent} is not yours to write in; give another --out" in err
 
 
 def test_shells_are_completed(seatsim_command):

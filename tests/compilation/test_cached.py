@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from seatsim.compilation import cached
+from seatsim.compilation.checked_cache import CheckedCache
 
 
 @pytest.fixture
@@ -176,24 +177,17 @@ def square(a):
 def test_a_function_is_kept_where_all_sources_are_files(tmp_path, monkeypatch):
     monkeypatch.setenv("SEATSIM_CACHE_DIR", str(tmp_path))
     monkeypatch.setattr(cached, "digest", lambda modules: "-".join(sorted(module.__name__ for module in modules)))
-    asked = []
-
-    def njit(**options):
-        asked.append(options | {"folder": numba.config.CACHE_DIR})
-        return lambda function: function
-
-    monkeypatch.setattr(cached.numba, "njit", njit)
     previous = numba.config.CACHE_DIR
     inside = type("Inside", (), {"__module__": "typed_in"})
     monkeypatch.setitem(sys.modules, "typed_in", types.ModuleType("typed_in"))
     for plugged, kept in (((), True), ((Path,), True), ((inside,), False)):
-        assert cached.compiled(square, plugged) is square
-        assert asked[-1]["cache"] is kept and asked[-1]["nogil"] and asked[-1]["error_model"] == "numpy"
-    assert asked[0]["folder"] == str(tmp_path / __name__)
-    assert previous == numba.config.CACHE_DIR
-    count = len(asked)
-    cached.compiled(square, [Path])
-    assert len(asked) == count
+        function = cached.compiled(square, plugged)
+        assert isinstance(function._cache, CheckedCache) is kept
+        assert function.targetoptions["nogil"] and function.targetoptions["error_model"] == "numpy"
+        assert previous == numba.config.CACHE_DIR
+        if kept:
+            modules = "-".join(sorted(part.__module__ for part in (square, *plugged)))
+            assert Path(function._cache.cache_path).is_relative_to(tmp_path / modules)
 
 
 def test_garbage_is_left_alone_while_something_is_compiled():

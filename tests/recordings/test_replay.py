@@ -85,7 +85,7 @@ def break_header(folder, old, new):
         ("sample_rate", "sample_rat", "did you mean 'sample_rate'"),
         ("driver_acceleration:", "driver_accel:", "did you mean 'driver_acceleration'"),
         ("unit: N", "unit: mm", "'mm' is no unit of a value in N"),
-        ("file: run-1.csv.gz", "file: run-9.csv.gz", "cannot be read as a table"),
+        ("file: run-1.csv.gz", "file: run-9.csv.gz", "run-9.csv.gz: cannot be read: No such file"),
         ("nominal: nominal.yaml", "nominal: 3", "nominal"),
         ("name: run-2", "name: run-1", "name of two runs"),
         ("name: run-2", "name: run-2, repeat_of: run-7", "no run is called 'run-7'"),

@@ -220,15 +220,22 @@ def test_a_module_that_was_imported_from_the_same_file_is_kept(power_law, monkey
 
 
 def test_installed_modules_are_found(monkeypatch, tmp_path):
-    monkeypatch.delitem(sys.modules, "colorsys", raising=False)
-    (tmp_path / "colorsys.py").write_text("raise AssertionError\n")
+    monkeypatch.delitem(sys.modules, "_pytest.logging", raising=False)
+    monkeypatch.delitem(sys.modules, "iniconfig", raising=False)
+    (tmp_path / "iniconfig.py").write_text("raise AssertionError\n")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", ["", *sys.path])
-    assert import_named("colorsys").rgb_to_hsv(0.0, 0.0, 0.0) == (0.0, 0.0, 0.0)
-    assert import_named("importlib.metadata").entry_points is not None
+    assert import_named("iniconfig").IniConfig is not None
+    assert import_named("_pytest.logging").caplog is not None
 
 
-@pytest.mark.parametrize("name", ["nowhere", "", ".relative", "a b", "math.nothing", "seatsim.nothing", "../powerlaw"])
+@pytest.mark.parametrize("name", ["antigravity", "pip.__main__", "seatsim.__main__"])
+def test_a_module_that_does_something_when_it_is_imported_is_refused(name):
+    with pytest.raises(seatsim.InputError, match="is part of Python or a program"):
+        import_named(name)
+
+
+@pytest.mark.parametrize("name", ["nowhere", "", ".relative", "a b", "seatsim.nothing", "../powerlaw"])
 def test_a_module_that_is_not_there(name):
     with pytest.raises(MissingModuleError, match="no module"):
         import_named(name)

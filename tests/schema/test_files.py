@@ -2,13 +2,16 @@
 
 import json
 import math
+import os
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-from seatsim.schema.errors import InputError, SeatsimError, nearest
-from seatsim.schema.files import plain, write_json, write_text, write_whole
+from seatsim.schema import files
+from seatsim.schema.errors import InputError, OutputError, SeatsimError, nearest
+from seatsim.schema.files import check_folder, plain, remove_left, write_json, write_text, write_together, write_whole
 
 
 class Point(NamedTuple):
@@ -27,7 +30,6 @@ def test_values_become_plain():
 def test_json_is_written_with_missing_folders(tmp_path):
     path = write_json(tmp_path / "a" / "b.json", {"point": Point(1.0, (2.0,))})
     assert json.loads(path.read_text()) == {"point": {"x": 1.0, "y": [2.0]}}
-    assert path.stat().st_mode & 0o777 == 0o644
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -37,7 +39,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
         part.write_text("half of it")
         raise OSError("disk full")
 
-    with pytest.raises(OSError, match="disk full"):
+    with pytest.raises(OutputError, match=r"kept.txt: cannot be written: disk full; nothing of it is left"):
         write_whole(path, fail)
     assert path.read_text() == "before"
     assert list(tmp_path.iterdir()) == [path]
@@ -53,3 +55,76 @@ def test_the_nearest_name_is_proposed_where_one_is_near():
     assert nearest("fricton", ["friction", "end_stop"]) == " (did you mean 'friction'?)"
     assert nearest("xyz", ["friction", "end_stop"]) == ""
     assert (InputError.exit_status, SeatsimError.exit_status) == (2, 1)
+
+
+@pytest.mark.parametrize("mask", [0o022, 0o077])
+def test_files_have_the_mode_that_the_umask_leaves(tmp_path, mask):
+    before = os.umask(mask)
+    try:
+        write_text(tmp_path / "a.txt", "")
+        write_together(tmp_path / "set", lambda part: [write_text(part / "b.txt", "")])
+    finally:
+        os.umask(before)
+    for path in (tmp_path / "a.txt", tmp_path / "set" / "b.txt"):
+        assert path.stat().st_mode & 0o777 == 0o666 & ~mask
+    assert (tmp_path / "set").stat().st_mode & 0o777 == 0o777 & ~mask
+
+
+def write_two(part):
+    return [write_text(part / "a.txt", "new"), write_text(part / "b" / "c.txt", "new")]
+
+
+def contents(folder):
+    return {str(path.relative_to(folder)): path.read_text() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_files_that_belong_together_replace_others_together(tmp_path):
+    folder = tmp_path / "set"
+    assert write_together(folder, write_two) == [folder / "a.txt", folder / "b" / "c.txt"]
+    (folder / "a.txt").write_text("old")
+    (folder / "other.txt").write_text("stays")
+    write_together(folder, write_two)
+    assert contents(folder) == {"a.txt": "new", "b/c.txt": "new", "other.txt": "stays"}
+    assert list(tmp_path.iterdir()) == [folder]
+
+
+def test_the_current_folder_is_a_place_as_well(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_together(Path(), write_two)
+    assert contents(tmp_path) == {"a.txt": "new", "b/c.txt": "new"}
+
+
+def test_where_one_cannot_be_put_in_place_all_stay_as_they_were(tmp_path):
+    folder = tmp_path / "set"
+    (folder / "b" / "c.txt").mkdir(parents=True)
+    (folder / "a.txt").write_text("old")
+    with pytest.raises(OutputError, match="is a folder; it is as it was"):
+        write_together(folder, write_two)
+    assert contents(folder) == {"a.txt": "old"}
+    assert list(tmp_path.iterdir()) == [folder]
+
+
+def test_what_a_killed_process_has_left_is_removed_and_what_another_writes_is_not(tmp_path):
+    dead, alive = (tmp_path / f".set.{files._HOST}-{number}-0123abcd.part" for number in (2**22 + 1, os.getpid()))
+    for part in (dead, alive):
+        part.mkdir()
+        (part / "a.txt").touch()
+    (tmp_path / f".a.txt.{files._HOST}-{2**22 + 1}-0123abcd.part.txt").touch()
+    (tmp_path / ".kept.part").touch()
+    write_together(tmp_path / "set", write_two)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([alive.name, ".kept.part", "set"])
+    remove_left(tmp_path / "absent")
+
+
+def test_a_folder_where_a_file_should_go_is_bad_input(tmp_path):
+    (tmp_path / "a.txt").mkdir()
+    with pytest.raises(InputError, match="is a folder, where a file is to be written"):
+        write_text(tmp_path / "a.txt", "")
+
+
+@pytest.mark.parametrize("name", ["a\0b", "x" * 300])
+def test_a_name_that_no_file_can_have_is_bad_input(tmp_path, name):
+    for write in (check_folder, lambda path: write_text(path, ""), lambda path: write_together(path, write_two)):
+        with pytest.raises(SeatsimError, match=r"cannot be written"):
+            write(tmp_path / name if "x" in name else Path(name))
+    assert list(tmp_path.iterdir()) == []

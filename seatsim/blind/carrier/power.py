@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import math
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.verdicts import is_right, read_verdict
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.files import write_json, write_text
+from seatsim.schema.guarded import expect, read_json
 
 SIZES = (0.06, 0.1, 0.16, 0.25, 0.4)
 """Standard deviations by which the effect moves a compared channel: from just material to more than strong."""
@@ -143,8 +143,9 @@ def try_draw(setting: Setting, size: float, draw: int) -> Trial:
     name = f"{setting.effect}-{size:g}-{draw + 1:02d}"
     case, note = setting.out / "cases" / name, setting.out / "cases" / f"{name}.json"
     if note.is_file():
-        known = json.loads(note.read_text(encoding="utf-8"))
-        return Trial(known["parameters"], bool(known["found"]))
+        with expect(note, "trial; remove it, and it is made again"):
+            known = cast("dict[str, Any]", read_json(note, "trial"))
+            return Trial(known["parameters"], bool(known["found"]))
     drawn = _draw(setting, size, draw)
     trial = Trial(None, False) if drawn is None else _diagnosed(setting, case, drawn)
     write_json(note, trial._asdict())

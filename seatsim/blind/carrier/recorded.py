@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from ruamel.yaml import YAML
 
 from seatsim.blind.make.folder import encode_yaml
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.errors import InputError
+from seatsim.schema.yaml_source import Source
 
 Array = NDArray[np.float64]
 LEFT_OUT = 1.0
@@ -85,11 +85,10 @@ def read_carrier(folder: Path) -> Carrier:
     for run, table in tables.items():
         if len(next(iter(table.values()))) < least:
             raise InputError(f"{folder}, run {run}: shorter than {least} rows; its first second is left out; drop it")
-    yaml = YAML(typ="safe")
-    header: Content = yaml.load(folder / HEADER)
+    header = Source(folder / HEADER).data
     if recording.conversions:  # tables are read in SI units, whatever the header states
         header["channels"] = {name: entry._asdict() for name, entry in recording.channels.items()}
-    return Carrier(header, yaml.load(recording.nominal), tables)
+    return Carrier(header, Source(recording.nominal).data, tables)
 
 
 def encode_carrier(carrier: Carrier, runs: tuple[str, ...]) -> dict[str, bytes]:

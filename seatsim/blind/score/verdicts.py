@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NotRequired, Required, TypedDict
+from typing import NotRequired, Required, TypedDict, cast
 
 from seatsim.blind.labels import Label
-from seatsim.schema.errors import InputError
+from seatsim.schema.guarded import expect, read_json
 
 NAMING = ("known", "ambiguous")
 """Verdicts that name effects."""
@@ -60,10 +59,8 @@ def read_verdict(path: Path) -> Verdict:
     """
     if not path.is_file():
         return Verdict("missing")
-    try:
-        return _parse(json.loads(path.read_text(encoding="utf-8")), path)
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise InputError(f"{path}: is not a diagnosis as the contract has it: {error!r}") from error
+    with expect(path, "diagnosis as the contract has it"):
+        return _parse(cast("_Diagnosis", read_json(path, "diagnosis")), path)
 
 
 class _Estimate(TypedDict):

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import Json, Out, OwnCode
+from seatsim.cli.options import Json, NewFolder, Out, OwnCode, check_out
 from seatsim.cli.terminal import answer, count_progress, out, say, wrote_one
 from seatsim.schema.errors import InputError
 
@@ -17,7 +17,7 @@ blind = typer.Typer(help="Check diagnoses on recordings whose effects are sealed
 @blind.command("make")
 def blind_make(
     cases: Annotated[int, typer.Option("--cases", min=1, help="How many recordings.")],
-    out_folder: Annotated[Path, typer.Option("--out", help="Folder for the recordings.")],
+    out_folder: NewFolder,
     sealed: Annotated[Path, typer.Option("--sealed", help="File for the encrypted labels.")],
     seed: Annotated[int | None, typer.Option("--seed", help="Seed of the draw; drawn and sealed where absent.")] = None,
     kinds: Annotated[
@@ -50,7 +50,9 @@ def blind_score(
     folder: Annotated[Path, typer.Argument(help="Folder of `blind make`; undiagnosed cases are diagnosed first.")],
     sealed: Annotated[Path, typer.Option("--sealed", help="File of the encrypted labels.")],
     key: Annotated[str, typer.Option("--key", help="The key that `blind make` printed.")],
-    out_folder: Annotated[Path | None, typer.Option("--out", help="Folder for score.json, FOLDER by default.")] = None,
+    out_folder: Annotated[
+        Path | None, typer.Option("--out", help="Folder for score.json, FOLDER by default.", callback=check_out)
+    ] = None,
     own_code: OwnCode = None,
     as_json: Json = False,
 ) -> None:

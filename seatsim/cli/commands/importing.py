@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seatsim.cli.options import Json, OwnCode
+from seatsim.cli.options import Json, NewFolder, OwnCode
 from seatsim.cli.terminal import answer, say, show_progress, warn, wrote
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ def import_data(
     files: Annotated[
         list[Path], typer.Argument(help="Data files of one rig, or a folder of them.", show_default=False)
     ],
-    folder: Annotated[Path, typer.Option("--out", help="Folder of the recording.", show_default=False)],
+    folder: NewFolder,
     map_file: Annotated[
         Path | None,
         typer.Option("--map", metavar="MAP.yaml", help="Which column is which channel; proposed where absent."),

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from seatsim.cli.options import Json, Out, OwnCode
+from seatsim.cli.options import Json, Out, OwnCode, check_out
 from seatsim.cli.terminal import answer, complain, count_progress, say, show_progress, warn, wrote, wrote_one
 
 FAILURES_SHOWN = 5
@@ -83,7 +83,8 @@ def sweep(
 def sweep_report(
     folder: Annotated[Path, typer.Argument(help="Folder of a sweep.", show_default=False)],
     out_folder: Annotated[
-        Path | None, typer.Option("--out", help="Folder for the files.", show_default="that of the sweep")
+        Path | None,
+        typer.Option("--out", help="Folder for the files.", show_default="that of the sweep", callback=check_out),
     ] = None,
     as_json: Json = False,
 ) -> None:

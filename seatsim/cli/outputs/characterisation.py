@@ -18,7 +18,7 @@ from seatsim.characterisation.summary import Characterisation, contents
 from seatsim.cli.outputs.runs import write_pictures
 from seatsim.report.characterisation import report_characterisation
 from seatsim.report.rendering import write_html
-from seatsim.schema.files import write_json, write_whole
+from seatsim.schema.files import write_json, write_together, write_whole
 
 LISTED = 45
 """Most rows of the table on the terminal."""
@@ -62,14 +62,17 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
     from seatsim.plots.bench.characterisation import plot_characterisation
 
     table = pd.DataFrame([row_columns(row) for row in found.rows])
-    paths = [
-        write_whole(folder / "cycles.csv", partial(table.to_csv, index=False)),
-        write_json(folder / "characterisation.json", contents(found)),
-    ]
     command = f"seatsim characterise {found.source}" if found.measured else f"seatsim characterise --model {found.name}"
     report = report_characterisation(found, collect_remarks(found), command)
-    paths.append(write_html(report, folder / "report.html"))
-    return [*paths, *write_pictures(plot_characterisation(found), folder)]
+    return write_together(
+        folder,
+        lambda part: [
+            write_whole(part / "cycles.csv", partial(table.to_csv, index=False)),
+            write_json(part / "characterisation.json", contents(found)),
+            write_html(report, part / "report.html"),
+            *write_pictures(plot_characterisation(found), part),
+        ],
+    )
 
 
 def make_tables(found: Characterisation) -> list[Table]:

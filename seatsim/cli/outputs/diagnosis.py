@@ -17,7 +17,7 @@ from seatsim.effects.base import EFFECTS
 from seatsim.report.diagnosis import write_report
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import SeatsimError
-from seatsim.schema.files import plain, write_json, write_whole
+from seatsim.schema.files import plain, write_json, write_together, write_whole
 from seatsim.schema.registry import is_own
 
 PROCESSES = 2
@@ -40,10 +40,14 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
         for name, content in scenarios.items():
             dump(content, Path(drafts) / name)
             single(Path(drafts) / name)
-    paths = [write_whole(folder / name, partial(dump, content)) for name, content in scenarios.items()]
-    paths.append(write_report(diagnosis, folder / "report.html"))
-    paths.append(write_json(folder / "diagnosis.json", encode_diagnosis(diagnosis)))
-    return paths
+    return write_together(
+        folder,
+        lambda part: [
+            *(write_whole(part / name, partial(dump, content)) for name, content in scenarios.items()),
+            write_report(diagnosis, part / "report.html"),
+            write_json(part / "diagnosis.json", encode_diagnosis(diagnosis)),
+        ],
+    )
 
 
 def encode_diagnosis(diagnosis: Diagnosis) -> dict[str, object]:

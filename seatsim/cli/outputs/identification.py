@@ -21,7 +21,7 @@ from seatsim.identification.identify import Identification
 from seatsim.identification.model_benchmark import BenchmarkEntry
 from seatsim.report.identification import report_identification
 from seatsim.report.rendering import write_html
-from seatsim.schema.files import write_json, write_text, write_whole
+from seatsim.schema.files import write_json, write_text, write_together, write_whole
 
 LISTED = 40
 """Most records of the table on the terminal."""
@@ -36,19 +36,21 @@ def write_identification(found: Identification, folder: str | Path) -> list[Path
     """Write `parameters.yaml`, `fit.json`, `report.html` and the picture of an identification; return their paths."""
     from seatsim.plots.bench.identification import plot_predictions
 
-    folder = Path(folder)
     text = io.StringIO(HEAD + ("" if found.commanded else NO_COIL))
     text.seek(0, io.SEEK_END)
     yaml = YAML()
     yaml.default_flow_style = False
     yaml.dump(encode_parameters(found), text)
-    paths = [
-        write_text(folder / "parameters.yaml", text.getvalue()),
-        write_json(folder / "fit.json", encode_identification(found)),
-    ]
     report = report_identification(found, f"seatsim identify DATA --model {found.model}")
-    paths.append(write_html(report, folder / "report.html"))
-    return [*paths, *write_pictures({"loops": plot_predictions(found)}, folder)]
+    return write_together(
+        Path(folder),
+        lambda part: [
+            write_text(part / "parameters.yaml", text.getvalue()),
+            write_json(part / "fit.json", encode_identification(found)),
+            write_html(report, part / "report.html"),
+            *write_pictures({"loops": plot_predictions(found)}, part),
+        ],
+    )
 
 
 def encode_parameters(found: Identification) -> dict[str, object]:

@@ -11,7 +11,7 @@ from seatsim.cli import templates
 from seatsim.cli.outputs.schemas import FILES
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.files import write_whole
+from seatsim.schema.files import write_together
 from seatsim.schema.registry import names
 
 TEMPLATES = Path(templates.__file__).parent
@@ -36,11 +36,15 @@ def write_new(kind: str, path: Path) -> list[Path]:
     for file in contents:
         if file.exists():
             raise InputError(f"{file}: is there already, and is not replaced; give another name")
-    return [write_whole(file, partial(_write, content=content)) for file, content in contents.items()]
+    folder = path if kind == "recording" else path.parent
+    by_name = {file.name: content for file, content in contents.items()}
+    return write_together(folder, partial(_write_all, contents=by_name))
 
 
-def _write(part: Path, content: bytes) -> None:
-    part.write_bytes(content)
+def _write_all(part: Path, contents: Mapping[str, bytes]) -> list[Path]:
+    for name, content in contents.items():
+        (part / name).write_bytes(content)
+    return [part / name for name in contents]
 
 
 def _scenario(path: Path) -> Mapping[Path, bytes]:

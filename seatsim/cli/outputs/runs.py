@@ -10,9 +10,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from seatsim.report.blocks import Report
 from seatsim.report.rendering import write_html
 from seatsim.report.runs import report_runs
-from seatsim.schema.files import write_json, write_whole
+from seatsim.schema.files import write_json, write_together, write_whole
 from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Result, Run
@@ -26,6 +27,10 @@ def write_result(result: Result, folder: Path, command: str = "seatsim run SCENA
 
     `command`: what makes the files again, for the report.
     """
+    return write_together(folder, partial(_write_files, result, report_runs(result.runs, command, folder.name)))
+
+
+def _write_files(result: Result, report: Report, folder: Path) -> list[Path]:
     with ThreadPoolExecutor(max_workers=1) as pool:
         # Compressing the histories, in a thread of its own, releases Python's lock to the drawing of the pictures.
         history = pool.submit(write_histories, result.runs, folder / "history.parquet")
@@ -34,7 +39,7 @@ def write_result(result: Result, folder: Path, command: str = "seatsim run SCENA
         paths = [
             write_whole(folder / "summary.csv", partial(_write_table, result.rows)),
             write_json(folder / "summary.json", _encode_runs(result)),
-            write_html(report_runs(result.runs, command, folder.name), folder / "report.html"),
+            write_html(report, folder / "report.html"),
         ]
         pictures = write_pictures(plot_result(result), folder)
         if result.brackets:

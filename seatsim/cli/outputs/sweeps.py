@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.report.sweep import state_importance, write_sweep_report
-from seatsim.schema.files import write_whole
+from seatsim.schema.files import write_together, write_whole
 from seatsim.sweeps.statistics.exceedance import Exceedance, count_exceedances
 from seatsim.sweeps.statistics.inputs import read_rows
 from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
@@ -31,11 +31,14 @@ def report_sweep(folder: Path, out: Path) -> SweepReport:
     """
     rows = read_rows(folder)
     quantiles, found, exceeded = tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows)
-    paths = [
-        write_whole(out / "table.csv", partial(quantiles.to_csv, index=False)),
-        write_whole(out / "sensitivity.csv", partial(tabulate_sensitivities(found).to_csv, index=False)),
-        write_sweep_report(rows, quantiles, found, exceeded, out / "report.html"),
-    ]
+    paths = write_together(
+        out,
+        lambda part: [
+            write_whole(part / "table.csv", partial(quantiles.to_csv, index=False)),
+            write_whole(part / "sensitivity.csv", partial(tabulate_sensitivities(found).to_csv, index=False)),
+            write_sweep_report(rows, quantiles, found, exceeded, part / "report.html"),
+        ],
+    )
     return SweepReport(state_importance(found, rows), exceeded, found, paths)
 
 

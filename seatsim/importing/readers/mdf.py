@@ -17,6 +17,9 @@ TIME = "time"
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the channel groups; groups of the same time are one."""
     asammdf = need("asammdf", "MDF")
+    # A conversion that numexpr refuses would be handed to sympy, which runs its text as Python.
+    for blocks in (need("asammdf.blocks.v4_blocks", "MDF"), need("asammdf.blocks.v2_v3_blocks", "MDF")):
+        vars(blocks)["lambdify"] = None
     groups: list[Group] = []
     with asammdf.MDF(io.BytesIO(content)) as file:
         for index, group in enumerate(file.groups):

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import bz2
-import gzip
-import lzma
+import io
 import zipfile
-from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
@@ -15,7 +12,11 @@ import numpy as np
 
 from seatsim.importing.signals import DataFile, Group
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.guarded import in_mib, is_there, read_bytes
+from seatsim.schema.tables import LARGEST_FILE, unpack
 
+LARGEST_SHEETS = 2**30
+"""Bytes of an XLSX once it is unpacked."""
 SNIFFED = 4096
 """Bytes from which a format is recognised."""
 LEAST_ROWS = 2
@@ -62,9 +63,7 @@ NOT_TABLES = {
     b"%PDF": "a PDF", b"\x89PNG": "a picture", b"\xff\xd8\xff": "a picture", b"\x7fELF": "a program",
     b"\xd0\xcf\x11\xe0": "an Excel file of the old kind (.xls): save it as .xlsx",
 }  # fmt: skip
-PACKED: dict[bytes, Callable[[bytes], bytes]] = {
-    b"\x1f\x8b": gzip.decompress, b"BZh": bz2.decompress, b"\xfd7zXZ": lzma.decompress,
-}  # fmt: skip
+ZIP = b"PK\x03\x04"
 
 
 def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
@@ -90,17 +89,13 @@ def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
 
 def _content(path: Path) -> bytes:
     """Return the bytes of a file, unpacked where it is packed."""
-    try:
-        content = path.read_bytes()
-    except OSError as error:
+    if not is_there(path):
         beside = [each.name for each in path.parent.iterdir()] if path.parent.is_dir() else []
-        raise InputError(f"{path}: cannot be read: {error.strerror}{nearest(path.name, beside)}") from error
-    for magic, unpack in PACKED.items():
-        if content.startswith(magic):
-            try:
-                content = unpack(content)
-            except (OSError, EOFError, ValueError, lzma.LZMAError, zipfile.BadZipFile) as error:
-                raise InputError(f"{path}: cannot be unpacked ({error}); it is truncated: copy it again") from error
+        raise InputError(f"{path}: cannot be read: no such file{nearest(path.name, beside)}")
+    content = read_bytes(path, LARGEST_FILE, "a file of measured data")
+    # An XLSX is a ZIP itself, and its reader unpacks it.
+    if not content.startswith(ZIP):
+        content = unpack(content, path)
     if not content.strip(b"\0 \r\n\t"):
         raise InputError(f"{path}: is empty; export it again")
     return content
@@ -111,7 +106,8 @@ def _recognise(path: Path, content: bytes) -> Format:
     for magic, what in NOT_TABLES.items():
         if head.startswith(magic):
             raise InputError(f"{path}: is {what}; permitted: {KNOWN}")
-    if head.startswith(b"PK\x03\x04"):
+    if head.startswith(ZIP):
+        _check_unpacked(path, content)
         return names["XLSX"]
     if b"$ROAD_CRG" in head.upper() or b"$KD_DEFINITION" in head.upper():
         return names["OpenCRG"]
@@ -124,6 +120,16 @@ def _recognise(path: Path, content: bytes) -> Format:
     if not _is_text(head):
         raise InputError(f"{path}: is no table in a known format; permitted: {KNOWN}")
     return names["CSV"]
+
+
+def _check_unpacked(path: Path, content: bytes) -> None:
+    """Raise InputError where the parts of a ZIP are too large together, before any is unpacked."""
+    try:
+        size = sum(each.file_size for each in zipfile.ZipFile(io.BytesIO(content)).infolist())
+    except (zipfile.BadZipFile, ValueError, OSError) as error:
+        raise InputError(f"{path}: cannot be unpacked ({error}); it is truncated: copy it again") from error
+    if size > LARGEST_SHEETS:
+        raise InputError(f"{path}: unpacks to {in_mib(size)}; permitted: at most {in_mib(LARGEST_SHEETS)}")
 
 
 def _is_text(head: bytes) -> bool:

@@ -14,6 +14,7 @@ from seatsim.importing.readers.header import Header, first_row_of_numbers, split
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import Array, DataFile, Group, Signal
 from seatsim.schema.errors import InputError
+from seatsim.schema.tables import InvalidRow, check_rows
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -129,10 +130,10 @@ def _table(path: Path, content: bytes, header: Header, delimiter: str, decimal: 
 
     if delimiter == " ":
         content = b"\n".join(b" ".join(line.split()) for line in content.splitlines())
-    bad: list[tuple[int | None, int, int]] = []
+    bad: list[InvalidRow] = []
 
     def note(row: arrow_csv.InvalidRow) -> str:
-        bad.append((row.number, row.actual_columns, row.expected_columns))
+        bad.append(InvalidRow(row.number, row.actual_columns, row.expected_columns))
         return "skip"
 
     names = [str(index) for index in range(len(header.names))]
@@ -145,14 +146,7 @@ def _table(path: Path, content: bytes, header: Header, delimiter: str, decimal: 
         )
     except pa.ArrowInvalid as error:
         raise InputError(f"{path}: cannot be read as a table: {error}") from error
-    if bad:
-        number, actual, expected = bad[0]
-        place = f"{path}, line {number}" if number else f"{path}"
-        more = f" (and {len(bad) - 1} more lines)" if len(bad) > 1 else ""
-        raise InputError(
-            f"{place}: has {actual} columns where the others have {expected}{more}; the file is truncated or damaged:"
-            " export it again"
-        )
+    check_rows(bad, path)
     return table
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.recordings.quality.damage import Doubter, doubt_dropouts, doubt_spikes
+from seatsim.recordings.quality.damage import NOTABLE, Doubter, doubt_dropouts, doubt_spikes
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.plausible_ranges import say_implausible
 from seatsim.recordings.quality.run_under_test import MOTION, RunUnderTest
@@ -16,6 +16,10 @@ STUCK = 0.5
 """s; a noisy channel without any change for this long is stuck."""
 STEADY = ("suspension_displacement", "displacement", "velocity")
 """Channels that inertia keeps from jumping: a force and an acceleration jump where a current is switched."""
+HOTTEST = 130.0
+"""degC; upper end of the temperatures at which MR fluids are used."""
+BEYOND_SWITCHES = 6.0
+"""Size in standard deviations of a single row that no switched current makes."""
 CLIPPED = 0.002
 """Share of rows at an extreme above which clipping is an error."""
 
@@ -64,6 +68,11 @@ def _temperature(run: RunUnderTest, channel: str) -> Iterator[Issue]:
         guess = "is it in kelvin? " if low > 230.0 and high < 480.0 else ""
         seen = f"ranges from {low:.4g} to {high:.4g} degC, outside -40 to 200 degC"
         yield run.issue("error", "unit", f"{seen}; {guess}convert it to degC", channel)
+    elif high > HOTTEST:
+        text = (
+            f"reaches {high:.4g} degC, where the fluid of MR dampers stands {HOTTEST:g} degC; check its unit and sensor"
+        )
+        yield run.issue("warning", "range", text, channel)
 
 
 def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
@@ -88,12 +97,12 @@ def check_sizes(run: RunUnderTest) -> Iterator[Issue]:
 
 
 def check_damage(run: RunUnderTest) -> Iterator[Issue]:
-    """Report dropouts of the channels that move, and spikes of those that no switched current can make jump."""
+    """Report dropouts of the channels that move, and spikes beyond what a switched current makes of them."""
     for channel in MOTION:
         if channel in run.table and np.ptp(run.table[channel]) > 0.0:
             doubter, values = Doubter(channel, run.rate), run.table[channel]
             found = [*doubt_dropouts(doubter, values, *plateaus(values))]
-            found += doubt_spikes(doubter, values) if channel in STEADY else []
+            found += doubt_spikes(doubter, values, NOTABLE if channel in STEADY else BEYOND_SWITCHES)
             yield from place_in_run(run.name, found)
 
 

@@ -82,10 +82,10 @@ def _jump(jumps: Array, row: int) -> float:
     return float(jumps[row]) if 0 <= row < len(jumps) else 0.0
 
 
-def doubt_spikes(doubter: Doubter, values: Array) -> Iterator[Issue]:
-    """Yield the single rows that jump away from both neighbours."""
+def doubt_spikes(doubter: Doubter, values: Array, least: float = NOTABLE) -> Iterator[Issue]:
+    """Yield the single rows that jump away from both neighbours, by `least` standard deviations of the channel."""
     rows = find_spikes(values)
-    rows = rows[np.abs(values[rows] - 0.5 * (values[rows - 1] + values[rows + 1])) > NOTABLE * np.std(values)]
+    rows = rows[np.abs(values[rows] - 0.5 * (values[rows - 1] + values[rows + 1])) > least * np.std(values)]
     if len(rows):
         size = float(np.max(np.abs(values[rows] - 0.5 * (values[rows - 1] + values[rows + 1]))))
         text = f"{len(rows)} spikes of up to {size:.3g}, the first at {doubter.at(int(rows[0]))}"

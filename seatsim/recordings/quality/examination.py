@@ -16,6 +16,7 @@ from seatsim.recordings.quality.floor_sensor import check_floor_sensor
 from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.quality.issue import Issue, place_in_run, select_errors
 from seatsim.recordings.quality.relations import doubt_relations
+from seatsim.recordings.quality.rows import check_rows
 from seatsim.recordings.quality.run_under_test import RunUnderTest
 from seatsim.recordings.quality.runs import check_all_runs, check_clock
 from seatsim.recordings.recording import Recording
@@ -102,8 +103,8 @@ def _check_relations(run: RunUnderTest) -> Iterator[Issue]:
 
 
 CHECKS = (
-    check_ranges, check_exchanged_currents, check_shapes, check_damage, check_floor_sensor, check_consistency,
-    check_sizes, _check_relations,
+    check_ranges, check_exchanged_currents, check_shapes, check_damage, check_rows, check_floor_sensor,
+    check_consistency, check_sizes, _check_relations,
 )  # fmt: skip
 """Checks of one run, in their order."""
 

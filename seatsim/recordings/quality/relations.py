@@ -24,6 +24,8 @@ TINY_FORCE, MOVED = 5.0, 1e-3
 """N that a damper exceeds once it is moved by so many m."""
 UNEXPLAINED = 0.2
 """Share of the travel's second derivative that both accelerations leave, above which they are no balance."""
+SURELY_ALIKE, FAR = 0.97, 0.3
+"""Correlation of a coil with its command, and share by which a factor differs from one, that no effect gives."""
 NEAR = 0.25
 """Share by which a factor may differ from that of a unit."""
 
@@ -48,6 +50,9 @@ def _copies(
         if alike > ALIKE and (said := read_gain(gain, unit)):
             text = f"{second}: is {gain:.3g} times {first} below {band[1]:g} Hz: {said}, or that of {first} is wrong"
             yield Issue("warning", kind_of(gain), text, second)
+        elif unit == "A" and alike > SURELY_ALIKE and gain > 1.0 + FAR:
+            text = f"{second}: is {gain:.3g} times {first} below {band[1]:g} Hz; the scale of one of both is wrong"
+            yield Issue("warning", "scale", text, second)
 
 
 def kind_of(gain: float) -> str:
@@ -90,7 +95,7 @@ def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
     gains = {"frame_acceleration": 1.0 / float(shares[0]), "floor_acceleration": 1.0 / float(shares[1])}
     both = float(np.mean(list(gains.values())))
     if abs(gains["frame_acceleration"] / gains["floor_acceleration"] - 1.0) < NEAR:
-        yield from _motion_of_both(both)
+        yield from _motion_of_both(both, rate)
         return
     for name, gain in gains.items():
         if said := read_gain(gain, "m/s^2"):
@@ -98,7 +103,7 @@ def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
             yield Issue("error", kind_of(gain), text, name)
 
 
-def _motion_of_both(gain: float) -> Iterator[Issue]:
+def _motion_of_both(gain: float, rate: float) -> Iterator[Issue]:
     """Yield what it means that both accelerations differ from the travel's by the same factor."""
     if said := read_gain(gain, "m/s^2"):
         exchanged = ", or the two are exchanged" if gain < 0.0 else ""
@@ -108,6 +113,10 @@ def _motion_of_both(gain: float) -> Iterator[Issue]:
     if said := read_gain(1.0 / gain, "m"):
         text = f"its second derivative is {1.0 / gain:.4g} times frame - floor acceleration: {said}"
         yield Issue("error", kind_of(gain), f"suspension_displacement: {text}", "suspension_displacement")
+    elif gain > 0.0 and not 1.0 - FAR < gain < 1.0 / (1.0 - FAR):
+        text = f"its second derivative is {1.0 / gain:.3g} times frame - floor acceleration: its scale is wrong by that"
+        other = f", or the sample rate, which then is {rate * gain**0.5:.4g} Hz"
+        yield Issue("warning", "scale", f"suspension_displacement: {text}{other}", "suspension_displacement")
 
 
 def band_passed(values: Array, rate: float, low: float, high: float) -> Array:

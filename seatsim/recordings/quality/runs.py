@@ -12,8 +12,10 @@ from seatsim.recordings.quality.gravity import check_constants
 from seatsim.recordings.quality.issue import Issue, Severity, issue_in_all_runs
 from seatsim.recordings.quality.noise_level import check_noise
 from seatsim.recordings.quality.residual import filter_band, find_delay
+from seatsim.recordings.quality.rows import check_stated
 from seatsim.recordings.quality.run_under_test import LATE, MOTION, RunUnderTest
 from seatsim.rig.temperature import Thermal
+from seatsim.schema.tables import numbers, read_table
 
 SLOWEST, FASTEST = 10.0, 200_000.0
 """Hz; rates of loggers of vibration lie between: below, nothing of a seat's resonances is left."""
@@ -23,13 +25,11 @@ SHORTEST, SHORT = 4.0, 10.0
 
 def check_clock(run: RunUnderTest) -> Iterator[Issue]:
     """Compare the column `time` of a run, where there is one, with the stated sample rate."""
-    import pandas as pd
-
     path, interval = run.recording.folder / run.recording.runs[run.name].file, 1.0 / run.rate
-    frame = pd.read_csv(path, usecols=lambda column: column == "time")
+    frame = read_table(path)
     if "time" not in frame:
         return
-    time = pd.to_numeric(frame["time"], errors="coerce").to_numpy(dtype=np.float64)
+    time, _ = numbers(frame, "time")
     steps = np.diff(time) / interval
     is_even = np.abs(steps - 1.0) <= 0.75
     jumps = np.flatnonzero(~is_even)
@@ -50,7 +50,7 @@ def check_clock(run: RunUnderTest) -> Iterator[Issue]:
 
 def check_all_runs(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Report faults that need all runs together."""
-    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, check_constants, _fahrenheit):
+    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, check_constants, check_stated, _fahrenheit):
         yield from check(runs)
 
 

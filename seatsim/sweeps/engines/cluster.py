@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from seatsim.schema.errors import InputError, RunError
-from seatsim.schema.modules import use_all, used_files
+from seatsim.schema.modules import started_elsewhere, use_all, used_files
 from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY, Work, simulate_one
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Selection
@@ -82,6 +82,7 @@ def _embed(jobs: int) -> Iterator[Client]:
     environment = {f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in KEEP_FREED_MEMORY.items()}
     options = {"dashboard_address": ":0", "silence_logs": logging.CRITICAL}
     with (
+        started_elsewhere(),
         dask.config.set(environment),
         LocalCluster(n_workers=jobs, threads_per_worker=1, **options) as cluster,
         Client(cluster) as client,

@@ -65,9 +65,11 @@ def test_nothing_is_left_where_writing_fails(design, tmp_path):
     ("text", "words"),
     [
         ("gain: [[1.0]]", "lacks the key 'max_gain'"),
-        ("[1, 2]", "not a design"),
-        ("a: [", "cannot read"),
-        ("", "not a design"),
+        ("[1, 2]", "holds no mapping"),
+        ("a: [", "line 2: did not find"),
+        ("", "holds no mapping"),
+        ("{gain: [[.nan]], max_gain: 1, lower_bound: 0, loops: []}", "not a finite number"),
+        ("{gain: [1.0], max_gain: 1, lower_bound: 0, loops: []}", "loops is empty"),
     ],
 )
 def test_broken_files_are_named(tmp_path, text, words):
@@ -79,7 +81,7 @@ def test_broken_files_are_named(tmp_path, text, words):
 
 
 def test_missing_file(tmp_path):
-    with pytest.raises(InputError, match="cannot read"):
+    with pytest.raises(InputError, match="cannot be read"):
         Design.load(tmp_path / "none.yaml")
 
 

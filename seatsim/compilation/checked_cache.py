@@ -1,0 +1,83 @@
+"""numba's cache on disk, checked: an entry that is not as it was written is discarded, and a full disk is no error.
+
+numba unpickles what it finds, and hands the code in it to the processor: a truncated entry is a traceback, a damaged
+one may end the process. Here every file begins with the SHA-256 of the rest. What an entry holds is as trustworthy as
+whoever may write it, so a folder that other users may write into is not used at all.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import stat
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+
+DIGEST = hashlib.sha256().digest_size
+
+
+class CheckedCache(FunctionCache):  # type: ignore[misc]  # numba has no types
+    """The cache of one function."""
+
+    def __init__(self, function: Callable[..., object]) -> None:
+        super().__init__(function)
+        locator = self._impl.locator
+        self._cache_file = _CheckedFile(self._cache_path, self._impl.filename_base, locator.get_source_stamp())
+
+    def save_overload(self, sig: object, data: object) -> None:
+        """Keep a compiled function; where that fails it is compiled again by the next process."""
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            warnings.warn(f"compiled code cannot be kept in {self.cache_path}: {error.strerror}", stacklevel=2)
+
+
+class _CheckedFile(IndexDataCacheFile):  # type: ignore[misc]  # numba has no types
+    """The files of one function: an index of signatures, and the compiled code of each."""
+
+    def _load_index(self) -> dict[Any, str]:
+        content = _read(Path(self._index_path))
+        version, stamp, names = pickle.loads(content) if content else (None, None, {})
+        return names if (version, stamp) == (self._version, self._source_stamp) else {}
+
+    def _save_index(self, overloads: dict[Any, str]) -> None:
+        self._write(self._index_path, (self._version, self._source_stamp, overloads))
+
+    def _load_data(self, name: str) -> Any:
+        content = _read(Path(self._data_path(name)))
+        if content is None:
+            raise FileNotFoundError(name)  # which numba takes for an entry that is not there
+        return pickle.loads(content)
+
+    def _save_data(self, name: str, data: object) -> None:
+        self._write(self._data_path(name), data)
+
+    def _write(self, path: str, value: object) -> None:
+        content = self._dump(value)
+        with self._open_for_write(path) as file:
+            file.write(hashlib.sha256(content).digest() + content)
+
+
+def _read(path: Path) -> bytes | None:
+    """Return the content of an entry, None where there is none or where it is not as it was written."""
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return None
+    if hashlib.sha256(content[DIGEST:]).digest() == content[:DIGEST]:
+        return content[DIGEST:]
+    warnings.warn(f"{path} is damaged; it is discarded and compiled again", stacklevel=2)
+    return None
+
+
+def is_own(folder: Path) -> bool:
+    """Return whether only this user, or the system's, may have written what lies in a folder."""
+    if not hasattr(os, "getuid"):
+        return True
+    status = folder.stat()
+    return status.st_uid in (os.getuid(), 0) and not status.st_mode & stat.S_IWOTH

@@ -1,0 +1,76 @@
+"""Files as bytes, guarded: only regular files, only of a stated size, and one sentence where one cannot be read."""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from seatsim.schema.errors import InputError
+
+LARGEST_JSON = 64 * 2**20
+
+
+def read_bytes(path: Path, largest: int, what: str) -> bytes:
+    """Return the content of a regular file of at most `largest` bytes; `what` it should be, as errors say it.
+
+    Raises:
+        InputError: there is no such file, it is a folder, a pipe or a device, is larger, or cannot be read.
+    """
+    try:
+        # A pipe without a writer would be waited for.
+        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+        with os.fdopen(handle, "rb") as file:
+            status = os.fstat(handle)
+            if not stat.S_ISREG(status.st_mode):
+                raise InputError(f"{path}: is no regular file; give the path of {what}")
+            if status.st_size > largest:
+                raise InputError(f"{path}: holds {in_mib(status.st_size)}; permitted: at most {in_mib(largest)}")
+            return file.read(largest)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}; give the path of {what}") from error
+    except ValueError as error:
+        raise InputError(f"{str(path)!r}: is no path: {error}; give the path of {what}") from error
+
+
+def is_there(path: Path) -> bool:
+    """Return whether there is a file or folder; nothing is where a path is longer than the system permits."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
+
+
+@contextmanager
+def expect(path: Path | str, what: str) -> Iterator[None]:
+    """Raise InputError where the content of a file, which is taken apart meanwhile, is not `what` it should be."""
+    try:
+        yield
+    except (KeyError, TypeError, AttributeError, ValueError, IndexError) as error:
+        missing = f"the key {error} is missing" if isinstance(error, KeyError) else str(error)
+        raise InputError(f"{path}: is no {what}: {missing}") from error
+
+
+def in_mib(size: float) -> str:
+    """Return a number of bytes as it stands in a sentence."""
+    for unit, bytes_of_unit in (("TiB", 2**40), ("GiB", 2**30), ("MiB", 2**20)):
+        if size >= bytes_of_unit:
+            return f"{size / bytes_of_unit:.3g} {unit}"
+    return f"{size / 2**10:.3g} KiB"
+
+
+def read_json(path: Path, what: str) -> object:
+    """Return the content of a JSON file.
+
+    Raises:
+        InputError: it cannot be read, or is no JSON.
+    """
+    content = read_bytes(path, LARGEST_JSON, what)
+    try:
+        value: object = json.loads(content)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: is no {what}: {error}") from error
+    return value

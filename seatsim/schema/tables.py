@@ -1,0 +1,196 @@
+"""Tables of numbers as CSV files, plain or packed, read within stated limits: one reader for all of them.
+
+A table has a line of names and, below it, rows of as many values as there are names. A row with another number of
+values is an error: shifted columns would be taken for each other.
+"""
+
+from __future__ import annotations
+
+import bz2
+import csv
+import gzip
+import io
+import lzma
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.schema.errors import InputError
+from seatsim.schema.guarded import in_mib, read_bytes
+from seatsim.schema.memory import check_memory
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import pyarrow as pa
+    from pyarrow import csv as arrow_csv
+
+LARGEST_FILE = 2**30
+LARGEST_UNPACKED = 2**30
+"""Bytes of a table: eight hours of eight channels at 500 Hz."""
+LONGEST_LINE = 2**20
+"""Bytes of a table in which its first line must end."""
+MOST_COLUMNS = 4096
+CHUNK = 2**20
+NUMBERS_OF_VALUE = 3
+"""Numbers in memory for each value of a table, while it is read."""
+SHORT = 2**24
+"""Bytes up to which a table is read by one thread, so that an error can name the line."""
+
+
+class InvalidRow(NamedTuple):
+    """A row whose number of values is not that of the names; its line is None where several threads read."""
+
+    line: int | None
+    values: int
+    wanted: int
+
+
+def read_table(path: Path) -> pd.DataFrame:
+    """Return a table with its columns by name; row k of the frame stands in line k + 2 of the file.
+
+    A column of numbers only is one of numbers, with NaN for what is empty; `numbers` tells where one is not.
+
+    Raises:
+        InputError: the file cannot be read, is beyond the limits, has a name twice, or a row of another length.
+    """
+    from pyarrow import ArrowInvalid
+
+    content = unpack(read_bytes(path, LARGEST_FILE, "a table"), path)
+    content = content.removeprefix(b"\xef\xbb\xbf")
+    _check_text(content, path)
+    names = _read_names(content, path)
+    rows = content.count(b"\n")
+    check_memory(8.0 * NUMBERS_OF_VALUE * rows * len(names) + len(content), f"{path}: {rows} rows", "split the table")
+    bad: list[InvalidRow] = []
+    try:
+        table = _parse(content, names, bad)
+    except ArrowInvalid as error:
+        raise InputError(f"{path}: cannot be read as a table: {str(error).splitlines()[0]}") from error
+    check_rows(bad, path)
+    _check_quotes(content, table.num_rows, path)
+    frame: pd.DataFrame = table.to_pandas()
+    return frame
+
+
+def check_rows(bad: Iterable[InvalidRow], path: Path) -> None:
+    """Raise InputError at the first row of another length than the names."""
+    found = list(bad)
+    if found:
+        line, values, wanted = found[0]
+        place = f"{path}, line {line}" if line else str(path)
+        more = f" (and {len(found) - 1} more lines)" if len(found) > 1 else ""
+        raise InputError(
+            f"{place}: has {values} columns where the others have {wanted}{more}; the file is truncated or damaged:"
+            " export it again"
+        )
+
+
+def unpack(content: bytes, path: Path) -> bytes:
+    """Return the bytes of a table, unpacked where they are packed by gzip, bzip2, xz or as the only file of a ZIP.
+
+    Raises:
+        InputError: they are damaged, or larger than the limit once unpacked; no more than that is unpacked.
+    """
+    opened = next((opens for magic, opens in UNPACKED.items() if content.startswith(magic)), None)
+    if opened is None:
+        return content
+    parts: list[bytes] = []
+    size = 0
+    try:
+        with opened(io.BytesIO(content)) as file:
+            while part := file.read(CHUNK):
+                size += len(part)
+                if size > LARGEST_UNPACKED:
+                    raise InputError(f"{path}: unpacks to more than {in_mib(LARGEST_UNPACKED)}, the largest permitted")
+                parts.append(part)
+    except UNPACKING_ERRORS as error:
+        raise InputError(f"{path}: cannot be unpacked ({error}); it is truncated: copy it again") from error
+    return b"".join(parts)
+
+
+def numbers(frame: pd.DataFrame, column: str) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Return a column as numbers, shape (N,), and the rows that hold no finite one."""
+    import pandas as pd
+
+    values = pd.to_numeric(frame[column], errors="coerce").to_numpy(dtype=np.float64)
+    return values, np.flatnonzero(~np.isfinite(values))
+
+
+def _check_text(content: bytes, path: Path) -> None:
+    """Raise InputError where content is not UTF-8: pyarrow passes over rows that are not, and over their length."""
+    try:
+        content.isascii() or content.decode()
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(
+            f"{path}, line {line}: cannot be read as a table: is not UTF-8 text; save it as such"
+        ) from error
+
+
+def _check_quotes(content: bytes, rows: int, path: Path) -> None:
+    """Raise InputError where a quotation mark is closed in another line only: all rows between would be one text."""
+    if b'"' in content and rows != sum(bool(line.strip()) for line in content.splitlines()) - 1:
+        lines = enumerate(content.splitlines(), 1)
+        line = next((number for number, text in lines if text.count(b'"') % 2), 1)
+        raise InputError(f"{path}, line {line}: a quotation mark is not closed in its line; remove it")
+
+
+def _only_member(packed: io.BytesIO) -> IO[bytes]:
+    archive = zipfile.ZipFile(packed)
+    names = archive.namelist()
+    if len(names) != 1:
+        raise ValueError(f"it holds {len(names)} files, where a table is one")
+    return archive.open(names[0])
+
+
+UNPACKED: dict[bytes, Callable[[io.BytesIO], io.BufferedIOBase | IO[bytes]]] = {
+    b"\x1f\x8b": lambda packed: gzip.GzipFile(fileobj=packed),
+    b"BZh": bz2.BZ2File,
+    b"\xfd7zXZ": lzma.LZMAFile,
+    b"PK\x03\x04": _only_member,
+}
+"""How a packed file is read, by its first bytes."""
+UNPACKING_ERRORS = (OSError, EOFError, ValueError, zlib.error, lzma.LZMAError, zipfile.BadZipFile, NotImplementedError)
+
+
+def _read_names(content: bytes, path: Path) -> list[str]:
+    """Return the names in the first line; one that is empty is called by its number."""
+    head, end, _ = content[:LONGEST_LINE].partition(b"\n")
+    if len(content) > LONGEST_LINE and not end:
+        raise InputError(f"{path}: its first line does not end within {in_mib(LONGEST_LINE)}; it is no table")
+    try:
+        row = next(csv.reader([head.decode("utf-8")]), [])
+    except csv.Error as error:
+        raise InputError(f"{path}: cannot be read as a table: {error}; its first line holds no names") from error
+    names = [name.strip() or f"column {number}" for number, name in enumerate(row, 1)]
+    if not names:
+        raise InputError(f"{path}: cannot be read as a table: the file is empty")
+    if len(names) > MOST_COLUMNS:
+        raise InputError(f"{path}: has {len(names)} columns; permitted: at most {MOST_COLUMNS}")
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(f"{path}, line 1: column '{twice}' stands twice; rename or remove one")
+    return names
+
+
+def _parse(content: bytes, names: list[str], bad: list[InvalidRow]) -> pa.Table:
+    import pyarrow as pa
+    from pyarrow import csv as arrow_csv
+
+    def note(row: arrow_csv.InvalidRow) -> str:
+        bad.append(InvalidRow(row.number, row.actual_columns, row.expected_columns))
+        return "skip"
+
+    if b"\n" not in content:
+        return pa.table({name: pa.array([], pa.float64()) for name in names})
+    return arrow_csv.read_csv(
+        pa.BufferReader(content),
+        arrow_csv.ReadOptions(skip_rows=1, column_names=names, use_threads=len(content) > SHORT),
+        arrow_csv.ParseOptions(invalid_row_handler=note),
+        arrow_csv.ConvertOptions(strings_can_be_null=True),
+    )

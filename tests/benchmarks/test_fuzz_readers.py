@@ -1,0 +1,39 @@
+"""A bounded run of the fuzzing of all readers: no traceback, nothing that takes long, no file left."""
+
+import pytest
+
+MUTANTS = 40
+
+
+@pytest.fixture(scope="module")
+def fuzzing(benchmark):
+    return benchmark("fuzz_readers")
+
+
+@pytest.fixture(scope="module")
+def readers(fuzzing):
+    return fuzzing.make_readers()
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["scenario", "variants", "recording", "table", "bench", "sweep", "design", "import", "formats", "synthesis",
+     "diagnosis", "sealed"],
+)  # fmt: skip
+def test_damaged_files_are_read_or_refused_by_a_sentence(fuzzing, readers, name):
+    found = fuzzing.fuzz(readers[name], MUTANTS, seed=7, limit=60.0)
+    assert set(found.counts) <= {"read", "refused"}, found.examples
+    assert found.counts["refused"]
+
+
+def test_every_reader_is_fuzzed(readers):
+    assert len(readers) == 12
+
+
+def test_valid_files_are_read(readers, tmp_path):
+    for name, reader in readers.items():
+        folder = tmp_path / name
+        folder.mkdir()
+        for file, content in reader.files.items():
+            (folder / file).write_bytes(content)
+        reader.read(folder)

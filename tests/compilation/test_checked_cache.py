@@ -1,0 +1,79 @@
+"""Damaged entries of the cache of compiled code are discarded, and a cache that cannot be written is no error."""
+
+import errno
+import warnings
+
+import numba
+import pytest
+
+from seatsim.compilation import cached
+from seatsim.compilation.checked_cache import CheckedCache, _CheckedFile, is_own
+
+
+def double(x):
+    return 2.0 * x
+
+
+DAMAGES = {
+    "empty": lambda content: b"",
+    "short": lambda content: content[:20],
+    "truncated": lambda content: content[: len(content) // 2],
+    "junk": lambda content: bytes(range(256)) * 4,
+    "zeros": lambda content: bytes(len(content)),
+    "longer": lambda content: content + b"x",
+    "one bit": lambda content: content[:-5] + bytes([content[-5] ^ 1]) + content[-4:],
+    "another entry": lambda content: content[:32] + content[33:],
+}
+
+
+@pytest.fixture
+def start(tmp_path, monkeypatch):
+    """Return a function that compiles `double`, or takes it from the cache, as a new process does."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+
+    def begin():
+        dispatcher = numba.njit(double)
+        dispatcher._cache = CheckedCache(double)
+        assert dispatcher(3.0) == 6.0
+        return sum(dispatcher.stats.cache_hits.values())
+
+    assert (begin(), begin()) == (0, 1)
+    return begin
+
+
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_entry_is_discarded_and_made_again(start, tmp_path, ending, damage):
+    (entry,) = tmp_path.rglob(f"*.{ending}")
+    entry.write_bytes(DAMAGES[damage](entry.read_bytes()))
+    with pytest.warns(UserWarning, match="is damaged; it is discarded and compiled again"):
+        assert start() == 0
+    assert start() == 1
+
+
+def test_an_entry_that_is_gone_is_made_again(start, tmp_path):
+    for entry in tmp_path.rglob("*.nbc"):
+        entry.unlink()
+    assert (start(), start()) == (0, 1)
+
+
+def test_a_full_disk_is_no_error(start, tmp_path, monkeypatch):
+    for entry in [*tmp_path.rglob("*.nbc"), *tmp_path.rglob("*.nbi")]:
+        entry.unlink()
+
+    def fail(self, path):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(_CheckedFile, "_open_for_write", fail)
+    with pytest.warns(UserWarning, match="cannot be kept in .*No space left"):
+        assert start() == 0
+
+
+def test_a_folder_that_others_may_write_is_not_used(tmp_path):
+    (tmp_path / "open").mkdir()
+    with warnings.catch_warnings():
+        assert cached._usable(tmp_path / "open" / "key")
+    (tmp_path / "open").chmod(0o777)
+    assert is_own(tmp_path) and not is_own(tmp_path / "open")
+    with pytest.warns(UserWarning, match="may be written by others"):
+        assert not cached._usable(tmp_path / "open" / "key")
