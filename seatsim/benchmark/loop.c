@@ -7,6 +7,7 @@
 #include <math.h>
 
 enum { STATES = 10, CHANNELS = 17, CELLS = 16 };
+static const double INSIDE = 1e-4; /* cells from an end of the grid */
 
 typedef struct {
     double frame_mass, driver_mass, suspension_stiffness, suspension_damping, cushion_stiffness, cushion_damping;
@@ -171,24 +172,56 @@ static double bracket(
     return middle;
 }
 
-/* Least current in [0, top] that gives the wanted force, or else the grid's closest. */
+/* Whether the force comes closest to the wanted one, or passes it, about point `j` of the grid. */
+static int turns_near(
+    const Damper *d, double wanted, double x, double v, const State *q, double top, const double *grid, double side,
+    int j
+) {
+    double here = side * grid[j];
+    if (j > 0 && side * grid[j - 1] <= here) return 0;
+    if (j < CELLS && side * grid[j + 1] < here) return 0;
+    if (0 < j && j < CELLS) return 1;
+    double near = side * (force_at(d, x, v, top * (j == 0 ? INSIDE : CELLS - INSIDE) / CELLS, q) - wanted);
+    return j == 0 ? near < here : near <= here;
+}
+
+/* Least current in [left, right] whose force is closest to the wanted one, by golden section. */
+static double closest_in(
+    const Damper *d, double wanted, double x, double v, const State *q, double side, double left, double right,
+    double *missed
+) {
+    const double golden = 0.5 * (sqrt(5.0) - 1.0);
+    double low = right - golden * (right - left), high = left + golden * (right - left);
+    double f_low = force_at(d, x, v, low, q) - wanted, f_high = force_at(d, x, v, high, q) - wanted;
+    for (int trial = 0; trial < 60; trial++) {
+        if (side * f_low < 0.0) return *missed = f_low, low;
+        if (side * f_low <= side * f_high) {
+            right = high, high = low, f_high = f_low;
+            low = right - golden * (right - left), f_low = force_at(d, x, v, low, q) - wanted;
+        } else {
+            left = low, low = high, f_low = f_high;
+            high = left + golden * (right - left), f_high = force_at(d, x, v, high, q) - wanted;
+        }
+    }
+    return *missed = f_high, high;
+}
+
+/* Least current in [0, top] that gives the wanted force, or else comes closest to it. */
 static double search(const Damper *d, double wanted, double x, double v, const State *q, double top) {
     double grid[CELLS + 1];
     for (int j = 0; j <= CELLS; j++) grid[j] = force_at(d, x, v, top * j / CELLS, q) - wanted;
-    if (grid[0] == 0.0) return 0.0;
-    for (int j = 0; j < CELLS; j++)
-        if (grid[j] * grid[j + 1] <= 0.0)
-            return bracket(d, wanted, x, v, q, top * j / CELLS, grid[j], top * (j + 1) / CELLS, grid[j + 1]);
-    int best = 0;
-    for (int j = 1; j <= CELLS; j++)
-        if (fabs(grid[j]) < fabs(grid[best])) best = j;
-    if (best == 0 || best == CELLS) return top * best / CELLS;
-    double a = grid[best - 1] - grid[best], b = grid[best + 1] - grid[best];
-    double turn = a + b != 0.0 ? top * (best + 0.5 * (a - b) / (a + b)) / CELLS : top * best / CELLS;
-    double f_turn = force_at(d, x, v, turn, q) - wanted;
-    if (grid[best] * f_turn <= 0.0)
-        return bracket(d, wanted, x, v, q, top * (best - 1) / CELLS, grid[best - 1], turn, f_turn);
-    return fabs(f_turn) < fabs(grid[best]) ? turn : top * best / CELLS;
+    double best = 0.0, closest = fabs(grid[0]), side = copysign(1.0, grid[0]);
+    for (int j = 0; j <= CELLS && closest > 1e-6; j++) {
+        int before = j > 0 ? j - 1 : 0, after = j < CELLS ? j + 1 : CELLS;
+        double left = top * before / CELLS, current = top * j / CELLS, missed = grid[j];
+        if (j > 0 && side * grid[j] < 0.0) return bracket(d, wanted, x, v, q, left, grid[before], current, grid[j]);
+        if (turns_near(d, wanted, x, v, q, top, grid, side, j)) {
+            current = closest_in(d, wanted, x, v, q, side, left, top * after / CELLS, &missed);
+            if (side * missed < 0.0) return bracket(d, wanted, x, v, q, left, grid[before], current, missed);
+        }
+        if (fabs(missed) < closest) best = current, closest = fabs(missed);
+    }
+    return best;
 }
 
 static inline void record(

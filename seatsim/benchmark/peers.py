@@ -21,8 +21,12 @@ from seatsim.benchmark.seat_run import Array, make_floor, make_setup, prepare_ru
 from seatsim.kernel.channels import CHANNELS
 from seatsim.schema.errors import RunError
 
-AGREEMENT = {"loop.c": 1e-9, "lean.c": 1e-2}
-"""Largest difference of a channel from seatsim's, over its largest value; lean.c integrates the current numerically."""
+AGREEMENT = {"loop.c": 1e-7, "lean.c": 1e-2}
+"""Largest difference of a channel from seatsim's, over its largest value.
+
+A force that comes close to the wanted one only where it turns is flat there, so that rounding moves the current of
+loop.c; lean.c integrates the current numerically.
+"""
 REFERENCE = ivp.IntegrationMethod("DOP853", 1e-11)
 METHODS: dict[ivp.MethodName, tuple[float, ...]] = {
     "RK45": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7),

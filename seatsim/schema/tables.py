@@ -98,6 +98,11 @@ def unpack(content: bytes, path: Path) -> bytes:
     """
     opened = next((opens for magic, opens in UNPACKED.items() if content.startswith(magic)), None)
     if opened is None:
+        if path.suffix in PACKED:
+            raise InputError(
+                f"{path}: cannot be read as a table: its name ends in {path.suffix}, but it is not packed;"
+                " copy it again"
+            )
         return content
     parts: list[bytes] = []
     size = 0
@@ -155,6 +160,7 @@ UNPACKED: dict[bytes, Callable[[io.BytesIO], io.BufferedIOBase | IO[bytes]]] = {
     b"PK\x03\x04": _only_member,
 }
 """How a packed file is read, by its first bytes."""
+PACKED = (".gz", ".bz2", ".xz", ".zip")
 UNPACKING_ERRORS = (OSError, EOFError, ValueError, zlib.error, lzma.LZMAError, zipfile.BadZipFile, NotImplementedError)
 
 

@@ -95,7 +95,7 @@ def test_a_folder_is_scored_from_its_files(tmp_path: Path) -> None:
     found = score(folder, sealed, key, "bic")
     assert (found.right, found.kinds["none"], found.shrink) == (Rate(1, 2), Rate(0, 1), None)
     place.write_text("[]")
-    with pytest.raises(InputError, match="is not a diagnosis"):
+    with pytest.raises(InputError, match="is no diagnosis"):
         read_verdict(place)
 
 

@@ -156,9 +156,9 @@ def test_a_picture_of_loops(tmp_path, seatsim_command):
     status, out, _ = seatsim_command("describe", "bingham", "--picture", tmp_path / "loops.png")
     assert status == 0 and out.startswith("bingham (damper)")
     assert (tmp_path / "loops.png").read_bytes().startswith(b"\x89PNG")
-    for name, picture in (("road", "a.png"), ("bingham", "a.svg")):
+    for name, picture in (("road", "a.png"), ("bingham", "a.txt")):
         status, _, err = seatsim_command("describe", name, "--picture", tmp_path / picture)
-        assert status == 2 and "a PNG of one damper" in err
+        assert status == 2 and "one damper, as .png, .svg, .pdf" in err
 
 
 def test_every_name_has_a_line(seatsim_command):

@@ -39,7 +39,8 @@ def run(name, rig, acceleration=0.88, travel=0.01):
         "suspension_displacement_rms": Metric(travel, "m", "travel"),
     }
     scenario = SimpleNamespace(name=name, rig=rig, label={"variant": "soft"})
-    return SimpleNamespace(scenario=scenario, metrics=metrics, warnings=("hot",), history=SimpleNamespace(notes=["n"]))
+    history = SimpleNamespace(notes=["n"])
+    return SimpleNamespace(scenario=scenario, metrics=metrics, warnings=("hot",), unverified=(), history=history)
 
 
 def test_each_rig_has_its_bounds_and_the_distances_of_its_runs():
@@ -57,7 +58,7 @@ def test_each_rig_has_its_bounds_and_the_distances_of_its_runs():
 
 def test_a_summary_states_metrics_with_unit_and_meaning():
     found = json.loads(json.dumps(plain(outputs._encode_summary(run("a", "one")))))
-    assert list(found) == ["scenario", "label", "metrics", "warnings", "notes"]
+    assert list(found) == ["scenario", "label", "metrics", "warnings", "unverified", "notes"]
     assert found["metrics"]["suspension_displacement_rms"] == {"value": 0.01, "unit": "m", "meaning": "travel"}
     assert found["warnings"] == ["hot"] and found["notes"] == ["n"]
 

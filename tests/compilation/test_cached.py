@@ -164,7 +164,7 @@ def test_the_key_holds_the_versions(module, monkeypatch):
 
 def test_the_key_is_that_of_a_known_hash(module):
     top = module("top", "A = 1\n")
-    state = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
+    state = hashlib.sha256(f"checked {numba.__version__} {sys.version}".encode())
     state.update(top.__file__.encode() + Path(top.__file__).read_bytes())
     state.update(b"A 1")
     assert cached.digest([top]) == state.hexdigest()[:20]

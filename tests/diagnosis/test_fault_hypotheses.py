@@ -119,7 +119,8 @@ def repeated(posed, newtons):
         true = posed.simulated(first, posed.nominal, (), posed.inputs[first]._replace(forces=push))
         measured[run] = true + posed.noise[:, None] * rng.standard_normal(true.shape)
     runs = posed.recording.runs | {second: posed.recording.runs[second]._replace(repeat_of=first)}
-    return dataclasses.replace(posed, measured=measured, recording=dataclasses.replace(posed.recording, runs=runs))
+    recording, inputs = dataclasses.replace(posed.recording, runs=runs), dict.fromkeys(posed.runs, posed.inputs[first])
+    return dataclasses.replace(posed, measured=measured, inputs=inputs, recording=recording)
 
 
 def test_a_force_that_does_not_repeat_is_found_for_every_run(posed):

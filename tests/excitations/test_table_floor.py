@@ -137,7 +137,7 @@ def bad_tables(write, tmp_path):
     return {
         r"no such file.*did you mean 'empty.csv'": str(tmp_path / "emty.csv"),
         "the file is empty": str(tmp_path / "empty.csv"),
-        "cannot be read as a CSV": str(tmp_path / "binary.csv.gz"),
+        "cannot be read as a table: its name ends in .gz": str(tmp_path / "binary.csv.gz"),
         r"no column 'a'.*columns: t, acc_z": write("column.csv", t=t, acc_z=t),
         r"line 5: column 'a' holds 'much'": str(tmp_path / "words.csv"),
         r"line 9: column 'a' holds 'nan', not a number \(1 of 100 rows\)": write("nan.csv", t=t, a=nan),

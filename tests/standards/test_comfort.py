@@ -88,7 +88,7 @@ def test_a_wrong_channel_is_named(tmp_path, channels, message):
 
 
 def test_wrong_files_are_one_error_each(tmp_path):
-    with pytest.raises(InputError, match=r"No such file.*did you mean 'ride\.csv'"):
+    with pytest.raises(InputError, match=r"no such file.*did you mean 'ride\.csv'"):
         comfort(write(tmp_path, acc_z=tone()).with_name("rode.csv"))
     with pytest.raises(InputError, match="no column has a usual name"):
         comfort(write(tmp_path, "odd.csv", a=tone()))

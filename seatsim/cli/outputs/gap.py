@@ -8,7 +8,7 @@ from pathlib import Path
 from seatsim.recordings.gap import Gap, replay_every_run
 from seatsim.report.gap import report_gap
 from seatsim.report.rendering import write_html
-from seatsim.schema.files import write_json
+from seatsim.schema.files import write_json, write_together
 
 
 def write_gap(
@@ -23,10 +23,15 @@ def write_gap(
         recording: folder of the recording.
         folder: where the files go.
     """
-    paths = [write_json(folder / "gap.json", content)]
+    report = None
     if found is not None:
         pairs = replay_every_run(scenario, recording)
         name = f"{Path(scenario).stem} against {recording.resolve().name}"
         report = report_gap(name, found, pairs, f"seatsim gap {Path(scenario).name} {recording.name}")
-        paths.append(write_html(report, folder / "report.html"))
-    return paths
+    return write_together(
+        folder,
+        lambda part: [
+            write_json(part / "gap.json", content),
+            *([write_html(report, part / "report.html")] if report else []),
+        ],
+    )

@@ -56,7 +56,7 @@ def test_the_worst_of_several_loops_speaks_for_the_design(design, tmp_path):
 
 def test_nothing_is_left_where_writing_fails(design, tmp_path):
     (tmp_path / "design.yaml").mkdir()
-    with pytest.raises(OSError):
+    with pytest.raises(InputError, match="is a folder"):
         design.save(tmp_path / "design.yaml")
     assert [path.name for path in tmp_path.iterdir()] == ["design.yaml"]
 
@@ -64,7 +64,7 @@ def test_nothing_is_left_where_writing_fails(design, tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("gain: [[1.0]]", "lacks the key 'max_gain'"),
+        ("gain: [[1.0]]", "lacks the key 'loops'"),
         ("[1, 2]", "holds no mapping"),
         ("a: [", "line 2: did not find"),
         ("", "holds no mapping"),
