@@ -5,7 +5,9 @@
  */
 #include <math.h>
 
-enum { STATES = 7, CHANNELS = 9, CELLS = 16 };
+#include "inverse.h"
+
+enum { STATES = 7, CHANNELS = 9 };
 
 typedef struct {
     double frame_mass, driver_mass, suspension_stiffness, suspension_damping, cushion_stiffness, cushion_damping;
@@ -47,43 +49,21 @@ static inline State moved(State s, double h, State k) {
     };
 }
 
-static double between(
-    const Setup *p, double wanted, State s, double left, double f_left, double right, double f_right
-) {
-    double rate, middle = right;
-    int side = 0;
-    for (int n = 0; n < 60; n++) {
-        middle = (left * f_right - right * f_left) / (f_right - f_left);
-        double f = damper_force(p, s.x, s.v, middle, s.y, s.z, &rate) - wanted;
-        if (fabs(f) <= 1e-6) break;
-        if (f * f_left > 0.0) {
-            left = middle, f_left = f;
-            if (side == -1) f_right *= 0.5;
-            side = -1;
-        } else {
-            right = middle, f_right = f;
-            if (side == 1) f_left *= 0.5;
-            side = 1;
-        }
-    }
-    return middle;
+/* What an inverse is asked: the current at which the damper gives the wanted force in a state of the rig. */
+typedef struct {
+    const Setup *setup;
+    State state;
+    double wanted;
+} Question;
+
+static double miss(const void *question, double current) {
+    const Question *q = question;
+    double rate;
+    return damper_force(q->setup, q->state.x, q->state.v, current, q->state.y, q->state.z, &rate) - q->wanted;
 }
 
 static double inverse(const Setup *p, double wanted, State s) {
-    double rate, f[CELLS + 1], cell = p->max_current / CELLS;
-    if (wanted * s.v <= 0.0) return 0.0;
-    for (int j = 0; j <= CELLS; j++) {
-        f[j] = damper_force(p, s.x, s.v, cell * j, s.y, s.z, &rate) - wanted;
-        if (j > 0 && f[j - 1] * f[j] <= 0.0) return between(p, wanted, s, cell * (j - 1), f[j - 1], cell * j, f[j]);
-    }
-    int best = 0;
-    for (int j = 1; j <= CELLS; j++)
-        if (fabs(f[j]) < fabs(f[best])) best = j;
-    if (best == 0 || best == CELLS) return cell * best;
-    double a = f[best - 1] - f[best], b = f[best + 1] - f[best], turn = cell * (best + 0.5 * (a - b) / (a + b));
-    double f_turn = damper_force(p, s.x, s.v, turn, s.y, s.z, &rate) - wanted;
-    if (f[best] * f_turn <= 0.0) return between(p, wanted, s, cell * (best - 1), f[best - 1], turn, f_turn);
-    return fabs(f_turn) < fabs(f[best]) ? turn : cell * best;
+    return wanted * s.v <= 0.0 ? 0.0 : search(miss, &(Question){p, s, wanted}, p->max_current);
 }
 
 /* Simulate from rest; return the number of samples. */

@@ -6,8 +6,9 @@
  */
 #include <math.h>
 
-enum { STATES = 10, CHANNELS = 17, CELLS = 16 };
-static const double INSIDE = 1e-4; /* cells from an end of the grid */
+#include "inverse.h"
+
+enum { STATES = 10, CHANNELS = 17 };
 
 typedef struct {
     double frame_mass, driver_mass, suspension_stiffness, suspension_damping, cushion_stiffness, cushion_damping;
@@ -148,80 +149,16 @@ static inline int advance(const Setup *p, const Drive *d, Progress *now, double 
     return 1;
 }
 
-/* Root in [left, right] by the Illinois method, to 1e-6 N. */
-static double bracket(
-    const Damper *d, double wanted, double x, double v, const State *q,
-    double left, double f_left, double right, double f_right
-) {
-    int side = 0;
-    double middle = right;
-    for (int iteration = 0; iteration < 60; iteration++) {
-        middle = (left * f_right - right * f_left) / (f_right - f_left);
-        double f = force_at(d, x, v, middle, q) - wanted;
-        if (fabs(f) <= 1e-6) break;
-        if (f * f_left > 0.0) {
-            left = middle, f_left = f;
-            if (side == -1) f_right *= 0.5;
-            side = -1;
-        } else {
-            right = middle, f_right = f;
-            if (side == 1) f_left *= 0.5;
-            side = 1;
-        }
-    }
-    return middle;
-}
+/* What an inverse is asked: the current at which the damper, in this motion and state, gives the wanted force. */
+typedef struct {
+    const Damper *damper;
+    const State *state;
+    double wanted, x, v;
+} Question;
 
-/* Whether the force comes closest to the wanted one, or passes it, about point `j` of the grid. */
-static int turns_near(
-    const Damper *d, double wanted, double x, double v, const State *q, double top, const double *grid, double side,
-    int j
-) {
-    double here = side * grid[j];
-    if (j > 0 && side * grid[j - 1] <= here) return 0;
-    if (j < CELLS && side * grid[j + 1] < here) return 0;
-    if (0 < j && j < CELLS) return 1;
-    double near = side * (force_at(d, x, v, top * (j == 0 ? INSIDE : CELLS - INSIDE) / CELLS, q) - wanted);
-    return j == 0 ? near < here : near <= here;
-}
-
-/* Least current in [left, right] whose force is closest to the wanted one, by golden section. */
-static double closest_in(
-    const Damper *d, double wanted, double x, double v, const State *q, double side, double left, double right,
-    double *missed
-) {
-    const double golden = 0.5 * (sqrt(5.0) - 1.0);
-    double low = right - golden * (right - left), high = left + golden * (right - left);
-    double f_low = force_at(d, x, v, low, q) - wanted, f_high = force_at(d, x, v, high, q) - wanted;
-    for (int trial = 0; trial < 60; trial++) {
-        if (side * f_low < 0.0) return *missed = f_low, low;
-        if (side * f_low <= side * f_high) {
-            right = high, high = low, f_high = f_low;
-            low = right - golden * (right - left), f_low = force_at(d, x, v, low, q) - wanted;
-        } else {
-            left = low, low = high, f_low = f_high;
-            high = left + golden * (right - left), f_high = force_at(d, x, v, high, q) - wanted;
-        }
-    }
-    return *missed = f_high, high;
-}
-
-/* Least current in [0, top] that gives the wanted force, or else comes closest to it. */
-static double search(const Damper *d, double wanted, double x, double v, const State *q, double top) {
-    double grid[CELLS + 1];
-    for (int j = 0; j <= CELLS; j++) grid[j] = force_at(d, x, v, top * j / CELLS, q) - wanted;
-    double best = 0.0, closest = fabs(grid[0]), side = copysign(1.0, grid[0]);
-    for (int j = 0; j <= CELLS && closest > 1e-6; j++) {
-        int before = j > 0 ? j - 1 : 0, after = j < CELLS ? j + 1 : CELLS;
-        double left = top * before / CELLS, current = top * j / CELLS, missed = grid[j];
-        if (j > 0 && side * grid[j] < 0.0) return bracket(d, wanted, x, v, q, left, grid[before], current, grid[j]);
-        if (turns_near(d, wanted, x, v, q, top, grid, side, j)) {
-            current = closest_in(d, wanted, x, v, q, side, left, top * after / CELLS, &missed);
-            if (side * missed < 0.0) return bracket(d, wanted, x, v, q, left, grid[before], current, missed);
-        }
-        if (fabs(missed) < closest) best = current, closest = fabs(missed);
-    }
-    return best;
+static double miss(const void *question, double current) {
+    const Question *q = question;
+    return force_at(q->damper, q->x, q->v, current, q->state) - q->wanted;
 }
 
 static inline void record(
@@ -245,7 +182,7 @@ long run_loop(const Setup *p, long samples, const double *floor, double *out) {
         if (k % p->sample_every == 0) {
             double x = now.state.s[0], v = now.state.s[1];
             wanted = p->gain_displacement * x + p->gain_velocity * v;
-            command = wanted * v <= 0.0 ? 0.0 : search(&p->damper, wanted, x, v, &now.state, p->max_current);
+            command = wanted * v <= 0.0 ? 0.0 : search(miss, &(Question){&p->damper, &now.state, wanted, x, v}, p->max_current);
             double got = force_at(&p->damper, x, v, command, &now.state);
             served = fabs(got - wanted) <= 1e-6 * (1.0 + fabs(wanted)) ? 1.0 : 0.0;
             command = fmin(fmax(command, 0.0), p->max_current);
