@@ -98,7 +98,7 @@ def unpack(content: bytes, path: Path) -> bytes:
     """
     opened = next((opens for magic, opens in UNPACKED.items() if content.startswith(magic)), None)
     if opened is None:
-        if path.suffix in PACKED:
+        if content and path.suffix in PACKED:
             raise InputError(
                 f"{path}: cannot be read as a table: its name ends in {path.suffix}, but it is not packed;"
                 " copy it again"
