@@ -54,7 +54,7 @@ def open_browser() -> Iterator[Browser]:
 def measure_report(browser: Browser, path: Path, axe: str) -> None:
     """Print what a report needs and what is wrong with it, in every look and printed."""
     for width, scheme in LOOKS:
-        page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)  # type: ignore[arg-type]
+        page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)  # type: ignore[arg-type]  # one of LOOKS
         said, asked = watch(page)
         began = time.perf_counter()
         page.goto(path.as_uri())

@@ -19,6 +19,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -105,7 +106,7 @@ def measure(what: str, runs: int) -> Cost:
             run_all(scenarios[:VARIANTS])
         else:
             runs, jobs = prepared.plan.runs, int(what.partition("-")[2])
-            work = lambda: execute(prepared, Path(name) / "out", LocalEngine(jobs))  # noqa: E731
+            work = partial(execute, prepared, Path(name) / "out", LocalEngine(jobs))
         clock, processors = time.perf_counter(), time_of_processors()
         work()
         clock, processors = time.perf_counter() - clock, time_of_processors() - processors

@@ -111,16 +111,6 @@ class Model(NamedTuple):
     floor: Callable[[Array], Floor]
 
 
-def plain_model() -> Model:
-    """Return the model in plain Python."""
-
-    def slope(t: float, s: Array, command: float, floor: Floor) -> tuple[float, ...]:
-        x, v, xc, vc, y, z, i = s.tolist()
-        return rates(damper, t, x, v, xc, vc, y, z, i, command, floor)
-
-    return Model(slope, lambda x, v, y, z: invert(damper, find_root, x, v, y, z), np.ndarray.tolist)
-
-
 def compiled_model() -> Model:
     """Return the model compiled with numba."""
     force, slope, root, solve = (numba.njit(part) for part in (damper, rates, find_root, invert))

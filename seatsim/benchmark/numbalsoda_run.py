@@ -19,7 +19,7 @@ def make_solver(name: ivp.MethodName) -> ivp.Simulate:
     force, rates, root, invert = (numba.njit(part) for part in (ivp.damper, ivp.rates, ivp.find_root, ivp.invert))
 
     # What the right-hand side reads stands in one array: the command, the number of samples, the floor.
-    @numba.cfunc(numbalsoda.lsoda_sig)  # type: ignore[untyped-decorator]
+    @numba.cfunc(numbalsoda.lsoda_sig)  # type: ignore[untyped-decorator]  # numba has no types
     def slope(t: float, s: Any, ds: Any, data: Any) -> None:
         floor = numba.carray(data, (2 + int(data[1]),))[2:]
         found = rates(force, t, s[0], s[1], s[2], s[3], s[4], s[5], s[6], data[0], floor)
@@ -28,7 +28,7 @@ def make_solver(name: ivp.MethodName) -> ivp.Simulate:
 
     method, address = {"LSODA": numbalsoda.lsoda, "DOP853": numbalsoda.dop853}[name], slope.address
 
-    @numba.njit  # type: ignore[untyped-decorator]
+    @numba.njit  # type: ignore[untyped-decorator]  # numba has no types
     def solve(data: Array, samples: int, sample_every: int, rtol: float) -> Array:
         states = np.zeros(((samples - 1) // sample_every + 1, 7))
         for row in range(1, len(states)):

@@ -42,7 +42,8 @@ from seatsim.schema.errors import RunError
 class Validation:
     """A solution on a run held out of its fits: the rigs fitted without the run, and the gaps that they leave on it.
 
-    `runs` holds every run, replayed with the nominal, the calibrated and the augmented scenario, the three `scenarios`.
+    `runs` holds every run, replayed with the nominal, the calibrated and the augmented scenario, the three `scenarios`;
+    `by_run` their gaps.
     """
 
     solution: Solution
@@ -53,6 +54,7 @@ class Validation:
     scenarios: tuple[Scenario, Scenario, Scenario]
     runs: Sequence[ReplayedRun]
     gaps: Gaps
+    by_run: list[RunGaps]
 
     @property
     def fitted(self) -> Parameters:
@@ -91,13 +93,14 @@ def validate_on_held_out(solution: Solution) -> Validation:
     # A single run has no spread: its standard deviation with n - 1 degrees of freedom would be NaN.
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
     gaps = measure_gaps(problem, next(each for each in runs if each.name == run), spread)
-    if decision.verdict == "unknown" and chosen.parameters.terms and _raises_gap(list_gaps(problem, runs)):
+    by_run = list_gaps(problem, runs)
+    if decision.verdict == "unknown" and chosen.parameters.terms and _raises_gap(by_run):
         return validate_on_held_out(_give_up(solution, f"raises the gap of all runs as fitted without {run}"))
     if not solution.stochastic and decision.verdict in ("known", "ambiguous"):
         taken = share_removable(objective.on_runs([run]), gaps.before.overall, gaps.after.overall)
         if taken < problem.settings.decision.least_taken:
             solution = solution._replace(decision=call_unknown(problem.settings.decision, decision))
-    return Validation(solution, nominal, run, calibrated, augmented, (first, second, third), runs, gaps)
+    return Validation(solution, nominal, run, calibrated, augmented, (first, second, third), runs, gaps, by_run)
 
 
 def _raises_gap(runs: Sequence[RunGaps]) -> bool:
@@ -146,7 +149,7 @@ def state_diagnosis(
             *measure_coverage(recording).missing,
         ],
         augmented=write_augmented(problem, validation.augmented.parameters),
-        evidence=_collect_evidence(validation, nuisances, causes), alternatives=forms, by_run=list_gaps(problem, runs),
+        evidence=_collect_evidence(validation, nuisances, causes), alternatives=forms, by_run=validation.by_run,
         parameters=list_calibrated(problem.parameters, validation.fitted.deviations, at_bound),
         model_error=state_model_error(problem, runs),
         error_budget=budget_errors(problem, validation.scenarios[2], validation.run),
