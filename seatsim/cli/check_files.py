@@ -75,7 +75,8 @@ def _check_recording(folder: Path) -> Checked:
 
 
 def _check_code(path: Path) -> Checked:
-    module = use(path).__name__
+    use(path)
+    module = path.stem
     own = [f"{kind} {name}" for kind in KINDS for name in names(kind) if find(kind, name).__module__ == module]
     warnings = [] if own else ["no class is registered: put a decorator such as @damper(...) before it"]
     return Checked("own code", own, warnings)

@@ -75,7 +75,7 @@ def run_loop(
             y, sensed = read(setup.sensors, true, inputs.noise, k // timing.sample_every, sensed)
             command, wanted, served = decide(setup, y, now, factors, followed, law_state, grid)
             law_state = update(law, y, law_state)
-        _record(out, k, now, floor, wanted, served, current, command, temperature)
+        record_sample(out, k, now, floor, wanted, served, current, command, temperature)
         if k == samples - 1:
             break
         acting = step_inputs(setup, inputs, out, k, current, late, split, kept)
@@ -176,7 +176,7 @@ def measure(
 
 
 @jit
-def _record(
+def record_sample(
     out: Array,
     k: int,
     now: IntegratorState,

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from seatsim.cosimulation.damper import PREFIX
 from seatsim.dampers.base import DAMPERS, Damper
 from seatsim.rig.temperature import TemperatureFactors
+from seatsim.scenario.unit_damper import stated_unit
 from seatsim.schema.fields import field_names
 from seatsim.schema.validation import build, check_keys, chosen_class, mapping
 from seatsim.schema.yaml_source import Source
@@ -21,6 +23,8 @@ def stated_damper(
         InputError: a key or the model is unknown, or a value is missing or not permitted.
     """
     stated = mapping(values, source, keys)
+    if str(stated.get("model")).startswith(PREFIX):
+        return stated_unit(stated, source, keys), TemperatureFactors()
     check_keys(stated, ("model", "parameters", "temperature_factors", *extra), source, keys)
     cls = chosen_class(DAMPERS, stated, "model", source, keys)
     specification = DAMPERS.specification_of(cls)

@@ -9,6 +9,7 @@ run, wherever it lies. A scenario or a recording from a stranger may say ``model
 
 from __future__ import annotations
 
+import hashlib
 import importlib
 import importlib.util
 import os
@@ -25,6 +26,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.schema.errors import InputError
+from seatsim.schema.guarded import read_bytes
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoints
@@ -43,6 +45,10 @@ class _UsedFile(NamedTuple):
     content: bytes
 
 
+UNIT = ".fmu"
+"""Ending of the name of a functional mock-up unit."""
+LARGEST_UNIT = 256 * 2**20
+"""Bytes that such a file may have."""
 SAFE_PATH = "PYTHONSAFEPATH"
 HOME = Path(__file__).resolve().parents[2]
 """The folder that seatsim lies in."""
@@ -72,18 +78,24 @@ def _plugins() -> EntryPoints:
     return entry_points(group="seatsim.plugins")
 
 
-def use(path: str | Path) -> ModuleType:
+def use(path: str | Path) -> ModuleType | Path:
     """Load a Python file as the module of its name, so that a scenario may say `powerlaw:PowerLaw` of `powerlaw.py`.
 
-    A file that is in use already is loaded again only where its content has changed. Files that import one another are
-    named in that order, the imported one first: the folder they lie in is not searched.
+    Of a functional mock-up unit (`supplier.fmu`), which holds native code, it is noted that a scenario may run it as
+    `fmu:supplier.fmu`; nothing of it runs here. A file that is in use already is loaded again only where its content
+    has changed. Files that import one another are named in that order, the imported one first: the folder they lie in
+    is not searched.
 
     Returns:
-        The module.
+        The module, or the path of a unit.
 
     Raises:
         InputError: there is no such file, its name is no module name or that of another module, or its import fails.
     """
+    if Path(path).suffix == UNIT:
+        unit = _UsedFile(Path(path).resolve(), _fingerprint(Path(path)))
+        _used[str(unit.path)] = unit
+        return unit.path
     file = _UsedFile(Path(path).resolve(), _read(Path(path)))
     name = Path(path).stem
     if _used.get(name) == file:
@@ -96,6 +108,24 @@ def use(path: str | Path) -> ModuleType:
         module = _load(name, Path(path), file.path)
     _used[name] = file
     return module
+
+
+def check_in_use(path: Path) -> None:
+    """Raise InputError where a functional mock-up unit was not named by the user, or has changed since.
+
+    Raises:
+        MissingModuleError: it was not named; the error shows how.
+    """
+    used = _used.get(str(path.resolve()))
+    how = f"--with {shlex.quote(str(path))}, in Python seatsim.use({str(path)!r})"
+    if used is None:
+        raise MissingModuleError(f"{path} holds native code, which runs only where the file is named: {how}", path)
+    if used.content != _fingerprint(path):
+        raise InputError(f"{path}: has changed since it was named; name it again: {how}")
+
+
+def _fingerprint(path: Path) -> bytes:
+    return hashlib.sha256(read_bytes(path, LARGEST_UNIT, "a functional mock-up unit (.fmu)")).digest()
 
 
 def use_all(paths: Iterable[str | Path]) -> None:

@@ -9,6 +9,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.cosimulation.damper import FmuDamper
 from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.chain import Effects, state_at_rest
@@ -141,7 +142,16 @@ def _acting(classes: tuple[type, ...], hooks: tuple[str, ...]) -> list[type]:
 
 
 def augment_damper(record: DamperModel, effects: Effects) -> tuple[DamperModel, tuple[float, ...]]:
-    """Return a damper's record with effects on it, and its state at rest."""
+    """Return a damper's record with effects on it, and its state at rest.
+
+    Raises:
+        InputError: the damper is a unit, which no compiled code can call.
+    """
+    if isinstance(record, FmuDamper):
+        raise InputError(
+            f"the damper is the unit {record.file}, which is stepped outside the compiled loop: 'run', 'compare' and"
+            " 'gap' of a seat simulate it; for anything else fit a model to its bench tables with 'seatsim identify'"
+        )
     initial: tuple[float, ...] = specification_of(type(record)).initial
     if not effects:
         return record, initial

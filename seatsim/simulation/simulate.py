@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.compilation.cached import compiled
+from seatsim.cosimulation.damper import FmuDamper
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.excitations.base import Floor
 from seatsim.kernel.assumed_model import AssumedModel, InverseModel, TrueModel
@@ -38,6 +39,7 @@ from seatsim.simulation.augment import (
     sum_frame_forces,
     undo_reading,
 )
+from seatsim.simulation.coupled import run_coupled, stand_in
 from seatsim.simulation.inputs import NONE, Forces
 
 Array = NDArray[np.float64]
@@ -80,7 +82,9 @@ def simulate(
     """
     if scenario.plant is None or scenario.control is None:
         raise InputError(f"{scenario.name}: a damper bench has no seat to simulate; it is replayed with 'seatsim gap'")
-    step = scenario.solver.step
+    step, unit = scenario.solver.step, scenario.damper.record
+    if isinstance(unit, FmuDamper) and not carry_all_effects:
+        scenario = stand_in(scenario)
     if floor is None:
         with scenario.placed("excitation"):
             floor = scenario.excitation.floor(step, scenario.seed)
@@ -95,7 +99,10 @@ def simulate(
     variable = setup.law, setup.inverse_model.damper, setup.sensors
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
     states = (initial, _initial_state(setup.inverse_model), specification_of(type(scenario.control.law)).initial)
-    reached = compiled(run_loop, parts)(setup, inputs, *states, out)
+    if isinstance(unit, FmuDamper):
+        reached = run_coupled(unit, setup, inputs, states, out)
+    else:
+        reached = compiled(run_loop, parts)(setup, inputs, *states, out)
     if reached < len(out):
         raise diverged(scenario, reached)
     notes = setup.law.notes() if isinstance(setup.law, LawWithNotes) else ()

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from seatsim.cosimulation.damper import FmuDamper
 from seatsim.metrics import Metric
 from seatsim.rig.plant import USUAL_TRAVEL, Plant
 from seatsim.scenario.scenario import Scenario
@@ -38,6 +39,8 @@ def list_reasons(scenario: Scenario, history: History, metrics: Mapping[str, Met
 def list_ranges_left(scenario: Scenario, history: History) -> tuple[str, ...]:
     """Return a sentence for every range that a run leaves; those of the damper for more than 1 % of the time."""
     cls = type(scenario.damper.record)
+    if cls is FmuDamper:
+        return _doubt_travel(scenario.plant, history)
     specification, model = specification_of(cls), name_of("damper", cls)
     ratio = scenario.plant.damper_ratio if scenario.plant else 1.0
     speed = ratio * np.abs(history["suspension_velocity"])

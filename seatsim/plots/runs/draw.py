@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
+from seatsim.cosimulation.damper import FmuDamper
 from seatsim.plots.runs.comparison import plot_comparison
 from seatsim.plots.runs.envelope import plot_force_velocity
 from seatsim.plots.runs.histories import plot_time_histories
@@ -26,9 +27,13 @@ def plot_result(result: Result) -> dict[str, Figure]:
         "time_histories": plot_time_histories(result.runs),
         "psd": plot_psd(result.runs),
         "transmissibility": plot_transmissibility(result.runs),
-        "damper_loops": plot_damper_loops(result.runs),
-        "force_velocity": plot_force_velocity(result.runs[0]),
     }
+    # A damper that is a unit of another program is not put to a sine test.
+    models = [run for run in result.runs if not isinstance(run.scenario.damper.record, FmuDamper)]
+    if models:
+        figures["damper_loops"] = plot_damper_loops(models)
+    if models and models[0] is result.runs[0]:
+        figures["force_velocity"] = plot_force_velocity(result.runs[0])
     if len(result.runs) > 1:
         figures["comparison"] = plot_comparison(result.runs)
     if len(result.runs) > 1 or result.brackets:

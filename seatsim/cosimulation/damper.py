@@ -1,0 +1,43 @@
+"""A damper that is a functional mock-up unit: what a scenario states of it, and its force as the time loop sees it."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from seatsim.dampers.base import DamperSpecification
+from seatsim.rig.state import State
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+from seatsim.schema.registry import register
+
+PREFIX = "fmu:"
+"""What the name of a damper's model begins with where a file follows."""
+
+
+class FmuDamper(NamedTuple):
+    """A unit as a damper: its file, the quantity that each of its inputs takes, its force, values of its parameters."""
+
+    file: str
+    inputs: tuple[tuple[str, str], ...]
+    output: str
+    parameters: tuple[tuple[str, float], ...] = ()
+
+
+class CoupledForce(NamedTuple):
+    """The force of a unit as the time loop sees it: one value in N over a step, whatever the motion within."""
+
+    newton: float = 0.0
+
+    def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
+        """Return the force in N."""
+        return self.newton
+
+
+_SPECIFICATION = DamperSpecification(
+    source="the supplier's unit", initial=(), state="", current_order=0, centred=False, max_speed=math.inf,
+    max_current=math.inf, temperatures=(-273.15, math.inf), factors=TemperatureFactors(), complete=True,
+    confidence="derived", fixed=(), smooth=False,
+)  # fmt: skip
+# Not among the dampers: what fits, compares or prints each of those can do none of it with a unit.
+for _cls in (FmuDamper, CoupledForce):
+    register("coupled damper", _cls.__name__, _SPECIFICATION)(_cls)

@@ -1,0 +1,138 @@
+"""What a unit says of itself in its description, and whether a scenario's mapping fits it; nothing of it runs."""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from collections.abc import Mapping
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NamedTuple
+
+from seatsim.cosimulation.archive import find_library, open_archive, read_description
+from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.units import Conversion, conversion
+
+QUANTITIES = {
+    "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "current": "A", "temperature": "degC",
+}  # fmt: skip
+"""What an input of a damper may take, in its unit: motion positive in extension, current of the coil."""
+FORCE = "force"
+REAL = ("Real", "Float64")
+SETTABLE = {"Real": float, "Float64": float, "Integer": int, "Int32": int, "Boolean": bool}
+"""Types of parameters that a scenario may state."""
+
+
+class UnitDescription(NamedTuple):
+    """Version of the standard, identifier in C, token, variables by name, whether a state can be saved and restored."""
+
+    version: int
+    identifier: str
+    described: Any
+    variables: Mapping[str, Any]
+    repeats: bool
+
+
+def need_fmpy() -> ModuleType:
+    """Return FMPy.
+
+    Raises:
+        InputError: it is not installed.
+    """
+    try:
+        return import_module("fmpy")
+    except ImportError as error:
+        raise InputError('a damper that is an FMU runs by fmpy; install it with: pip install "seatsim[fmu]"') from error
+
+
+def describe_unit(path: Path) -> UnitDescription:
+    """Return what a unit for co-simulation says of itself.
+
+    Raises:
+        InputError: the archive is not one of a unit, its description cannot be read, it is of a version or kind that
+            cannot be stepped, or it has no library for this machine.
+    """
+    need_fmpy()
+    from fmpy.model_description import read_model_description
+
+    with open_archive(path) as archive:
+        text = read_description(path, archive)
+        stated = re.search(rb"""fmiVersion\s*=\s*["']([^"']*)""", text)
+        version = {b"2": 2, b"3": 3}.get(stated[1].partition(b".")[0]) if stated else None
+        if version is None:
+            said = stated[1].decode(errors="replace") if stated else "no version"
+            raise InputError(f"{path}: is of FMI {said}; permitted: 2.0 and 3.0")
+        try:
+            described: Any = read_model_description(_alone(text), validate=False)
+        except Exception as error:  # lxml's and FMPy's own errors have no common class
+            said = str(error).strip().split("\n")[0]
+            raise InputError(f"{path}: its description cannot be read: {said}") from error
+        model = described.coSimulation
+        if model is None:
+            raise InputError(f"{path}: is for model exchange only; a damper must be for co-simulation")
+        identifier = str(model.modelIdentifier)
+        find_library(path, archive, version, identifier)
+    saves = getattr(model, "canGetAndSetFMUstate", False) or getattr(model, "canGetAndSetFMUState", False)
+    return UnitDescription(version, identifier, described, {v.name: v for v in described.modelVariables}, bool(saves))
+
+
+def _alone(text: bytes) -> io.BytesIO:
+    """Return an archive that holds the description alone, which is what FMPy reads."""
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        archive.writestr("modelDescription.xml", text)
+    content.seek(0)
+    return content
+
+
+def find_variable(unit: UnitDescription, name: str, causality: str) -> Any:
+    """Return a variable of a unit that must have a causality and, as input or output, be a real number.
+
+    Raises:
+        InputError: there is none of this name, or it is another kind of variable.
+    """
+    fitting = [n for n, v in unit.variables.items() if v.causality == causality]
+    if name not in unit.variables:
+        listed = ", ".join(fitting[:20]) or "none"
+        raise InputError(f"the unit has no variable '{name}'{nearest(name, fitting)}; its {causality}s: {listed}")
+    found = unit.variables[name]
+    if found.causality != causality:
+        raise InputError(f"'{name}' is declared as {found.causality}, not as {causality}{nearest(name, fitting)}")
+    types = tuple(SETTABLE) if causality == "parameter" else REAL
+    if found.type not in types or getattr(found, "dimensions", None):
+        kind = f"an array of {found.type}" if getattr(found, "dimensions", None) else str(found.type)
+        raise InputError(f"'{name}' is declared as {kind}; permitted: {', '.join(types)}")
+    return found
+
+
+def check_parameter(unit: UnitDescription, name: str, value: object) -> float:
+    """Return the value of a parameter, which must be of its type and within its bounds.
+
+    Raises:
+        InputError: it is not.
+    """
+    found = find_variable(unit, name, "parameter")
+    kind = SETTABLE[found.type]
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not (isinstance(value, bool) if kind is bool else is_number and kind(value) == value):
+        word = {float: "a number", int: "a whole number", bool: "true or false"}[kind]
+        raise InputError(f"{value!r} is not permitted; '{name}' is {word}")
+    for limit, low in ((found.min, True), (found.max, False)):
+        if limit is not None and (value < float(limit) if low else value > float(limit)):  # type: ignore[operator]
+            raise InputError(f"{value!r} is not permitted; the unit states at {'least' if low else 'most'} {limit}")
+    return value  # type: ignore[return-value]  # a number, or a bool, which is one
+
+
+def find_conversion_of(variable: Any, quantity: str) -> Conversion:
+    """Return how a variable's values become those of a quantity in its unit; a variable without unit has that one.
+
+    Raises:
+        InputError: its unit is of another quantity.
+    """
+    wanted = QUANTITIES.get(quantity, "N")
+    try:
+        return conversion(str(variable.unit), wanted) if variable.unit else Conversion(1.0)
+    except InputError as error:
+        raise InputError(f"'{variable.name}' cannot be the {quantity}: {error}") from error

@@ -1,0 +1,89 @@
+"""A damper that was exported and comes back as a unit moves the seat as it did before."""
+
+import numpy as np
+import pytest
+
+from seatsim.exchange.blocks.damper import damper_block
+from seatsim.exchange.fmu import write_fmu
+from seatsim.scenario.loading import load
+from seatsim.schema.errors import InputError
+from seatsim.schema.modules import MissingModuleError, use
+from seatsim.simulation.coupled import _agree
+from seatsim.simulation.simulate import simulate
+
+BASE = {"controller": {"law": "constant", "current": 0.4}, "excitation.duration": 0.5}
+INPUTS = {"displacement": "displacement", "velocity": "velocity", "acceleration": "acceleration", "current": "command"}
+UNIT = {"model": "fmu:damper.fmu", "inputs": INPUTS, "outputs": {"force": "force"}, "parameters": {"is_current": True}}
+
+
+@pytest.fixture
+def unit_file(seat_file, forget_own_code):
+    """The seat, with its damper beside it as a unit that the user named."""
+    write_fmu(damper_block(load(seat_file)[0]), 2, seat_file.with_name("damper.fmu"))
+    use(seat_file.with_name("damper.fmu"))
+    return seat_file
+
+
+def difference(path, step):
+    """Return how far the force of the unit is from that of the model, over its greatest value."""
+    own, other = (
+        simulate(load(path, {**BASE, **extra, "solver.step": step})[0], carry_all_effects=False)["damper_force"]
+        for extra in ({}, {"damper": UNIT})
+    )
+    return np.max(np.abs(own - other)) / np.max(np.abs(own))
+
+
+def test_a_unit_is_its_model_to_the_second_order_of_the_step(unit_file):
+    coarse, fine = difference(unit_file, 1e-3), difference(unit_file, 5e-4)
+    assert fine < coarse / 3.0 and coarse < 0.02
+
+
+def test_a_unit_runs_only_where_it_was_named(seat_file, forget_own_code):
+    seat_file.with_name("damper.fmu").write_bytes(b"anything")
+    with pytest.raises(InputError, match="runs only where the file is named: --with") as raised:
+        load(seat_file, {"damper": UNIT})
+    assert isinstance(raised.value.__cause__, MissingModuleError)
+
+
+def test_a_unit_that_changed_since_is_refused(unit_file):
+    unit_file.with_name("damper.fmu").write_bytes(b"anything")
+    with pytest.raises(InputError, match="has changed since it was named"):
+        load(unit_file, {"damper": UNIT})
+
+
+@pytest.mark.parametrize(
+    "changed, said",
+    [
+        ({"inputs": {"velocity": "velocty"}}, "did you mean 'velocity'"),
+        ({"inputs": {"veloctiy": "velocity"}}, "did you mean 'velocity'"),
+        ({"outputs": {"force": "velocity"}}, "declared as input, not as output"),
+        ({"outputs": {"force": "current"}}, "cannot be the force"),
+        ({"outputs": {}}, "'outputs' is missing"),
+        ({"parameters": {"coil.rate": -1.0}}, "at least"),
+        ({"temperature_factors": {}}, "unknown key"),
+    ],
+)
+def test_a_mapping_that_does_not_fit_is_one_error(unit_file, changed, said):
+    with pytest.raises(InputError, match=said):
+        load(unit_file, {"damper": UNIT | changed})
+
+
+def test_what_a_unit_cannot_be_asked_is_refused(unit_file):
+    effect = [{"effect": "damper.seal_friction", "parameters": {"force": 15.0}}]
+    for extra, said in ((BASE | {"effects": effect}, "acts within the damper"), ({}, "wants a force")):
+        with pytest.raises(InputError, match=said):
+            simulate(load(unit_file, extra | {"damper": UNIT})[0], carry_all_effects=False)
+    with pytest.raises(InputError, match="outside the compiled loop"):
+        damper_block(load(unit_file, {"damper": UNIT})[0])
+
+
+@pytest.mark.parametrize("slope", [-0.1, -0.9, -8.0, -200.0])
+def test_the_force_at_the_end_of_a_step_is_found_however_stiff_the_damper(slope):
+    asked = []
+
+    def miss(trial):
+        asked.append(trial)
+        return 100.0 * np.tanh(slope * (trial - 30.0) / 100.0) - trial
+
+    _agree(miss, 5.0, lambda: None)
+    assert abs(miss(asked[-1])) < 1e-4 and len(asked) < 30
