@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.characterisation.specimen import load_specimen
+from seatsim.cosimulation.description import describe_unit
 from seatsim.excitations.recording import RecordedRun
 from seatsim.importing.import_map import read_map
 from seatsim.recordings.quality.examination import examine, refuse
@@ -13,7 +14,7 @@ from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.scenario.describe import KINDS
 from seatsim.scenario.loading import load
 from seatsim.scenario.plausibility import list_doubts
-from seatsim.schema.modules import use
+from seatsim.schema.modules import UNIT, use
 from seatsim.schema.registry import find, names
 from seatsim.schema.yaml_source import Source
 from seatsim.sweeps.definition import is_sweep
@@ -29,15 +30,15 @@ class Checked(NamedTuple):
 
 
 def check_file(path: Path) -> Checked:
-    """Read a scenario, recording (or its folder), sweep, damper with its parameters, map of `import`, or Python file.
+    """Read a scenario, recording (or folder), sweep, damper with its parameters, map of `import`, Python file or FMU.
 
     Raises:
         InputError: there is an error in it.
     """
     if path.is_dir() or path.name == HEADER:
         return _check_recording(path if path.is_dir() else path.parent)
-    if path.suffix == ".py":
-        return _check_code(path)
+    if path.suffix in (".py", UNIT):
+        return _check_code(path) if path.suffix == ".py" else _check_unit(path)
     stated = Source(path).data if path.exists() else {}
     if {"model", "bench"} & set(stated):
         return Checked("parameters", [load_specimen(None, path).name], [])
@@ -80,3 +81,9 @@ def _check_code(path: Path) -> Checked:
     own = [f"{kind} {name}" for kind in KINDS for name in names(kind) if find(kind, name).__module__ == module]
     warnings = [] if own else ["no class is registered: put a decorator such as @damper(...) before it"]
     return Checked("own code", own, warnings)
+
+
+def _check_unit(path: Path) -> Checked:
+    unit = describe_unit(path)
+    held = [f"{v.causality} {name}" for name, v in unit.variables.items() if v.causality in ("input", "output")]
+    return Checked(f"FMU of version {unit.version}", held, [])

@@ -103,9 +103,11 @@ def unpack(path: Path, version: int, identifier: str) -> Iterator[tuple[Path, Pa
 
     The folder is removed afterwards, also where a run is interrupted.
     """
-    with TemporaryDirectory(prefix="seatsim-fmu-", ignore_cleanup_errors=True) as name, open_archive(path) as archive:
-        folder, library = Path(name), find_library(path, archive, version, identifier)
-        wanted = (f"{library.rpartition('/')[0]}/", "resources/")
-        archive.extractall(folder, [entry for entry in archive.namelist() if entry.startswith(wanted)])
+    with TemporaryDirectory(prefix="seatsim-fmu-", ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        with open_archive(path) as archive:
+            library = find_library(path, archive, version, identifier)
+            wanted = (f"{library.rpartition('/')[0]}/", "resources/")
+            archive.extractall(folder, [entry for entry in archive.namelist() if entry.startswith(wanted)])
         (folder / "resources").mkdir(exist_ok=True)
         yield folder, folder / library

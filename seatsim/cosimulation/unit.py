@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -49,7 +50,7 @@ class RunningUnit:
         if self._unit.version == 2:
             self._call(lambda: self._instance.setupExperiment(startTime=0.0), "its set-up")
         for name, value in damper.parameters:
-            self._call(lambda n=name, x=value: self._set_parameter(n, x), f"parameter {name} = {value}")
+            self._call(partial(self._set_parameter, name, value), f"parameter {name} = {value}")
         self._call(self._instance.enterInitializationMode, "its initialisation")
         self._give(given, 0.0)
         self._call(self._instance.exitInitializationMode, "the end of its initialisation")
@@ -79,6 +80,10 @@ class RunningUnit:
         """Free a saved state."""
         self._call(lambda: self._instance.freeFMUState(state), "freeing its state")
 
+    def end(self) -> None:
+        """Tell the unit that the run is over; some write their results then."""
+        self._call(self._instance.terminate, "its end")
+
     def _give(self, given: Mapping[str, float], time: float) -> None:
         references = [reference for _, reference, _ in self._inputs]
         values = [(given[quantity] - how.zero) / how.factor for quantity, _, how in self._inputs]
@@ -88,7 +93,7 @@ class RunningUnit:
     def _read(self, time: float) -> float:
         get = self._instance.getReal if self._unit.version == 2 else self._instance.getFloat64
         (value,) = self._call(lambda: get([self._output]), f"reading its force at {time:.6g} s")
-        force = self._force.factor * value + self._force.zero
+        force = float(self._force.factor * value + self._force.zero)
         if not math.isfinite(force):
             raise RunError(f"{self._file}: the unit gives a force of {force} N at {time:.6g} s")
         return force
@@ -127,7 +132,9 @@ def run_unit(damper: FmuDamper) -> Iterator[RunningUnit]:
             said = "; ".join(told[-3:]) or str(error).strip().split("\n")[0]
             raise InputError(f"{path}: its library cannot be used: {said}") from error
         try:
-            yield RunningUnit(damper, unit, instance, told)
+            running = RunningUnit(damper, unit, instance, told)
+            yield running
+            running.end()
         finally:
             instance.freeInstance()
             instance.freeLibrary()

@@ -38,9 +38,10 @@ def list_reasons(scenario: Scenario, history: History, metrics: Mapping[str, Met
 
 def list_ranges_left(scenario: Scenario, history: History) -> tuple[str, ...]:
     """Return a sentence for every range that a run leaves; those of the damper for more than 1 % of the time."""
-    cls = type(scenario.damper.record)
-    if cls is FmuDamper:
+    record: object = scenario.damper.record
+    if isinstance(record, FmuDamper):  # which states no ranges
         return _doubt_travel(scenario.plant, history)
+    cls = type(scenario.damper.record)
     specification, model = specification_of(cls), name_of("damper", cls)
     ratio = scenario.plant.damper_ratio if scenario.plant else 1.0
     speed = ratio * np.abs(history["suspension_velocity"])

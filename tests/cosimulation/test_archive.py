@@ -53,6 +53,14 @@ def test_a_path_out_of_the_folder_is_refused(pack, name, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["unit.fmu"]
 
 
+def test_an_interrupted_run_leaves_no_folder(pack, tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with pytest.raises(KeyboardInterrupt), unpack(pack(HERE), 2, "d") as (_, library):
+        assert library.read_text() == "no library"
+        raise KeyboardInterrupt
+    assert [p.name for p in tmp_path.iterdir()] == ["unit.fmu"]
+
+
 def test_a_link_is_refused(pack):
     link = zipfile.ZipInfo("resources/link")
     link.external_attr = (stat.S_IFLNK | 0o777) << 16

@@ -1,17 +1,24 @@
 """A damper that was exported and comes back as a unit moves the seat as it did before."""
 
+import tempfile
+import zipfile
+
 import numpy as np
 import pytest
 
+from seatsim.cli.check_files import check_file
+from seatsim.cli.outputs.schemas import scenario_schema
+from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
+from seatsim.exchange.blocks.rig import rig_block
 from seatsim.exchange.fmu import write_fmu
 from seatsim.scenario.loading import load
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.modules import MissingModuleError, use
 from seatsim.simulation.coupled import _agree
 from seatsim.simulation.simulate import simulate
 
-BASE = {"controller": {"law": "constant", "current": 0.4}, "excitation.duration": 0.5}
+BASE = {"controller": {"law": "constant", "current": 0.4}, "excitation.duration": 0.3}
 INPUTS = {"displacement": "displacement", "velocity": "velocity", "acceleration": "acceleration", "current": "command"}
 UNIT = {"model": "fmu:damper.fmu", "inputs": INPUTS, "outputs": {"force": "force"}, "parameters": {"is_current": True}}
 
@@ -22,6 +29,19 @@ def unit_file(seat_file, forget_own_code):
     write_fmu(damper_block(load(seat_file)[0]), 2, seat_file.with_name("damper.fmu"))
     use(seat_file.with_name("damper.fmu"))
     return seat_file
+
+
+@pytest.fixture
+def unit_without_states(unit_file):
+    """The same, with a unit whose description says that it cannot save its state."""
+    path = unit_file.with_name("damper.fmu")
+    with zipfile.ZipFile(path) as archive:
+        held = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in held.items():
+            archive.writestr(name, content.replace(b'FMUstate="true"', b'FMUstate="false"'))
+    use(path)
+    return unit_file
 
 
 def difference(path, step):
@@ -36,6 +56,28 @@ def difference(path, step):
 def test_a_unit_is_its_model_to_the_second_order_of_the_step(unit_file):
     coarse, fine = difference(unit_file, 1e-3), difference(unit_file, 5e-4)
     assert fine < coarse / 3.0 and coarse < 0.02
+
+
+def test_a_unit_that_cannot_save_its_state_is_stepped_once(unit_without_states):
+    assert difference(unit_without_states, 5e-4) < 0.02
+
+
+@pytest.mark.parametrize("values, said", [([np.nan], "gives a force of nan N at 0 s"), (None, "failed at the step")])
+def test_a_unit_that_fails_ends_the_run_and_its_folder(unit_file, tmp_path, monkeypatch, values, said):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    if values:
+        monkeypatch.setattr("fmpy.fmi2.FMU2Slave.getReal", lambda *_: values)
+    damper = UNIT | {"parameters": {"is_current": True, "damper.alpha_a": 1e308}}
+    files = set(tmp_path.iterdir())
+    with pytest.raises(RunError, match=f"damper.fmu: the unit {said}"):
+        simulate(load(unit_file, BASE | {"damper": damper})[0], carry_all_effects=False)
+    assert set(tmp_path.iterdir()) == files
+
+
+def test_editors_and_check_know_units(unit_file):
+    assert check_file(unit_file.with_name("damper.fmu")).holds[0] == "input displacement"
+    keys = scenario_schema()["properties"]["damper"]["properties"]
+    assert set(keys["inputs"]["properties"]) > set(INPUTS) and keys["outputs"]["required"] == ["force"]
 
 
 def test_a_unit_runs_only_where_it_was_named(seat_file, forget_own_code):
@@ -73,8 +115,9 @@ def test_what_a_unit_cannot_be_asked_is_refused(unit_file):
     for extra, said in ((BASE | {"effects": effect}, "acts within the damper"), ({}, "wants a force")):
         with pytest.raises(InputError, match=said):
             simulate(load(unit_file, extra | {"damper": UNIT})[0], carry_all_effects=False)
-    with pytest.raises(InputError, match="outside the compiled loop"):
-        damper_block(load(unit_file, {"damper": UNIT})[0])
+    for block in (damper_block, rig_block, controller_block):
+        with pytest.raises(InputError, match="outside the compiled loop"):
+            block(load(unit_file, {"damper": UNIT})[0])
 
 
 @pytest.mark.parametrize("slope", [-0.1, -0.9, -8.0, -200.0])

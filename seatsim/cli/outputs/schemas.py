@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
+from seatsim.cosimulation.description import FORCE, QUANTITIES
 from seatsim.dampers.base import DAMPERS
 from seatsim.metrics.table import METRICS
 from seatsim.recordings.header import Header, RunEntry
@@ -21,6 +22,10 @@ from seatsim.sweeps.definition import DESIGNS
 ANYTHING: Schema = {}
 TEXT: Schema = {"type": "string"}
 BY_KEY: Schema = {"type": "object"}
+OF_A_UNIT: Mapping[str, Schema] = {
+    "inputs": mapping_schema(dict.fromkeys(QUANTITIES, TEXT)), "outputs": mapping_schema({FORCE: TEXT}, (FORCE,)),
+}  # fmt: skip
+"""Keys of a damper that is a functional mock-up unit: the names of its variables."""
 BY_MODEL = "parameters_by_model"
 """Name of what holds for the parameters of each damper model."""
 
@@ -31,7 +36,7 @@ def scenario_schema() -> Schema:
         "name": TEXT,
         "seed": {"type": "integer", "minimum": 0, "description": "every random draw derives from it"},
         "plant": record_schema(Plant),
-        "damper": _damper(),
+        "damper": _damper(OF_A_UNIT),
         "actuator": record_schema(Coil, ("rate", "max_current")),
         "temperature": _temperature(),
         "controller": _named(
