@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.effects.base import EFFECTS, ON_SEAT, Form, acts_on, same_place
+from seatsim.recordings.quality.coverage import shows_falling_current
 from seatsim.schema.fields import bounds, choices, field_names
 from seatsim.schema.registry import Record
 
@@ -123,7 +124,10 @@ def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
     # Where only the current is recorded, it drives the damper in the simulation, so that no fault of the coil shows.
     if acts_on(cls, ("coil",)) and not commanded:
         return False
-    return EFFECTS.specification_of(cls).suits(problem.scenario.damper.record)
+    specification = EFFECTS.specification_of(cls)
+    if specification.shown_by_fall and not shows_falling_current(problem.recording):
+        return False
+    return specification.suits(problem.scenario.damper.record)
 
 
 def _places(cls: type[Record], problem: DiagnosisProblem) -> list[Fixed]:
