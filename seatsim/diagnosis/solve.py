@@ -96,7 +96,7 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
         localised = _localise(task, first)
         found = _in_time(_search_beside_stochastic, task, localised, weights, without) or localised
         # A random signal takes nothing off the gap, however right it is.
-        if found.decision.verdict == "none" or found.stochastic or _takes_enough(found):
+        if found.decision.verdict == "none" or found.stochastic or _takes_enough(objective, found):
             return found
         first = first._replace(decision=call_unknown(problem.settings.decision, first.decision))
     first = _in_time(_search_by_gap, task, first) or _localise(task, first)
@@ -123,12 +123,13 @@ def _search(task: SearchTask, objective: Objective) -> Solution:
     return Solution(objective, selection, decision)
 
 
-def _takes_enough(solution: Solution) -> bool:
+def _takes_enough(objective: Objective, solution: Solution) -> bool:
     """Whether the chosen set takes enough of the gap, nominal and calibrated, for its effects to be its causes.
 
-    Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap.
+    Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap. That
+    is measured beyond the noise of `objective`: a broadband residual that the solution counts as noise is gap.
     """
-    objective, selection, chosen = solution.objective, solution.selection, solution.decision.chosen
+    selection, chosen = solution.selection, solution.decision.chosen
     taken = [measure_gap_taken(objective, rig, chosen) for rig in (selection.nominal, selection.calibrated)]
     return min(taken) >= objective.settings.decision.least_taken
 
