@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.effects.base import EFFECTS, ON_SEAT, Form, acts_on, same_place
-from seatsim.recordings.quality.coverage import shows_falling_current
 from seatsim.schema.fields import bounds, choices, field_names
 from seatsim.schema.registry import Record
 
@@ -125,7 +124,7 @@ def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
     if acts_on(cls, ("coil",)) and not commanded:
         return False
     specification = EFFECTS.specification_of(cls)
-    if specification.shown_by_fall and not shows_falling_current(problem.recording):
+    if specification.shown_by_fall and not problem.current_falls:
         return False
     return specification.suits(problem.scenario.damper.record)
 

@@ -54,12 +54,20 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> Su
             after = cross_validate(objective, each, nuisances)
             tried.append((each, _charge(objective, each, float(np.mean(after**2) / np.mean(alone**2)))))
         found += tried
-        within = min((left for _, left in tried), default=0.0) * settings.equivalent ** (1.0 / settings.power)
-        best = sorted((each for each in tried if each[1] < within), key=lambda each: (_count_sensors(each[0]), each[1]))
+        best = sorted(_list_equals(objective, tried), key=lambda each: (_count_sensors(each[0]), each[1]))
         if not best or _weigh(objective, *best[0]) < _weigh(objective, chosen, before):
             break
         (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
     return Supported(chosen, equivalent, [(each, _weigh(objective, each, left)) for each, left in found])
+
+
+def _list_equals(objective: Objective, tried: Sequence[tuple[Evaluation, float]]) -> list[tuple[Evaluation, float]]:
+    """Return the sets between which the evidence does not decide, either by what they leave or with the prior odds."""
+    settings = objective.settings.cross_validation
+    least = min((left for _, left in tried), default=0.0) * settings.equivalent ** (1.0 / settings.power)
+    weights = [_weigh(objective, each, left) for each, left in tried]
+    weight = max(weights, default=0.0) - math.log(settings.equivalent)
+    return [pair for pair, own in zip(tried, weights, strict=True) if pair[1] < least or own > weight]
 
 
 def _weigh(objective: Objective, evaluation: Evaluation, left: float) -> float:

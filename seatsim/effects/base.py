@@ -95,7 +95,7 @@ class EffectSpecification(NamedTuple):
     forms: tuple[Form, ...]
     suits: Callable[[object], bool]
     by_channel: bool
-    shown_by_fall: bool
+    shown_by_fall: bool = False
 
 
 EFFECTS: Registry[Record, EffectSpecification] = Registry("effect")
