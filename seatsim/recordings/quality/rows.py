@@ -46,9 +46,7 @@ def _doubled(run: RunUnderTest) -> Iterator[Issue]:
     again = find_repeated_rows(marks)
     if len(again):
         severity: Severity = "warning" if len(again) / run.rate <= LATE else "error"
-        text = (
-            f"{len(again)} rows hold in every channel what a row shortly before holds, the first is row {again[0] + 1}"
-        )
+        text = f"{len(again)} rows hold in every channel what a row before holds, the first is row {again[0] + 1}"
         yield run.issue(severity, "doubled", f"{text}; they were written twice: remove them")
 
 
@@ -66,7 +64,8 @@ def find_repeated_rows(marks: Array) -> NDArray[np.intp]:
         if np.sum(equal) >= LEAST_REPEATED + 2 * np.sum(by_chance):
             ends = np.flatnonzero(np.diff(np.concatenate([[False], equal, [False]])))
             blocks = zip(ends[::2], ends[1::2], strict=True)
-            found += [np.arange(first, end) + distance for first, end in blocks if end - first >= distance]
+            rows = [np.arange(first, end) + distance for first, end in blocks if end - first >= distance]
+            found += rows if sum(map(len, rows)) >= LEAST_REPEATED else []
     return np.unique(np.concatenate(found))
 
 
