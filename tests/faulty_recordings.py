@@ -234,7 +234,7 @@ WARNINGS = {
     "halved command": (scaled("current_command", 0.5), "coil_current", "the scale of one of both is wrong"),
     "no command at all": (constant("current_command"), "current_command", "is 0 throughout while coil_current changes"),
     "a hot thermometer": (shifted("damper_temperature", 130.0), "damper_temperature", "stands 130 degC"),
-    "doubled rows": (without_time(doubled), None, "hold in every channel what another row holds"),
+    "doubled rows": (without_time(doubled), None, "hold in every channel what a row before holds"),
     "lost rows": (without_time(without(2.8, 2.88)), "suspension_displacement", "rows were lost"),
     "a rate that is twice too low": (
         without_time(lambda f: f.iloc[::2]),

@@ -123,7 +123,10 @@ def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
     # Where only the current is recorded, it drives the damper in the simulation, so that no fault of the coil shows.
     if acts_on(cls, ("coil",)) and not commanded:
         return False
-    return EFFECTS.specification_of(cls).suits(problem.scenario.damper.record)
+    specification = EFFECTS.specification_of(cls)
+    if specification.shown_by_fall and not problem.current_falls:
+        return False
+    return specification.suits(problem.scenario.damper.record)
 
 
 def _places(cls: type[Record], problem: DiagnosisProblem) -> list[Fixed]:

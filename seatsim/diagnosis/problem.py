@@ -21,6 +21,7 @@ from seatsim.effects.base import replace_effects
 from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
 from seatsim.recordings.header import USUAL, Header, Tolerance
 from seatsim.recordings.inputs import recorded_inputs
+from seatsim.recordings.quality.coverage import shows_falling_current
 from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.loading import single
@@ -41,7 +42,7 @@ class DiagnosisProblem:
 
     `measured` holds the compared channels of each run without its first second, shape (channels, samples), `inputs` the
     inputs of each run, `parameters` those that the stated tolerance lets vary; `pool` runs simulations in parallel.
-    Fits end at the `deadline`.
+    Fits end at the `deadline`. `current_falls` says whether the current falls anywhere, by which memory of it shows.
     """
 
     recording: Recording
@@ -54,6 +55,7 @@ class DiagnosisProblem:
     settings: DiagnosisSettings
     pool: Executor
     deadline: Deadline = field(default=NEVER, kw_only=True)
+    current_falls: bool = field(default=True, kw_only=True)
 
     @property
     def bench(self) -> bool:
@@ -165,8 +167,9 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     settings = settings or DiagnosisSettings()
     parameters = _list_parameters(recording.header, scenario, settings.fit)
     return DiagnosisProblem(
-        recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings, pool
-    )
+        recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings, pool,
+        current_falls=shows_falling_current(recording),
+    )  # fmt: skip
 
 
 def _list_parameters(header: Header, scenario: Scenario, settings: FitSettings) -> tuple[Nuisance, ...]:

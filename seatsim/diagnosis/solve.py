@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
-from seatsim.diagnosis.cross_validate import select_by_cross_validation
+from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
 from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.decide import Decision, call_unknown, decide_beside_unknown, decide_verdict
 from seatsim.diagnosis.fit import refit
@@ -24,7 +24,7 @@ from seatsim.diagnosis.localise.stochastic import (
     merge_effect,
     name_stochastic_effect,
 )
-from seatsim.diagnosis.movement import measure_gap_taken
+from seatsim.diagnosis.movement import is_material, measure_gap_taken
 from seatsim.diagnosis.noise import NoiseWeights, measure_broadband, weigh_gap, weigh_noise
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
@@ -96,7 +96,7 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
         localised = _localise(task, first)
         found = _in_time(_search_beside_stochastic, task, localised, weights, without) or localised
         # A random signal takes nothing off the gap, however right it is.
-        if found.decision.verdict == "none" or found.stochastic or _takes_enough(found):
+        if found.decision.verdict == "none" or found.stochastic or _takes_enough(objective, found):
             return found
         first = first._replace(decision=call_unknown(problem.settings.decision, first.decision))
     first = _in_time(_search_by_gap, task, first) or _localise(task, first)
@@ -123,12 +123,13 @@ def _search(task: SearchTask, objective: Objective) -> Solution:
     return Solution(objective, selection, decision)
 
 
-def _takes_enough(solution: Solution) -> bool:
+def _takes_enough(objective: Objective, solution: Solution) -> bool:
     """Whether the chosen set takes enough of the gap, nominal and calibrated, for its effects to be its causes.
 
-    Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap.
+    Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap. That
+    is measured beyond the noise of `objective`: a broadband residual that the solution counts as noise is gap.
     """
-    objective, selection, chosen = solution.objective, solution.selection, solution.decision.chosen
+    selection, chosen = solution.selection, solution.decision.chosen
     taken = [measure_gap_taken(objective, rig, chosen) for rig in (selection.nominal, selection.calibrated)]
     return min(taken) >= objective.settings.decision.least_taken
 
@@ -154,8 +155,12 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
     rig = first.selection.weigh_again(first.objective, objective)
     selection = task.method.select_effects(objective, task.candidates, task.progress, largest, rig)
     chosen, equivalent, tried = select_by_cross_validation(objective, selection)
-    refitted = refit(first.objective, chosen.parameters)
-    decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
+    evident = None if chosen.parameters.terms else _fit_evident(first, objective, selection)
+    if evident is None:
+        refitted = refit(first.objective, chosen.parameters)
+        decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
+    else:
+        chosen, decision = evident, call_unknown(settings.decision, first.decision)
     localised = _localise(task, first._replace(decision=decision))
     if localised.decision is not decision:
         return localised
@@ -163,6 +168,25 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
     return localised._replace(
         objective=objective, selection=selection, decision=dataclasses.replace(decision, chosen=chosen)
     )
+
+
+def _fit_evident(first: Solution, objective: Objective, selection: Selection) -> Evaluation | None:
+    """Return the smallest set that explains the weighted excess as fitted to the gap, None where the gap opposes it.
+
+    An offset of an accelerometer stands out of the noise at frequencies where no model errs, however large the gap
+    elsewhere; the gap of runs left out need not ask for it, but must not grow by it.
+    """
+    settings, before = objective.settings, first.selection.calibrated
+    least = settings.decision.explained * before.excess
+    best = next((sets[0] for sets in first.selection.sets[1:] if sets[0].excess < least), None)
+    if best is None or before.excess < settings.localisation.above_noise:
+        return None
+    fitted = refit(objective, best.parameters)
+    gaps = [
+        float(np.mean(cross_validate(objective, each, selection.linearise_nuisances(objective, each)) ** 2))
+        for each in (selection.calibrated, fitted)
+    ]
+    return fitted if gaps[1] < gaps[0] and is_material(objective.problem, fitted) else None
 
 
 def _localise(task: SearchTask, solution: Solution) -> Solution:

@@ -86,7 +86,7 @@ class EffectSpecification(NamedTuple):
     source: of the law. initial: its state at rest. off: parameters at which the rig is unchanged, where that is not
     zero. forms: model structures that a fit tries; parameters that a structure does not name stay off. suits: whether a
     model with the given damper record can lack the effect. by_channel: it acts on one recorded channel, which its
-    parameter `channel` names.
+    parameter `channel` names. shown_by_fall: only a current that falls shows it; otherwise it is a constant shift.
     """
 
     source: str
@@ -95,6 +95,7 @@ class EffectSpecification(NamedTuple):
     forms: tuple[Form, ...]
     suits: Callable[[object], bool]
     by_channel: bool
+    shown_by_fall: bool = False
 
 
 EFFECTS: Registry[Record, EffectSpecification] = Registry("effect")
@@ -109,6 +110,7 @@ def effect(
     forms: tuple[Form | Values, ...] = (),
     suits: Callable[[object], bool] = lambda damper: True,
     by_channel: bool = False,
+    shown_by_fall: bool = False,
 ) -> Callable[[T], T]:
     """Register a record class as `effect: name`, where the part before the dot is the block it lives in.
 
@@ -118,7 +120,8 @@ def effect(
         InputError: the class has a method that is no hook, which nothing would ever call.
     """
     stated = tuple(form if isinstance(form, Form) else Form(form) for form in forms)
-    enter = EFFECTS.register(name, EffectSpecification(source, initial, off or {}, stated, suits, by_channel))
+    specification = EffectSpecification(source, initial, off or {}, stated, suits, by_channel, shown_by_fall)
+    enter = EFFECTS.register(name, specification)
 
     def check_and_enter(cls: T) -> T:
         for method, value in vars(cls).items():

@@ -55,6 +55,7 @@ class MagneticSaturation(NamedTuple):
         {"width": 0.1, "decay": 20.0},
         {"share": 0.1, "decay": 2.0},
     ),
+    shown_by_fall=True,
 )
 class Remanence(NamedTuple):
     """Yield force that remembers past current: it feels the mean of two plays of the current, and an after-effect.

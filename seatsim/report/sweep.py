@@ -7,43 +7,28 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from seatsim.metrics.table import METRICS
-from seatsim.plots.quantities import Quantity
-from seatsim.report.blocks import Bar, Bars, Block, Matrix, Report, Section, Table, Text
-from seatsim.report.formatting import describe_channel, format_number, format_percent
+from seatsim.report.blocks import Bar, Bars, Block, Report, Section, Table, Text
+from seatsim.report.formatting import format_number, format_percent
 from seatsim.report.method import describe_method
-from seatsim.report.planes import Curve, draw_curves
 from seatsim.report.rendering import write_html
+from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
+from seatsim.report.sweep_pictures import draw_pareto, tabulate_maps
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.statistics.exceedance import Exceedance
-from seatsim.sweeps.statistics.inputs import SweepRows, is_number
+from seatsim.sweeps.statistics.inputs import SweepRows
 from seatsim.sweeps.statistics.quantiles import NAMES
 from seatsim.sweeps.statistics.sensitivity import Sensitivities, Sensitivity, choose_key
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
-
-COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
 SHOWN = (COMFORT, "driver_vdv", "seat_factor", TRAVEL, "suspension_displacement_peak", "end_stop_hits", "current_rms")
 """Metrics of the tables of the page; `table.csv` has all of them."""
-WORDS = {
-    COMFORT: "driver, weighted RMS", TRAVEL: "RMS suspension travel",
-    "suspension_displacement_peak": "peak suspension travel",
-}  # fmt: skip
 MOST_LINES = 60
 """Lines of a table on the page."""
 MOST_KEYS = 14
 MOST_REASONS = 8
-MOST_POINTS = 4000
-"""Runs that are drawn; more of them hide each other."""
-MOST_GROUPS = 8
-MOST_LEVELS = 10
-"""Values of a key that have rows or columns of their own; numbers with more are taken in `BINS` of as many runs."""
-BINS = 6
 ENOUGH = 0.8
 """Share of the variance that an expansion must predict before nothing is said about it."""
 METHOD = (
@@ -72,8 +57,8 @@ def report_sweep(
     sections = [
         Section("limits", "How often limits are exceeded", _show_limits(exceeded, rows)),
         Section("sensitivity", "What matters most", _show_sensitivity(found, rows)),
-        Section("pareto", "Comfort and travel", _show_pareto(rows, _order(found, rows))),
-        Section("maps", "Over two keys", _show_maps(found, rows)),
+        Section("pareto", "Comfort and travel", draw_pareto(rows, _order(found, rows))),
+        Section("maps", "Over two keys", tabulate_maps(rows, _order(found, rows))),
         Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
         Section("states", "Failed and unverified runs", _show_states(rows)),
         describe_method(METHOD, {"identity": rows.manifest["identity"]}, f"seatsim sweep-report {rows.folder.name}"),
@@ -97,12 +82,6 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> str:
         f" interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}), "
         f"{format_percent(chosen.first)} alone."
     )
-
-
-def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
-    """Return how a key, by its name, or a metric, in words, is shown."""
-    shown = describe_channel(WORDS.get(name, name), units.get(name, ""))
-    return shown if name in METRICS else shown._replace(words=name)
 
 
 def _count_runs(rows: SweepRows) -> str:
@@ -161,11 +140,6 @@ def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]
     return [Text(lead), Table("Runs above each limit", head, lines, words=len(exceeded[0].group) + 1)]
 
 
-def format_level(value: object) -> str:
-    """Return the value of a key as text."""
-    return format_number(value, 4) if isinstance(value, float) else str(value)
-
-
 def _show_sensitivity(found: Sensitivities, rows: SweepRows) -> list[Block]:
     if not found.rows:
         return [Text(f"{found.problem[0].upper()}{found.problem[1:]}.")]
@@ -215,82 +189,6 @@ def _list_swings(found: Sequence[Sensitivity], rows: SweepRows) -> Table:
 
 def _known(value: float) -> float:
     return min(1.0, max(0.0, value)) if np.isfinite(value) else 0.0
-
-
-def _show_pareto(rows: SweepRows, order: Sequence[str]) -> list[Block]:
-    """Return comfort over travel, coloured by a text, or by the lower and upper values of what matters most."""
-    if not {COMFORT, TRAVEL} <= set(rows.metrics):
-        return []
-    shown = rows.usable.dropna(subset=[COMFORT, TRAVEL])
-    drawn = shown.sample(MOST_POINTS, random_state=0) if len(shown) > MOST_POINTS else shown
-    key = next((key for key in order if drawn[key].nunique() <= MOST_GROUPS), None)
-    groups = [("runs", drawn)] if key is None else [
-        (f"{key} {format_level(value)}", drawn[drawn[key] == value]) for value in sorted(drawn[key].unique())
-    ]  # fmt: skip
-    curves = [
-        Curve(name, 1e3 * part[TRAVEL].to_numpy(float), part[COMFORT].to_numpy(float), (k + 1) % 8, "dots")
-        for k, (name, part) in enumerate(groups)
-    ]
-    travel, comfort = shown[TRAVEL].to_numpy(float), shown[COMFORT].to_numpy(float)
-    front = find_front(travel, comfort)
-    curves.append(Curve("Pareto front", 1e3 * travel[front], comfort[front], 0))
-    some = f" {len(drawn)} of {len(shown)} runs are drawn." if len(drawn) < len(shown) else ""
-    axes = ("RMS suspension travel [mm]", "driver, weighted RMS [m/s²]")
-    return [draw_curves("Comfort against travel", f"A point for each run; lower left is better.{some}", axes, curves)]
-
-
-def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:
-    """Return the indices of the runs that no other is better than in both, by rising travel."""
-    order = np.lexsort((comfort, travel))
-    best = np.minimum.accumulate(comfort[order])
-    keep = np.concatenate([[True], comfort[order][1:] < best[:-1]])
-    front: NDArray[np.intp] = order[keep]
-    return front
-
-
-def _show_maps(found: Sensitivities, rows: SweepRows) -> list[Block]:
-    order = [key for key in _order(found, rows) if key != "variant"]
-    if len(order) < 2:
-        return []
-    maps = [_tabulate(rows, metric, order[0], order[1]) for metric in (COMFORT, TRAVEL) if metric in rows.metrics]
-    return [each for each in maps if each is not None]
-
-
-def _tabulate(rows: SweepRows, metric: str, across: str, up: str) -> Matrix | None:
-    """Return the mean of a metric over two keys, or None where one of them is a text with too many values."""
-    import pandas as pd
-
-    x, y = (_group(rows.usable[key]) for key in (across, up))
-    if x is None or y is None:
-        return None
-    shown = describe_column(metric, rows.units)
-    means = pd.DataFrame({"x": x, "y": y, "z": shown.factor * rows.usable[metric]})
-    table = means.groupby(["y", "x"], observed=True)["z"].mean().unstack()
-    values = table.to_numpy()
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    lines = [
-        (str(name), [
-            (format_number(value), min(9, int(10 * (value - low) / ((high - low) or 1.0)))) if np.isfinite(value)
-            else ("", 0) for value in line
-        ])
-        for name, line in zip(table.index, values, strict=True)
-    ]  # fmt: skip
-    caption = f"Mean over the runs of each cell, in {shown.unit}; the darker, the larger."
-    title = f"{shown.words} over {across} (columns) and {up} (rows)"
-    return Matrix(f"{title[:1].upper()}{title[1:]}", caption, up, [str(name) for name in table.columns], lines)
-
-
-def _group(values: pd.Series) -> pd.Series | None:
-    """Return the values as ordered names of cells."""
-    import pandas as pd
-
-    if values.nunique() <= MOST_LEVELS:
-        names = pd.Categorical(values.map(format_level), [format_level(x) for x in sorted(values.unique())], True)
-        return pd.Series(names, index=values.index)
-    if not is_number(values):
-        return None
-    cells = pd.qcut(values, BINS, duplicates="drop")
-    return cells.cat.rename_categories([f"{c.left:.3g} to {c.right:.3g}" for c in cells.cat.categories])
 
 
 def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Block]:

@@ -17,7 +17,7 @@ if sys.argv[2] == "strict":
     for options in (jit.ARITHMETIC, jit.INLINED):
         options["fastmath"] = False
 import seatsim
-history = seatsim.run(sys.argv[1], {"excitation.duration": 0.5}).runs[0].history
+history = seatsim.run(sys.argv[1], {"excitation.duration": 0.2}).runs[0].history
 print(json.dumps({name: [value.hex() for value in values.tolist()] for name, values in history.channels.items()}))
 """
 

@@ -116,11 +116,23 @@ def test_transmissibility_of_a_rigid_seat_of_half_gain(made_up):
     np.testing.assert_allclose(axes.lines[0].get_ydata(), 0.5, rtol=1e-9)
 
 
-def test_transmissibility_ends_where_the_floor_explains_nothing(made_up):
+def test_transmissibility_fades_where_the_floor_explains_little(made_up):
     run = made_up(seconds=60.0)
-    run = with_channels(run, driver_acceleration=np.random.default_rng(9).standard_normal(30_000))
-    gain = plot_transmissibility([run]).axes[0].lines[0].get_ydata()
-    assert np.isnan(gain).mean() > 0.95
+    floor = run.history["floor_acceleration"]
+    follows = np.fft.rfft(floor)
+    follows[np.fft.rfftfreq(len(floor), run.history.step) > 5.0] = 0.0
+    noise = 0.1 * np.std(floor) * np.random.default_rng(9).standard_normal(len(floor))
+    run = with_channels(run, driver_acceleration=np.fft.irfft(follows, len(floor)) + noise)
+    faded, full = plot_transmissibility([run]).axes[0].lines[:2]
+    frequency, gain = full.get_xdata(), full.get_ydata()
+    assert faded.get_alpha() < full.get_alpha() and np.all(np.isfinite(faded.get_ydata()))
+    assert np.all(np.isfinite(gain[frequency < 4.0])) and np.isnan(gain[frequency > 6.0]).mean() > 0.9
+
+
+def test_a_driver_that_the_floor_does_not_move_has_no_transmissibility(made_up):
+    run = made_up(seconds=60.0)
+    run = with_channels(run, driver_acceleration=np.zeros(30_000))
+    assert "no coherence" in plot_transmissibility([run]).axes[0].texts[0].get_text()
 
 
 @pytest.mark.parametrize(("picture", "words"), [(plot_psd, "at rest"), (plot_transmissibility, "no floor motion")])

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from scipy.stats import qmc
 
-from seatsim.report.sweep import find_front
+from seatsim.report.sweep_pictures import draw_pareto, find_front
 from seatsim.sweeps.statistics.exceedance import count_exceedances
 from seatsim.sweeps.statistics.inputs import SweepRows
 from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
@@ -80,3 +80,17 @@ def test_quantiles_are_those_of_each_group():
 def test_the_front_holds_what_nothing_is_better_than():
     travel, comfort = np.array([3.0, 1.0, 2.0, 2.0, 1.0]), np.array([1.0, 5.0, 2.0, 3.0, 6.0])
     assert list(find_front(travel, comfort)) == [1, 2, 0]
+
+
+def test_each_road_has_a_picture_of_comfort_over_travel():
+    road, mass = np.repeat(["B", "C", "D"], 20), np.tile([60.0, 80.0], 30)
+    noise = np.random.default_rng(3).random((2, 60))
+    travel = "suspension_displacement_rms"
+    frame = pd.DataFrame(
+        {"excitation.road_class": road, "plant.driver_mass": mass, COMFORT: noise[0], travel: noise[1]}
+    )
+    rows = rows_of(frame, ["plant.driver_mass", "excitation.road_class"])
+    rows = rows._replace(metrics=[COMFORT, travel])
+    pictures = draw_pareto(rows, rows.keys)
+    assert [picture.title[-1] for picture in pictures] == ["B", "C", "D"]
+    assert len(draw_pareto(rows, ["plant.driver_mass"])) == 1

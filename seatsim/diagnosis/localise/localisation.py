@@ -63,6 +63,9 @@ def localise_remainder(
     if not chosen.parameters.terms or calibrated.excess < settings.localisation.above_noise:
         return beside, chosen
     alone = _weigh_blocks(objective, calibrated)
+    # An error of the very sensor that an effect names is that effect in a more general form.
+    if alone.likeliest.channel in [term.fixed.get("channel") for term in chosen.parameters.terms]:
+        return beside, chosen
     little = settings.decision.explained * calibrated.excess
     slight = settings.localisation.slight * calibrated.excess
     if alone.likeliest.negative_log_evidence < min(little, beside.likeliest.negative_log_evidence + slight):

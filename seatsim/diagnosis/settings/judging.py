@@ -229,6 +229,15 @@ class CrossValidationSettings(NamedTuple):
         int, Threshold("-", "sets of each size that are cross-validated", "more: time", "on measured rigs")
     ] = 8
     folds: Annotated[int, Threshold("-", "parts of the runs that are left out in turn", "more: time", CONVENTION)] = 3
+    doubtful: Annotated[
+        float,
+        Threshold(
+            "-",
+            "factor by which a run left out may get worse before the step of the other runs is checked and shortened",
+            "lower: time; higher: effects far from linear are judged by steps that no fit would take",
+            NUMERICAL,
+        ),
+    ] = 1.5
 
     @property
     def power(self) -> float:

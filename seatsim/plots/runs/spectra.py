@@ -27,7 +27,9 @@ PER_OCTAVE = 12
 DECADES = 6.0
 """Decades below the highest density that are shown."""
 TRUSTED = 0.5
-"""Least coherence with which a transmissibility is drawn; below it most of the driver's motion is not the floor's."""
+"""Least coherence of a transmissibility drawn in full; below it most of the driver's motion is not the floor's."""
+FADED = 0.25
+"""Share of its opacity with which the rest is drawn."""
 GRID = Grid(heights=(4.4,))
 
 
@@ -63,10 +65,10 @@ def plot_psd(runs: Sequence[Run]) -> Figure:
 
 
 def plot_transmissibility(runs: Sequence[Run]) -> Figure:
-    """Return the magnitude of the transmissibility from floor to driver, where the coherence is high."""
+    """Return the magnitude of the transmissibility from floor to driver, faded where the coherence is low."""
     chosen = naming.select_shown(runs)
     looks = style.make_entries(naming.label_runs(chosen))
-    note = f"Drawn where the floor explains the driver's motion (coherence of {TRUSTED:g} or more)."
+    note = f"Faded where the floor explains less than half of the driver's motion (coherence below {TRUSTED:g})."
     title = f"Transmissibility, floor to driver: {naming.make_title(runs)}"
     page = style.make_page(title, note + naming.describe_omission(chosen, runs), GRID, looks)
     axes = page.rows[0][0]
@@ -115,7 +117,7 @@ def _average_bands(frequency: Array, power: Array) -> Density:
 
 
 def _draw_gain(axes: Axes, run: Run, look: Entry) -> bool:
-    """Draw the transmissibility of a run; return whether any of it is drawn."""
+    """Draw the transmissibility of a run; return whether any of it can be trusted."""
     floor, driver = run.history["floor_acceleration"], run.history["driver_acceleration"]
     try:
         found = metrics.transmissibility(floor, driver, 1 / run.history.step)
@@ -123,8 +125,12 @@ def _draw_gain(axes: Axes, run: Run, look: Entry) -> bool:
         return False
     inside = (found.frequency >= BAND[0]) & (found.frequency <= BAND[1])
     trusted = inside & (found.coherence >= TRUSTED)
+    if not trusted.any():
+        return False
+    faded = look._replace(alpha=FADED * look.alpha)
+    style.draw_line(axes, found.frequency[inside], found.gain[inside], faded)
     style.draw_line(axes, found.frequency[inside], np.where(trusted, found.gain, np.nan)[inside], look)
-    return bool(trusted.any())
+    return True
 
 
 def _scale_frequency_axis(axes: Axes) -> None:

@@ -7,6 +7,7 @@ where no displacement is recorded, the integral of frame acceleration - floor ac
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -69,10 +70,18 @@ def measure_coverage(recording: Recording) -> Coverage:
         for name, unit, values in _quantities(recording, table):
             pools.setdefault(name, (unit, []))[1].append(values)
     visited = {name: _visited(name, unit, np.concatenate(parts)) for name, (unit, parts) in pools.items()}
-    drop = max((_drop(c, rate) for c in pools.get("current", ("A", []))[1]), default=0.0)
+    drop = _largest_drop(pools.get("current", ("A", []))[1], rate)
     seconds = sum(len(next(iter(table.values()))) for table in tables) / rate
     band = _band(recording, tables)
     return Coverage(seconds, visited, band, _missing(recording, nominal, visited, drop, band))
+
+
+def shows_falling_current(recording: Recording) -> bool:
+    """Return whether the current falls enough somewhere to show what remembers it, or is not recorded at all."""
+    runs = [_current(recording, recording.table(run)) for run in recording.runs]
+    recorded = [current for current in runs if current is not None]
+    least = DROP * single(recording.nominal).coil.max_current
+    return not recorded or _largest_drop(recorded, recording.header.sample_rate) >= least
 
 
 def _quantities(recording: Recording, table: dict[str, Array]) -> list[tuple[str, str, Array]]:
@@ -84,13 +93,9 @@ def _quantities(recording: Recording, table: dict[str, Array]) -> list[tuple[str
     velocity = _velocity(recording, table)
     if velocity is not None:
         found.append(("velocity", "m/s", velocity))
-    for channel in ("coil_current", "current_command"):
-        if channel in table:
-            found.append(("current", "A", table[channel]))
-            break
-    else:
-        if "command_voltage" in table and recording.voltage_gain is not None:
-            found.append(("current", "A", recording.voltage_gain * table["command_voltage"]))
+    current = _current(recording, table)
+    if current is not None:
+        found.append(("current", "A", current))
     for channel, name, unit in (
         ("damper_temperature", "temperature", "degC"),
         ("driver_acceleration", "driver", "m/s^2"),
@@ -98,6 +103,16 @@ def _quantities(recording: Recording, table: dict[str, Array]) -> list[tuple[str
         if channel in table:
             found.append((name, unit, table[channel]))
     return found
+
+
+def _current(recording: Recording, table: dict[str, Array]) -> Array | None:
+    """Return the current of the coil in A, the commanded one where that is not recorded; None without either."""
+    for channel in ("coil_current", "current_command"):
+        if channel in table:
+            return table[channel]
+    if "command_voltage" in table and recording.voltage_gain is not None:
+        return recording.voltage_gain * table["command_voltage"]
+    return None
 
 
 def _velocity(recording: Recording, table: dict[str, Array]) -> Array | None:
@@ -135,10 +150,10 @@ def _visited(name: str, unit: str, values: Array) -> VisitedRange:
     return VisitedRange(name, unit, float(np.min(values)), float(np.max(values)), percentiles)
 
 
-def _drop(current: Array, rate: float) -> float:
-    """Return the largest fall of a current within DROP_TIME, in A."""
+def _largest_drop(currents: Sequence[Array], rate: float) -> float:
+    """Return the largest fall of a current within DROP_TIME over all runs, in A."""
     rows = max(1, round(DROP_TIME * rate))
-    return float(np.max(current[:-rows] - current[rows:], initial=0.0))
+    return max((float(np.max(current[:-rows] - current[rows:], initial=0.0)) for current in currents), default=0.0)
 
 
 def _band(recording: Recording, tables: list[dict[str, Array]]) -> tuple[float, float] | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatsim.recordings.quality.damage import ALONE, AROUND
 from seatsim.recordings.quality.issue import Issue, Severity, issue_in_all_runs
@@ -13,6 +14,8 @@ from seatsim.recordings.quality.shapes import Array, measure_level, quantum
 
 LEAST_FINE = 2
 """Channels with noise finer than their resolution from which on no two rows are alike by chance."""
+LEAST_REPEATED = 4
+"""Rows written twice from which on they are said: fewer shift no signal by more than a few milliseconds."""
 NOISY = 1e-4
 """Noise as a share of the swing above which it is that of a sensor, and not of arithmetic."""
 NOTHING = np.empty(0)
@@ -40,12 +43,30 @@ def _doubled(run: RunUnderTest) -> Iterator[Issue]:
         return
     # Equal rows have equal sums, and others differ, but for chances of one in 10^12.
     marks = np.random.default_rng(0).random(len(fine)) @ [values / np.std(values) for values in fine]
-    _, first = np.unique(marks, return_index=True)
-    again = np.setdiff1d(np.arange(run.rows), first)
+    again = find_repeated_rows(marks)
     if len(again):
         severity: Severity = "warning" if len(again) / run.rate <= LATE else "error"
-        text = f"{len(again)} rows hold in every channel what another row holds, the first is row {again[0] + 1}"
+        text = f"{len(again)} rows hold in every channel what a row before holds, the first is row {again[0] + 1}"
         yield run.issue(severity, "doubled", f"{text}; they were written twice: remove them")
+
+
+def find_repeated_rows(marks: Array) -> NDArray[np.intp]:
+    """Return the rows of blocks that follow themselves at once: single rows written twice, or a whole buffer.
+
+    Equal rows far apart are no fault: a periodic motion measured with coarse converters has them by chance. So has a
+    rig at rest, where rows equal the last but one as often as the last.
+    """
+    order = np.argsort(marks, kind="stable")
+    distances, counts = np.unique(np.diff(order)[np.diff(marks[order]) == 0.0], return_counts=True)
+    found = [np.empty(0, dtype=np.intp)]
+    for distance in distances[counts >= np.maximum(distances, LEAST_REPEATED)]:
+        equal, by_chance = (marks[lag:] == marks[:-lag] for lag in (distance, distance + 1))
+        if np.sum(equal) >= LEAST_REPEATED + 2 * np.sum(by_chance):
+            ends = np.flatnonzero(np.diff(np.concatenate([[False], equal, [False]])))
+            blocks = zip(ends[::2], ends[1::2], strict=True)
+            rows = [np.arange(first, end) + distance for first, end in blocks if end - first >= distance]
+            found += rows if sum(map(len, rows)) >= LEAST_REPEATED else []
+    return np.unique(np.concatenate(found))
 
 
 def find_steps(values: Array) -> Array:

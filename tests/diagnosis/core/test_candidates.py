@@ -87,6 +87,12 @@ def test_without_a_command_nothing_can_be_said_of_the_coil():
     assert set(by_effect(list_candidates(posed(recorded=("command_voltage",))))) >= COIL
 
 
+def test_a_current_that_never_falls_shows_no_memory_of_it():
+    assert "damper.remanence" in by_effect(list_candidates(posed()))
+    problem = dataclasses.replace(posed(), current_falls=False)
+    assert "damper.remanence" not in by_effect(list_candidates(problem))
+
+
 def test_a_bench_has_neither_seat_nor_driver():
     found = set(by_effect(list_candidates(posed("damper_bench"))))
     assert not found & OF_THE_SEAT

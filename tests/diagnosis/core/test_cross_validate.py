@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.cross_validate import _charge, cross_validate, select_by_cross_validation
+from seatsim.diagnosis.cross_validate import _charge, _foresee, cross_validate, select_by_cross_validation
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_gap
 from seatsim.diagnosis.objective import Evaluation, Objective
@@ -76,6 +76,16 @@ def test_the_gap_left_out_is_not_that_of_a_fit_with_all_runs():
     found = leave_out(objective, evaluation)
     # The run that the effect imitates is not foreseen by the others.
     assert np.all(found > inside) and found[2] > 2.0 * inside[2]
+
+
+def test_a_step_that_makes_all_runs_worse_is_shortened():
+    objective = pose()
+    evaluation = fitted(objective, "rig.one")
+    nuisances = objective.linearise_nuisances(evaluation)
+    far = place(objective.problem, (offer("rig.one"), 9.0))
+    found = _foresee(objective, evaluation, nuisances, ["first"], far)
+    left = found["first"] / objective.problem.spread[:, None]
+    assert np.sqrt(np.mean(left**2)) == pytest.approx(leave_out(objective, evaluation)[0], rel=1e-3)
 
 
 def test_several_runs_are_left_out_together_where_there_are_more_than_folds():

@@ -1,5 +1,6 @@
 """Shares of the gap by block: from movements of effects, from evidence, and ties between blocks that move as one."""
 
+import dataclasses
 import itertools
 import math
 
@@ -159,6 +160,18 @@ def test_effects_are_kept_where_an_input_beside_them_explains_enough_more(object
 @pytest.mark.parametrize(("excess", "kept"), [(1.01, False), (0.99, True)])
 def test_effects_are_kept_where_the_gap_stands_below_the_noise(objective, monkeypatch, excess, kept):
     assert localise_effect(objective, monkeypatch, excess, -0.1, 0.2)[1] is kept
+
+
+@pytest.mark.parametrize(("channel", "kept"), [("frame_acceleration", True), ("driver_acceleration", False)])
+def test_an_error_of_the_sensor_that_an_effect_names_takes_no_effects_place(objective, monkeypatch, channel, kept):
+    calibrated, chosen = rig(objective), rig(objective, ("sensor.x", "one", 1.0))
+    cost = 4.0 * calibrated.rows
+    calibrated = Evaluation(calibrated.parameters, calibrated.residuals, calibrated.whitened, cost)
+    term = chosen.parameters.terms[0]._replace(fixed={"channel": "frame_acceleration"})
+    chosen = dataclasses.replace(chosen, parameters=dataclasses.replace(chosen.parameters, terms=(term,)))
+    error = hypothesis(0.2)._replace(channel=channel)
+    monkeypatch.setattr(localisation, "_weigh_blocks", lambda *_: Remainder({"sensor": error}, {"sensor": 1.0}))
+    assert (localise_remainder(objective, calibrated, chosen)[1] is chosen) is kept
 
 
 def localise_effect(objective, monkeypatch, excess, alone, beside):

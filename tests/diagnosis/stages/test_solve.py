@@ -159,15 +159,24 @@ def hiss(problem, level):
 
 @pytest.mark.parametrize("verdict", ["known", "ambiguous"])
 def test_a_broadband_residual_counts_as_noise_where_that_explains_the_gap(folder, verdict):
-    problem = hiss(make_problem(folder), 0.5)
+    problem = hiss(make_problem(folder, (Added("one", 5.0),)), 0.5)
     problem = dataclasses.replace(problem, settings=narrow(problem.settings))
-    script = Script("unknown", verdict)
+    script = Script("unknown", verdict, effects={"one": 5.0})
     found = script.solve(problem)
     assert script.said[:2] == ["weighing the channels", "counting a broadband residual as noise"]
     assert script.calls == ["weigh", "select", "decide", "select", "decide", "share"]
     expected = script.weighed[0].add(measure_broadband(problem, script.selected[0][3].sets[-1][0].residuals))
     assert all(np.array_equal(found.objective.weights.power[run], expected.power[run]) for run in problem.runs)
     assert found.objective is script.selected[1][0] and found.decision.verdict == verdict
+
+
+def test_a_broadband_residual_is_gap_where_the_set_takes_little_else(folder):
+    problem = hiss(make_problem(folder, (Added("one", 0.05),)), 0.5)
+    problem = dataclasses.replace(problem, settings=narrow(problem.settings))
+    script = Script("unknown", "known", effects={"one": 0.05})
+    found = script.solve(problem)
+    assert script.said[1:3] == ["counting a broadband residual as noise", "weighing the gap alone"]
+    assert found.decision.verdict == "unknown"
 
 
 def narrow(settings):
@@ -291,6 +300,17 @@ def test_an_effect_that_runs_left_out_support_stands_beside_the_unknown(folder):
     )
     assert found.decision.unknown == 0.6
     assert {share.block for share in found.where} >= {"cushion", "toy"}
+
+
+def test_an_effect_that_stands_out_of_the_noise_is_stated_though_the_gap_does_not_ask_for_it(folder):
+    script, problem = Script("unknown", "unknown", effects={"one": 1.0}), make_problem(folder, (Added("one", 1.0),))
+    # The prior of an effect is so low that runs left out support none.
+    settings = problem.settings._replace(decision=problem.settings.decision._replace(prior=1e-30))
+    found = script.solve(dataclasses.replace(problem, settings=settings))
+    assert [term.effect for term in found.decision.chosen.parameters.terms] == ["toy.one"]
+    assert found.decision.verdict == "unknown" and "weighing the gap alone" in script.said
+    # It is stated as fitted to the gap.
+    assert found.objective is script.selected[2][0]
 
 
 def test_an_effect_that_an_input_alone_makes_up_for_is_given_up(folder):
