@@ -150,7 +150,7 @@ def augment_damper(record: DamperModel, effects: Effects) -> tuple[DamperModel, 
     if isinstance(record, FmuDamper):
         raise InputError(
             f"the damper is the unit {record.file}, which is stepped outside the compiled loop: 'run', 'compare',"
-            " 'sweep', 'seat-test' and 'gap' of a seat simulate it; for anything else fit a model to its bench tables"
+            " 'sweep' and 'gap' of a seat simulate it; for anything else fit a model to its bench tables"
             " with 'seatsim identify'"
         )
     initial: tuple[float, ...] = specification_of(type(record)).initial
