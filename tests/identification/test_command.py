@@ -104,7 +104,7 @@ def test_factors_of_temperature_and_laws_are_written_and_read_again(tmp_path):
         text = f"current_A: {record.mean_current}\ntemperature_C: {record.temperature[0]}\n"
         (folder / f"{record.name}.yaml").write_text(text)
     found = identify(folder, "original_bingham")
-    write_identification(found, tmp_path / "out")
+    write_identification(found, tmp_path / "out", 0)
     values = YAML(typ="safe").load((tmp_path / "out" / "parameters.yaml").read_text())
     assert values["damper"]["temperature_factors"]["reference"] == pytest.approx(40.0)
     assert len(values["damper"]["parameters"]["c0"]) == 4
