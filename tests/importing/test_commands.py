@@ -31,7 +31,9 @@ def test_import_shows_its_map_and_writes_a_recording(noisy_table, tmp_path, monk
     header = YAML(typ="safe").load(tmp_path / "out" / "recording.yaml")
     assert header["sample_rate"] == 500.0
     assert header["rig"] == "seat"
-    assert {each.name for each in (tmp_path / "out").iterdir()} == {"recording.yaml", "map.yaml", "run-a.csv.gz"}
+    assert {each.name for each in (tmp_path / "out").iterdir()} == {
+        "recording.yaml", "map.yaml", "run-a.csv.gz", "manifest.json", "ro-crate-metadata.json",
+    }  # fmt: skip
 
 
 def test_import_prints_one_json_object(noisy_table, tmp_path, monkeypatch, capsys):
