@@ -29,8 +29,8 @@ def reproduce(
     with show_progress() as progress:
         found = run_again(folder, own_code or [], progress)
     warn(found.versions, "version")
-    for path, problem in found.differences:
-        complain(f"{path}: {problem}")
+    for name, problem in found.differences:
+        complain(f"{name}: {problem}")
     if found.identical:
         say(f"{folder}: identical to what seatsim {found.command} writes now: {', '.join(found.compared)}")
     path = write_json((out_folder or folder) / "reproduce.json", found._asdict())
