@@ -7,9 +7,6 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, cast
 
-from seatsim.provenance.crate import CRATE, describe_crate
-from seatsim.provenance.invocation import current_invocation
-from seatsim.provenance.manifest import MANIFEST, describe_invocation, describe_outputs
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_json
 from seatsim.schema.guarded import expect, read_json
@@ -17,22 +14,17 @@ from seatsim.sweeps.identity import GROWING, Identity, digest_design, list_diffe
 from seatsim.sweeps.outcome import STATES
 from seatsim.sweeps.plan import Plan
 
-NAME = MANIFEST
+NAME = "manifest.json"
 FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limits": dict, "configuration": dict}
 """What a manifest states, and of which kind each is."""
 
 
 def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float], counts: Mapping[str, int]) -> Path:
-    """Write the manifest of a sweep, and where a command has completed it, what `seatsim reproduce` needs."""
+    """Write the manifest of a sweep."""
     content = {
         "identity": identity.digest, "versions": identity.versions, "seed": identity.seed, "counts": counts,
         "limits": limits, "configuration": identity.configuration, "design": identity.design,
     }  # fmt: skip
-    invocation = current_invocation()
-    if invocation is not None and not counts["pending"]:
-        parts = {f"runs/{path.name}": path for path in sorted(folder.glob("runs/part-*.parquet"))}
-        content |= {**describe_invocation(invocation, folder), **describe_outputs(parts)}
-        write_json(folder / CRATE, describe_crate(content))
     return write_json(folder / NAME, content, lasting=True)
 
 
