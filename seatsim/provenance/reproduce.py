@@ -78,7 +78,7 @@ def reproduce(
     with TemporaryDirectory() as place:
         again = Path(place) / manifest["folder"]
         tell(f"running {command} again")
-        _run(command, arguments, own_code, directory, again)
+        again = _run(command, arguments, own_code, directory, again)
         differences = list(_compare_outputs(manifest, folder, again))
     compared = [each["path"] for each in manifest["outputs"]]
     return Reproduction(command, not differences, compared, differences, versions)
@@ -91,8 +91,16 @@ def read_manifest(folder: Path) -> dict[str, Any]:
         InputError: there is none, or it is not one that `seatsim` writes.
     """
     path = folder / MANIFEST
+    if within := sorted(each.parent.as_posix() for each in folder.glob(f"*/{MANIFEST}")) if not is_there(path) else []:
+        raise InputError(f"{path}: is not there; folders in it have one each: 'seatsim reproduce {within[0]}'")
     content = cast("dict[str, Any]", read_json(path, KIND))
     with expect(path, KIND):
+        if "identity" in content:
+            raise InputError(
+                f"{folder}: holds a sweep, which is not run again here since it may take days; run"
+                f" 'seatsim sweep FILE --out OTHER' and compare the rows: seatsim.read_sweep({folder.as_posix()!r})"
+                ".equals(seatsim.read_sweep('OTHER'))"
+            )
         for key, kind in FIELDS.items():
             if not isinstance(content[key], kind):
                 raise TypeError(f"{key} is {content[key]!r}")
@@ -185,14 +193,20 @@ def _compare_versions(manifest: Mapping[str, Any]) -> Iterator[str]:
             yield f"{name} was {was} and is {now[name]}"
 
 
-def _run(command: str, arguments: Sequence[str], own_code: Sequence[Path], directory: Path, out: Path) -> None:
-    """Run a command of seatsim in a process of its own, which does not search the folder it starts in for modules."""
+def _run(command: str, arguments: Sequence[str], own_code: Sequence[Path], directory: Path, out: Path) -> Path:
+    """Run a command of seatsim, and return the folder of its files.
+
+    That is `out`, or one of the same name in it where `run` has several scenarios, each with a folder. The command has
+    a process of its own, which does not search the folder it starts in for modules.
+    """
     code = [word for path in own_code for word in ("--with", str(path.absolute()))]
     words = [sys.executable, "-P", "-m", "seatsim", command, "--json", "--out", str(out), *code, *arguments]
     done = subprocess.run(words, cwd=directory, capture_output=True, stdin=subprocess.DEVNULL, check=False)
-    if not (out / MANIFEST).is_file():
-        said = done.stderr.decode(errors="replace").strip().splitlines()
-        raise RunError(f"{command} cannot be run again: {said[-1].removeprefix('error: ') if said else 'no reason'}")
+    for folder in (out, out / out.name):
+        if (folder / MANIFEST).is_file():
+            return folder
+    said = done.stderr.decode(errors="replace").strip().splitlines()
+    raise RunError(f"{command} cannot be run again: {said[-1].removeprefix('error: ') if said else 'no reason'}")
 
 
 def _compare_outputs(manifest: Mapping[str, Any], folder: Path, again: Path) -> Iterator[Difference]:

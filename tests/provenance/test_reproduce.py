@@ -101,6 +101,17 @@ def test_what_a_strangers_manifest_may_not_ask_for_is_refused(project, never, fi
         reproduce(project / "out" / "c")
 
 
+def test_a_sweep_says_why_it_is_not_run_again(project, never):
+    change(project, identity="0")
+    with pytest.raises(InputError, match=r"holds a sweep.*'seatsim sweep FILE --out OTHER'"):
+        reproduce(project / "out" / "c")
+
+
+def test_a_folder_of_folders_with_manifests_names_one(project, never):
+    with pytest.raises(InputError, match=r"seatsim reproduce .*out/c'"):
+        reproduce(project / "out")
+
+
 def test_code_beside_a_strangers_manifest_is_not_run(project):
     for name in ("seatsim.py", "numpy.py", "json.py", "sitecustomize.py"):
         (project / name).write_text(f"open({str(project / 'ran')!r}, 'w')")
@@ -123,7 +134,7 @@ def test_measured_times_may_differ_and_nothing_else(name, old, new, same):
 
 def test_a_file_that_was_changed_is_said(project, monkeypatch):
     def write_again(command, arguments, own_code, directory, out):
-        shutil.copytree(project / "kept", out)
+        return Path(shutil.copytree(project / "kept", out))
 
     shutil.copytree(project / "out" / "c", project / "kept")
     monkeypatch.setattr(reproduction, "_run", write_again)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -28,7 +29,7 @@ def write_result(result: Result, folder: Path, command: str = "seatsim run SCENA
 
     `command`: what makes the files again, for the report.
     """
-    report = report_runs(result.runs, command, folder.name)
+    report = report_runs(result.runs, command, os.path.basename(os.path.abspath(folder)))
     seeds = {run.scenario.seed for run in result.runs}
     seed = seeds.pop() if len(seeds) == 1 else None
     return write_documented(folder, partial(_write_files, result, report), seed)
