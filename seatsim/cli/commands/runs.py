@@ -109,8 +109,8 @@ def _simulate(scenarios: list[Scenario]) -> _Simulated:
     done: dict[int, Run] = {}
     failures: list[str] = []
     finished = itertools.count(1)
-    # A daemon, since an interrupt does not wait until it has loaded.
-    loading = Thread(target=_load_writers, daemon=True)
+    # No daemon: Python aborts where it ends while such a thread loads compiled code.
+    loading = Thread(target=_load_writers)
     loading.start()
     with count_progress("simulating", len(scenarios)) as count:
         try:
