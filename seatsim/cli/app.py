@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from seatsim.cli.commands.bench import bench
 from seatsim.cli.commands.blind import blind
@@ -22,6 +22,7 @@ from seatsim.cli.commands.explore import explore
 from seatsim.cli.commands.files import check, new, schema
 from seatsim.cli.commands.importing import import_data, inspect_data
 from seatsim.cli.commands.recordings import diagnose, gap
+from seatsim.cli.commands.reproduce import reproduce
 from seatsim.cli.commands.runs import compare, run
 from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.sweeps import sweep, sweep_report
@@ -35,6 +36,25 @@ UsageError: Any = typer.BadParameter.__bases__[0]
 ASKED = "seatsim.json"
 TRACEBACK = "SEATSIM_TRACEBACK"
 """Set in the environment, it lets Python print what led to an error that was not foreseen."""
+
+
+class _Command(TyperCommand):
+    """A command that a manifest can state: with the options that were given, and what it reads."""
+
+    def invoke(self, ctx: Any) -> object:
+        from seatsim.provenance.invocation import at_work
+
+        options: list[tuple[str, object]] = []
+        operands: list[object] = []
+        for parameter in self.get_params(ctx):
+            value = ctx.params.get(parameter.name)
+            values = value if isinstance(value, list | tuple) else [] if value in (None, False) else [value]
+            if parameter.param_type_name == "argument":
+                operands += values
+            elif ctx.get_parameter_source(parameter.name).name == "COMMANDLINE":
+                options += [(parameter.opts[0], each) for each in values]
+        with at_work(self.name or "", options, operands):
+            return super().invoke(ctx)
 
 
 class _Commands(TyperGroup):
@@ -60,10 +80,10 @@ app = typer.Typer(
 )  # fmt: skip
 for command in (
     run, compare, sweep, sweep_report, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test,
-    export, new, check, schema, bench, explore,
+    export, new, check, schema, bench, explore, reproduce,
 ):  # fmt: skip
-    app.command()(command)
-app.command("import")(import_data)
+    app.command(cls=_Command)(command)
+app.command("import", cls=_Command)(import_data)
 app.command("inspect")(inspect_data)
 app.add_typer(blind, name="blind")
 

@@ -15,8 +15,9 @@ from seatsim.importing.map_text import write_map
 from seatsim.importing.nominal import NOMINAL
 from seatsim.importing.road import DISTANCE
 from seatsim.importing.signals import Array
+from seatsim.provenance.manifest import write_documented
 from seatsim.recordings.channel_units import CHANNELS
-from seatsim.schema.files import write_together, write_whole
+from seatsim.schema.files import write_packed, write_whole
 
 HEADER = "recording.yaml"
 ROAD, EXCITATION = "road.csv.gz", "excitation.yaml"
@@ -26,7 +27,7 @@ SPEED = 12.0
 
 def write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
     """Write tables, nominal scenario, map and header of a recording, all or none."""
-    return write_together(folder, lambda part: _write_recording(part, assembled, nominal))
+    return write_documented(folder, lambda part: _write_recording(part, assembled, nominal))
 
 
 def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
@@ -61,8 +62,7 @@ def _write_table(path: Path, table: Mapping[str, Array], rate: float) -> Path:
 
     rows = len(next(iter(table.values())))
     frame = pd.DataFrame({"time": np.arange(rows) / rate, **table})
-    compression = {"method": "gzip", "compresslevel": 3}
-    return write_whole(path, lambda part: frame.to_csv(part, index=False, float_format="%.9g", compression=compression))
+    return write_packed(path, partial(frame.to_csv, mode="wb", index=False, float_format="%.9g"), level=3)
 
 
 def write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> list[Path]:
@@ -73,11 +73,11 @@ def write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> li
     tracks = [name for name in road if name != DISTANCE]
     excitation = {"excitation": {"kind": "table", "path": ROAD, "distance_column": DISTANCE,
                                  "column": tracks[len(tracks) // 2], "speed": SPEED}}  # fmt: skip
-    write_table = partial(frame.to_csv, index=False, float_format="%.9g", compression="gzip")
-    return write_together(
+    write_table = partial(frame.to_csv, mode="wb", index=False, float_format="%.9g")
+    return write_documented(
         folder,
         lambda part: [
-            write_whole(part / ROAD, write_table),
+            write_packed(part / ROAD, write_table),
             write_map(part / FILE, stated),
             _write_yaml(part / EXCITATION, excitation),
         ],

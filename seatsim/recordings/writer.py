@@ -14,7 +14,7 @@ from seatsim.recordings.channel_units import SEAT_CHANNELS
 from seatsim.recordings.header import USUAL, Tolerances
 from seatsim.scenario.numbers import PARAMETERS, TEMPERATURE, list_numbers
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.files import write_together, write_whole
+from seatsim.schema.files import write_packed, write_together, write_whole
 from seatsim.simulation.result import Result, Run
 
 
@@ -57,7 +57,7 @@ def save_recording(
     write_together(
         folder,
         lambda part: [
-            *(write_whole(part / name, partial(table.to_csv, index=False, float_format="%.7g"))
+            *(write_packed(part / name, partial(table.to_csv, mode="wb", index=False, float_format="%.7g"))
               for name, table in tables.items()),
             *(write_whole(part / name, partial(YAML(typ="safe").dump, content)) for name, content in scenarios.items()),
         ],

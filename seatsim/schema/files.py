@@ -6,6 +6,7 @@ number of the process that writes it. What a killed process has left is removed 
 
 from __future__ import annotations
 
+import gzip
 import json
 import math
 import os
@@ -52,6 +53,16 @@ def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = Fal
     finally:
         part.unlink(missing_ok=True)
     return path
+
+
+def write_packed(path: Path, write: Callable[[gzip.GzipFile], object], level: int = 6) -> Path:
+    """Let `write` fill a gzipped file as `write_whole` does; the file holds neither its own name nor the time."""
+
+    def pack(part: Path) -> None:
+        with part.open("wb") as file, gzip.GzipFile("", "wb", level, file, mtime=0) as packed:
+            write(packed)
+
+    return write_whole(path, pack)
 
 
 def write_together(folder: Path, write: Callable[[Path], Iterable[Path]]) -> list[Path]:

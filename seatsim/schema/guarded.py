@@ -5,13 +5,26 @@ from __future__ import annotations
 import json
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from seatsim.schema.errors import InputError
 
 LARGEST_JSON = 64 * 2**20
+ReadWatcher = Callable[[Path, bytes], None]
+"""Is called with the path and the content of a file that was read."""
+_watchers: list[ReadWatcher] = []
+
+
+@contextmanager
+def watch_reads(tell: ReadWatcher) -> Iterator[None]:
+    """Call `tell` with every file that is read meanwhile, on any thread, so that the inputs of an answer are known."""
+    _watchers.append(tell)
+    try:
+        yield
+    finally:
+        _watchers.remove(tell)
 
 
 def read_bytes(path: Path, largest: int, what: str) -> bytes:
@@ -29,11 +42,14 @@ def read_bytes(path: Path, largest: int, what: str) -> bytes:
                 raise InputError(f"{path}: is no regular file; give the path of {what}")
             if status.st_size > largest:
                 raise InputError(f"{path}: holds {in_mib(status.st_size)}; permitted: at most {in_mib(largest)}")
-            return file.read(largest)
+            content = file.read(largest)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}; give the path of {what}") from error
     except ValueError as error:
         raise InputError(f"{str(path)!r}: is no path: {error}; give the path of {what}") from error
+    for tell in _watchers:
+        tell(path, content)
+    return content
 
 
 def is_there(path: Path) -> bool:

@@ -23,6 +23,7 @@ from seatsim.schema.errors import InputError, RunError
 from .benches import BINGHAM, made, sines, write
 
 FILES = {"parameters.yaml", "fit.json", "report.html", "loops.png"}
+DOCUMENTED = {*FILES, "manifest.json", "ro-crate-metadata.json"}
 SCENARIO = """\
 plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
         cushion_stiffness: 60000.0, cushion_damping: 1500.0}
@@ -56,7 +57,7 @@ def fitted(bench, tmp_path_factory):
 
 def test_files_and_tables_are_written(fitted):
     folder, said = fitted
-    assert {path.name for path in folder.iterdir()} == FILES
+    assert {path.name for path in folder.iterdir()} == DOCUMENTED
     assert (folder / "loops.png").stat().st_size > 10000
     for text in ("sine_2.5Hz, 1 A (test)", "mean, predicted", "c_b", "N s/(m A)", f"written to {folder}:"):
         assert text in said.replace("\n", "") or text in said, text
@@ -104,7 +105,7 @@ def test_factors_of_temperature_and_laws_are_written_and_read_again(tmp_path):
         text = f"current_A: {record.mean_current}\ntemperature_C: {record.temperature[0]}\n"
         (folder / f"{record.name}.yaml").write_text(text)
     found = identify(folder, "original_bingham")
-    write_identification(found, tmp_path / "out")
+    write_identification(found, tmp_path / "out", 0)
     values = YAML(typ="safe").load((tmp_path / "out" / "parameters.yaml").read_text())
     assert values["damper"]["temperature_factors"]["reference"] == pytest.approx(40.0)
     assert len(values["damper"]["parameters"]["c0"]) == 4
@@ -267,4 +268,4 @@ def test_a_folder_of_tables_is_named_after_its_data(bench, tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path)
     done = command("identify", write([made()], tmp_path / "bench") / "made.csv", "--model", "bingham")
     assert done.exit_code == 0, done.output
-    assert {path.name for path in (tmp_path / "out" / "identify-made-bingham").iterdir()} == FILES
+    assert {path.name for path in (tmp_path / "out" / "identify-made-bingham").iterdir()} == DOCUMENTED

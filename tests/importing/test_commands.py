@@ -31,7 +31,9 @@ def test_import_shows_its_map_and_writes_a_recording(noisy_table, tmp_path, monk
     header = YAML(typ="safe").load(tmp_path / "out" / "recording.yaml")
     assert header["sample_rate"] == 500.0
     assert header["rig"] == "seat"
-    assert {each.name for each in (tmp_path / "out").iterdir()} == {"recording.yaml", "map.yaml", "run-a.csv.gz"}
+    assert {each.name for each in (tmp_path / "out").iterdir()} == {
+        "recording.yaml", "map.yaml", "run-a.csv.gz", "manifest.json", "ro-crate-metadata.json",
+    }  # fmt: skip
 
 
 def test_import_prints_one_json_object(noisy_table, tmp_path, monkeypatch, capsys):
@@ -44,7 +46,8 @@ def test_import_prints_one_json_object(noisy_table, tmp_path, monkeypatch, capsy
     assert told["proposed"] is True
     assert told["channels"]["damper_force"]["unit"] == "N"
     assert set(told["doubts"][0]) == {"severity", "kind", "sentence", "channel", "run"}
-    assert set(told["written"]) == {"run-a.csv.gz", "nominal.yaml", "map.yaml", "recording.yaml"}
+    recording = {"run-a.csv.gz", "nominal.yaml", "map.yaml", "recording.yaml"}
+    assert set(told["written"]) == {*recording, "manifest.json", "ro-crate-metadata.json"}
 
 
 def test_bad_input_is_one_line_and_exit_2(tmp_path, monkeypatch, capsys):

@@ -47,7 +47,7 @@ def characterise(
         raise InputError("characterise either DATA, or a model by --model or --parameters with its tests; see --help")
     if data is not None:
         records = load_bench(data)
-        found = of_records(records, _title(data), str(data))
+        found = of_records(records, _title(data), data.resolve().name)
     else:
         tested = load_specimen(model, parameters)
         found = characterise_model(tested, choose_settings(tested, *grid))
@@ -115,7 +115,7 @@ def _identify(
 
     with show_progress() as progress:
         found = predict_records(identify_records(records, model, request, progress), beside)
-        paths = write_identification(found, folder)
+        paths = write_identification(found, folder, request.seed)
     for table in make_tables(found):
         show_table(table)
     warn(found.notes)
@@ -131,22 +131,22 @@ def _benchmark_models(
     folder: Path,
 ) -> None:
     """Identify several models, print and write the table; exit 1 where one failed."""
-    from seatsim.cli.outputs.identification import make_league_table, write_identification, write_league
+    from seatsim.cli.outputs.identification import make_league_table, write_league, write_member
     from seatsim.cli.show_table import show_table
     from seatsim.identification.model_benchmark import benchmark_models
 
     with show_progress() as progress:
         places = benchmark_models(
             records, models, request, beside, folder, progress,
-            lambda found: write_identification(found, folder / found.model.rpartition(":")[2]),
+            lambda found: write_member(found, folder / found.model.rpartition(":")[2]),
         )  # fmt: skip
     show_table(make_league_table(places))
     failed = [place for place in places if place.failed]
     for place in failed:
         complain(f"failed: {place.failed}")
-    path = write_league(places, folder)
-    wrote(folder, [path])
-    answer({"league": places}, [path])
+    paths = write_league(places, folder, request.seed)
+    wrote(folder, paths)
+    answer({"league": places}, paths)
     if failed:
         raise typer.Exit(1)
 

@@ -76,7 +76,7 @@ def _execute(
     for group in groups:
         runs = [simulated.runs[id(scenario)] for scenario in group.scenarios if id(scenario) in simulated.runs]
         if runs:
-            content, written = _present(runs, group.folder, bracket and not simulated.interrupted)
+            content, written = _present(runs, group.folder, bracket, simulated.interrupted)
             encoded.append(content)
             paths += written
     if simulated.interrupted:
@@ -109,6 +109,7 @@ def _simulate(scenarios: list[Scenario]) -> _Simulated:
     done: dict[int, Run] = {}
     failures: list[str] = []
     finished = itertools.count(1)
+    # No daemon: Python aborts where it ends while such a thread loads compiled code.
     loading = Thread(target=_load_writers)
     loading.start()
     with count_progress("simulating", len(scenarios)) as count:
@@ -121,8 +122,7 @@ def _simulate(scenarios: list[Scenario]) -> _Simulated:
                     done[id(scenario)] = found
         except KeyboardInterrupt:
             return _Simulated(done, failures, interrupted=True)
-        finally:
-            loading.join()
+    loading.join()
     return _Simulated(done, failures, interrupted=False)
 
 
@@ -138,9 +138,9 @@ def _title(scenarios: Sequence[Scenario]) -> str:
     return names[0] if len(names) == 1 else "comparison"
 
 
-def _present(runs: list[Run], folder: Path, bracket: bool) -> tuple[dict[str, object], list[Path]]:
+def _present(runs: list[Run], folder: Path, bracket: bool, interrupted: bool) -> tuple[dict[str, object], list[Path]]:
     """Print the table of some runs, their bounds where wanted and the warnings; return their content and files."""
-    from seatsim.cli.outputs.runs import encode_result, write_result
+    from seatsim.cli.outputs.runs import encode_result, write_interrupted, write_result
     from seatsim.cli.published_tables import published_tables
     from seatsim.cli.show_table import show_table
     from seatsim.cli.tables import comparison
@@ -150,8 +150,8 @@ def _present(runs: list[Run], folder: Path, bracket: bool) -> tuple[dict[str, ob
         show_table(table)
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
-    result = Result(runs, _performance_bounds(runs) if bracket else {})
-    paths = write_result(result, folder, _command(runs))
+    result = Result(runs, _performance_bounds(runs) if bracket and not interrupted else {})
+    paths = write_interrupted(result, folder) if interrupted else write_result(result, folder, _command(runs))
     wrote(folder, paths)
     return encode_result(result), paths
 

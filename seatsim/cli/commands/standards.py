@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from seatsim.cli.options import Json, Out, OwnCode, Settings, scenario_settings
-from seatsim.cli.terminal import answer, complain, count_progress, say, warn, wrote_one
+from seatsim.cli.terminal import answer, complain, count_progress, say, warn, wrote
 from seatsim.schema.errors import InputError
 
 
@@ -34,6 +34,7 @@ def comfort(
     """Work out the ISO 2631-1 figures of measured accelerations, a day's exposure and SEAT factors."""
     from seatsim.cli.outputs.comfort import encode, list_sentences, make_tables
     from seatsim.cli.show_table import show_table
+    from seatsim.provenance.manifest import write_documented
     from seatsim.schema.files import write_json
     from seatsim.standards.comfort import comfort as assess
 
@@ -46,9 +47,9 @@ def comfort(
         say(sentence)
     warn(found.notes)
     folder = out_folder or Path("out") / f"comfort-{file.resolve().name.partition('.')[0]}"
-    path = write_json(folder / "comfort.json", encode(found))
-    wrote_one(path)
-    answer(encode(found), [path])
+    paths = write_documented(folder, lambda part: [write_json(part / "comfort.json", encode(found))])
+    wrote(folder, paths)
+    answer(encode(found), paths)
 
 
 def _split(text: str, sign: str, option: str, example: str) -> tuple[str, str]:
@@ -79,6 +80,7 @@ def seat_test(
     """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops."""
     from seatsim.cli.outputs.seat_test import encode, list_failures, make_tables, summarise
     from seatsim.cli.show_table import show_table
+    from seatsim.provenance.manifest import write_documented
     from seatsim.schema.files import write_json
     from seatsim.standards.seat_test import seat_test as test
 
@@ -91,8 +93,9 @@ def seat_test(
     for failure in list_failures(found):
         complain(f"failed: {failure}")
     warn(found.notes)
-    path = write_json((out_folder or Path("out") / f"seat-test-{Path(source).stem}") / "seat_test.json", content)
-    wrote_one(path)
-    answer(content, [path])
+    folder = out_folder or Path("out") / f"seat-test-{Path(source).stem}"
+    paths = write_documented(folder, lambda part: [write_json(part / "seat_test.json", content)])
+    wrote(folder, paths)
+    answer(content, paths)
     if found.failures:
         raise typer.Exit(1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from seatsim.cli.options import Json, OneScenario, Out, OwnCode, Settings, scenario_settings
-from seatsim.cli.terminal import answer, show_progress, wrote_one
+from seatsim.cli.terminal import answer, show_progress, wrote
 
 
 def synthesise(
@@ -18,6 +18,7 @@ def synthesise(
     """Synthesise the H-infinity static output feedback of a scenario's plant and weights."""
     from seatsim.cli.design_table import design_table
     from seatsim.cli.show_table import show_table
+    from seatsim.provenance.manifest import write_documented
     from seatsim.scenario.loading import single
     from seatsim.scenario.synthesis import synthesise_design
     from seatsim.schema.yaml_source import Source
@@ -27,6 +28,11 @@ def synthesise(
         design = synthesise_design(chosen, progress)
     show_table(design_table(design, chosen))
     folder = out_folder or Path("out") / chosen.name
-    design.save(folder / "design.yaml")
-    wrote_one(folder / "design.yaml")
-    answer(Source(folder / "design.yaml").data, [folder / "design.yaml"])
+
+    def write(part: Path) -> list[Path]:
+        design.save(part / "design.yaml")
+        return [part / "design.yaml"]
+
+    paths = write_documented(folder, write, chosen.seed)
+    wrote(folder, paths)
+    answer(Source(folder / "design.yaml").data, paths)

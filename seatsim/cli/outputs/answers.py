@@ -389,6 +389,23 @@ class BenchAnswer(Answer):
     left_out: dict[str, str]
 
 
+class DifferenceFound(TypedDict):
+    """An input or a file that is not as it was."""
+
+    path: str
+    problem: str
+
+
+class ReproduceAnswer(Answer):
+    """What came of running a command again, as in `reproduce.json`."""
+
+    command: str
+    identical: bool
+    compared: list[str]
+    differences: list[DifferenceFound]
+    versions: list[str]
+
+
 class ErrorAnswer(TypedDict):
     """What any command prints where it ends with an error."""
 
@@ -402,7 +419,8 @@ ANSWERS: Mapping[str, object] = {
     "identify": IdentificationAnswer | LeagueAnswer, "describe": DescriptionAnswer, "new": NewAnswer,
     "check": CheckAnswer, "import": ImportAnswer, "inspect": InspectionAnswer, "comfort": ComfortAnswer,
     "seat-test": SeatTestAnswer, "export": ExportAnswer, "blind-make": BlindMakeAnswer, "blind-score": BlindScoreAnswer,
-    "blind-power": BlindPowerAnswer, "bench": BenchAnswer, "explore": ExploreAnswer, "error": ErrorAnswer,
+    "blind-power": BlindPowerAnswer, "bench": BenchAnswer, "explore": ExploreAnswer, "reproduce": ReproduceAnswer,
+    "error": ErrorAnswer,
 }  # fmt: skip
 """What each command prints; `error` is what any of them prints where it fails."""
 

@@ -16,9 +16,10 @@ from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row, row_columns
 from seatsim.characterisation.summary import Characterisation, contents
 from seatsim.cli.outputs.runs import write_pictures
+from seatsim.provenance.manifest import write_documented
 from seatsim.report.characterisation import report_characterisation
 from seatsim.report.rendering import write_html
-from seatsim.schema.files import write_json, write_together, write_whole
+from seatsim.schema.files import write_json, write_whole
 
 LISTED = 45
 """Most rows of the table on the terminal."""
@@ -64,7 +65,7 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
     table = pd.DataFrame([row_columns(row) for row in found.rows])
     command = f"seatsim characterise {found.source}" if found.measured else f"seatsim characterise --model {found.name}"
     report = report_characterisation(found, collect_remarks(found), command)
-    return write_together(
+    return write_documented(
         folder,
         lambda part: [
             write_whole(part / "cycles.csv", partial(table.to_csv, index=False)),

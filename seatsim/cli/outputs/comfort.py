@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 
 from rich import box
 from rich.markup import escape
@@ -41,7 +42,7 @@ def encode(found: Comfort) -> dict[str, object]:
     if exposure:
         day = exposure._asdict() | {"zone_a8_text": ZONES[exposure.zone_a8], "zone_vdv_text": ZONES[exposure.zone_vdv]}
     return {
-        "source": found.source,
+        "source": Path(found.source).name,
         "runs": found.runs,
         "duration": found.duration,
         "sample_rate": found.sample_rate,

@@ -14,10 +14,11 @@ from seatsim.blind.processes import run_jobs
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.result import Diagnosis, GapFigures, RunGaps
 from seatsim.effects.base import EFFECTS
+from seatsim.provenance.manifest import write_documented
 from seatsim.report.diagnosis import write_report
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import SeatsimError
-from seatsim.schema.files import plain, write_json, write_together, write_whole
+from seatsim.schema.files import plain, write_json, write_whole
 from seatsim.schema.registry import is_own
 
 PROCESSES = 2
@@ -40,7 +41,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
         for name, content in scenarios.items():
             dump(content, Path(drafts) / name)
             single(Path(drafts) / name)
-    return write_together(
+    return write_documented(
         folder,
         lambda part: [
             *(write_whole(part / name, partial(dump, content)) for name, content in scenarios.items()),

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from seatsim.provenance.manifest import write_documented
 from seatsim.recordings.gap import Gap, replay_every_run
 from seatsim.report.gap import report_gap
 from seatsim.report.rendering import write_html
-from seatsim.schema.files import write_json, write_together
+from seatsim.schema.files import write_json
 
 
 def write_gap(
@@ -28,7 +29,7 @@ def write_gap(
         pairs = replay_every_run(scenario, recording)
         name = f"{Path(scenario).stem} against {recording.resolve().name}"
         report = report_gap(name, found, pairs, f"seatsim gap {Path(scenario).name} {recording.name}")
-    return write_together(
+    return write_documented(
         folder,
         lambda part: [
             write_json(part / "gap.json", content),

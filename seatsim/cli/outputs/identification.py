@@ -19,10 +19,13 @@ from seatsim.dampers.base import OWN, find_confidence
 from seatsim.identification.agreement import Agreement
 from seatsim.identification.identify import Identification
 from seatsim.identification.model_benchmark import BenchmarkEntry
+from seatsim.provenance.manifest import write_documented
 from seatsim.report.identification import report_identification
 from seatsim.report.rendering import write_html
 from seatsim.schema.files import write_json, write_text, write_together, write_whole
 
+MEASURED = ("seconds", "ns_per_step")
+"""What a fit and a step took, which differs each time."""
 LISTED = 40
 """Most records of the table on the terminal."""
 HEAD = """\
@@ -32,8 +35,17 @@ HEAD = """\
 NO_COIL = "# No command that changes was recorded: the rates of the actuator are defaults.\n"
 
 
-def write_identification(found: Identification, folder: str | Path) -> list[Path]:
+def write_identification(found: Identification, folder: Path, seed: int) -> list[Path]:
     """Write `parameters.yaml`, `fit.json`, `report.html` and the picture of an identification; return their paths."""
+    return write_documented(folder, partial(_fill, found), seed, {"fit.json": MEASURED})
+
+
+def write_member(found: Identification, folder: Path) -> list[Path]:
+    """Write the same files of one model of a league, whose folder has no manifest of its own."""
+    return write_together(folder, partial(_fill, found))
+
+
+def _fill(found: Identification, folder: Path) -> list[Path]:
     from seatsim.plots.bench.identification import plot_predictions
 
     text = io.StringIO(HEAD + ("" if found.commanded else NO_COIL))
@@ -42,15 +54,12 @@ def write_identification(found: Identification, folder: str | Path) -> list[Path
     yaml.default_flow_style = False
     yaml.dump(encode_parameters(found), text)
     report = report_identification(found, f"seatsim identify DATA --model {found.model}")
-    return write_together(
-        Path(folder),
-        lambda part: [
-            write_text(part / "parameters.yaml", text.getvalue()),
-            write_json(part / "fit.json", encode_identification(found)),
-            write_html(report, part / "report.html"),
-            *write_pictures({"loops": plot_predictions(found)}, part),
-        ],
-    )
+    return [
+        write_text(folder / "parameters.yaml", text.getvalue()),
+        write_json(folder / "fit.json", encode_identification(found)),
+        write_html(report, folder / "report.html"),
+        *write_pictures({"loops": plot_predictions(found)}, folder),
+    ]
 
 
 def encode_parameters(found: Identification) -> dict[str, object]:
@@ -130,12 +139,15 @@ def make_tables(found: Identification) -> list[Table]:
     return [figures, values]
 
 
-def write_league(places: Sequence[BenchmarkEntry], folder: Path) -> Path:
+def write_league(places: Sequence[BenchmarkEntry], folder: Path, seed: int) -> list[Path]:
     """Write `league.csv`, the best model first."""
     import pandas as pd
 
     frame = pd.DataFrame([place._asdict() for place in places])
-    return write_whole(folder / "league.csv", partial(frame.to_csv, index=False))
+    write = partial(frame.to_csv, index=False)
+    return write_documented(
+        folder, lambda part: [write_whole(part / "league.csv", write)], seed, {"league.csv": MEASURED}
+    )
 
 
 def make_league_table(places: Sequence[BenchmarkEntry]) -> Table:

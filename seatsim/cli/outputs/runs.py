@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import csv
 import math
+import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from seatsim.provenance.manifest import write_documented
 from seatsim.report.blocks import Report
 from seatsim.report.rendering import write_html
 from seatsim.report.runs import report_runs
@@ -27,7 +29,25 @@ def write_result(result: Result, folder: Path, command: str = "seatsim run SCENA
 
     `command`: what makes the files again, for the report.
     """
-    return write_together(folder, partial(_write_files, result, report_runs(result.runs, command, folder.name)))
+    report = report_runs(result.runs, command, os.path.basename(os.path.abspath(folder)))
+    seeds = {run.scenario.seed for run in result.runs}
+    seed = seeds.pop() if len(seeds) == 1 else None
+    return write_documented(folder, partial(_write_files, result, report), seed)
+
+
+def write_interrupted(result: Result, folder: Path) -> list[Path]:
+    """Write `summary.csv`, `summary.json` and `history.parquet` alone: who interrupts does not wait for pictures."""
+    return write_together(
+        folder,
+        lambda part: [*_write_summaries(result, part), write_histories(result.runs, part / "history.parquet")],
+    )
+
+
+def _write_summaries(result: Result, folder: Path) -> list[Path]:
+    return [
+        write_whole(folder / "summary.csv", partial(_write_table, result.rows)),
+        write_json(folder / "summary.json", _encode_runs(result)),
+    ]
 
 
 def _write_files(result: Result, report: Report, folder: Path) -> list[Path]:
@@ -36,11 +56,7 @@ def _write_files(result: Result, report: Report, folder: Path) -> list[Path]:
         history = pool.submit(write_histories, result.runs, folder / "history.parquet")
         from seatsim.plots.runs.draw import plot_result
 
-        paths = [
-            write_whole(folder / "summary.csv", partial(_write_table, result.rows)),
-            write_json(folder / "summary.json", _encode_runs(result)),
-            write_html(report, folder / "report.html"),
-        ]
+        paths = [*_write_summaries(result, folder), write_html(report, folder / "report.html")]
         pictures = write_pictures(plot_result(result), folder)
         if result.brackets:
             paths.append(write_json(folder / "brackets.json", {"rigs": _encode_brackets(result)}))

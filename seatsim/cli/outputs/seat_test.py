@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from rich import box
 from rich.markup import escape
@@ -37,7 +38,7 @@ def list_failures(found: SeatTest) -> list[str]:
 def encode(found: SeatTest, source: str) -> dict[str, object]:
     """Return the content of `seat_test.json`."""
     return {
-        "source": source,
+        "source": Path(source).name,
         "standard": "ISO 7096:2000 with ISO 10326-1:2016",
         "recalled": RECALLED,
         "classes": [_encode(row) | {"mass_on_seat": SEATED_SHARE * row.mass} for row in found.rows],

@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+from seatsim.provenance.manifest import write_documented
 from seatsim.report.sweep import state_importance, write_sweep_report
 from seatsim.schema.files import write_together, write_whole
 from seatsim.sweeps.statistics.exceedance import Exceedance, count_exceedances
@@ -31,7 +32,9 @@ def report_sweep(folder: Path, out: Path) -> SweepReport:
     """
     rows = read_rows(folder)
     quantiles, found, exceeded = tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows)
-    paths = write_together(
+    # In the folder of the sweep the manifest is that of the sweep.
+    write = write_together if out.resolve() == folder.resolve() else write_documented
+    paths = write(
         out,
         lambda part: [
             write_whole(part / "table.csv", partial(quantiles.to_csv, index=False)),

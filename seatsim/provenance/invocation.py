@@ -1,0 +1,98 @@
+"""The command that is at work: its name, its arguments, where it was started, and what it has read so far."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+from typing import NamedTuple
+
+from seatsim.schema.guarded import watch_reads
+
+REPEATABLE: Mapping[str, frozenset[str]] = {
+    name: frozenset(options.split())
+    for name, options in {
+        "run": "--set", "compare": "--set --bracket", "synthesise": "--set", "gap": "--predict",
+        "diagnose": "--without --budget --damper-forms --after",
+        "characterise": "--model --parameters --currents --temperatures --amplitudes --frequencies",
+        "identify": "--model --test --test-fraction --fix --ignore-temperature --predict --moving-average --centred"
+                    " --seed",
+        "import": "--map --nominal", "comfort": "--channel --hours --run --block --rate --unit",
+        "seat-test": "--class --set", "sweep-report": "",
+    }.items()
+}  # fmt: skip
+"""Commands that can be run again, with the options on which their answer hangs: none writes, loads code or connects."""
+
+
+class FileDigest(NamedTuple):
+    """A file as it was read: SHA-256 of its content, and its size in bytes."""
+
+    sha256: str
+    size: int
+
+
+class Invocation(NamedTuple):
+    """A command at work; `reads` grows with every file that it reads, by absolute path."""
+
+    command: str
+    arguments: tuple[str, ...]
+    directory: Path
+    reads: dict[Path, FileDigest]
+
+
+_current: ContextVar[Invocation | None] = ContextVar("invocation", default=None)
+
+
+@contextmanager
+def at_work(command: str, options: Sequence[tuple[str, object]], operands: Sequence[object]) -> Iterator[None]:
+    """Keep, while a command is at work, what its manifest will state.
+
+    Args:
+        command: its name.
+        options: each that was given, with its value; True for one that takes none.
+        operands: what it was given besides, in order.
+    """
+    kept = [_join(name, value) for name, value in options if name in REPEATABLE.get(command, ())]
+    arguments = (*kept, "--", *map(_shorten, operands))
+    invocation = Invocation(command, arguments, Path.cwd(), {})
+    token = _current.set(invocation)
+    try:
+        with watch_reads(lambda path, content: _keep(invocation, path, content)):
+            yield
+    finally:
+        _current.reset(token)
+
+
+def current_invocation() -> Invocation | None:
+    """Return the command at work, None where seatsim is used from Python."""
+    return _current.get()
+
+
+def digest(content: bytes) -> FileDigest:
+    """Return hash and size of a content."""
+    return FileDigest(hashlib.sha256(content).hexdigest(), len(content))
+
+
+def _keep(invocation: Invocation, path: Path, content: bytes) -> None:
+    invocation.reads[Path(os.path.abspath(invocation.directory / path))] = digest(content)
+
+
+def _join(name: str, value: object) -> str:
+    return name if value is True else f"{name}={_shorten(value)}"
+
+
+def _shorten(value: object) -> str:
+    """Return an argument as text, an absolute path relative to the current folder: the tree may be moved."""
+    text = str(value)
+    return relate(Path(text), Path.cwd()) if os.path.isabs(text) and os.path.exists(text) else text
+
+
+def relate(path: Path, folder: Path) -> str:
+    """Return a path relative to a folder, with slashes; an absolute one where it lies on another drive."""
+    try:
+        return Path(os.path.relpath(path, folder)).as_posix()
+    except ValueError:
+        return path.as_posix()

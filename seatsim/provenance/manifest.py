@@ -1,0 +1,85 @@
+"""`manifest.json` beside the files of a command: what made them, of which inputs, with which versions.
+
+It holds no time and no absolute path, so that equal commands on equal inputs give equal manifests.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+from seatsim.provenance.crate import CRATE, describe_crate
+from seatsim.provenance.invocation import Invocation, current_invocation, digest, relate
+from seatsim.provenance.versions import list_platform, list_versions
+from seatsim.scenario.loading import EXAMPLES
+from seatsim.schema.files import write_json, write_together
+from seatsim.schema.modules import used_files
+
+MANIFEST = "manifest.json"
+EXAMPLE = "example:"
+"""Begins the path of an input that comes with seatsim."""
+Measured = Mapping[str, tuple[str, ...]]
+"""Columns or keys of files that hold times which were measured, and differ each time."""
+
+
+def write_documented(
+    folder: Path, write: Callable[[Path], Iterable[Path]], seed: int | None = None, measured: Measured | None = None
+) -> list[Path]:
+    """Write files as `write_together` does, with a manifest and a research object crate where a command is at work.
+
+    Args:
+        folder: where they go.
+        write: fills a folder and returns its files there.
+        seed: from which every random draw derives, None where there is none or the inputs state several.
+        measured: see `Measured`.
+    """
+
+    def write_all(part: Path) -> list[Path]:
+        paths = list(write(part))
+        invocation = current_invocation()
+        if invocation is None:
+            return paths
+        outputs = {path.relative_to(part).as_posix(): path for path in paths}
+        content = {
+            "seed": seed, "versions": list_versions(), **describe_invocation(invocation, folder),
+            **describe_outputs(outputs, measured),
+        }  # fmt: skip
+        return [*paths, write_json(part / MANIFEST, content), write_json(part / CRATE, describe_crate(content))]
+
+    return write_together(folder, write_all)
+
+
+def describe_invocation(invocation: Invocation, folder: Path) -> dict[str, object]:
+    """Return what a manifest in a folder states of the command at work."""
+    place = Path(os.path.abspath(folder))
+    inputs = [
+        {"path": _name(path, place), "sha256": found.sha256, "bytes": found.size}
+        for path, found in sorted(invocation.reads.items())
+        # Drafts that were read back are gone; a sweep that is gone on with reads the manifest that this one replaces.
+        if path.is_file() and path != place / MANIFEST
+    ]
+    code = [
+        {"path": relate(path, place), "sha256": digest(path.read_bytes()).sha256} for path in used_files()
+    ]  # fmt: skip
+    return {
+        "platform": list_platform(), "command": invocation.command, "arguments": list(invocation.arguments),
+        "directory": relate(invocation.directory, place), "folder": place.name, "own_code": code, "inputs": inputs,
+    }  # fmt: skip
+
+
+def describe_outputs(outputs: Mapping[str, Path], measured: Measured | None = None) -> dict[str, object]:
+    """Return what a manifest states of the files that were written, by name."""
+    found = {name: digest(path.read_bytes()) for name, path in outputs.items()}
+    return {
+        "outputs": [{"path": name, "sha256": each.sha256, "bytes": each.size} for name, each in found.items()],
+        "measured": {name: list(fields) for name, fields in (measured or {}).items() if name in outputs},
+    }
+
+
+def _name(path: Path, folder: Path) -> str:
+    """Return the path of an input relative to the folder of the manifest, or as an example of seatsim."""
+    for examples in EXAMPLES:
+        if path.is_relative_to(examples):
+            return f"{EXAMPLE}{path.relative_to(examples).as_posix()}"
+    return relate(path, folder)

@@ -1,0 +1,247 @@
+"""Run again what made a folder, and compare the bytes.
+
+A folder may be a stranger's. Nothing of its manifest reaches a shell; only commands of seatsim that write nowhere but
+into the folder they are given are run, with their options checked by name, on inputs whose hashes are those that the
+manifest states, into a temporary folder. Code that it names is run only where the user names it, too.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple, cast
+
+from seatsim.provenance.invocation import REPEATABLE, digest
+from seatsim.provenance.manifest import EXAMPLE, MANIFEST
+from seatsim.provenance.versions import list_platform, list_versions
+from seatsim.scenario.loading import EXAMPLES
+from seatsim.schema.errors import InputError, RunError, nearest
+from seatsim.schema.guarded import expect, is_there, read_bytes, read_json
+from seatsim.schema.text import explain_bad_name
+
+LARGEST = 2**32
+"""Bytes of an input or an output."""
+FIELDS = {
+    "command": str, "arguments": list, "directory": str, "folder": str, "own_code": list, "versions": dict,
+    "platform": dict, "inputs": list, "outputs": list, "measured": dict,
+}  # fmt: skip
+KIND = "manifest of a command of seatsim"
+
+
+class Difference(NamedTuple):
+    """What is not as it was: an input, an output or a piece of the user's own code, and how it differs."""
+
+    path: str
+    problem: str
+
+
+class Reproduction(NamedTuple):
+    """What came of running a command again. `versions` says what differs of versions and platform."""
+
+    command: str
+    identical: bool
+    compared: list[str]
+    differences: list[Difference]
+    versions: list[str]
+
+
+def reproduce(
+    folder: Path, own_code: Sequence[Path] = (), tell: Callable[[str], None] = lambda text: None
+) -> Reproduction:
+    """Run again what made a folder, where its inputs are as they were, and compare the files.
+
+    Args:
+        folder: holds `manifest.json`.
+        own_code: files of the user's own that may be run.
+        tell: is called with what is being done.
+
+    Raises:
+        InputError: there is no manifest, it states what is not permitted, or an input or own code is missing.
+        RunError: the command failed.
+    """
+    manifest = read_manifest(folder)
+    versions = list(_compare_versions(manifest))
+    for text in versions:
+        tell(text)
+    arguments, directory = _check_arguments(manifest, folder), _find_directory(manifest, folder)
+    _check_files(manifest, folder, directory)
+    changed = [*_compare_inputs(manifest, folder), *_compare_code(manifest, own_code)]
+    command = manifest["command"]
+    if changed:
+        return Reproduction(command, False, [], changed, versions)
+    with TemporaryDirectory() as place:
+        again = Path(place) / manifest["folder"]
+        tell(f"running {command} again")
+        again = _run(command, arguments, own_code, directory, again)
+        differences = list(_compare_outputs(manifest, folder, again))
+    compared = [each["path"] for each in manifest["outputs"]]
+    return Reproduction(command, not differences, compared, differences, versions)
+
+
+def read_manifest(folder: Path) -> dict[str, Any]:
+    """Return the manifest of a folder, its form checked.
+
+    Raises:
+        InputError: there is none, or it is not one that `seatsim` writes.
+    """
+    path = folder / MANIFEST
+    if within := sorted(each.parent.as_posix() for each in folder.glob(f"*/{MANIFEST}")) if not is_there(path) else []:
+        raise InputError(f"{path}: is not there; folders in it have one each: 'seatsim reproduce {within[0]}'")
+    content = cast("dict[str, Any]", read_json(path, KIND))
+    with expect(path, KIND):
+        if "identity" in content:
+            raise InputError(
+                f"{folder}: holds a sweep, which is not run again here since it may take days; run"
+                f" 'seatsim sweep FILE --out OTHER' and compare the rows: seatsim.read_sweep({folder.as_posix()!r})"
+                ".equals(seatsim.read_sweep('OTHER'))"
+            )
+        for key, kind in FIELDS.items():
+            if not isinstance(content[key], kind):
+                raise TypeError(f"{key} is {content[key]!r}")
+        for each in [*content["inputs"], *content["outputs"], *content["own_code"]]:
+            if not (isinstance(each["path"], str) and isinstance(each["sha256"], str)):
+                raise TypeError(f"{each!r} is no path with its sha256")
+        if not all(isinstance(each, str) for each in content["arguments"]):
+            raise TypeError("an argument is no text")
+    if problem := explain_bad_name(content["folder"]):
+        raise InputError(f"{path}: folder {content['folder']!r} {problem}")
+    return content
+
+
+def _check_arguments(manifest: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return the arguments, refused where one could do more than say what is computed."""
+    command, arguments = manifest["command"], manifest["arguments"]
+    if command not in REPEATABLE:
+        raise InputError(
+            f"{folder / MANIFEST}: command {command!r} is not run again{nearest(command, REPEATABLE)}; permitted:"
+            f" {', '.join(REPEATABLE)}"
+        )
+    if "--" not in arguments:
+        raise InputError(f"{folder / MANIFEST}: its arguments have no '--' before the files")
+    for text in arguments[: arguments.index("--")]:
+        name = text.partition("=")[0]
+        if name not in REPEATABLE[command]:
+            permitted = ", ".join(sorted(REPEATABLE[command])) or "none"
+            raise InputError(f"{folder / MANIFEST}: option {text!r} is not run again; permitted: {permitted}")
+    return list(arguments)
+
+
+def _check_files(manifest: Mapping[str, Any], folder: Path, directory: Path) -> None:
+    """Refuse a file or folder among the arguments that holds none of the inputs, whose hashes are known."""
+    inputs = [_resolve(each["path"], folder).resolve() for each in manifest["inputs"]]
+    for text in manifest["arguments"]:
+        for word in (text, text.partition("=")[2]):
+            path = (directory / word).resolve()
+            if word and is_there(path) and not any(each.is_relative_to(path) for each in inputs):
+                raise InputError(f"{folder / MANIFEST}: {word!r} is there, but none of the inputs that it states")
+
+
+def _find_directory(manifest: Mapping[str, Any], folder: Path) -> Path:
+    """Return the folder in which the command was started; that of the manifest where examples alone are read."""
+    directory = _resolve(manifest["directory"], folder)
+    if directory.is_dir():
+        return directory
+    if all(each["path"].startswith(EXAMPLE) for each in manifest["inputs"]):
+        return folder
+    raise InputError(f"{directory}: the folder in which the command was started is not there; move {folder} with it")
+
+
+def _resolve(name: str, folder: Path) -> Path:
+    """Return the path of an input that a manifest names; absolute paths, and those of other machines, are refused."""
+    if name.startswith(EXAMPLE):
+        inside = Path(name.removeprefix(EXAMPLE))
+        found = [each / inside for each in EXAMPLES if ".." not in inside.parts and (each / inside).is_file()]
+        return found[0] if found else EXAMPLES[0] / inside.name
+    if Path(name).is_absolute() or name.startswith(("/", "\\")) or "\0" in name:
+        raise InputError(f"{folder / MANIFEST}: {name!r} is an absolute path; permitted: one relative to the manifest")
+    return folder.absolute() / name
+
+
+def _compare_inputs(manifest: Mapping[str, Any], folder: Path) -> Iterator[Difference]:
+    for each in manifest["inputs"]:
+        path = _resolve(each["path"], folder)
+        content = read_bytes(path, LARGEST, f"the input {each['path']}")
+        if digest(content).sha256 != each["sha256"]:
+            yield Difference(each["path"], "this input has changed")
+
+
+def _compare_code(manifest: Mapping[str, Any], own_code: Sequence[Path]) -> Iterator[Difference]:
+    """Yield the own code that has changed; what the user does not name himself is never run."""
+    given = {path.name: path for path in own_code}
+    for each in manifest["own_code"]:
+        name = Path(each["path"]).name
+        if name not in given:
+            raise InputError(
+                f"{name}: this code of somebody's own took part, and is not run unless you name it; if you trust it:"
+                f" --with {name}"
+            )
+        if digest(read_bytes(given[name], LARGEST, "own code")).sha256 != each["sha256"]:
+            yield Difference(each["path"], "this code has changed")
+
+
+def _compare_versions(manifest: Mapping[str, Any]) -> Iterator[str]:
+    now = {**list_versions(), **list_platform()}
+    for name, was in {**manifest["versions"], **manifest["platform"]}.items():
+        # The own code of a sweep is among its sources.
+        if name in now and was != now[name] and not (name == "sources" and manifest["own_code"]):
+            yield f"{name} was {was} and is {now[name]}"
+
+
+def _run(command: str, arguments: Sequence[str], own_code: Sequence[Path], directory: Path, out: Path) -> Path:
+    """Run a command of seatsim, and return the folder of its files.
+
+    That is `out`, or one of the same name in it where `run` has several scenarios, each with a folder. The command has
+    a process of its own, which does not search the folder it starts in for modules.
+    """
+    code = [word for path in own_code for word in ("--with", str(path.absolute()))]
+    words = [sys.executable, "-P", "-m", "seatsim", command, "--json", "--out", str(out), *code, *arguments]
+    done = subprocess.run(words, cwd=directory, capture_output=True, stdin=subprocess.DEVNULL, check=False)
+    for folder in (out, out / out.name):
+        if (folder / MANIFEST).is_file():
+            return folder
+    said = done.stderr.decode(errors="replace").strip().splitlines()
+    raise RunError(f"{command} cannot be run again: {said[-1].removeprefix('error: ') if said else 'no reason'}")
+
+
+def _compare_outputs(manifest: Mapping[str, Any], folder: Path, again: Path) -> Iterator[Difference]:
+    """Yield files that are not as the manifest states, or not what the command writes now."""
+    made = {each["path"]: each["sha256"] for each in read_manifest(again)["outputs"]}
+    for each in manifest["outputs"]:
+        name, fields = each["path"], manifest["measured"].get(each["path"], [])
+        if Path(name).is_absolute() or ".." in Path(name).parts:
+            raise InputError(f"{folder / MANIFEST}: output {name!r} lies outside its folder")
+        if not (folder / name).is_file():
+            yield Difference(name, "is not there any more")
+            continue
+        content = read_bytes(folder / name, LARGEST, "a file that seatsim wrote")
+        if digest(content).sha256 != each["sha256"]:
+            yield Difference(name, "was changed after it was written")
+        if name not in made:
+            yield Difference(name, "is not written any more")
+        elif not _is_same(content, (again / name).read_bytes(), name, fields):
+            yield Difference(name, "differs")
+    for name in made.keys() - {each["path"] for each in manifest["outputs"]}:
+        yield Difference(name, "was not written before")
+
+
+def _is_same(old: bytes, new: bytes, name: str, measured: Sequence[str]) -> bool:
+    """Tell whether two files are the same, bytes alike but for what was measured in them."""
+    if old == new or not measured:
+        return old == new
+    with expect(name, "file with measured times"):
+        return _without(old, name, measured) == _without(new, name, measured)
+
+
+def _without(content: bytes, name: str, fields: Sequence[str]) -> object:
+    """Return the content of a JSON or CSV file without some keys or columns."""
+    text = content.decode("utf-8")
+    if name.endswith(".json"):
+        return {key: value for key, value in json.loads(text).items() if key not in fields}
+    rows = csv.DictReader(io.StringIO(text))
+    return [{key: value for key, value in row.items() if key not in fields} for row in rows]

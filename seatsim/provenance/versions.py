@@ -1,0 +1,42 @@
+"""Versions and platform on which the bytes of an answer may hang."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Iterable, Mapping
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+import seatsim
+from seatsim.schema.modules import import_named, shipped_packages
+
+LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "pandas", "matplotlib", "cvxpy", "clarabel", "cma")
+"""Libraries that a figure, or the bytes of a file, may hang on."""
+
+
+def list_versions(libraries: Iterable[str] = LIBRARIES, files: Iterable[Path] = ()) -> Mapping[str, str]:
+    """Return the versions of Python, seatsim and some libraries, with a hash over all sources and `files`."""
+    found = {"python": platform.python_version(), "seatsim": seatsim.__version__}
+    found |= {name: version(name) for name in libraries}
+    return found | {"sources": _digest_sources(tuple(files))}
+
+
+@cache
+def list_platform() -> Mapping[str, str]:
+    """Return system, machine and processor, since compiled code and linear algebra are made for them."""
+    from llvmlite.binding import get_host_cpu_name
+
+    return {"system": platform.system(), "machine": platform.machine(), "processor": get_host_cpu_name()}
+
+
+@cache
+def _digest_sources(more: tuple[Path, ...]) -> str:
+    # What is being worked on keeps its version while its figures change.
+    state = hashlib.sha256()
+    folders = [Path(next(iter(import_named(name).__path__))) for name in sorted(shipped_packages())]
+    files = [path for folder in folders for path in sorted(folder.rglob("*.py"))]
+    for path in (*files, *more):
+        state.update(path.name.encode() + path.read_bytes())
+    return state.hexdigest()[:16]

@@ -1,0 +1,164 @@
+"""Manifests and what is run again of them: of the user's own folders, and of a stranger's."""
+
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from seatsim.cli.app import main
+from seatsim.provenance import reproduce as reproduction
+from seatsim.provenance.reproduce import reproduce
+from seatsim.schema.errors import InputError
+
+RECORDING = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "recording"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A project with a recording beside the folder of results of `comfort`."""
+    place = tmp_path_factory.mktemp("project")
+    shutil.copytree(RECORDING, place / "rec")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(place)
+        patch.setattr(sys, "argv", ["seatsim", "comfort", str(place / "rec"), "--hours", "6", "--out", "out/c"])
+        with pytest.raises(SystemExit) as stopped:
+            main()
+    assert stopped.value.code == 0
+    return place
+
+
+@pytest.fixture
+def project(made, tmp_path):
+    """A copy of that project, elsewhere."""
+    return Path(shutil.copytree(made, tmp_path / "moved"))
+
+
+@pytest.fixture
+def never(monkeypatch):
+    """Fail where anything is run."""
+    monkeypatch.setattr(reproduction.subprocess, "run", lambda *_, **__: pytest.fail("something was run"))
+
+
+def change(project, **fields):
+    path = project / "out" / "c" / "manifest.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | fields))
+
+
+def test_a_manifest_holds_command_inputs_and_outputs_by_relative_paths(made):
+    text = (made / "out" / "c" / "manifest.json").read_text()
+    found = json.loads(text)
+    assert str(made) not in text
+    assert (found["command"], found["arguments"]) == ("comfort", ["--hours=6.0", "--", "rec"])
+    assert [each["path"] for each in found["inputs"]] == [
+        f"../../rec/{name}" for name in ("recording.yaml", "run-1.csv.gz", "run-2.csv.gz")
+    ]
+    assert [each["path"] for each in found["outputs"]] == ["comfort.json"]
+    assert {"seed", "versions", "platform"} <= set(found)
+
+
+def test_a_moved_project_gives_the_same_bytes(project):
+    found = reproduce(project / "out" / "c")
+    assert found.identical and found.compared == ["comfort.json"] and not found.versions
+
+
+def test_a_changed_input_is_named_and_nothing_runs(project, never):
+    with (project / "rec" / "run-1.csv.gz").open("ab") as file:
+        file.write(b" ")
+    found = reproduce(project / "out" / "c")
+    assert not found.identical
+    assert found.differences == [("../../rec/run-1.csv.gz", "this input has changed")]
+
+
+def test_a_missing_input_is_an_error(project, never):
+    (project / "rec" / "run-2.csv.gz").unlink()
+    with pytest.raises(InputError, match=r"run-2\.csv\.gz: cannot be read"):
+        reproduce(project / "out" / "c")
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"command": "explore"}, "'explore' is not run again"),
+        ({"command": "blind"}, "is not run again"),
+        ({"arguments": ["--with=evil.py", "--", "rec"]}, "'--with=evil.py' is not run again"),
+        ({"arguments": ["--out=elsewhere", "--", "rec"]}, "'--out=elsewhere' is not run again"),
+        ({"arguments": ["rec"]}, "have no '--'"),
+        ({"arguments": ["--", "/etc/passwd"]}, "none of the inputs"),
+        ({"folder": "a/../../elsewhere"}, "holds a slash"),
+        ({"inputs": [{"path": "/etc/passwd", "sha256": "0"}]}, "is an absolute path"),
+        ({"inputs": [{"path": "\\\\host\\share", "sha256": "0"}]}, "is an absolute path"),
+        ({"own_code": [{"path": "../../evil.py", "sha256": "0"}]}, "not run unless you name it"),
+        ({"directory": "../nowhere"}, "is not there"),
+        ({"outputs": 3}, "outputs is 3"),
+        ({"arguments": [3]}, "an argument is no text"),
+    ],
+)
+def test_what_a_strangers_manifest_may_not_ask_for_is_refused(project, never, fields, said):
+    change(project, **fields)
+    with pytest.raises(InputError, match=said.replace("\\", "\\\\")):
+        reproduce(project / "out" / "c")
+
+
+def test_a_sweep_says_why_it_is_not_run_again(project, never):
+    change(project, identity="0")
+    with pytest.raises(InputError, match=r"holds a sweep.*'seatsim sweep FILE --out OTHER'"):
+        reproduce(project / "out" / "c")
+
+
+def test_a_folder_of_folders_with_manifests_names_one(project, never):
+    with pytest.raises(InputError, match=r"seatsim reproduce .*out/c'"):
+        reproduce(project / "out")
+
+
+def test_code_beside_a_strangers_manifest_is_not_run(project):
+    for name in ("seatsim.py", "numpy.py", "json.py", "sitecustomize.py"):
+        (project / name).write_text(f"open({str(project / 'ran')!r}, 'w')")
+    assert reproduce(project / "out" / "c").identical
+    assert not (project / "ran").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "same"),
+    [
+        ("fit.json", b'{"r2": 1, "seconds": 2}', b'{"r2": 1, "seconds": 3}', True),
+        ("fit.json", b'{"r2": 1, "seconds": 2}', b'{"r2": 2, "seconds": 2}', False),
+        ("league.csv", b"model,seconds\na,2\n", b"model,seconds\na,3\n", True),
+        ("league.csv", b"model,seconds\na,2\n", b"model,seconds\nb,2\n", False),
+    ],
+)
+def test_measured_times_may_differ_and_nothing_else(name, old, new, same):
+    assert reproduction._is_same(old, new, name, ["seconds"]) is same
+
+
+def test_a_file_that_was_changed_is_said(project, monkeypatch):
+    def write_again(command, arguments, own_code, directory, out):
+        return Path(shutil.copytree(project / "kept", out))
+
+    shutil.copytree(project / "out" / "c", project / "kept")
+    monkeypatch.setattr(reproduction, "_run", write_again)
+    (project / "out" / "c" / "comfort.json").write_text("{}")
+    found = reproduce(project / "out" / "c")
+    assert [problem for _, problem in found.differences] == ["was changed after it was written", "differs"]
+
+
+def test_the_crate_describes_every_file_and_refers_to_what_is_there(made):
+    crate = json.loads((made / "out" / "c" / "ro-crate-metadata.json").read_text())
+    entities = {each["@id"]: each for each in crate["@graph"]}
+    assert len(entities) == len(crate["@graph"])
+    assert entities["ro-crate-metadata.json"]["conformsTo"]["@id"] == "https://w3id.org/ro/crate/1.3"
+    root, run = entities["./"], entities["#run"]
+    assert {"name", "description", "datePublished", "license"} <= set(root)
+    assert {each["@id"] for each in root["hasPart"]} == {"comfort.json", "manifest.json"}
+    assert len(run["object"]) == 3 and run["instrument"]["@id"] == "#seatsim"
+
+    def references(value):
+        if isinstance(value, dict):
+            yield from [value["@id"]] if set(value) == {"@id"} else references(list(value.values()))
+        elif isinstance(value, list):
+            for each in value:
+                yield from references(each)
+
+    named = {name for name in references(crate["@graph"]) if not name.startswith("http")}
+    assert named <= set(entities)
