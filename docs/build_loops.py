@@ -1,6 +1,7 @@
 """Draw `images/loops/NAME.svg`: force over velocity and over displacement of each damper, for the reference.
 
-`python docs/build_loops.py [NAME ...]` draws those named, or those without a picture. Nothing is compiled for these few cycles.
+`python docs/build_loops.py [NAME ...]` draws those named, or those without a picture. Nothing is compiled for so few
+cycles.
 """
 
 from __future__ import annotations

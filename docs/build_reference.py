@@ -18,8 +18,8 @@ from seatsim.schema.fields import SLIGHTLY, FieldSpecification, bounds, choices
 FOLDER = Path(__file__).parent
 HEAD = """# Models, laws, floors and effects
 
-Every name that can stand in a scenario, with what it is; each leads to its equation, parameters, source and range. `seatsim describe
-NAME` prints the same in a terminal. Built from the code by `python docs/build_reference.py`.
+Every name that can stand in a scenario, with what it is; each leads to its equation, parameters, source and range.
+`seatsim describe NAME` prints the same in a terminal. Built from the code by `python docs/build_reference.py`.
 """
 
 
@@ -161,7 +161,9 @@ def cell(text: str) -> str:
 def escape(text: str) -> str:
     """Return a text in which no character outside a piece of code is taken for a mark of Markdown."""
     pieces = re.split(r"(`[^`]*`)", text)
-    return "".join(piece if piece.startswith("`") else re.sub(r"([*$\[\]]|<(?=[\w/!]))", r"\\\1", piece) for piece in pieces)
+    return "".join(
+        piece if piece.startswith("`") else re.sub(r"([*$\[\]]|<(?=[\w/!]))", r"\\\1", piece) for piece in pieces
+    )
 
 
 if __name__ == "__main__":

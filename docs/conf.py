@@ -30,7 +30,8 @@ html_css_files = ["wide.css"]
 
 def lead_to_page(app: Sphinx, page: str, source: list[str]) -> None:
     """Let links to files beside this folder lead to the pages that include them."""
-    source[0] = source[0].replace("](../CONTRIBUTING.md", "](contributing.md").replace("](../CHANGELOG.md", "](changes.md")
+    for file, including in (("CONTRIBUTING.md", "contributing.md"), ("CHANGELOG.md", "changes.md")):
+        source[0] = source[0].replace(f"](../{file}", f"]({including}")
 
 
 def setup(app: Sphinx) -> None:

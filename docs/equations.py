@@ -9,7 +9,8 @@ GREEK = {"alpha", "beta", "gamma", "delta", "lambda", "mu", "pi", "rho", "sigma"
 SIGNS = {"<=": r"\le ", ">=": r"\ge ", "...": r"\dots ", "{": r"\{", "}": r"\}"}
 TOKEN = re.compile(
     r"`(?P<code>\w+)`"
-    r"|(?P<words>\b(?:always|(?:pre|post)-yield|the same mirrored|limited to|as in|for|where|below|beyond)\b|(?<=\d )m?/?s\b)"
+    r"|(?P<words>\b(?:always|(?:pre|post)-yield|the same mirrored|limited to|as in|for|where|below|beyond)\b)"
+    r"|(?P<unit>(?<=\d )(?:m/)?s\b)"
     r"|(?P<derivative>d[A-Z]/d[a-z])"
     r"|(?P<name>[A-Za-z]\w*)"
     r"|(?P<gap>:\s*|\s{3,})"
@@ -41,7 +42,7 @@ def _convert_token(match: re.Match[str]) -> str:
     kind, text = match.lastgroup, match[0]
     if kind == "code":
         return r"\text{" + match["code"].replace("_", r"\_") + "}"
-    if kind == "words":
+    if kind in {"words", "unit"}:
         return rf"\text{{ {text} }}"
     if kind == "derivative":
         return rf"\frac{{d{text[1]}}}{{d{text[-1]}}}"
