@@ -99,10 +99,8 @@ def write_chapter(chapter: Chapter) -> str:
 
 
 def write_entry(page: Page) -> str:
-    """Return the section of one name: words and equations, picture of a damper, parameters, source and range."""
+    """Return the section of one name: words and equations, parameters, source and range."""
     parts = [f"\n## {page.name}\n", *write_text(page)]
-    if page.kind == "damper":
-        parts.append(f"![Loops of {page.name}](../images/loops/{page.name}.svg)\n")
     cls = SECTIONS[page.name] if page.kind == "section" else registry.find(page.kind, page.name)
     parts.append("\n".join(write_parameters(cls, page.keys)) if page.keys else "No parameters.\n")
     facts = [f"Source: {page.source}"] * bool(page.source) + page.facts
