@@ -6,7 +6,7 @@ import re
 
 FUNCTIONS = {"exp": r"\exp", "tanh": r"\tanh", "arctan": r"\arctan", "sgn": r"\operatorname{sgn}"}
 GREEK = {"alpha", "beta", "gamma", "delta", "lambda", "mu", "pi", "rho", "sigma", "tau"}
-SIGNS = {"<=": r"\le ", ">=": r"\ge ", "...": r"\dots ", "{": r"\{", "}": r"\}"}
+SIGNS = {"<=": r"\le ", ">=": r"\ge ", "...": r"\ldots ", "{": r"\{", "}": r"\}"}
 TOKEN = re.compile(
     r"`(?P<code>\w+)`"
     r"|(?P<words>\b(?:always|(?:pre|post)-yield|the same mirrored|limited to|as in|for|where|below|beyond)\b)"
