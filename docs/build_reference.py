@@ -1,48 +1,170 @@
-"""Write `reference.md`: every name that can stand in a scenario, as `seatsim describe` tells it."""
+"""Write `reference.md` and the pages under `reference`: every name that can stand in a scenario, from the code."""
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
-from seatsim.dampers.base import CONFIDENCE
-from seatsim.scenario.describe import KINDS, SECTIONS, describe, find_page
+from equations import convert_equations
+
+from seatsim.dampers.base import CONFIDENCE, find_confidence
+from seatsim.scenario.describe import KINDS, SECTIONS, Page, find_page
 from seatsim.schema import registry
+from seatsim.schema.fields import SLIGHTLY, FieldSpecification, bounds, choices
 
-PAGE = Path(__file__).with_name("reference.md")
-HEAD = """# Everything that has a name
+FOLDER = Path(__file__).parent
+HEAD = """# Models, laws, floors and effects
 
-What `seatsim describe NAME` prints, for every name. Built by `python docs/build_reference.py`.
+Every name that can stand in a scenario, with what it is; each leads to its equation, parameters, source and range.
+`seatsim describe NAME` prints the same in a terminal. Built from the code by `python docs/build_reference.py`.
 """
 
 
-def catalogue(names: list[str]) -> str:
-    """Return the table of the damper models, with what their words of confidence mean."""
-    lines = ["Confidence says how far a model's equation is that of its source:\n"]
-    lines += [f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items()]
-    lines += ["", "| model | is | confidence | states | speed | current |", "|---|---|---|---|---|---|"]
-    for name in names:
-        specification = registry.specification_of(registry.find("damper", name))
-        row = (
-            name,
-            find_page(name).title,
-            specification.confidence,
-            len(specification.initial),
-            f"{specification.max_speed:g} m/s",
-            f"{specification.max_current:g} A",
-        )
-        lines.append(f"| [{row[0]}](#{row[0]}) | {' | '.join(str(cell) for cell in row[1:])} |")
-    return "\n".join([*lines, ""])
+class Chapter(NamedTuple):
+    """One page of the reference: its file, its title, and the names on it."""
+
+    file: str
+    title: str
+    names: list[str]
 
 
-def page() -> str:
-    """Return the text of the page."""
-    parts = [HEAD]
-    for kind, names in {**{kind: registry.names(kind) for kind in KINDS}, "section": list(SECTIONS)}.items():
-        parts.append(f"## {kind.capitalize()}s\n")
-        parts += [catalogue(names)] if kind == "damper" else []
-        parts += [f"### {name}\n\n```text\n{describe(name)}\n```\n" for name in names]
-    return "\n".join(parts)
+FAMILIES = {
+    "bingham": ("Bingham and bi-viscous dampers", ("bingham", "bingham_extended", "bingham_series", "biviscous")),
+    "bouc_wen": ("Bouc-Wen dampers", ("bouc_wen", "bouc_wen_current", "bouc_wen_variants")),
+    "friction": ("Dahl and LuGre dampers", ("dahl", "lugre")),
+    "curves": (
+        "Dampers by a curve over velocity",
+        ("arctangent", "asymmetric", "hyperbolic_tangent", "hysteresis_division", "sigmoid", "sigmoid_gaussian"),
+    ),
+    "fluid": (
+        "Visco-elastic and hydraulic dampers",
+        ("ellis", "equivalent", "hydro_mechanical", "maxwell", "phase_transition", "viscoelastic_plastic"),
+    ),
+}
+"""Page, title and modules of `seatsim.dampers` of each family."""
+
+
+def pages() -> dict[str, str]:
+    """Return the text of every page by its file."""
+    chapters = {kind: list(list_chapters(kind)) for kind in (*KINDS, "section")}
+    texts = {chapter.file: write_chapter(chapter) for each in chapters.values() for chapter in each}
+    return {"reference.md": HEAD + "".join(write_index(kind, each) for kind, each in chapters.items()), **texts}
+
+
+def list_chapters(kind: str) -> Iterator[Chapter]:
+    """Yield the pages of a kind: dampers by family, of the other kinds one."""
+    names = list(SECTIONS) if kind == "section" else registry.names(kind)
+    if kind != "damper":
+        yield Chapter(f"reference/{kind}s.md", f"{kind.capitalize()}s", names)
+        return
+    family_of = {module: family for family, (_, modules) in FAMILIES.items() for module in modules}
+    home = {name: family_of[registry.find(kind, name).__module__.rpartition(".")[2]] for name in names}
+    for family, (title, _) in FAMILIES.items():
+        yield Chapter(f"reference/dampers_{family}.md", title, [name for name in names if home[name] == family])
+
+
+def write_index(kind: str, chapters: list[Chapter]) -> str:
+    """Return the section of a kind: a table of its names, each a link to its page."""
+    lines = [f"\n## {kind.capitalize()}s\n"]
+    if kind == "damper":
+        lines += ["Confidence says how far a model's equation is that of its source:\n"]
+        lines += [f"- {word}: {meaning}" for word, meaning in CONFIDENCE.items()]
+    for chapter in chapters:
+        lines += [f"\n### {chapter.title}\n"] if kind == "damper" else []
+        heads = ["name", "is", *(("confidence", "states", "speed", "current") if kind == "damper" else ())]
+        lines += [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+        for name in chapter.names:
+            link = f"[{name}]({chapter.file}#{name.replace('.', '')})"
+            lines.append(f"| {' | '.join([link, cell(find_page(name).title), *state_range(kind, name)])} |")
+    return "\n".join(lines) + "\n"
+
+
+def state_range(kind: str, name: str) -> list[str]:
+    """Return confidence, number of states and range of a damper, nothing of the other kinds."""
+    if kind != "damper":
+        return []
+    cls = registry.find(kind, name)
+    known = registry.specification_of(cls)
+    return [find_confidence(cls), str(len(known.initial)), f"{known.max_speed:g} m/s", f"{known.max_current:g} A"]
+
+
+def write_chapter(chapter: Chapter) -> str:
+    """Return the text of one page."""
+    return f"# {chapter.title}\n\nBuilt from the code by `python docs/build_reference.py`.\n" + "".join(
+        write_entry(find_page(name)) for name in chapter.names
+    )
+
+
+def write_entry(page: Page) -> str:
+    """Return the section of one name: words and equations, parameters, source and range."""
+    parts = [f"\n## {page.name}\n", *write_text(page)]
+    cls = SECTIONS[page.name] if page.kind == "section" else registry.find(page.kind, page.name)
+    parts.append("\n".join(write_parameters(cls, page.keys)) if page.keys else "No parameters.\n")
+    facts = [f"Source: {page.source}"] * bool(page.source) + page.facts
+    return "\n".join([*parts, *(f"- {escape(fact)}" for fact in facts), ""])
+
+
+def write_text(page: Page) -> Iterator[str]:
+    """Yield the paragraphs of a docstring; those that are indented are equations of a damper, or stay as they are."""
+    for paragraph in page.text.split("\n\n"):
+        if not paragraph.startswith("    "):
+            yield escape(paragraph) + "\n"
+        elif page.kind == "damper":
+            yield f"```math\n{convert_equations(paragraph)}\n```\n"
+        else:
+            yield f"```text\n{paragraph}\n```\n"
+
+
+def write_parameters(cls: type, keys: list[FieldSpecification]) -> Iterator[str]:
+    """Yield the lines of the table of parameters."""
+    yield "| parameter | unit | default | range | meaning |\n|---|---|---|---|---|"
+    for key in keys:
+        default = "required" if key.required else show(key.default)
+        yield f"| {' | '.join([f'`{key.name}`', key.unit, default, show_range(cls, key.name), cell(key.meaning)])} |"
+    yield ""
+
+
+def show(value: object) -> str:
+    """Return a default as a table shows it."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, tuple):
+        return ", ".join(map(show, value))
+    return f"{len(value)} keys" if isinstance(value, Mapping) else cell(str(value))
+
+
+def show_range(cls: type, name: str) -> str:
+    """Return what is permitted: words, or the bounds of a number."""
+    words = choices(cls, name)
+    if words and all(isinstance(word, str) for word in words):
+        return ", ".join(words)
+    low, high = bounds(cls, name)
+    if math.isinf(low):
+        return "any" if math.isinf(high) else f"<= {high:g}"
+    open_below = low - round(low, 8) == SLIGHTLY
+    least = f"> {round(low, 8):g}" if open_below else f">= {low:g}"
+    if math.isinf(high):
+        return least
+    return f"{least}, <= {high:g}" if open_below else f"{low:g} to {high:g}"
+
+
+def cell(text: str) -> str:
+    """Return a text as a cell of a table."""
+    return escape(" ".join(text.split())).replace("|", r"\|")
+
+
+def escape(text: str) -> str:
+    """Return a text in which no character outside a piece of code is taken for a mark of Markdown."""
+    pieces = re.split(r"(`[^`]*`)", text)
+    return "".join(
+        piece if piece.startswith("`") else re.sub(r"([*$\[\]]|<(?=[\w/!]))", r"\\\1", piece) for piece in pieces
+    )
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8")
+    (FOLDER / "reference").mkdir(exist_ok=True)
+    for file, text in pages().items():
+        (FOLDER / file).write_text(text, encoding="utf-8")

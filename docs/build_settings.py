@@ -50,10 +50,10 @@ def tables() -> Iterator[str]:
             yield f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |"
 
 
-def page() -> str:
-    """Return the text of the page."""
-    return HEAD + "\n".join(tables()) + "\n"
+def pages() -> dict[str, str]:
+    """Return the text of the page by its file."""
+    return {PAGE.name: HEAD + "\n".join(tables()) + "\n"}
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8")
+    PAGE.write_text(pages()[PAGE.name], encoding="utf-8")

@@ -29,7 +29,9 @@ class AccelerationDriven(NamedTuple):
 class SkyhookAdd(NamedTuple):
     """Mixed skyhook and ADD: by the skyhook's rule at low frequencies, by that of ADD at high ones.
 
-    a = zs' where zs''^2 <= (2 pi crossover)^2 zs'^2, else zs'';   i_cmd = on where a v > 0, else off
+        a = zs' where zs''^2 <= (2 pi crossover)^2 zs'^2, else zs'';   i_cmd = on where a v > 0, else off
+
+    A slow motion has little acceleration for its velocity, and is ruled by the skyhook.
     """
 
     crossover: Annotated[float, param("Hz", "frequency up to which skyhook rules", above=0, high=100)] = 2.0

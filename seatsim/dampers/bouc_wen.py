@@ -26,8 +26,10 @@ HYSTERESIS = "z, the hysteretic displacement"
 class BoucWen(NamedTuple):
     """Simple Bouc-Wen damper with laws linear in the current.
 
-    F  = (c_a + c_b i) v + k0 (x - x0) + (alpha_a + alpha_b i) z + f0
-    z' = A v - beta v |z|^n - gamma |v| z |z|^(n-1),   |z| <= (A / (beta + gamma))^(1/n)
+        F  = (c_a + c_b i) v + k0 (x - x0) + (alpha_a + alpha_b i) z + f0
+        z' = A v - beta v |z|^n - gamma |v| z |z|^(n-1),   |z| <= (A / (beta + gamma))^(1/n)
+
+    The hysteretic variable z has no unit of its own: A sets its scale.
     """
 
     c_a: Annotated[float, param("N s/m", "viscous damping at zero current", low=0)] = 250.0

@@ -113,8 +113,9 @@ def bounds(record: type, name: str) -> tuple[float, float]:
 
 
 def choices(record: type, name: str) -> tuple[str, ...]:
-    """Return the permitted values of a field that is one of several words."""
-    return get_args(get_args(_hints(record)[name])[0])
+    """Return the permitted values of a field that is one of several words, nothing for any other field."""
+    parts = get_args(_hints(record)[name])
+    return get_args(parts[0]) if parts else ()
 
 
 @cache
