@@ -34,7 +34,7 @@ from seatsim.kernel.step import IntegratorState, StepInputs, relaxed
 from seatsim.rig.state import DAMPER_WORK, DISPLACEMENT, VELOCITY, State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.scenario.scenario import DamperChoice, Scenario
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import name_of
 
 Array = NDArray[np.float64]
@@ -206,6 +206,9 @@ def _agree(miss: Callable[[float], float], guess: float, again: Callable[[], Non
     """Find the force at which `miss` is zero; `again` takes the unit back before each further trial.
 
     The force of a damper falls where the rig felt more of it, so that the guess and its answer are on both sides.
+
+    Raises:
+        RunError: rig and unit do not agree on a force, as where the unit's force jumps.
     """
     low, m_low = guess, miss(guess)
     if abs(m_low) <= AGREED * (1.0 + abs(low)):
@@ -214,8 +217,10 @@ def _agree(miss: Callable[[float], float], guess: float, again: Callable[[], Non
     again()
     m_high = miss(high)
     for _ in range(MOST_TRIALS):
-        if abs(m_high) <= AGREED * (1.0 + abs(high)) or m_high == m_low:
+        if abs(m_high) <= AGREED * (1.0 + abs(high)):
             return
+        if m_high == m_low:
+            break
         trial = high - m_high * (high - low) / (m_high - m_low)
         again()
         m_trial = miss(trial)
@@ -224,3 +229,6 @@ def _agree(miss: Callable[[float], float], guess: float, again: Callable[[], Non
         else:
             m_low *= 0.5
         high, m_high = trial, m_trial
+    raise RunError(
+        f"rig and unit still differ by {abs(m_high):.3g} N after up to {MOST_TRIALS} trials of a step; shorten solver.step"
+    )
