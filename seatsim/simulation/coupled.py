@@ -230,5 +230,5 @@ def _agree(miss: Callable[[float], float], guess: float, again: Callable[[], Non
             m_low *= 0.5
         high, m_high = trial, m_trial
     raise RunError(
-        f"rig and unit still differ by {abs(m_high):.3g} N after up to {MOST_TRIALS} trials of a step; shorten solver.step"
+        f"rig and unit differ by {abs(m_high):.3g} N after up to {MOST_TRIALS} trials of a step; shorten solver.step"
     )
