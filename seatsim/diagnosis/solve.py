@@ -126,10 +126,12 @@ def _search(task: SearchTask, objective: Objective) -> Solution:
 def _takes_enough(objective: Objective, solution: Solution) -> bool:
     """Whether the chosen set takes enough of the gap, nominal and calibrated, for its effects to be its causes.
 
-    Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap. That
-    is measured beyond the noise of `objective`: a broadband residual that the solution counts as noise is gap.
+    Weights by noise value what an effect improves where signals are weak, which may be next to nothing of the gap. A
+    broadband residual is noise only where nothing else is left; otherwise the gap counts beyond that of `objective`.
     """
     selection, chosen = solution.selection, solution.decision.chosen
+    if chosen.excess < objective.settings.selection.nothing_left:
+        objective = solution.objective
     taken = [measure_gap_taken(objective, rig, chosen) for rig in (selection.nominal, selection.calibrated)]
     return min(taken) >= objective.settings.decision.least_taken
 

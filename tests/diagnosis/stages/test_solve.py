@@ -171,7 +171,7 @@ def test_a_broadband_residual_counts_as_noise_where_that_explains_the_gap(folder
 
 
 def test_a_broadband_residual_is_gap_where_the_set_takes_little_else(folder):
-    problem = hiss(make_problem(folder, (Added("one", 0.05),)), 0.5)
+    problem = hiss(make_problem(folder, (Added("one", 0.05), Added("two", 0.5))), 0.5)
     problem = dataclasses.replace(problem, settings=narrow(problem.settings))
     script = Script("unknown", "known", effects={"one": 0.05})
     found = script.solve(problem)
