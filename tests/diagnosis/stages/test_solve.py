@@ -170,11 +170,12 @@ def test_a_broadband_residual_counts_as_noise_where_that_explains_the_gap(folder
     assert found.objective is script.selected[1][0] and found.decision.verdict == verdict
 
 
-def test_a_broadband_residual_is_gap_where_the_set_takes_little_else(folder):
+def test_a_broadband_residual_is_gap_where_something_else_is_left(folder):
     problem = hiss(make_problem(folder, (Added("one", 0.05), Added("two", 0.5))), 0.5)
-    problem = dataclasses.replace(problem, settings=narrow(problem.settings))
+    settings = narrow(problem.settings)
+    settings = settings._replace(selection=settings.selection._replace(nothing_left=0.01))
     script = Script("unknown", "known", effects={"one": 0.05})
-    found = script.solve(problem)
+    found = script.solve(dataclasses.replace(problem, settings=settings))
     assert script.said[1:3] == ["counting a broadband residual as noise", "weighing the gap alone"]
     assert found.decision.verdict == "unknown"
 
