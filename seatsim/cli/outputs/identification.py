@@ -35,9 +35,9 @@ HEAD = """\
 NO_COIL = "# No command that changes was recorded: the rates of the actuator are defaults.\n"
 
 
-def write_identification(found: Identification, folder: Path, seed: int) -> list[Path]:
+def write_identification(found: Identification, folder: str | Path, seed: int = 0) -> list[Path]:
     """Write `parameters.yaml`, `fit.json`, `report.html` and the picture of an identification; return their paths."""
-    return write_documented(folder, partial(_fill, found), seed, {"fit.json": MEASURED})
+    return write_documented(Path(folder), partial(_fill, found), seed, {"fit.json": MEASURED})
 
 
 def write_member(found: Identification, folder: Path) -> list[Path]:
