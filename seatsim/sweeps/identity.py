@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
-import platform
 from collections.abc import Iterator, Mapping
-from functools import cache
-from importlib.metadata import version
-from pathlib import Path
 from typing import NamedTuple
 
-import seatsim
+from seatsim.provenance.versions import list_versions
 from seatsim.schema.files import plain
-from seatsim.schema.modules import import_named, shipped_packages, used_files
+from seatsim.schema.modules import used_files
 from seatsim.sweeps.definition import SweepDefinition
 from seatsim.sweeps.plan import Plan
 
@@ -38,7 +34,7 @@ def identify_sweep(definition: SweepDefinition, plan: Plan) -> Identity:
     """Return the identity of a sweep."""
     stated = {key: value for key, value in definition.source.data.items() if key not in ("scenario", "seed", "limits")}
     configuration = {"scenario": definition.scenario.data, **stated, "files": dict(_digest_files(plan))}
-    versions, design = _versions(), digest_design(plan, plan.runs)
+    versions, design = list_versions(LIBRARIES, used_files()), digest_design(plan, plan.runs)
     whole = [configuration, design, versions, definition.seed]
     return Identity(_digest(whole), definition.seed, versions, _read_back(configuration), plan.runs, design)
 
@@ -59,24 +55,6 @@ def list_differences(old: object, new: object, keys: tuple[str, ...] = ()) -> It
             yield from list_differences(old.get(key), new.get(key), (*keys, str(key)))
     elif old != new:
         yield f"{'.'.join(keys)} was {_shown(old)} and is {_shown(new)}"
-
-
-@cache
-def _versions() -> Mapping[str, str]:
-    """Return the versions of Python, seatsim and its libraries, with a hash over all sources of models and kernel."""
-    found = {"python": platform.python_version(), "seatsim": seatsim.__version__}
-    found |= {name: version(name) for name in LIBRARIES}
-    return found | {"sources": _digest_sources()}
-
-
-def _digest_sources() -> str:
-    # What is being worked on keeps its version while its figures change.
-    state = hashlib.sha256()
-    folders = [Path(next(iter(import_named(name).__path__))) for name in sorted(shipped_packages())]
-    files = [path for folder in folders for path in sorted(folder.rglob("*.py"))]
-    for path in (*files, *used_files()):
-        state.update(path.name.encode() + path.read_bytes())
-    return state.hexdigest()[:16]
 
 
 def _digest_files(plan: Plan) -> Iterator[tuple[str, str]]:
