@@ -122,20 +122,21 @@ class DiagnosisProblem:
         end = self.skip + self.measured[run].shape[1]
         return np.array([outputs[name][self.skip : end] for name in self.channels])
 
-    def _attempted(self, run: str, deviations: Array, effects: Sequence[Record]) -> Array:
-        """Return the simulated channels of a run, infinite where the rig leaves all bounds."""
+    def _residuals(self, run: str, deviations: Array, effects: Sequence[Record]) -> Array:
+        """Return `measured - simulated` of a run, infinite where the rig leaves all bounds."""
         try:
-            return self.simulated(run, deviations, effects)
+            simulated = self.simulated(run, deviations, effects)
         except RunError:
             return np.full(self.measured[run].shape, np.inf)
+        return np.subtract(self.measured[run], simulated, out=simulated)
 
     def residuals(self, rigs: Sequence[tuple[Array, Sequence[Record]]]) -> list[dict[str, Array]]:
         """Return `measured - simulated` of every run for each rig (deviations, effects), on all cores."""
         jobs = [(index, run) for index in range(len(rigs)) for run in self.runs]
-        answers = self.pool.map(lambda job: self._attempted(job[1], *rigs[job[0]]), jobs)
+        answers = self.pool.map(lambda job: self._residuals(job[1], *rigs[job[0]]), jobs)
         found: list[dict[str, Array]] = [{} for _ in rigs]
         for (index, run), values in zip(jobs, answers, strict=True):
-            found[index][run] = self.measured[run] - values
+            found[index][run] = values
         return found
 
 
