@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Container, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -34,6 +34,8 @@ from seatsim.simulation.respond import respond
 Array = NDArray[np.float64]
 COARSEST_STEP = 0.002
 """s; longest step of the simulation: its adaptive sub-steps make a shorter one change no figure of a diagnosis."""
+REACHED = {"m": ("suspension_displacement",), "A": ("coil_current", "current_command")}
+"""Channels that tell how far the rig went towards a limit, by its unit: the first that was recorded does."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,8 @@ class DiagnosisProblem:
 
     `measured` holds the compared channels of each run without its first second, shape (channels, samples), `inputs` the
     inputs of each run, `parameters` those that the stated tolerance lets vary; `pool` runs simulations in parallel.
-    Fits end at the `deadline`. `current_falls` says whether the current falls anywhere, by which memory of it shows.
+    Fits end at the `deadline`. `current_falls` says whether the current falls anywhere, by which memory of it shows,
+    `reached` how far the rig went towards a limit of its travel or current, by the limit's unit.
     """
 
     recording: Recording
@@ -56,6 +59,7 @@ class DiagnosisProblem:
     pool: Executor
     deadline: Deadline = field(default=NEVER, kw_only=True)
     current_falls: bool = field(default=True, kw_only=True)
+    reached: Mapping[str, float] = field(default_factory=dict, kw_only=True)
 
     @property
     def bench(self) -> bool:
@@ -169,8 +173,14 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     parameters = _list_parameters(recording.header, scenario, settings.fit)
     return DiagnosisProblem(
         recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings, pool,
-        current_falls=shows_falling_current(recording),
+        current_falls=shows_falling_current(recording), reached=_measure_reach(recording.channels, tables.values()),
     )  # fmt: skip
+
+
+def _measure_reach(recorded: Container[str], tables: Collection[Mapping[str, Array]]) -> dict[str, float]:
+    """Return the largest value of the first recorded channel of each unit, in any run."""
+    first = {unit: next((name for name in names if name in recorded), "") for unit, names in REACHED.items()}
+    return {unit: max(float(np.abs(table[name]).max()) for table in tables) for unit, name in first.items() if name}
 
 
 def _list_parameters(header: Header, scenario: Scenario, settings: FitSettings) -> tuple[Nuisance, ...]:
