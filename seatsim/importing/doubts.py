@@ -24,7 +24,7 @@ OFFSET = 0.2
 """m/s^2; mean of an accelerometer from which it has an offset."""
 ZERO = {
     "force": "gas force, preload or the zero of the load cell",
-    "displacement": "the zero of the sensor; in the map offset moves it, and remove_mean: true takes the mean out of each run",
+    "displacement": "the zero of the sensor; in the map, offset moves it and remove_mean centres each run",
     "elevation": "an absolute elevation",
 }  # fmt: skip
 """What the mean of a quantity that swings may be."""
