@@ -194,6 +194,6 @@ def test_a_column_without_a_channel_is_named_and_an_offset_is_added_in_the_unit(
     text = (tmp_path / "as-proposed" / "map.yaml").read_text(encoding="utf-8")
     (tmp_path / "map.yaml").write_text(text.replace("unit: mm,", "unit: mm, offset: -3,"), encoding="utf-8")
     import_files([file], tmp_path / "moved", tmp_path / "map.yaml")
-    plain, moved = (read_run(tmp_path / each, "a") for each in ("as-proposed", "moved"))
+    plain, moved = (read_run(tmp_path / each) for each in ("as-proposed", "moved"))
     change = moved["suspension_displacement"] - plain["suspension_displacement"]
     np.testing.assert_allclose(change, -0.003, atol=1e-7)
