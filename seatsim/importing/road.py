@@ -34,7 +34,7 @@ def assemble_road(files: Sequence[DataFile], stated: ImportMap) -> tuple[dict[st
     left_out = []
     for name, entry in stated.channels.items():
         column = _column(files[0], entry.column or "", entry.unit or "", f"channels.{name}")
-        values = entry.sign * entry.scale * column
+        values = entry.sign * entry.scale * column + entry.offset
         doubts += doubt_channel(name, values, None, "elevation")
         if np.isfinite(values).all():
             road[name] = values - float(np.mean(values)) if entry.remove_mean else values
