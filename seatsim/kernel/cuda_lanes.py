@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import cache
 from importlib.util import find_spec
-from typing import Any, cast
+from itertools import islice
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numba import cuda, float64, int64, void
@@ -20,9 +21,8 @@ from seatsim.compilation.jit import define, jit
 from seatsim.compilation.watch import report
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.lane_records import SHARED, numbers
-from seatsim.kernel.lane_run import REST, LaneEnd, LaneLimits, LaneStart, run_lane
+from seatsim.kernel.lane_run import NO_STROKES, NO_SUMS, LaneEnd, LaneLimits, LaneSignals, LaneStart, Strokes, run_lane
 from seatsim.kernel.lane_state import Sums
-from seatsim.kernel.loop_inputs import Timing
 
 Array = NDArray[np.float64]
 Form = tuple[str, tuple[tuple[str, type], ...]]
@@ -32,9 +32,9 @@ POINTS = CELLS + 1
 """Points of the grid of `seatsim.kernel.inverse.invert`, as a number that the compiler takes for a constant."""
 THREADS = 64
 """Threads of a block: a lane takes so many registers that larger blocks leave some of them unused."""
-END = LaneEnd(REST, 0.0, 0.0, 0.0)
+END = LaneEnd(NO_SUMS, NO_STROKES, 0.0, 0.0, 0.0, 0.0)
 ROWS = float64[:, ::1]
-SIGNATURE = void(float64, int64, *[float64] * 3, ROWS, ROWS, ROWS, int64[::1], ROWS, ROWS, ROWS)
+SIGNATURE = void(float64, float64, ROWS, ROWS, ROWS, int64[::1], float64[:, :, ::1], ROWS, ROWS, ROWS)
 """Types of the arguments of a kernel."""
 
 
@@ -58,41 +58,60 @@ def free_memory() -> float:
     return float(cuda.current_context().get_memory_info()[0])
 
 
+class KernelError(Exception):
+    """Why models do not compile for the device."""
+
+
+class DeviceInputs(NamedTuple):
+    """What L lanes begin with and what drives them.
+
+    starts: their numbers, shape (numbers, L). floors, speeds: accelerations [m/s^2] and velocities [m/s] of F floors,
+    shape (N, F). floor_of: the floor of each lane, shape (L,). noise: that of their readings, shape (M, READINGS, L).
+    """
+
+    starts: Array
+    floors: Array
+    speeds: Array
+    floor_of: NDArray[np.int64]
+    noise: Array
+
+
 def run_on_device(
-    template: LaneStart,
-    timing: Timing,
-    limits: LaneLimits,
-    starts: Array,
-    floors: Array,
-    speeds: Array,
-    floor_of: NDArray[np.int64],
-    depth: int,
+    template: LaneStart, limits: LaneLimits, inputs: DeviceInputs, depth: int
 ) -> tuple[list[LaneEnd], Any]:
     """Simulate L lanes and return their ends, and their drivers' accelerations in m/s^2, shape (N, L), on the device.
 
-    `template` gives the form of the lanes (see `lane_records.template_of`), `starts`, shape (numbers, L), their
-    numbers. `floors` and `speeds`, shape (N, F), hold accelerations [m/s^2] and velocities [m/s] of F floors,
-    `floor_of`, shape (L,), the floor of each lane. `depth` is above the greatest delay in steps.
+    `template` gives the form of the lanes (see `lane_records.template_of`); `depth` is above the greatest delay in
+    steps by two.
+
+    Raises:
+        KernelError: the models do not compile for the device.
     """
-    lanes = len(floor_of)
+    lanes = len(inputs.floor_of)
     kernel = _compile_kernel(_form_of(template))
+    if isinstance(kernel, str):
+        raise KernelError(kernel)
     driver, commands, ends = (
-        cuda.device_array((rows, lanes), np.float64) for rows in (len(floors), depth, len(numbers(END)))
+        cuda.device_array((rows, lanes), np.float64) for rows in (len(inputs.floors), depth, len(numbers(END)))
     )
-    inputs = [cuda.to_device(each) for each in (starts, floors, speeds, floor_of)]
-    kernel[(lanes + THREADS - 1) // THREADS, THREADS](
-        timing.step, timing.sample_every, timing.tolerance, *limits, *inputs, commands, driver, ends
-    )
-    rows = ends.copy_to_host().T.tolist()
-    return [LaneEnd(Sums(*row[:-3]), *row[-3:]) for row in rows], driver
+    given = [cuda.to_device(each) for each in inputs]
+    kernel[(lanes + THREADS - 1) // THREADS, THREADS](*limits, *given, commands, driver, ends)
+    return [_end_of(row) for row in ends.copy_to_host().T.tolist()], driver
+
+
+def _end_of(row: list[float]) -> LaneEnd:
+    values = iter(row)
+    return LaneEnd(Sums(*islice(values, len(NO_SUMS))), Strokes(*islice(values, len(NO_STROKES))), *values)
 
 
 @cache
 def _compile_kernel(form: Form) -> Any:
-    """Return the compiled kernel for lanes of a form."""
+    """Return the compiled kernel for lanes of a form, or why it does not compile."""
     report(1)
     try:
         return cuda.jit(SIGNATURE)(_define_kernel(form))
+    except Exception as error:  # a model of the user's own may hold anything, and numba has many errors
+        return f"{type(error).__name__}: {str(error).strip().partition(chr(10))[0]}"
     finally:
         report(0)
 
@@ -106,15 +125,13 @@ def _define_kernel(form: Form) -> Callable[..., None]:
     gather, scatter = jit(_define_gather(form)), jit(_define_scatter(END))
 
     def run(
-        step: float,
-        sample_every: int,
-        tolerance: float,
         most_speed: float,
         most_current: float,
         starts: Array,
         floors: Array,
         speeds: Array,
         floor_of: NDArray[np.int64],
+        noise: Array,
         commands: Array,
         driver: Array,
         ends: Array,
@@ -122,17 +139,9 @@ def _define_kernel(form: Form) -> Callable[..., None]:
         lane = cuda.grid(1)
         if lane < len(floor_of):
             grid = cuda.local.array(POINTS, float64)
-            floor = floor_of[lane]
-            end = run_lane(
-                gather(starts, lane),
-                Timing(step, sample_every, tolerance, False),
-                LaneLimits(most_speed, most_current),
-                floors[:, floor],
-                speeds[:, floor],
-                commands[:, lane],
-                driver[:, lane],
-                grid,
-            )
+            own = floor_of[lane]
+            signals = LaneSignals(floors[:, own], speeds[:, own], noise[:, :, lane], commands[:, lane], driver[:, lane])
+            end = run_lane(gather(starts, lane), LaneLimits(most_speed, most_current), signals, grid)
             scatter(end, ends, lane)
 
     return run

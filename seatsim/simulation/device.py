@@ -7,6 +7,7 @@ weighted here. All else is summed while a lane runs.
 from __future__ import annotations
 
 import math
+import warnings
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
@@ -19,9 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.excitations.base import Floor
-from seatsim.kernel.cuda_lanes import free_memory, is_simulated, run_on_device
+from seatsim.kernel.cuda_lanes import DeviceInputs, KernelError, free_memory, is_simulated, run_on_device
 from seatsim.kernel.lane_records import numbers, template_of
-from seatsim.kernel.lane_run import LaneEnd, LaneLimits, LaneStart
+from seatsim.kernel.lane_run import LaneEnd, LaneLimits
 from seatsim.metrics import METRICS, Metric, rms, weight
 from seatsim.metrics.arrays import ratio
 from seatsim.metrics.side_by_side import measure_drivers
@@ -29,15 +30,17 @@ from seatsim.metrics.weighting import can_weight
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.registry import specification_of
-from seatsim.simulation.placed_lane import PlacedLane, as_lane, metrics_of_sums
+from seatsim.simulation.damper_bench import judge_centring
+from seatsim.simulation.device_lanes import DeviceLane, as_device_lane, can_drive
+from seatsim.simulation.summed_metrics import RigOfSums, metrics_of_sums
 from seatsim.simulation.validity import Excursions, highest_current
 
 Array = NDArray[np.float64]
 MakeFloor = Callable[[Scenario], Floor | None]
 
 MOST_BYTES, MOST_SHARE = 4 << 30, 0.5
-"""Bytes of accelerations and floors on the device at once, at 10 s and 1 kHz those of 54 000 lanes, and the share of
-its free memory that these may take."""
+"""Bytes of accelerations, floors and noise on the device at once, at 10 s and 1 kHz those of 54 000 lanes on few
+floors, and the share of its free memory that these may take."""
 WEIGHTED_AT_ONCE = 1024
 """Drivers that are weighted at once: their transforms take five times the memory of their accelerations."""
 
@@ -50,31 +53,32 @@ class LaneRow(NamedTuple):
 
 
 class _Driven(NamedTuple):
-    """A lane with the floor that drives it."""
+    """A lane with the floor that drives it, and the noise of its readings."""
 
-    lane: PlacedLane
+    lane: DeviceLane
     floor: Floor
+    noise: Array
 
 
 def simulate_on_device(scenarios: Sequence[Scenario], make_floor: MakeFloor) -> Iterator[tuple[int, LaneRow]]:
     """Yield place and row of every scenario that a lane on the device can simulate to its end, in any order.
 
-    Those that are left out are to be simulated by themselves: what `simulate_ensemble` has no room for, dampers that
-    need centred strokes, scenarios that are wrong, and runs that diverge or whose acceleration is not finite.
-    `make_floor` gives the floor of a scenario; the same object for several is held once.
+    Those that are left out are to be simulated by themselves: what `as_device_lane` has no room for, floors with a
+    recorded temperature, current or command, models that do not compile, scenarios that are wrong, and runs that
+    diverge or whose acceleration is not finite. `make_floor` gives the floor of a scenario; the same object for several
+    is held once.
     """
-    groups: dict[object, list[PlacedLane]] = defaultdict(list)
+    groups: dict[object, list[DeviceLane]] = defaultdict(list)
     for place, scenario in enumerate(scenarios):
         with suppress(SeatsimError):
-            lane = as_lane(place, scenario)
-            if lane and not specification_of(type(scenario.damper.record)).centred:
+            if lane := as_device_lane(place, scenario):
                 groups[lane.combination].append(lane)
     for group in groups.values():
         for batch in _batch_lanes(group, make_floor):
             yield from _run_lanes(batch)
 
 
-def _batch_lanes(lanes: Sequence[PlacedLane], make_floor: MakeFloor) -> Iterator[list[_Driven]]:
+def _batch_lanes(lanes: Sequence[DeviceLane], make_floor: MakeFloor) -> Iterator[list[_Driven]]:
     """Yield lanes of one duration, as many at once as the memory of the device permits."""
     waiting: dict[int, list[_Driven]] = defaultdict(list)
     floors: set[int] = set()
@@ -82,10 +86,12 @@ def _batch_lanes(lanes: Sequence[PlacedLane], make_floor: MakeFloor) -> Iterator
     for lane in lanes:
         with suppress(SeatsimError):
             floor = make_floor(lane.scenario)
-            if floor and floor.temperature is None and floor.coil_current is None and floor.command is None:
-                waiting[len(floor.acceleration)].append(_Driven(lane, floor))
+            if floor is not None and can_drive(floor):
+                samples = len(floor.acceleration)
+                driven = _Driven(lane, floor, lane.noise(samples))
+                waiting[samples].append(driven)
                 # A floor that no lane of the batch has yet takes as much again twice, with its velocity.
-                held += floor.acceleration.nbytes * (1 if id(floor) in floors else 3)
+                held += driven.noise.nbytes + floor.acceleration.nbytes * (1 if id(floor) in floors else 3)
                 floors.add(id(floor))
         if held >= most:
             yield from waiting.values()
@@ -97,23 +103,27 @@ def _batch_lanes(lanes: Sequence[PlacedLane], make_floor: MakeFloor) -> Iterator
 
 def _run_lanes(group: Sequence[_Driven]) -> Iterator[tuple[int, LaneRow]]:
     """Run lanes of one combination and duration at once."""
-    first, lanes = group[0].lane, [each.lane for each in group]
+    lanes, step = [each.lane for each in group], group[0].lane.start.setup.timing.step
     floors = list({id(each.floor): each.floor for each in group}.values())
     at = {id(floor): index for index, floor in enumerate(floors)}
     floor_of = np.array([at[id(each.floor)] for each in group])
-    starts = [LaneStart(lane.setup, lane.state.now.state, lane.memory) for lane in lanes]
-    specification = specification_of(type(first.scenario.damper.record))
-    ends, driver = run_on_device(
-        template_of(starts),
-        first.timing,
-        LaneLimits(specification.max_speed, highest_current(specification.max_current)),
-        np.array([numbers(start) for start in starts], dtype=float).T.copy(),
-        np.array([floor.acceleration for floor in floors]).T.copy(),
-        np.array([floor.velocity for floor in floors]).T.copy(),
+    starts = [lane.start for lane in lanes]
+    specification = specification_of(type(lanes[0].scenario.damper.record))
+    inputs = DeviceInputs(
+        _side_by_side([np.array(numbers(start), dtype=float) for start in starts]),
+        _side_by_side([floor.acceleration for floor in floors]),
+        _side_by_side([floor.velocity for floor in floors]),
         floor_of,
-        1 + int(max(lane.setup.late for lane in lanes)),
+        _side_by_side([each.noise for each in group]),
     )
-    comfort, step = _measure_drivers(driver, first.timing.step), first.timing.step
+    limits = LaneLimits(float(specification.max_speed), float(highest_current(specification.max_current)))
+    try:
+        ends, driver = run_on_device(template_of(starts), limits, inputs, max(lane.depth for lane in lanes))
+    except KernelError as error:
+        names = type(lanes[0].scenario.damper.record).__name__, type(starts[0].setup.law).__name__
+        warnings.warn(f"{' and '.join(names)} do not compile for a CUDA device: {error}", stacklevel=2)
+        return
+    comfort = _measure_drivers(driver, step)
     on_floor = np.array([_weighted_rms(floor.acceleration, step) for floor in floors])[floor_of]
     samples = len(floors[0].acceleration)
     for index, (lane, end) in enumerate(zip(lanes, ends, strict=True)):
@@ -124,10 +134,18 @@ def _run_lanes(group: Sequence[_Driven]) -> Iterator[tuple[int, LaneRow]]:
             yield lane.place, _row(lane, end, samples, found)
 
 
-def _row(lane: PlacedLane, end: LaneEnd, samples: int, found: dict[str, float]) -> LaneRow:
-    found |= metrics_of_sums(lane, end.sums, samples)
+def _side_by_side(columns: Sequence[Array]) -> Array:
+    """Return arrays of one shape along a new last axis, as the threads of the device read them."""
+    return np.ascontiguousarray(np.stack(columns, axis=-1))
+
+
+def _row(lane: DeviceLane, end: LaneEnd, samples: int, found: dict[str, float]) -> LaneRow:
+    rig = RigOfSums(lane.start.setup.timing.step, lane.scenario.coil.resistance, end.temperature)
+    found |= metrics_of_sums(end.sums, samples, rig)
     metrics = {name: Metric(found[name], known.unit, known.meaning) for name, known in METRICS.items() if name in found}
-    return LaneRow(metrics, Excursions(end.fast / samples, end.strong / samples, end.sums.displacement_peak))
+    is_centred = specification_of(type(lane.scenario.damper.record)).centred
+    drift = judge_centring(end.strokes.lengths, end.strokes.middles) if is_centred else ""
+    return LaneRow(metrics, Excursions(end.fast / samples, end.strong / samples, end.sums.displacement_peak, drift))
 
 
 def _weighted_rms(floor: Array, step: float) -> float:

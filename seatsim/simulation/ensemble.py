@@ -10,29 +10,54 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Sequence
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.compilation.cached import compiled
-from seatsim.kernel.lane_records import LANES, fill, template_of
-from seatsim.kernel.lane_state import Demand, LaneInputs, LaneRows, LaneSetup, Sums
+from seatsim.kernel.assumed_model import TrueModel
+from seatsim.kernel.lane_records import LANES, fill, numbers, template_of
+from seatsim.kernel.lane_state import Demand, Lane, LaneInputs, LaneRows, LaneSetup, Sums
 from seatsim.kernel.lanes import run_lanes
-from seatsim.kernel.loop_inputs import LoopInputs
+from seatsim.kernel.loop import ROUNDING
+from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
+from seatsim.kernel.rig import RigForces
+from seatsim.kernel.step import IntegratorState
 from seatsim.metrics import METRICS, Metric, summarise
+from seatsim.rig.coil import relax
+from seatsim.rig.state import MECHANICAL
+from seatsim.rig.temperature import Thermal, scaling
 from seatsim.scenario.scenario import Control, Scenario
 from seatsim.schema.errors import RunError
+from seatsim.schema.registry import specification_of
 from seatsim.simulation.inputs import Forces
-from seatsim.simulation.placed_lane import PlacedLane, as_lane, metrics_of_sums
 from seatsim.simulation.runs import run_one
-from seatsim.simulation.simulate import diverged, prepare_inputs
+from seatsim.simulation.simulate import diverged, prepare_inputs, set_up
+from seatsim.simulation.summed_metrics import RigOfSums, metrics_of_sums
 
 Array = NDArray[np.float64]
 Row = dict[str, Metric] | RunError
 
 
-Block = list[tuple[PlacedLane, LoopInputs]]
+class _Lane(NamedTuple):
+    """A scenario as a lane: its place among the others, its constant parts, its state and its law's memory at rest."""
+
+    place: int
+    scenario: Scenario
+    setup: LaneSetup
+    state: Lane
+    memory: tuple[float, ...]
+    timing: Timing
+
+    @property
+    def combination(self) -> object:
+        """What lanes side by side must have in common beside their duration; all else are numbers."""
+        models = type(self.setup.rig.damper), type(self.setup.law), self.setup.inverse_model.order
+        return models, self.timing, tuple(map(type, numbers(self.setup)))
+
+
+Block = list[tuple[_Lane, LoopInputs]]
 
 
 def simulate_ensemble(scenarios: Sequence[Scenario]) -> list[Row]:
@@ -47,9 +72,9 @@ def simulate_ensemble(scenarios: Sequence[Scenario]) -> list[Row]:
         InputError: a scenario is wrong.
     """
     rows: dict[int, Row] = {}
-    groups: dict[object, list[PlacedLane]] = defaultdict(list)
+    groups: dict[object, list[_Lane]] = defaultdict(list)
     for place, scenario in enumerate(scenarios):
-        lane = as_lane(place, scenario)
+        lane = _as_lane(place, scenario)
         if lane is None:
             rows[place] = _run_alone(scenario)
         else:
@@ -66,7 +91,42 @@ def _run_alone(scenario: Scenario) -> Row:
         return error
 
 
-def _run_group(group: Sequence[PlacedLane]) -> dict[int, Row]:
+def _as_lane(place: int, scenario: Scenario) -> _Lane | None:
+    """Return a scenario as a lane, None where a lane has no room for it."""
+    plant, control, temperature = scenario.plant, scenario.control, scenario.temperature
+    if plant is None or control is None or control.sensors or scenario.effects or isinstance(temperature, Thermal):
+        return None
+    setup, initial = set_up(scenario, plant, control, is_recorded=False, carry_all_effects=False)
+    late = math.floor(setup.coil.delay / setup.timing.step + ROUNDING)
+    if not _has_room(setup, late):
+        return None
+    start = (*scenario.start, *(0.0,) * (MECHANICAL - len(scenario.start)), *initial)
+    rest = IntegratorState(start, (0.0,) * len(start), RigForces(0.0, 0.0, 0.0), 0.0, setup.timing.step, 0.0)
+    memory = specification_of(type(control.law)).initial
+    return _Lane(place, scenario, _lane_setup(setup, late, temperature), Lane(rest, 0.0, 0.0), memory, setup.timing)
+
+
+def _has_room(setup: LoopSetup, late: int) -> bool:
+    """Whether the lanes' loop has all that a run needs."""
+    try:
+        numbers(cast("tuple[object, ...]", setup.law))
+    except TypeError:
+        return False
+    step = setup.timing.step
+    is_whole = setup.coil.delay - late * step < ROUNDING * step
+    return is_whole and not setup.rig.effects and isinstance(setup.inverse_model, TrueModel)
+
+
+def _lane_setup(setup: LoopSetup, late: int, temperature: float) -> LaneSetup:
+    half = 0.5 * setup.timing.step
+    kept = 1.0 - relax(setup.coil, 0.0, 1.0, half), relax(setup.coil, 1.0, 0.0, half)
+    factors, model = scaling(setup.factors, temperature), cast("TrueModel", setup.inverse_model)
+    return LaneSetup(
+        setup.rig, setup.coil, setup.law, model, setup.max_command, factors, kept, float(late), temperature
+    )
+
+
+def _run_group(group: Sequence[_Lane]) -> dict[int, Row]:
     """Return the rows of lanes of one combination by their places."""
     rows: dict[int, Row] = {}
     template = template_of([lane.setup for lane in group])
@@ -125,8 +185,9 @@ def _side_by_side(channels: Sequence[Array]) -> Array:
     return np.ascontiguousarray(np.array([*channels, *[channels[-1]] * (LANES - len(channels))]).T)
 
 
-def _metrics(lane: PlacedLane, floor: Array, sums: Sums, driver: Array) -> dict[str, Metric]:
+def _metrics(lane: _Lane, floor: Array, sums: Sums, driver: Array) -> dict[str, Metric]:
     """Return the metrics of a lane in the order of `METRICS`."""
     of_driver = summarise({"driver_acceleration": driver, "floor_acceleration": floor}, lane.timing.step)
-    found = {name: metric.value for name, metric in of_driver.items()} | metrics_of_sums(lane, sums, len(floor))
+    rig = RigOfSums(lane.timing.step, lane.setup.coil.resistance, lane.setup.temperature)
+    found = {name: metric.value for name, metric in of_driver.items()} | metrics_of_sums(sums, len(floor), rig)
     return {name: Metric(found[name], known.unit, known.meaning) for name, known in METRICS.items() if name in found}
