@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cache
-from importlib.util import find_spec
 from itertools import islice
 from typing import Any, NamedTuple, cast
 
@@ -41,11 +40,6 @@ SIGNATURE = void(float64, float64, ROWS, ROWS, ROWS, int64[::1], float64[:, :, :
 def is_simulated() -> bool:
     """Return whether numba simulates the device."""
     return bool(config.ENABLE_CUDASIM)
-
-
-def has_compiler() -> bool:
-    """Return whether NVIDIA's target of numba is installed; the one within numba cannot type the models."""
-    return is_simulated() or find_spec("numba_cuda") is not None
 
 
 def has_device() -> bool:

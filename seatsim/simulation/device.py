@@ -158,7 +158,9 @@ def _measure_drivers(driver: Any, step: float) -> dict[str, Array]:
     held = driver.copy_to_host() if arrays is np else arrays.asarray(driver)
     parts = []
     for first in range(0, held.shape[1], WEIGHTED_AT_ONCE):
-        part = measure_drivers(held[:, first : first + WEIGHTED_AT_ONCE], step, arrays)
+        # Behind the end of a lane that diverged anything may stand.
+        with np.errstate(over="ignore", invalid="ignore"):
+            part = measure_drivers(held[:, first : first + WEIGHTED_AT_ONCE], step, arrays)
         parts.append({name: values if arrays is np else values.get() for name, values in part.items()})
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Generator, Sequence
+from importlib.util import find_spec
 from typing import NamedTuple
+
+from numba.core import config
 
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, RunError, SeatsimError
@@ -29,12 +32,13 @@ def check_device(keep_histories: bool) -> None:
     Raises:
         InputError: histories are to be kept, the extra is not installed, or there is no CUDA device.
     """
-    from seatsim.kernel.cuda_lanes import has_compiler, has_device
-
     if keep_histories:
         raise InputError("--engine cuda: no histories are kept on the device; choose --keep none, or --engine local")
-    if not has_compiler():
+    # The target for cards within numba itself cannot type the models.
+    if not config.ENABLE_CUDASIM and find_spec("numba_cuda") is None:
         raise InputError(EXTRA)
+    from seatsim.kernel.cuda_lanes import has_device
+
     if not has_device():
         raise InputError(
             "--engine cuda: no CUDA device can be used here: there is no NVIDIA card, or its driver is not installed;"
