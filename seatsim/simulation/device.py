@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from seatsim.excitations.base import Floor
 from seatsim.kernel.cuda_lanes import DeviceInputs, KernelError, free_memory, is_simulated, run_on_device
-from seatsim.kernel.lane_records import numbers, template_of
+from seatsim.kernel.lane_records import template_of
 from seatsim.kernel.lane_run import LaneEnd, LaneLimits
 from seatsim.metrics import METRICS, Metric, rms, weight
 from seatsim.metrics.arrays import ratio
@@ -110,7 +110,7 @@ def _run_lanes(group: Sequence[_Driven]) -> Iterator[tuple[int, LaneRow]]:
     starts = [lane.start for lane in lanes]
     specification = specification_of(type(lanes[0].scenario.damper.record))
     inputs = DeviceInputs(
-        _side_by_side([np.array(numbers(start), dtype=float) for start in starts]),
+        _side_by_side([np.array(lane.numbers, dtype=float) for lane in lanes]),
         _side_by_side([floor.acceleration for floor in floors]),
         _side_by_side([floor.velocity for floor in floors]),
         floor_of,

@@ -11,7 +11,6 @@ from seatsim.excitations.base import Floor
 from seatsim.kernel.lane_records import numbers
 from seatsim.kernel.lane_run import LaneStart
 from seatsim.kernel.loop import delay_of
-from seatsim.rig.control import CompiledLaw
 from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.rig.sensors import READINGS, Direct, at_rest
 from seatsim.rig.state import MECHANICAL
@@ -25,11 +24,12 @@ Array = NDArray[np.float64]
 
 
 class DeviceLane(NamedTuple):
-    """A scenario as a lane: its place among the others, and what it begins with."""
+    """A scenario as a lane: its place among the others, what it begins with, and that as `numbers`."""
 
     place: int
     scenario: Scenario
     start: LaneStart
+    numbers: list[float]
 
     @property
     def combination(self) -> object:
@@ -65,8 +65,6 @@ def as_device_lane(place: int, scenario: Scenario) -> DeviceLane | None:
     # Hits and excursions are counted by what the scenario states of the seat.
     if (changed.travel, changed.damper_ratio) != (plant.travel, plant.damper_ratio):
         return None
-    if not _is_numeric(setup.law):
-        return None
     start = LaneStart(
         setup,
         (*scenario.start, *(0.0,) * (MECHANICAL - len(scenario.start)), *initial),
@@ -75,20 +73,15 @@ def as_device_lane(place: int, scenario: Scenario) -> DeviceLane | None:
         () if isinstance(setup.sensors, Direct) else at_rest(scenario.start.displacement),
         temperature.start if isinstance(temperature, Thermal) else temperature,
     )
-    return DeviceLane(place, scenario, start)
+    try:
+        return DeviceLane(place, scenario, start, numbers(start))
+    except TypeError:
+        return None
 
 
 def can_drive(floor: Floor | None) -> bool:
     """Return whether a floor drives a lane: it has no recorded temperature, current or command beside it."""
     return floor is not None and floor.temperature is None and floor.coil_current is None and floor.command is None
-
-
-def _is_numeric(law: CompiledLaw) -> bool:
-    try:
-        numbers(law)  # type: ignore[arg-type]  # laws are records
-    except TypeError:
-        return False
-    return True
 
 
 def _form_of(part: object) -> object:

@@ -11,9 +11,8 @@ from seatsim.simulation.device_lanes import as_device_lane
 from ..conftest import SEAT
 
 SCENARIOS = {
-    "modified Bouc-Wen": {"damper": {"model": "modified_bouc_wen"}},
-    "Bingham with sensors, end stop and self-heating": {
-        "damper": {"model": "original_bingham"},
+    "modified Bouc-Wen with sensors, end stop and self-heating": {
+        "damper": {"model": "modified_bouc_wen"},
         "controller.sensors": {"bandwidth": 80.0, "displacement_noise": 1e-4},
         "effects": [{"effect": "suspension.end_stop", "parameters": {"low": -0.04, "high": 0.04}}],
         "temperature": {"start": 20.0, "ambient": 20.0, "heat_capacity": 500.0, "conductance": 1.0},
