@@ -79,9 +79,9 @@ def as_device_lane(place: int, scenario: Scenario) -> DeviceLane | None:
         return None
 
 
-def can_drive(floor: Floor | None) -> bool:
+def can_drive(floor: Floor) -> bool:
     """Return whether a floor drives a lane: it has no recorded temperature, current or command beside it."""
-    return floor is not None and floor.temperature is None and floor.coil_current is None and floor.command is None
+    return floor.temperature is None and floor.coil_current is None and floor.command is None
 
 
 def _form_of(part: object) -> object:
