@@ -19,7 +19,7 @@ from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.lane_records import LANES, gather, scatter
 from seatsim.kernel.lane_state import Demand, Lane, LaneInputs, LaneRows, LaneSetup, Sums
 from seatsim.kernel.loop import decide, measure
-from seatsim.kernel.loop_inputs import Timing
+from seatsim.kernel.loop_inputs import ControlledRig, Timing
 from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import IntegratorState, StepInputs, advance, estimate_error, start, take_substep
 from seatsim.kernel.work import owe
@@ -118,11 +118,11 @@ def _add_sample(
         demand = Demand(rows.demands[lane], rows.demands[LANES + lane], rows.demands[2 * LANES + lane])
         frame = at.now.rates[VELOCITY] + floor[lane]
         driver[lane] = frame + at.now.rates[CUSHION_VELOCITY]
-        scatter(_added(own, at, demand, frame, gather(sums, rows.sums, lane), k == 0), rows.sums, lane)
+        scatter(add_to_sums(own, at, demand, frame, gather(sums, rows.sums, lane), k == 0), rows.sums, lane)
 
 
 @jit
-def _added(own: LaneSetup, lane: Lane, demand: Demand, frame: float, sums: Sums, first: bool) -> Sums:
+def add_to_sums(own: ControlledRig, lane: Lane, demand: Demand, frame: float, sums: Sums, first: bool) -> Sums:
     """Return the sums with one more sample."""
     s, plant, current = lane.now.state, own.rig.plant, lane.current
     x, v = s[DISPLACEMENT], s[VELOCITY]

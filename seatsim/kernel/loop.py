@@ -49,10 +49,7 @@ def run_loop(
     """
     rig, coil, law, model, timing = setup.rig, setup.coil, setup.law, setup.inverse_model, setup.timing
     step, samples = timing.step, len(out)
-    late = math.floor(coil.delay / step + ROUNDING)
-    split = coil.delay - late * step
-    split = split if split >= ROUNDING * step else 0.0
-    kept = (1.0 - relaxed(coil, 0.0, 1.0, 0.5 * step), relaxed(coil, 1.0, 0.0, 0.5 * step))
+    late, split, kept = delay_of(coil, step)
     current = inputs.start_current
     temperature = inputs.temperature[0]
     factors = scaling_at(setup.factors, temperature)
@@ -105,6 +102,15 @@ def run_loop(
             factors = scaling_at(setup.factors, temperature)
         current = next_current
     return samples
+
+
+@jit
+def delay_of(coil: Coil, step: float) -> tuple[int, float, tuple[float, float]]:
+    """Return the delay in whole steps, what is left of it in s, and `kept` of `StepInputs`."""
+    late = int(math.floor(coil.delay / step + ROUNDING))  # noqa: RUF046 - a float on a CUDA device
+    split = coil.delay - late * step
+    kept = (1.0 - relaxed(coil, 0.0, 1.0, 0.5 * step), relaxed(coil, 1.0, 0.0, 0.5 * step))
+    return late, split if split >= ROUNDING * step else 0.0, kept
 
 
 @jit

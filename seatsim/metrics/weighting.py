@@ -172,10 +172,19 @@ def weight(signal: ArrayLike, sample_rate: float, weighting: str = "Wk") -> Arra
             f"sample_rate: is {sample_rate} Hz; weighting {weighting} reaches {constants.f2:.4g} Hz and needs "
             f"{constants.minimum_rate:.4g} Hz or more"
         )
-    # The product of transforms is a circular convolution: zeros behind the record keep its end out of its start.
-    size = fft.next_fast_len(x.size + math.ceil(_DECAY / constants.f1 * sample_rate), real=True)
-    weighted: Array = fft.irfft(fft.rfft(x, size) * _response_at_bins(size, float(sample_rate), weighting), size)
+    response, size = transform_of(x.size, sample_rate, weighting)
+    weighted: Array = fft.irfft(fft.rfft(x, size) * response, size)
     return weighted[: x.size]
+
+
+def transform_of(samples: int, sample_rate: float, weighting: str = "Wk") -> tuple[ComplexArray, int]:
+    """Return the response at the bins of the transform that weights a record of so many samples, and its length.
+
+    The product of transforms is a circular convolution: zeros behind the record keep its end out of its start.
+    """
+    decay = math.ceil(_DECAY / _constants(weighting).f1 * sample_rate)
+    size = fft.next_fast_len(samples + decay, real=True)
+    return _response_at_bins(size, float(sample_rate), weighting), size
 
 
 def can_weight(sample_rate: float, weighting: str = "Wk") -> bool:

@@ -25,7 +25,6 @@ from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import RigForces
 from seatsim.kernel.step import IntegratorState
 from seatsim.metrics import METRICS, Metric, summarise
-from seatsim.metrics.arrays import ratio
 from seatsim.rig.coil import relax
 from seatsim.rig.state import MECHANICAL
 from seatsim.rig.temperature import Thermal, scaling
@@ -35,6 +34,7 @@ from seatsim.schema.registry import specification_of
 from seatsim.simulation.inputs import Forces
 from seatsim.simulation.runs import run_one
 from seatsim.simulation.simulate import diverged, prepare_inputs, set_up
+from seatsim.simulation.summed_metrics import RigOfSums, metrics_of_sums
 
 Array = NDArray[np.float64]
 Row = dict[str, Metric] | RunError
@@ -188,29 +188,6 @@ def _side_by_side(channels: Sequence[Array]) -> Array:
 def _metrics(lane: _Lane, floor: Array, sums: Sums, driver: Array) -> dict[str, Metric]:
     """Return the metrics of a lane in the order of `METRICS`."""
     of_driver = summarise({"driver_acceleration": driver, "floor_acceleration": floor}, lane.timing.step)
-    found = {name: metric.value for name, metric in of_driver.items()} | _summed_metrics(lane, sums, len(floor))
+    rig = RigOfSums(lane.timing.step, lane.setup.coil.resistance, lane.setup.temperature)
+    found = {name: metric.value for name, metric in of_driver.items()} | metrics_of_sums(sums, len(floor), rig)
     return {name: Metric(found[name], known.unit, known.meaning) for name, known in METRICS.items() if name in found}
-
-
-def _summed_metrics(lane: _Lane, sums: Sums, samples: int) -> dict[str, float]:
-    """Return the metrics that the sums give; those of the wanted force only where there was one."""
-    # Sum of squares less half of the first and the last one: the trapezoidal rule.
-    heat = sums.current - 0.5 * (sums.first_current**2 + sums.last_current**2)
-    found = {
-        "frame_acceleration_rms": math.sqrt(sums.frame / samples),
-        "frame_acceleration_peak": sums.frame_peak,
-        "suspension_displacement_rms": math.sqrt(sums.displacement / samples),
-        "suspension_displacement_peak": sums.displacement_peak,
-        "end_stop_hits": sums.hits,
-        "current_rms": math.sqrt(sums.current / samples),
-        "electrical_energy": lane.setup.coil.resistance * heat * lane.timing.step,
-        "damper_energy": sums.damper_energy,
-        "energy_residual": sums.imbalance / sums.energy if sums.energy else 0.0,
-        "temperature_final": lane.setup.temperature,
-    }
-    if sums.asked:
-        error = math.sqrt(sums.missed / sums.asked)
-        found["force_tracking_error"] = error
-        found["force_tracking_error_relative"] = ratio(error, math.sqrt(sums.wanted / sums.asked))
-        found["force_served_share"] = ratio(sums.served, sums.asked)
-    return found

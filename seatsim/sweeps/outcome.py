@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.excitations.base import Excitation, Floor
-from seatsim.metrics.table import METRICS
+from seatsim.metrics.table import METRICS, Metric
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import SeatsimError
 from seatsim.simulation.history_table import write_histories
@@ -50,7 +50,7 @@ def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: 
         seed = scenario.seed
         # What grows beyond all numbers is said by the state of the run, once.
         with np.errstate(over="ignore", invalid="ignore"):
-            history = simulate(scenario, _floor_of(scenario))
+            history = simulate(scenario, floor_of(scenario))
             metrics = measure_run(scenario, history)
         if histories is not None:
             write_histories([Run(scenario, history, metrics)], history_path(histories, number))
@@ -59,6 +59,11 @@ def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: 
         return Outcome(number, FAILED, str(error), seed, (None,) * len(METRICS))
     except Exception as error:  # a model of the user's own may raise anything, and the other runs go on
         return Outcome(number, FAILED, f"{type(error).__name__}: {error}", seed, (None,) * len(METRICS))
+    return outcome_of(number, seed, metrics, reason)
+
+
+def outcome_of(number: int, seed: int, metrics: Mapping[str, Metric], reason: str) -> Outcome:
+    """Return the outcome of a run that reached its end; `reason` is why its figures are unverified, mostly empty."""
     figures = tuple(metrics[name].value if name in metrics else None for name in METRICS)
     return Outcome(number, UNVERIFIED if reason else DONE, reason, seed, figures)
 
@@ -68,7 +73,7 @@ def history_path(folder: Path, number: int) -> Path:
     return folder / f"run-{number:07d}.parquet"
 
 
-def _floor_of(scenario: Scenario) -> Floor | None:
+def floor_of(scenario: Scenario) -> Floor | None:
     """Return the floor of a scenario, from the floors kept where it is among them; None where it has none."""
     if scenario.excitation is None:
         return None

@@ -45,7 +45,6 @@ def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
 def test_what_is_wrong_is_one_sentence(write_sweep, tmp_path, seatsim_command, monkeypatch):
     path, out = write_sweep(runs=2), tmp_path / "out"
     for options, sentence in (
-        (["--engine", "cuda"], "no CUDA device"),
         (["--address", "tcp://here:1"], "add --engine dask"),
         (["--part", "3/2"], "write K/N with K from 1 to N"),
     ):

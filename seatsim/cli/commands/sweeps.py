@@ -60,7 +60,7 @@ def sweep(
         return answer({"runs": prepared.plan.runs}, [path])
     try:
         with (
-            open_engine(engine, jobs or os.cpu_count() or 1, address) as carry_out,
+            open_engine(engine, jobs or os.cpu_count() or 1, address, keep == "histories") as carry_out,
             count_progress("simulating", prepared.plan.runs) as count,
         ):
             result = execute(prepared, folder, carry_out, resume, keep == "histories", part, count)

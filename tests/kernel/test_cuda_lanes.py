@@ -1,0 +1,41 @@
+"""The kernel of a CUDA device: all that a lane may hold compiles for one, with no card in the machine."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from seatsim.kernel.lane_records import template_of
+from seatsim.scenario.loading import load
+from seatsim.simulation.device_lanes import as_device_lane
+
+from ..conftest import SEAT
+
+SCENARIOS = {
+    "modified Bouc-Wen with sensors, end stop and self-heating": {
+        "damper": {"model": "modified_bouc_wen"},
+        "controller.sensors": {"bandwidth": 80.0, "displacement_noise": 1e-4},
+        "effects": [{"effect": "suspension.end_stop", "parameters": {"low": -0.04, "high": 0.04}}],
+        "temperature": {"start": 20.0, "ambient": 20.0, "heat_capacity": 500.0, "conductance": 1.0},
+    },
+    "yu2019 with an assumed inverse": {
+        "damper": {"model": "yu2019"},
+        "controller.inverse": {"model": "yu2019", "temperature": 20.0},
+    },
+}
+
+
+@pytest.mark.parametrize("settings", SCENARIOS.values(), ids=SCENARIOS)
+def test_the_kernel_compiles_without_a_card(tmp_path, monkeypatch, settings):
+    pytest.importorskip("numba_cuda", reason='needs pip install "seatsim[cuda]"')
+    from numba import cuda
+    from numba.cuda import dispatcher
+
+    from seatsim.kernel.cuda_lanes import SIGNATURE, make_kernel
+
+    path = tmp_path / "seat.yaml"
+    path.write_text(SEAT)
+    lane = as_device_lane(0, load(path, settings)[0])
+    # Functions that a kernel calls ask for the card that they are compiled for.
+    monkeypatch.setattr(dispatcher, "get_current_device", lambda: SimpleNamespace(compute_capability=(9, 0)))
+    code, _ = cuda.compile_ptx(make_kernel(template_of([lane.start])), SIGNATURE, cc=(9, 0))
+    assert ".target sm_90" in code and ".entry" in code
