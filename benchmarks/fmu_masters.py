@@ -59,9 +59,9 @@ def run_ecos(path: Path, block: Block, inputs: Mapping[str, Array], outputs: lis
 def run_libcosim(path: Path, block: Block, inputs: Mapping[str, Array], outputs: list[str], step: float) -> Array:
     """Return the outputs after each step, from libcosim."""
     from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimManipulator import CosimManipulator
     from libcosimpy.CosimObserver import CosimObserver
-    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimSlave import CosimLocalSlave
 
     log_output_level(CosimLogLevel.WARNING)
