@@ -1,4 +1,7 @@
-"""Write `reference.md` and the pages under `reference`: every name that can stand in a scenario, from the code."""
+"""Write `reference.md`, the pages under `reference` and the pictures of the dampers, from the code.
+
+The pages have every name that can stand in a scenario.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from equations import convert_equations
+from loops import draw_loops
 
 from seatsim.dampers.base import CONFIDENCE, find_confidence
 from seatsim.scenario.describe import KINDS, SECTIONS, Page, find_page
@@ -16,10 +20,18 @@ from seatsim.schema import registry
 from seatsim.schema.fields import SLIGHTLY, FieldSpecification, bounds, choices
 
 FOLDER = Path(__file__).parent
+LOOPS = "images/loops"
+"""Folder of the pictures of the dampers."""
 HEAD = """# Models, laws, floors and effects
 
 Every name that can stand in a scenario, with what it is; each leads to its equation, parameters, source and range.
 `seatsim describe NAME` prints the same in a terminal. Built from the code by `python docs/build_reference.py`.
+"""
+
+SHOWN = """
+The pictures show the force with the default parameters in a sine test, at no current, at half and at the whole current
+for which the model holds. Each picture has its own scale of force. `seatsim characterise --model NAME` draws the loops
+of any other test.
 """
 
 
@@ -93,14 +105,17 @@ def state_range(kind: str, name: str) -> list[str]:
 
 def write_chapter(chapter: Chapter) -> str:
     """Return the text of one page."""
-    return f"# {chapter.title}\n\nBuilt from the code by `python docs/build_reference.py`.\n" + "".join(
-        write_entry(find_page(name)) for name in chapter.names
-    )
+    head = f"# {chapter.title}\n\nBuilt from the code by `python docs/build_reference.py`.\n"
+    if chapter.file.startswith("reference/dampers"):
+        head += SHOWN
+    return head + "".join(write_entry(find_page(name)) for name in chapter.names)
 
 
 def write_entry(page: Page) -> str:
     """Return the section of one name: words and equations, parameters, source and range."""
     parts = [f"\n## {page.name}\n", *write_text(page)]
+    if page.kind == "damper":
+        parts.append(f"![Force of {page.name} over velocity and displacement](../{LOOPS}/{page.name}.svg)\n")
     cls = SECTIONS[page.name] if page.kind == "section" else registry.find(page.kind, page.name)
     parts.append("\n".join(write_parameters(cls, page.keys)) if page.keys else "No parameters.\n")
     facts = [f"Source: {page.source}"] * bool(page.source) + page.facts
@@ -168,3 +183,6 @@ if __name__ == "__main__":
     (FOLDER / "reference").mkdir(exist_ok=True)
     for file, text in pages().items():
         (FOLDER / file).write_text(text, encoding="utf-8")
+    (FOLDER / LOOPS).mkdir(parents=True, exist_ok=True)
+    for name in registry.names("damper"):
+        (FOLDER / LOOPS / f"{name}.svg").write_text(draw_loops(name), encoding="utf-8")

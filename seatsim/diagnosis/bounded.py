@@ -34,7 +34,7 @@ def minimise_bounded(matrix: Array, right: Array, low: Array, high: Array) -> Ar
     """
     side = np.zeros(len(right), dtype=np.int8)
     fewest, patience = len(right) + 1, PATIENCE
-    allowed = ALLOWANCE * max(1.0, float(np.abs(right).max()))
+    allowed = ALLOWANCE * max(1.0, float(np.abs(right).max(initial=0.0)))
     while True:
         x = np.where(side < 0, low, np.where(side > 0, high, 0.0))
         free = side == 0

@@ -127,10 +127,9 @@ def _predict_one(
     """Return the prediction for a candidate, the last component of the normal equations."""
     vector, (low, high) = base.parameters.vector, base.parameters.limits
     count, stretch = len(base.parameters.deviations), objective.settings.selection.stretch
-    ends = (np.array([candidate.low[0], candidate.high[0]]) - candidate.nominal) / (
-        candidate.start[0] - candidate.nominal
-    )
-    low = np.append(low, 0.0 if ends.min() >= 0.0 else -stretch)
+    toward = np.sign(candidate.start[0] - candidate.nominal)
+    ends = toward * (np.array([candidate.low[0], candidate.high[0]]) - candidate.nominal)
+    low = np.append(low, 0.0 if toward and ends.min() >= 0.0 else -stretch)
     high = np.append(high, stretch)
     step = solve_step(matrix, right, count, np.append(vector, 0.0), low, high, objective.settings.fit.prior_std)
     return Prediction(base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step), float(step[-1]))

@@ -73,7 +73,7 @@ def _in_si(name: str, entry: ChannelMap, values: Array, clocked: Clocked, wanted
         found = conversion(unit, base)
     except InputError as error:
         raise InputError(f"channels.{name}.unit: {error}") from error
-    return found.factor * (entry.sign * entry.scale * values) + found.zero
+    return found.factor * (entry.sign * entry.scale * values + entry.offset) + found.zero
 
 
 def _mends(entry: ChannelMap, issue: Issue) -> bool:

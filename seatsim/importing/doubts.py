@@ -23,7 +23,8 @@ NEAR = 0.08
 OFFSET = 0.2
 """m/s^2; mean of an accelerometer from which it has an offset."""
 ZERO = {
-    "force": "gas force, preload or the zero of the load cell", "displacement": "the zero of the sensor",
+    "force": "gas force, preload or the zero of the load cell",
+    "displacement": "the zero of the sensor; in the map, offset moves it and remove_mean centres each run",
     "elevation": "an absolute elevation",
 }  # fmt: skip
 """What the mean of a quantity that swings may be."""

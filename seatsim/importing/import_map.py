@@ -28,7 +28,7 @@ PRIMITIVE = {("m/s^2", 1): "m/s", ("m/s^2", 2): "m", ("m/s", 1): "m"}
 
 
 class ChannelMap(NamedTuple):
-    """Where a channel comes from and how it becomes SI: `sign * scale * column` is in `unit`.
+    """Where a channel comes from and how it becomes SI: `sign * scale * column + offset` is in `unit`.
 
     `group` names the file or the group where several have the column. `minus` is a second column that is subtracted,
     `differentiate` how often the result is differentiated by time, `value` a constant in place of a column. `delay` is
@@ -39,6 +39,7 @@ class ChannelMap(NamedTuple):
     unit: str | None = None
     sign: Literal[1, -1] = 1
     scale: Annotated[float, param("-", "factor before the unit")] = 1.0
+    offset: Annotated[float, param("", "added after the factor, in the unit")] = 0.0
     remove_mean: bool = False
     delay: Annotated[float, param("s", "how much too late the channel is", low=-60, high=60)] = 0.0
     group: str | None = None

@@ -27,6 +27,9 @@ from seatsim.schema.errors import InputError
 OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
 
+MOST_NAMES = 8
+"""Most columns that are named as left out."""
+
 
 class Import(NamedTuple):
     """What was imported: the map as used, whether it was proposed, the files written, sentences, and doubts.
@@ -74,6 +77,8 @@ def import_files(
     else:
         used = stated
         check_files(used.runs, [file.path.name for file in files], map_file or Path(FILE))
+    if stated is None:
+        notes += _say_left_out(files, used)
     if used.rig == "road":
         road, doubts = assemble_road(files, used)
         return Import(folder, used, stated is None, write_road(folder, road, used), notes, doubts)
@@ -111,6 +116,22 @@ def _proposed(files: Sequence[DataFile], folder: Path) -> ImportMap:
     if proposal.open:
         raise _to_be_completed(f"{files[0].path}: {'; '.join(proposal.open)}", proposal.map, folder)
     return proposal.map
+
+
+def _say_left_out(files: Sequence[DataFile], used: ImportMap) -> list[str]:
+    """Return a sentence on the columns that a proposed map does not use, if there are any."""
+    axes = [axis.column for axis in (used.time, used.distance) if axis]
+    taken = {*axes, *(name for entry in used.channels.values() for name in (entry.column, entry.minus))}
+    columns = [signal.name for file in files for group in file.groups for signal in group.signals]
+    left = [f"'{name}'" for name in dict.fromkeys(columns) if name not in taken]
+    if not left:
+        return []
+    more = f" and {len(left) - MOST_NAMES} more" if len(left) > MOST_NAMES else ""
+    channels = ", ".join(name for name in CHANNELS.get(used.rig, ()) if name not in used.channels)
+    return [
+        f"left out, for want of a channel with such a name: {', '.join(left[:MOST_NAMES])}{more}; to use one, state it"
+        f" under channels of the map" + (f" as one of {channels}" if channels else "")
+    ]
 
 
 def _to_be_completed(problem: str, proposed: ImportMap, folder: Path) -> InputError:

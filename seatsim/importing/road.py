@@ -33,7 +33,8 @@ def assemble_road(files: Sequence[DataFile], stated: ImportMap) -> tuple[dict[st
     road = {DISTANCE: along}
     left_out = []
     for name, entry in stated.channels.items():
-        values = entry.sign * entry.scale * _column(files[0], entry.column or "", entry.unit or "", f"channels.{name}")
+        column = _column(files[0], entry.column or "", entry.unit or "", f"channels.{name}")
+        values = entry.sign * entry.scale * column
         doubts += doubt_channel(name, values, None, "elevation")
         if np.isfinite(values).all():
             road[name] = values - float(np.mean(values)) if entry.remove_mean else values

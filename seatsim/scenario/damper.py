@@ -29,7 +29,12 @@ def stated_damper(
     cls = chosen_class(DAMPERS, stated, "model", source, keys)
     specification = DAMPERS.specification_of(cls)
     required = field_names(cls) if specification.complete else ()
-    hint = "; this model has no set of its own, state every parameter" if specification.complete else ""
+    name = stated["model"]
+    hint = (
+        f"; the model '{name}' has no default values: state every parameter (seatsim describe {name} lists them)"
+        if specification.complete
+        else ""
+    )
     record = build(cls, stated.get("parameters", {}), source, (*keys, "parameters"), required, hint)
     if "temperature_factors" not in stated:
         return record, specification.factors

@@ -185,3 +185,15 @@ def test_a_unit_alone_tells_a_quantity_only_where_no_word_does():
     assert read_name("Kanal 3", "kN").quantity == "force"
     assert read_name("Kanal 3", "").quantity is None
     assert read_name("Temperatur", "V").quantity == "temperature"
+
+
+def test_a_column_without_a_channel_is_named_and_an_offset_is_added_in_the_unit(tmp_path):
+    file = file_of(tmp_path, [*NAMES["German"], "Kopf z [g]"])
+    found = import_files([file], tmp_path / "as-proposed")
+    assert any("'Kopf z'" in note and "left out" in note for note in found.notes)
+    text = (tmp_path / "as-proposed" / "map.yaml").read_text(encoding="utf-8")
+    (tmp_path / "map.yaml").write_text(text.replace("unit: mm,", "unit: mm, offset: -3,"), encoding="utf-8")
+    import_files([file], tmp_path / "moved", tmp_path / "map.yaml")
+    plain, moved = (read_run(tmp_path / each) for each in ("as-proposed", "moved"))
+    change = moved["suspension_displacement"] - plain["suspension_displacement"]
+    np.testing.assert_allclose(change, -0.003, atol=1e-7)

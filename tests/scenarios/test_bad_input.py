@@ -54,7 +54,7 @@ CASES = [
     ("model: bouc_wen", "model: nowhere.module:Class", ["line 11", "no module 'nowhere.module' is installed"]),
     ("model: bouc_wen", "model: 'math:Class'", ["line 11", "no class 'Class'"]),
     ("model: bouc_wen", "model: 'collections:OrderedDict'", ["line 11", "not a damper"]),
-    ("c_a: 250.0, ", "", ["line 12", "c_a", "missing", "state every parameter"]),
+    ("c_a: 250.0, ", "", ["line 12", "c_a", "missing", "bouc_wen", "state every parameter"]),
     ("  parameters: {c_a: 250.0, c_b: 350.0, alpha_a: 45.0, alpha_b: 620.0, k0: 0.0, x0: 0.0, f0: 0.0, A: 2000.0,\n"
      "               beta: 1000.0, gamma: 1000.0, n: 2}\n", "", ["line 10", "damper.parameters", "c_a", "missing"]),
     ("c_a: 250.0", "c_z: 250.0", ["line 12", "c_z", "unknown key"]),

@@ -95,7 +95,8 @@
       const axis = { stroke: colour("--ink"), grid: { stroke: colour("--line"), width: 1 }, ticks: { show: false },
         font: "13px system-ui, sans-serif", values: (plot, marks) => marks.map(mark => mark == null ? "" : String(Number(mark.toPrecision(6))).replace("-", "−")) };
       const raised = mark => `10${String(Math.round(Math.log10(mark))).replace(/./g, letter => RAISED[letter])}`;
-      const decades = { ...axis, splits: (plot, k, low, high) => steps(low, high, [1]),
+      // uPlot would blank marks of its own choice, and a blank mark has no power to write.
+      const decades = { ...axis, splits: (plot, k, low, high) => steps(low, high, [1]), filter: (plot, marks) => marks,
         values: (plot, marks) => marks.map((mark, k) => marks.length < 8 || k % 2 === 0 ? raised(mark) : "") };
       const octaves = { ...axis, splits: (plot, k, low, high) => steps(low, high, [1, 2, 5]) };
       const options = {

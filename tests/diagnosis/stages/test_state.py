@@ -1,6 +1,7 @@
 """The statement of a solution: what is held out, what is given up there, and what a diagnosis then says."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from seatsim.diagnosis.result import GapFigures, Gaps, Share
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.sentences import write_answer
 from seatsim.diagnosis.solve import Solution
-from seatsim.diagnosis.state import _propose_experiment, state_diagnosis, validate_on_held_out
+from seatsim.diagnosis.state import _name_raised_gap, _propose_experiment, state_diagnosis, validate_on_held_out
 from seatsim.diagnosis.validate import choose_held_out_run, make_scenario, refit_without, shrink_by_run
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.quality.coverage import measure_coverage
@@ -125,12 +126,24 @@ def harmful(objective, verdict):
     return make_solution(dataclasses.replace(other, problem=problem), verdict, ONE)
 
 
-def test_effects_that_do_harm_over_all_runs_are_given_up_beside_an_unknown_cause(objective, monkeypatch):
+@pytest.mark.parametrize(
+    ("after", "third", "raised"), [(0.3, 0.1, "the gap of a"), (0.1, 0.3, "the gap of all runs"), (0.1, 0.1, "")]
+)
+def test_a_gap_is_raised_in_the_held_out_run_or_in_all_together(after, third, raised):
+    def gaps(overall):
+        return SimpleNamespace(overall=overall)
+
+    held_out = SimpleNamespace(before=gaps(0.2), after=gaps(after))
+    others = [held_out, SimpleNamespace(before=gaps(0.2), after=gaps(third))]
+    assert _name_raised_gap(held_out, "a", others) == raised
+
+
+def test_effects_that_do_harm_are_given_up_beside_an_unknown_cause(objective, monkeypatch):
     monkeypatch.setattr("seatsim.diagnosis.state.choose_typical_run", lambda *_: "third")
     solution = harmful(objective, "unknown")
     found = validate_on_held_out(solution)
     (note,) = found.solution.selection.notes
-    assert note == f"{ONE.effect} was given up, since it raises the gap of all runs as fitted without third"
+    assert note == f"{ONE.effect} was given up, since it raises the gap of third as fitted without third"
     decision = found.solution.decision
     assert decision.chosen is solution.selection.calibrated and decision.verdict == "unknown"
     assert decision.probabilities[ONE.effect] < 0.1
@@ -284,7 +297,7 @@ def test_an_experiment_is_proposed_for_the_first_group_of_a_seat_alone(objective
         header = problem.recording.header._replace(rig="damper_bench")
         other = dataclasses.replace(problem, recording=dataclasses.replace(problem.recording, header=header))
         bench_solution = solution._replace(objective=dataclasses.replace(objective, problem=other))
-        assert _propose_experiment(bench_solution, None) is None
+        assert _propose_experiment(bench_solution.objective, bench_solution.decision, None) is None
         assert asked == []
         return
     found, _ = state(solution)
