@@ -8,6 +8,7 @@ from typing import NamedTuple
 from seatsim.dampers.base import DamperSpecification
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+from seatsim.schema.errors import InputError
 from seatsim.schema.registry import register
 
 PREFIX = "fmu:"
@@ -21,6 +22,20 @@ class FmuDamper(NamedTuple):
     inputs: tuple[tuple[str, str], ...]
     output: str
     parameters: tuple[tuple[str, float], ...] = ()
+
+
+def require_model(damper: object) -> None:
+    """Refuse a damper that is a unit.
+
+    Raises:
+        InputError: it is one, which no compiled code can call.
+    """
+    if isinstance(damper, FmuDamper):
+        raise InputError(
+            f"the damper is the unit {damper.file}, which is stepped outside the compiled loop: 'run', 'compare',"
+            " 'sweep', 'seat-test' and 'gap' of a seat simulate it; for anything else fit a model to its bench tables"
+            " with 'seatsim identify'"
+        )
 
 
 class CoupledForce(NamedTuple):

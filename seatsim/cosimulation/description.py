@@ -25,14 +25,18 @@ SETTABLE = {"Real": float, "Float64": float, "Integer": int, "Int32": int, "Bool
 """Types of parameters that a scenario may state."""
 
 
+CO_SIMULATION, MODEL_EXCHANGE = "CoSimulation", "ModelExchange"
+
+
 class UnitDescription(NamedTuple):
-    """Version of the standard, identifier in C, token, variables by name, whether a state can be saved and restored."""
+    """Version of the standard, kind, identifier in C, variables by name, whether a state can be saved and restored."""
 
     version: int
+    kind: str
     identifier: str
     described: Any
     variables: Mapping[str, Any]
-    repeats: bool
+    saves: bool
 
 
 def need_fmpy() -> ModuleType:
@@ -48,7 +52,7 @@ def need_fmpy() -> ModuleType:
 
 
 def describe_unit(path: Path) -> UnitDescription:
-    """Return what a unit for co-simulation says of itself.
+    """Return what a unit says of itself; of one that is for both kinds, as a unit for co-simulation.
 
     Raises:
         InputError: the archive is not one of a unit, its description cannot be read, it is of a version or kind that
@@ -69,13 +73,15 @@ def describe_unit(path: Path) -> UnitDescription:
         except Exception as error:  # lxml's and FMPy's own errors have no common class
             said = str(error).strip().split("\n")[0]
             raise InputError(f"{path}: its description cannot be read: {said}") from error
-        model = described.coSimulation
+        model = described.coSimulation or described.modelExchange
         if model is None:
-            raise InputError(f"{path}: is for model exchange only; a damper must be for co-simulation")
+            raise InputError(f"{path}: is neither for co-simulation nor for model exchange, as a damper must be")
+        kind = CO_SIMULATION if described.coSimulation else MODEL_EXCHANGE
         identifier = str(model.modelIdentifier)
         find_library(path, archive, version, identifier)
     saves = getattr(model, "canGetAndSetFMUstate", False) or getattr(model, "canGetAndSetFMUState", False)
-    return UnitDescription(version, identifier, described, {v.name: v for v in described.modelVariables}, bool(saves))
+    variables = {v.name: v for v in described.modelVariables}
+    return UnitDescription(version, kind, identifier, described, variables, bool(saves))
 
 
 def _alone(text: bytes) -> io.BytesIO:

@@ -44,7 +44,6 @@ def print_c(block: Block) -> str:
         "NOTES": "".join(f"\n   Note: {note}." for note in block.notes),
         "INPUTS": _list_of(inputs),
         "OUTPUTS": _list_of(outputs),
-        "STEP": f"R({block.step!r})",
         "SAMPLES": str(SAMPLES),
         "FED": _rows(fed),
         "EXPECTED": _rows(expected),
@@ -75,7 +74,7 @@ def _test_vector(
         given = given._replace(**values)
         if k == 0:
             state = block.start(parameters, given, block.rest)
-        state, _ = block.advance(parameters, given, state, block.step)
+        state, _ = block.advance(parameters, given, state, 0.0, block.step)
         seen: Any = block.observe(parameters, given, state, block.step)
         yield [float(v) for v in values.values()], [float(getattr(seen, v.name)) for v in outputs]
 

@@ -50,7 +50,7 @@ def make_files(block: Block, version: int) -> dict[str, bytes]:
     variables = list_variables(block)
     model = print_model(block) + "\n" + print_variables(variables)
     token = f"{{{uuid.UUID(sha256(model.encode()).hexdigest()[:32])}}}"
-    model += f'\n#define TOKEN "{token}"\n#define STEP {block.step!r}\n#define FIXED_STEP {int(block.fixed_step)}\n'
+    model += f'\n#define TOKEN "{token}"\n'
     unit = Unit(block, variables, identifier(block), token)
     described = describe_fmi2(unit) if version == 2 else describe_fmi3(unit)
     sources = {"model.h": model, "instance.h": resource("instance.h"), f"fmi{version}.c": resource(f"fmi{version}.c")}

@@ -36,7 +36,8 @@ def print_model(block: Block) -> str:
     number_ = Signature(REAL)
     start = _call(program, block.start, (p, u, s), ("m->parameters", "m->inputs", "rest_state"))
     observe = _call(program, block.observe, (p, u, s, number_), ("m->parameters", "m->inputs", "m->state", "m->age"))
-    advance = _call(program, block.advance, (p, u, s, number_), ("m->parameters", "m->inputs", "m->state", "length"))
+    codes = ("m->parameters", "m->inputs", "m->state", "k * part", "part")
+    advance = _call(program, block.advance, (p, u, s, number_, number_), codes)
     result = numba.typeof((block.initial, True))
     names = {
         "Parameters": program.types.name(p.type),
@@ -50,8 +51,10 @@ def print_model(block: Block) -> str:
         f"static const {names[kind]} {name} = {_initialiser(values[kind], numba.typeof(values[kind]))};"
         for kind, name in (("Parameters", "nominal_parameters"), ("Inputs", "first_inputs"), ("State", "rest_state"))
     ]
+    words = {"START": start, "OBSERVE": observe, "ADVANCE": advance}
+    words |= {"FIXED_STEP": str(int(block.fixed_step)), "STEP": repr(block.step)}
     model = resource("model.h")
-    for word, text in (names | {"START": start, "OBSERVE": observe, "ADVANCE": advance}).items():
+    for word, text in (names | words).items():
         model = model.replace(f"@{word}@", text)
     return "\n".join([resource("prelude.h"), program.source(), *constants, "", model])
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol, Self, TypeAlias, cast
 
+from seatsim.cosimulation.damper import PREFIX
 from seatsim.dampers.base import DAMPERS, DamperSpecification
 from seatsim.kernel.protocols import DamperModel
+from seatsim.schema.errors import InputError
 
 FieldValue: TypeAlias = float | str | tuple[float, ...]
 """A number (an `int` too), one of several words, or the coefficients of a law in the current."""
@@ -24,8 +26,13 @@ def find_model(name: str) -> type[DamperRecord]:
     """Return the class of a damper model.
 
     Raises:
-        InputError: no damper has this name.
+        InputError: no damper has this name, or it is that of a unit.
     """
+    if name.startswith(PREFIX):
+        raise InputError(
+            f"{name} is a unit of another program, whose parameters its supplier knows; a model of the library can be"
+            " fitted to its bench tables, such as --model bouc_wen"
+        )
     # A damper's record has fields of any type; those that a fit reads and replaces are numbers, words and laws.
     return cast("type[DamperRecord]", DAMPERS.find(name))
 

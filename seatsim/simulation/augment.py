@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.cosimulation.damper import FmuDamper
+from seatsim.cosimulation.damper import require_model
 from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on, off
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.chain import Effects, state_at_rest
@@ -147,12 +147,7 @@ def augment_damper(record: DamperModel, effects: Effects) -> tuple[DamperModel, 
     Raises:
         InputError: the damper is a unit, which no compiled code can call.
     """
-    if isinstance(record, FmuDamper):
-        raise InputError(
-            f"the damper is the unit {record.file}, which is stepped outside the compiled loop: 'run', 'compare',"
-            " 'sweep' and 'gap' of a seat simulate it; for anything else fit a model to its bench tables"
-            " with 'seatsim identify'"
-        )
+    require_model(record)
     initial: tuple[float, ...] = specification_of(type(record)).initial
     if not effects:
         return record, initial

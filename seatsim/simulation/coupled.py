@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 
 from seatsim.compilation.cached import compiled
 from seatsim.cosimulation.damper import CoupledForce, FmuDamper
-from seatsim.cosimulation.unit import RunningUnit, run_unit
+from seatsim.cosimulation.running import RunningUnit
+from seatsim.cosimulation.unit import run_unit
 from seatsim.effects.base import ON_DAMPER, acts_on
 from seatsim.kernel import step as kernel_step
 from seatsim.kernel.assumed_model import follow_state, model_scaling

@@ -12,10 +12,12 @@ from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.exchange.fmu import write_fmu
+from seatsim.identification.damper_record import find_model
 from seatsim.scenario.loading import load
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.modules import MissingModuleError, use
 from seatsim.simulation.coupled import _agree
+from seatsim.simulation.damper_bench import sine_test
 from seatsim.simulation.simulate import simulate
 
 BASE = {"controller": {"law": "constant", "current": 0.4}, "excitation.duration": 0.3}
@@ -118,6 +120,10 @@ def test_what_a_unit_cannot_be_asked_is_refused(unit_file):
     for block in (damper_block, rig_block, controller_block):
         with pytest.raises(InputError, match="outside the compiled loop"):
             block(load(unit_file, {"damper": UNIT})[0])
+    with pytest.raises(InputError, match="outside the compiled loop"):
+        sine_test(load(unit_file, {"damper": UNIT})[0].damper.record, 0.02, 1.0, 0.0, 20.0)
+    with pytest.raises(InputError, match="is a unit of another program"):
+        find_model("fmu:damper.fmu")
 
 
 @pytest.mark.parametrize("slope", [-0.1, -0.9, -8.0, -200.0])

@@ -11,6 +11,7 @@ from seatsim.dampers.base import DAMPERS
 from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
+from seatsim.exchange.blocks.held import nothing_held
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.exchange.c_file import print_c, write_c
 from seatsim.exchange.compiler import find_compiler
@@ -94,6 +95,21 @@ def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path, monkeypa
     write_c(rig_block(load(seat_file, {"effects": effects})[0]), tmp_path / "rig.c")
     done = run_vector(tmp_path / "rig.c")
     assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize(
+    "part, changed",
+    [("coil", {"rate": 90.0}), ("coil", {"rate_fall": 60.0}), ("temperature_factors", {"yield_force": -0.005})],
+)
+def test_what_a_rig_holds_follows_a_parameter_that_is_tuned(seat_file, part, changed):
+    block = rig_block(load(seat_file)[0])
+    p, u = block.parameters, block.inputs._replace(floor_acceleration=1.0, temperature=50.0)
+    state = block.start(p, u, block.rest)
+    for _ in range(3):
+        state, _ = block.advance(p, u, state, 0.0, block.step)
+    p = p._replace(**{part: getattr(p, part)._replace(**changed)})
+    held, computed = (block.advance(p, u, s, 0.0, block.step) for s in (state, state._replace(held=nothing_held())))
+    assert held == computed and held[0].held != state.held
 
 
 def test_a_changed_number_of_the_test_vector_is_found(seat_file, tmp_path):

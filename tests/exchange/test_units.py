@@ -11,7 +11,8 @@ from fmpy.validation import validate_fmu
 from seatsim.dampers.base import DAMPERS
 from seatsim.exchange import compiler
 from seatsim.exchange.blocks.damper import damper_block
-from seatsim.exchange.blocks.rig import RigOutputs, rig_block
+from seatsim.exchange.blocks.rig import rig_block
+from seatsim.exchange.blocks.rig_records import RigOutputs
 from seatsim.exchange.fmu import make_files, write_fmu
 from seatsim.exchange.variables import list_variables
 from seatsim.scenario.loading import load
@@ -78,7 +79,7 @@ def evaluate(block, inputs, step):
     for k in range(len(next(iter(inputs.values())))):
         given = block.inputs._replace(**{name: float(values[k]) for name, values in inputs.items()})
         state = block.start(block.parameters, given, block.rest) if state is None else state
-        state, good = block.advance(block.parameters, given, state, step)
+        state, good = block.advance(block.parameters, given, state, 0.0, step)
         assert good
         rows.append(block.observe(block.parameters, given, state, step))
     return np.array(rows)

@@ -2,7 +2,9 @@
 
     def start(parameters, inputs, rest):              the state at time zero, from the state at rest
     def observe(parameters, inputs, state, age):      the outputs, `age` seconds after the inputs were given
-    def advance(parameters, inputs, state, length):   the state `length` seconds later, and whether it was reached
+    def advance(parameters, inputs, state, age, length):   the state `length` seconds later, and whether it was reached
+
+An advance begins `age` seconds after the inputs were given.
 
 Parameters, inputs, state and outputs are records (NamedTuple), the functions plain arithmetic: numba compiles them, and
 `seatsim.exchange.printing` prints them as C. Records of inputs and outputs state unit and meaning of their fields.
@@ -23,9 +25,9 @@ class Block:
     """A model that can be exported.
 
     name, summary: what it is called, and a sentence. parameters, inputs, rest: records of parameters, of inputs at the
-    start and of the state at rest. step: s, in which it is advanced; `fixed_step` where every advance must be a whole
-    number of these. parts: classes whose methods are compiled in. hidden: parameters that are not exposed, by the
-    beginning of their name. notes: sentences about what is left out.
+    start and of the state at rest. step: s, in which it is advanced; `fixed_step` where every advance is one of these,
+    and other programs must ask for whole numbers of them. parts: classes whose methods are compiled in. hidden:
+    parameters that are not exposed, by the beginning of their name. notes: sentences about what is left out.
     """
 
     name: str

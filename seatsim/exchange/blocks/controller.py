@@ -89,18 +89,9 @@ def start(p: ControllerParameters, u: ControllerInputs, rest: ControllerState) -
 
 
 def advance(
-    p: ControllerParameters, u: ControllerInputs, state: ControllerState, length: float
+    p: ControllerParameters, u: ControllerInputs, state: ControllerState, age: float, length: float
 ) -> tuple[ControllerState, bool]:
-    """Return the state after as many samples as `length` holds, at least one, with the same readings."""
-    now = state
-    for _ in range(max(1, math.floor(length / p.sample_time + 0.5))):
-        now = _advance_once(p, u, now)
-    return now, True
-
-
-@jit
-def _advance_once(p: ControllerParameters, u: ControllerInputs, state: ControllerState) -> ControllerState:
-    """Return the state after one sample."""
+    """Return the state after one sample, with the readings that were given, and that it was reached."""
     given = Measurement(
         state.sample * p.sample_time, u.displacement, u.velocity, u.frame_velocity, u.driver_velocity,
         u.floor_acceleration, u.frame_acceleration, u.driver_acceleration, u.damper_force, u.current, u.temperature,
@@ -112,10 +103,11 @@ def _advance_once(p: ControllerParameters, u: ControllerInputs, state: Controlle
     decided = command_current(
         p.law, p.inverse_model, p.damper_ratio, p.max_command, y, UNSCALED, followed, state.law_state, grid
     )
-    return ControllerState(
+    later = ControllerState(
         y.displacement, y.velocity, y.current, sensed, followed, update(p.law, y, state.law_state), decided[0],
         decided[1] if wants_force(p.law) else 0.0, state.sample + 1,
     )  # fmt: skip
+    return later, True
 
 
 @jit

@@ -65,14 +65,16 @@ def start(p: DamperParameters, u: DamperInputs, rest: DamperState) -> DamperStat
     return rest
 
 
-def advance(p: DamperParameters, u: DamperInputs, state: DamperState, length: float) -> tuple[DamperState, bool]:
+def advance(
+    p: DamperParameters, u: DamperInputs, state: DamperState, age: float, length: float
+) -> tuple[DamperState, bool]:
     """Return the state `length` seconds later and whether it is finite; the length is divided into equal steps."""
     steps = max(1, math.ceil(length / p.step - ROUNDING))
     h = length / steps
     factors = scaling_at(p.temperature_factors, u.temperature)
     now, good = state, True
     for k in range(steps):
-        now, fine = _advance_once(p, u, factors, now, k * h, h)
+        now, fine = _advance_once(p, u, factors, now, age + k * h, h)
         good = good and fine
     return now, good
 

@@ -13,8 +13,6 @@
    Compiled alone with -DSEATSIM_TEST -ffp-contract=off, and linked with -lm, it is a program that runs the test vector at
    its end and returns how many outputs are off. */
 @MODEL@
-#define STEP @STEP@
-
 #ifdef SEATSIM_TEST
 #include <stdio.h>
 

@@ -119,14 +119,14 @@ FMI2(fmi2Status, fmi2Reset)(fmi2Component c)
             if (content->phase == INITIALISING && !content->observed) {                                            \
                 begin(content, content->time);                                                                     \
             }                                                                                                      \
-            values[k] = (Type)read_number(content, vr[k]);                                                         \
+            values[k] = (Type)read_number(content, vr[k], KIND);                                                         \
         }                                                                                                          \
         return fmi2OK;                                                                                             \
     }                                                                                                              \
     FMI2(fmi2Status, fmi2Set##Name)(fmi2Component c, const fmi2ValueReference vr[], size_t n, const Type values[]) \
     {                                                                                                              \
         for (size_t k = 0; k < n; k++) {                                                                           \
-            if (!is_of(vr[k], KIND) || !write_number(c, vr[k], values[k])) {                                       \
+            if (!is_of(vr[k], KIND) || !write_number(c, vr[k], KIND, values[k])) {                                       \
                 return fmi2Error;                                                                                  \
             }                                                                                                      \
         }                                                                                                          \

@@ -109,14 +109,14 @@ FMI3(fmi3Status, fmi3Reset)(void *c)
             if (content->phase == INITIALISING && !content->observed) {                                            \
                 begin(content, content->time);                                                                     \
             }                                                                                                      \
-            values[k] = (Type)(IS_TIME(vr[k], KIND) ? content->time : read_number(content, vr[k]));                \
+            values[k] = (Type)(IS_TIME(vr[k], KIND) ? content->time : read_number(content, vr[k], KIND));                \
         }                                                                                                          \
         return fmi3OK;                                                                                             \
     }                                                                                                              \
     FMI3(fmi3Status, fmi3Set##Name)(void *c, const Reference vr[], size_t n, const Type values[], size_t m)        \
     {                                                                                                              \
         for (size_t k = 0; k < n; k++) {                                                                           \
-            if (m != n || !is_of(vr[k], KIND) || !write_number(c, vr[k], values[k])) {                             \
+            if (m != n || !is_of(vr[k], KIND) || !write_number(c, vr[k], KIND, values[k])) {                             \
                 return fmi3Error;                                                                                  \
             }                                                                                                      \
         }                                                                                                          \

@@ -1,3 +1,6 @@
+#define STEP R(@STEP@)
+#define FIXED_STEP @FIXED_STEP@
+
 /* The model: its numbers, and what can be done with it. Nothing is allocated. */
 typedef struct {
     @Parameters@ parameters;
@@ -23,14 +26,19 @@ static inline void model_start(Model *m)
     m->age = R(0.0);
 }
 
-/* Go on by a length of time in s; returns 0 where the solution left all bounds, and then changes nothing. */
+/* Go on by a length of time in s, step by step where steps are fixed; returns 0 where the solution left all bounds, and
+   then stays at the last step that was reached. */
 static inline int model_advance(Model *m, real length)
 {
-    const @Advanced@ next = @ADVANCE@;
-    if (!next.item1) {
-        return 0;
+    const int steps = FIXED_STEP ? greatest_int(1, (int)r_floor(length / STEP + R(0.5))) : 1;
+    const real part = FIXED_STEP ? STEP : length;
+    for (int k = 0; k < steps; k++) {
+        const @Advanced@ next = @ADVANCE@;
+        if (!next.item1) {
+            return 0;
+        }
+        m->state = next.item0;
     }
-    m->state = next.item0;
     m->age = length;
     return 1;
 }

@@ -1,0 +1,119 @@
+"""Exported units in co-simulation programs of others, beside the host in C that `exports.py` uses.
+
+    pip install ecospy tbb libcosimpy
+    python benchmarks/fmu_masters.py [--seconds 10]
+
+ecos reads units by fmi4c, libcosim by the FMI Library of Modelon; both come without headers or code of FMPy. Printed is
+the greatest difference of an output over its greatest value. A program that is not installed is named and left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from importlib.metadata import version as version_of
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+from exports import STEP, floor_of, motion
+from fmu_host import run_unit
+from numpy.typing import NDArray
+
+from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.blocks.damper import damper_block
+from seatsim.exchange.blocks.rig import rig_block
+from seatsim.exchange.variables import list_variables
+from seatsim.scenario.loading import load
+
+Array = NDArray[np.float64]
+NANO = 10**9
+
+
+def run_ecos(path: Path, block: Block, inputs: Mapping[str, Array], outputs: list[str], step: float) -> Array:
+    """Return the outputs after each step, from ecos."""
+    library = Path(sys.prefix) / "lib" / "libtbb.so.12"
+    if library.exists():
+        ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
+    from ecospy import EcosLib, EcosSimulation, EcosSimulationStructure
+
+    EcosLib.set_log_level("warn")
+    with EcosSimulationStructure() as structure:
+        structure.add_model("unit", str(path))
+        structure.add_parameter_set("first", {f"unit::{n}": float(values[0]) for n, values in inputs.items()})
+        with EcosSimulation(structure=structure, step_size=step) as simulation:
+            simulation.init(parameter_set="first")
+            rows = []
+            for k in range(len(next(iter(inputs.values())))):
+                for name, values in inputs.items():
+                    simulation.set_real(f"unit::{name}", float(values[k]))
+                simulation.step()
+                rows.append([simulation.get_real(f"unit::{name}") for name in outputs])
+            simulation.terminate()
+    return np.array(rows)
+
+
+def run_libcosim(path: Path, block: Block, inputs: Mapping[str, Array], outputs: list[str], step: float) -> Array:
+    """Return the outputs after each step, from libcosim."""
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimManipulator import CosimManipulator
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    log_output_level(CosimLogLevel.WARNING)
+    execution = CosimExecution.from_step_size(round(step * NANO))
+    unit = execution.add_local_slave(CosimLocalSlave(str(path), "unit"))
+    given, seen = CosimManipulator.create_override(), CosimObserver.create_last_value()
+    execution.add_manipulator(given)
+    execution.add_observer(seen)
+    names = [v.name for v in list_variables(block)]
+    numbers, asked = [names.index(name) for name in inputs], [names.index(name) for name in outputs]
+    samples = np.column_stack(list(inputs.values()))
+    for number, value in zip(numbers, samples[0], strict=True):
+        execution.real_initial_value(unit, number, float(value))
+    rows = []
+    for row in samples:
+        given.slave_real_values(unit, numbers, row.tolist())
+        if not execution.step():
+            raise RuntimeError("libcosim could not step")
+        rows.append(list(seen.last_real_values(unit, asked)))
+    return np.array(rows)
+
+
+MASTERS: dict[str, tuple[str, tuple[int, ...], Callable[..., Array]]] = {
+    "ecos": ("ecospy", (2, 3), run_ecos),
+    "libcosim": ("libcosimpy", (2,), run_libcosim),
+}
+"""Programs: package, versions of the standard that they read, what runs a unit."""
+
+
+def main() -> None:
+    """Print a line for every program, unit and version."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seconds", type=float, default=10.0)
+    seconds = parser.parse_args().seconds
+    scenario = load("quickstart", {"excitation.duration": seconds})[0]
+    units = {
+        "damper": (damper_block(scenario), motion(seconds, 0.3, 1.0), STEP),
+        "rig": (rig_block(scenario), floor_of(scenario), scenario.solver.step),
+    }
+    for master, (package, versions, run) in MASTERS.items():
+        if find_spec(package) is None:
+            print(f"{master}: not installed (pip install {package})")
+            continue
+        for name, (block, inputs, step) in units.items():
+            outputs = [v.name for v in list_variables(block) if v.causality == "output"]
+            for version in versions:
+                with tempfile.TemporaryDirectory() as place:
+                    hosted = run_unit(block, version, inputs, Path(place), step).outputs[1:]
+                    found = run(Path(place) / f"unit{version}.fmu", block, inputs, outputs, step)
+                off = np.max(np.abs(found - hosted), axis=0) / np.maximum(np.max(np.abs(hosted), axis=0), 1e-30)
+                print(f"{master} {version_of(package)}: {name}, FMI {version}: difference {off.max():.1e}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

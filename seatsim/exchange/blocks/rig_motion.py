@@ -1,0 +1,140 @@
+"""The whole rig from step to step: one advance is what one pass of `seatsim.kernel.loop.run_loop` is.
+
+It is computed with the same functions.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from seatsim.compilation.jit import jit
+from seatsim.exchange.blocks.held import hold
+from seatsim.exchange.blocks.rig_records import RigInputs, RigOutputs, RigParameters, RigState
+from seatsim.kernel.assumed_model import follow_state, model_scaling
+from seatsim.kernel.generic import advance_filters, read, update
+from seatsim.kernel.inverse import CELLS
+from seatsim.kernel.loop import ROUNDING, decide, measure, warm_up
+from seatsim.kernel.rig import Disturbance
+from seatsim.kernel.step import IntegratorState, StepInputs
+from seatsim.kernel.step import advance as advance_rig
+from seatsim.kernel.step import start as start_rig
+from seatsim.rig.sensors import READINGS
+from seatsim.rig.state import CUSHION_DISPLACEMENT, CUSHION_VELOCITY, DAMPER_WORK, DISPLACEMENT, VELOCITY, State
+from seatsim.rig.temperature import TemperatureScaling
+
+SAME = 1e-9
+"""Relative difference of a disturbance from what it was to become, up to which it is the same but for rounding."""
+
+
+def start(p: RigParameters, u: RigInputs, rest: RigState) -> RigState:
+    """Return the state at time zero, of a rig that moves as the floor begins to."""
+    temperature = p.thermal.start if p.self_heating else u.temperature
+    held = hold(p.coil, p.step, p.temperature_factors, temperature, rest.held)
+    now = _restart(p, u, rest.now, u.floor_acceleration, rest.current, held.scaling)
+    expected = Disturbance(u.floor_acceleration, u.frame_force, u.driver_force)
+    return rest._replace(now=now, temperature=temperature, expected=expected, held=held)
+
+
+def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length: float) -> tuple[RigState, bool]:
+    """Return the state one step later, and whether it was reached; the step begins `age` s after the inputs were given.
+
+    The law is evaluated before the rig advances, so that its command acts from this instant.
+    """
+    floor = u.floor_acceleration + u.floor_jerk * age
+    velocity = u.floor_velocity + age * (u.floor_acceleration + 0.5 * u.floor_jerk * age)
+    temperature = state.temperature if p.self_heating else u.temperature
+    held = hold(p.coil, p.step, p.temperature_factors, temperature, state.held)
+    factors, now = held.scaling, state.now
+    if _differs(Disturbance(floor, u.frame_force, u.driver_force), state.expected):
+        now = _restart(p, u, now, floor, state.current, factors)
+    sensed = advance_filters(p.sensors, floor, now.state[DISPLACEMENT], now.rates, state.sensed)
+    command, law_state = state.command, state.law_state
+    if state.sample % p.sample_every == 0:
+        true = measure(now, state.sample * p.step, floor, velocity, state.current, temperature, u.replayed_command)
+        noise = np.empty((1, READINGS))
+        noise[0, 0] = u.displacement_noise
+        noise[0, 1] = u.frame_noise
+        noise[0, 2] = u.driver_noise
+        noise[0, 3] = u.floor_noise
+        y, sensed = read(p.sensors, true, noise, 0, sensed)
+        grid = np.empty(CELLS + 1)
+        command, _wanted, _served = decide(p, y, now, factors, state.followed, law_state, grid)
+        law_state = update(p.law, y, law_state)
+    # The oldest command of the state is of no use any more.
+    commands = (command,) + state.commands[:-1]
+    acting = _step_inputs(p, u, commands, floor, state.current, held.kept)
+    later, current, good = advance_rig(p.rig, p.coil, acting, factors, now, p.tolerance)
+    # A state without elements is one that nobody asks for.
+    followed = state.followed
+    if len(followed) > 0:
+        followed = _follow(p, followed, now, later, 0.5 * (state.current + current), factors, temperature)
+    if p.self_heating:
+        done = later.state[DAMPER_WORK] - now.state[DAMPER_WORK]
+        temperature += warm_up(p.thermal, p.coil, temperature, done, state.current, current, p.step)
+    expected = Disturbance(floor + u.floor_jerk * p.step, u.frame_force, u.driver_force)
+    next_state = RigState(
+        later, current, temperature, command, sensed, followed, law_state, commands, expected, state.sample + 1, held
+    )
+    return next_state, good
+
+
+@jit
+def _follow(
+    p: RigParameters,
+    z: State,
+    now: IntegratorState,
+    later: IntegratorState,
+    current: float,
+    factors: TemperatureScaling,
+    temperature: float,
+) -> State:
+    """Return the state of the inverse's damper after a step, as the inverse tracks it."""
+    ratio, before, after = p.rig.plant.damper_ratio, now.state, later.state
+    return follow_state(
+        p.inverse_model.damper, z, ratio * before[DISPLACEMENT], ratio * before[VELOCITY], ratio * after[DISPLACEMENT],
+        ratio * after[VELOCITY], current, model_scaling(p.inverse_model, factors, temperature), p.step,
+    )  # fmt: skip
+
+
+@jit
+def _step_inputs(
+    p: RigParameters, u: RigInputs, commands: State, floor: float, current: float, kept: tuple[float, float]
+) -> StepInputs:
+    """Return what acts on the rig for one step: the commands of `late` and of one more step ago."""
+    late = len(commands) - 2
+    split = p.coil.delay - late * p.step
+    split = split if split >= ROUNDING * p.step else 0.0
+    most = p.coil.max_current
+    before, after = min(commands[late + 1], most), min(commands[late], most)
+    return StepInputs(
+        p.step, floor, u.floor_jerk * p.step, current, before, after, split, False, kept,
+        u.frame_force, 0.0, u.driver_force, 0.0,
+    )  # fmt: skip
+
+
+@jit
+def _restart(
+    p: RigParameters, u: RigInputs, now: IntegratorState, floor: float, current: float, factors: TemperatureScaling
+) -> IntegratorState:
+    """Return the integration begun anew in its state, under a disturbance that has changed at once."""
+    disturbance = Disturbance(floor, u.frame_force, u.driver_force)
+    return start_rig(p.rig, now.state, disturbance, current, factors, now.substep)
+
+
+@jit
+def _differs(now: Disturbance, expected: Disturbance) -> bool:
+    """Return whether a disturbance is another one than the last step ended with, by more than rounding."""
+    floor, frame, driver = now.floor - expected.floor, now.frame_force - expected.frame_force, now.driver_force
+    size = abs(floor) + abs(frame) + abs(driver - expected.driver_force)
+    return size > SAME * (1.0 + abs(expected.floor) + abs(expected.frame_force) + abs(expected.driver_force))
+
+
+def observe(p: RigParameters, u: RigInputs, state: RigState, age: float) -> RigOutputs:
+    """Return the outputs `age` seconds after the inputs were given."""
+    s, rates, floor = state.now.state, state.now.rates, u.floor_acceleration + u.floor_jerk * age
+    frame = rates[VELOCITY] + floor
+    return RigOutputs(
+        frame, frame + rates[CUSHION_VELOCITY],
+        s[DISPLACEMENT], s[VELOCITY], s[CUSHION_DISPLACEMENT], s[CUSHION_VELOCITY],
+        state.now.forces.damper_force, state.current, state.command, state.temperature,
+    )  # fmt: skip

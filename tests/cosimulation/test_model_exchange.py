@@ -1,0 +1,155 @@
+"""A unit for model exchange is integrated to the fourth order, past its events, and moves the seat."""
+
+import math
+import platform
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from seatsim.cosimulation.damper import FmuDamper
+from seatsim.cosimulation.unit import run_unit
+from seatsim.scenario.loading import load
+from seatsim.schema.errors import RunError
+from seatsim.schema.modules import use
+from seatsim.simulation.simulate import simulate
+
+COMPILER = shutil.which("gcc") or shutil.which("cc")
+pytestmark = pytest.mark.skipif(
+    COMPILER is None or sys.platform != "linux", reason="needs a C compiler (gcc) and the libraries of Linux"
+)
+NAMES = ("x", "v", "i", "F", "c", "k", "tau", "edge", "moment", "z", "z_rate")
+CAUSALITY = ("input",) * 3 + ("output",) + ("parameter",) * 5 + ("local",) * 2
+K, TAU, C = 20000.0, 0.02, 500.0
+
+
+def describe(version, events, saves):
+    """Return the description of the unit."""
+
+    def row(k):
+        kind = f'variability="tunable" name="{NAMES[k]}"' if CAUSALITY[k] == "parameter" else f'name="{NAMES[k]}"'
+        start = ' start="0"' if CAUSALITY[k] in ("input", "parameter") else ""
+        rate = {2: ' derivative="10"', 3: ' derivative="9"'}[version] if NAMES[k] == "z_rate" else ""
+        head = f'{kind} valueReference="{k}" causality="{CAUSALITY[k]}"'
+        return (
+            f"<ScalarVariable {head}><Real{start}{rate}/></ScalarVariable>"
+            if version == 2
+            else (f"<Float64 {head}{start}{rate}/>")
+        )
+
+    rows = "\n".join(map(row, range(len(NAMES))))
+    if version == 2:
+        return (
+            f'<fmiModelDescription fmiVersion="2.0" modelName="d" guid="{{me}}" numberOfEventIndicators="{events}">'
+            f'<ModelExchange modelIdentifier="d" canGetAndSetFMUstate="{saves}"'
+            f' completedIntegratorStepNotNeeded="true"/><ModelVariables>{rows}</ModelVariables><ModelStructure>'
+            '<Outputs><Unknown index="4"/></Outputs><Derivatives><Unknown index="11"/></Derivatives></ModelStructure>'
+            "</fmiModelDescription>"
+        )
+    return (
+        '<fmiModelDescription fmiVersion="3.0" modelName="d" instantiationToken="{me}">'
+        f'<ModelExchange modelIdentifier="d" canGetAndSetFMUState="{saves}"/><ModelVariables>{rows}'
+        '<Float64 name="off" valueReference="11" causality="local"/></ModelVariables><ModelStructure>'
+        '<Output valueReference="3"/><ContinuousStateDerivative valueReference="10"/>'
+        + '<EventIndicator valueReference="11"/>' * events
+        + "</ModelStructure></fmiModelDescription>"
+    )
+
+
+@pytest.fixture(scope="module")
+def libraries(tmp_path_factory):
+    """The library of either version."""
+    folder, source = tmp_path_factory.mktemp("libraries"), Path(__file__).with_name("exchange_damper.c")
+    for version in (2, 3):
+        flags = ["-std=c99", "-shared", "-fPIC", *["-DFMI3"][: version - 2], "-o", str(folder / str(version))]
+        subprocess.run([COMPILER, *flags, str(source)], check=True, timeout=60)
+    return {version: (folder / str(version)).read_bytes() for version in (2, 3)}
+
+
+@pytest.fixture
+def unit(libraries, tmp_path, forget_own_code):
+    """Make the unit, with so many event indicators, that saves its state or not, and give the damper that it is."""
+
+    def make(version, events=0, saves="true", folder=tmp_path, **parameters):
+        path = folder / "damper.fmu"
+        place = "linux64" if version == 2 else f"{platform.machine()}-linux"
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("modelDescription.xml", describe(version, events, saves))
+            archive.writestr(f"binaries/{place}/d.so", libraries[version])
+        use(path)
+        inputs = (("displacement", "x"), ("velocity", "v"), ("current", "i"))
+        return FmuDamper(str(path), inputs, "F", tuple(parameters.items()))
+
+    return make
+
+
+def run(damper, step, end=0.2, speed=0.3):
+    """Return the force at the end of a motion of constant speed from zero, and whether steps can be repeated."""
+    given = {"displacement": 0.0, "velocity": speed, "acceleration": 0.0, "current": 0.0, "temperature": 20.0}
+    with run_unit(damper) as running:
+        force = running.start(damper, given)
+        for k in range(round(end / step)):
+            force = running.step(k * step, step, given | {"displacement": speed * k * step})
+        return force, running.repeats
+
+
+def relaxed(z, speed, time, k=K):
+    """Return the exact state after a time at constant speed."""
+    rest = k * speed * TAU
+    return rest + (z - rest) * math.exp(-time / TAU)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_the_states_are_integrated_to_the_fourth_order(version, unit):
+    exact = C * 0.3 + relaxed(0.0, 0.3, 0.04)
+    coarse, fine = (abs(run(unit(version), step, 0.04)[0] - exact) for step in (4e-3, 2e-3))
+    assert fine < coarse / 14.0 and fine < 1e-3
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_an_event_within_a_step_is_located(version, unit):
+    # At 0.3 m/s the edge is passed at 0.0101 s, within a step, from which on the stiffness is doubled.
+    passed = 0.0101
+    exact = C * 0.3 + relaxed(relaxed(0.0, 0.3, passed), 0.3, 0.02 - passed, 2.0 * K)
+    force, repeats = run(unit(version, events=1, edge=0.3 * passed), 1e-3, 0.02)
+    assert force == pytest.approx(exact, rel=1e-6) and repeats
+
+
+def test_an_announced_event_ends_a_part_of_a_step(unit):
+    force, _ = run(unit(2, moment=0.0101), 1e-3, 0.02)
+    assert force == pytest.approx(C * 0.3 + relaxed(0.0, 0.3, 0.02 - 0.0101) + 50.0, rel=1e-6)
+
+
+def test_a_step_is_repeated_where_events_can_be_taken_back(unit):
+    assert [run(unit(2, *how), 1e-3, 0.002)[1] for how in ((0, "false"), (1, "false"), (1, "true"))] == [
+        True, False, True,
+    ]  # fmt: skip
+    assert not run(unit(2, 0, "false", moment=1.0), 1e-3, 0.002)[1]
+
+
+def test_a_unit_that_does_not_stand_still_at_an_event_is_refused(unit, monkeypatch):
+    monkeypatch.setattr("fmpy.fmi2.FMU2Model.newDiscreteStates", lambda _: (True, False, False, False, False, 0.0))
+    with pytest.raises(RunError, match="does not come to an end with its event at 0 s"):
+        run(unit(2), 1e-3, 0.002)
+
+
+@pytest.mark.parametrize("version, saves", [(2, "true"), (3, "false")])
+def test_a_seat_moves_as_with_the_damping_in_its_suspension(version, saves, unit, seat_file):
+    unit(version, 0, saves, seat_file.parent)
+    base = {"controller": {"law": "constant", "current": 0.0}, "excitation.duration": 0.2}
+    damper = {
+        "model": "fmu:damper.fmu", "inputs": {"displacement": "x", "velocity": "v", "current": "i"},
+        "outputs": {"force": "F"},
+    }  # fmt: skip
+    own = load(seat_file)[0].plant.suspension_damping
+    histories = [
+        simulate(load(seat_file, {**base, "damper": damper | {"parameters": {"c": c, "k": 0.0}},
+                                  "plant.suspension_damping": own + rest})[0], carry_all_effects=False)
+        for c, rest in ((500.0, 0.0), (0.0, 500.0))
+    ]  # fmt: skip
+    first, second = (history["driver_acceleration"] for history in histories)
+    assert np.max(np.abs(first - second)) < 2e-3 * np.max(np.abs(second))
