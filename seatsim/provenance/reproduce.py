@@ -14,7 +14,6 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple, cast
 
 from seatsim.provenance.invocation import REPEATABLE, digest
@@ -23,6 +22,7 @@ from seatsim.provenance.versions import list_platform, list_versions
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, RunError, nearest
 from seatsim.schema.guarded import expect, is_there, read_bytes, read_json
+from seatsim.schema.leftovers import temporary_folder
 from seatsim.schema.text import explain_bad_name
 
 LARGEST = 2**32
@@ -75,7 +75,7 @@ def reproduce(
     command = manifest["command"]
     if changed:
         return Reproduction(command, False, [], changed, versions)
-    with TemporaryDirectory() as place:
+    with temporary_folder() as place:
         again = Path(place) / manifest["folder"]
         tell(f"running {command} again")
         again = _run(command, arguments, own_code, directory, again)
