@@ -64,6 +64,7 @@ def watch_signals() -> None:
 
 def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
     _received.append(number)
+    _answered.clear()
     raise KeyboardInterrupt
 
 
@@ -71,9 +72,9 @@ def _end_in_time(wakeups: socket.socket) -> None:
     """Wait for a signal, which the system reports at once, then end the process where it has not ended by itself."""
     while number := wakeups.recv(1)[0]:
         if number in SIGNALS:
-            _answered.clear()
             if not _answered.wait(GRACE):
                 break
+            _answered.clear()
     remove_leftovers(PATIENCE)
     _say_interrupted()
     os._exit(128 + number)
