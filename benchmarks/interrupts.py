@@ -36,6 +36,9 @@ INTERRUPTED = {
 KILLED = {
     "gap": ["gap", str(RECORDING / "nominal.yaml"), str(RECORDING)],
     "run": ["run", "quickstart", "--set", "excitation.duration=1"],
+    "import": ["import", str(RECORDING / "run-1.csv.gz")],
+    "characterise": ["characterise", str(EXAMPLES / "data" / "bench")],
+    "seat-test": ["seat-test", "quickstart", "--class", "EM1"],
 }
 
 
