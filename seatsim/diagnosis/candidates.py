@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Mapping, Sequence
 from typing import NamedTuple
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.effects.base import EFFECTS, ON_SEAT, Form, acts_on, same_place
-from seatsim.schema.fields import bounds, choices, field_names
+from seatsim.schema.fields import bounds, choices, describe, field_names
 from seatsim.schema.registry import Record
 
 Array = NDArray[np.float64]
@@ -20,6 +21,8 @@ Fixed = Mapping[str, float | str]
 
 INPUTS = ("floor_acceleration", "displacement")
 """Recorded inputs whose sensor may err: it moves every channel that is simulated from them."""
+SEAT_SPRING = 4600.0
+"""N/m; spring of the seat for which the effects state the stiffnesses at which fits start."""
 
 
 class Candidate(NamedTuple):
@@ -83,8 +86,8 @@ def list_candidates(problem: DiagnosisProblem, without: Sequence[str] = ()) -> l
             for place in _places(cls, problem):
                 candidate = _candidate(name, cls, form, place, settings.shape_reach)
                 own = next((each for each in present if same_place(each, candidate.record(candidate.start))), None)
-                candidate = candidate if own is None else _change(candidate, own)
-                found += _starts(candidate, settings.limit_starts)
+                candidate = _suit_spring(candidate, problem) if own is None else _change(candidate, own)
+                found += _starts(candidate, settings.limit_starts, _share_reached(candidate, problem))
     return found
 
 
@@ -107,10 +110,32 @@ def _change(candidate: Candidate, own: Record) -> Candidate:
     )  # fmt: skip
 
 
-def _starts(candidate: Candidate, limit_starts: Sequence[float]) -> list[Candidate]:
+def _suit_spring(candidate: Candidate, problem: DiagnosisProblem) -> Candidate:
+    """Return the candidate with a stiffness beside the suspension's spring scaled down to a spring that is softer."""
+    plant = problem.scenario.plant
+    if candidate.block != "suspension" or plant is None:
+        return candidate
+    units = {field.name: field.unit for field in describe(candidate.cls)}
+    softer = min(1.0, plant.suspension_stiffness / SEAT_SPRING)
+    start, low, high = (
+        tuple(softer * x if units[name] == "N/m" else x for name, x in zip(candidate.free, values, strict=True))
+        for values in (candidate.start, candidate.low, candidate.high)
+    )
+    return candidate._replace(start=start, low=low, high=high)
+
+
+def _share_reached(candidate: Candidate, problem: DiagnosisProblem) -> float:
+    """Return the share of a limit's start that the recording reaches, at most 1."""
+    if not candidate.is_limit:
+        return 1.0
+    unit = next(field.unit for field in describe(candidate.cls) if field.name == candidate.free[0])
+    return min(1.0, problem.reached.get(unit, math.inf) / abs(candidate.start[0]))
+
+
+def _starts(candidate: Candidate, limit_starts: Sequence[float], reached: float) -> list[Candidate]:
     """Return the candidate from every start; the cost depends on a limit only where the motion reaches it."""
     starts = list(zip(candidate.start, candidate.limits, strict=True))
-    factors = limit_starts if candidate.is_limit else (1.0,)
+    factors = [reached * factor for factor in limit_starts] if candidate.is_limit else [1.0]
     return [candidate._replace(start=tuple(f * x if limit else x for x, limit in starts)) for f in factors]
 
 

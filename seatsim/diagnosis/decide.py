@@ -15,6 +15,7 @@ from seatsim.diagnosis.movement import group_equivalent, is_material, measure_re
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.probability import Evidence, weigh_effects
 from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.diagnosis.result import Cause
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.settings.judging import DecisionSettings
 
@@ -82,6 +83,31 @@ def decide_beside_unknown(
         decision, chosen=chosen, groups=group_equivalent(chosen, equivalent), probabilities=probabilities
     )
     return call_unknown(settings, stated)
+
+
+def doubt_single(settings: DecisionSettings, decision: Decision, causes: Sequence[Cause]) -> Decision:
+    """Return the decision on a single effect, in one group with those of which the held-out run speaks more highly.
+
+    The evidence charges an effect for its parameters, a run left out of the fit does not. Where the evidence is not
+    strong and that run contradicts it, either effect may be the cause.
+    """
+    if len(decision.chosen.parameters.terms) != 1:
+        return decision
+    (name,) = decision.chosen.parameters.names
+    first = next(cause for cause in causes if cause.effect == name)
+    group = next((group for group in decision.groups if name in group), [name])
+    rivals = [
+        cause.effect
+        for cause in causes
+        if cause.effect not in group
+        and cause.probability * settings.strong_evidence > first.probability
+        and cause.shrink > first.shrink + settings.contradicted
+    ]
+    if not rivals:
+        return decision
+    groups = [[*group, *rivals], *(each for each in decision.groups if each is not group)]
+    verdict: Verdict = "ambiguous" if decision.verdict == "known" else decision.verdict
+    return dataclasses.replace(decision, verdict=verdict, groups=groups)
 
 
 def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:

@@ -10,9 +10,8 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cholesky
-from scipy.optimize import lsq_linear
 
+from seatsim.diagnosis.bounded import minimise_bounded
 from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
@@ -89,8 +88,6 @@ def solve_step(
     # Components differ in size, so they are scaled to a unit diagonal; a small ridge keeps collinear ones solvable.
     size = np.sqrt(np.maximum(np.diag(matrix), 1e-12))
     scaled = matrix / np.outer(size, size) + 1e-8 * np.eye(len(size))
-    upper = cholesky(scaled)
-    target = np.linalg.solve(upper.T, right / size)
-    # A component at its bound keeps a tiny interval, since the solver requires a lower bound below the upper one.
-    room = np.maximum(high - vector, 0.0) * size + 1e-9, np.minimum(low - vector, 0.0) * size - 1e-9
-    return np.asarray(lsq_linear(upper, target, (room[1], room[0]), method="bvls").x) / size
+    # A component beyond its bound by rounding keeps an empty interval about its place.
+    room = np.minimum(low - vector, 0.0) * size, np.maximum(high - vector, 0.0) * size
+    return minimise_bounded(scaled, right / size, *room) / size

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Container, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -34,6 +34,8 @@ from seatsim.simulation.respond import respond
 Array = NDArray[np.float64]
 COARSEST_STEP = 0.002
 """s; longest step of the simulation: its adaptive sub-steps make a shorter one change no figure of a diagnosis."""
+REACHED = {"m": ("suspension_displacement",), "A": ("coil_current", "current_command")}
+"""Channels that tell how far the rig went towards a limit, by its unit: the first that was recorded does."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,8 @@ class DiagnosisProblem:
 
     `measured` holds the compared channels of each run without its first second, shape (channels, samples), `inputs` the
     inputs of each run, `parameters` those that the stated tolerance lets vary; `pool` runs simulations in parallel.
-    Fits end at the `deadline`. `current_falls` says whether the current falls anywhere, by which memory of it shows.
+    Fits end at the `deadline`. `current_falls` says whether the current falls anywhere, by which memory of it shows,
+    `reached` how far the rig went towards a limit of its travel or current, by the limit's unit.
     """
 
     recording: Recording
@@ -56,6 +59,7 @@ class DiagnosisProblem:
     pool: Executor
     deadline: Deadline = field(default=NEVER, kw_only=True)
     current_falls: bool = field(default=True, kw_only=True)
+    reached: Mapping[str, float] = field(default_factory=dict, kw_only=True)
 
     @property
     def bench(self) -> bool:
@@ -122,20 +126,21 @@ class DiagnosisProblem:
         end = self.skip + self.measured[run].shape[1]
         return np.array([outputs[name][self.skip : end] for name in self.channels])
 
-    def _attempted(self, run: str, deviations: Array, effects: Sequence[Record]) -> Array:
-        """Return the simulated channels of a run, infinite where the rig leaves all bounds."""
+    def _residuals(self, run: str, deviations: Array, effects: Sequence[Record]) -> Array:
+        """Return `measured - simulated` of a run, infinite where the rig leaves all bounds."""
         try:
-            return self.simulated(run, deviations, effects)
+            simulated = self.simulated(run, deviations, effects)
         except RunError:
             return np.full(self.measured[run].shape, np.inf)
+        return np.subtract(self.measured[run], simulated, out=simulated)
 
     def residuals(self, rigs: Sequence[tuple[Array, Sequence[Record]]]) -> list[dict[str, Array]]:
         """Return `measured - simulated` of every run for each rig (deviations, effects), on all cores."""
         jobs = [(index, run) for index in range(len(rigs)) for run in self.runs]
-        answers = self.pool.map(lambda job: self._attempted(job[1], *rigs[job[0]]), jobs)
+        answers = self.pool.map(lambda job: self._residuals(job[1], *rigs[job[0]]), jobs)
         found: list[dict[str, Array]] = [{} for _ in rigs]
         for (index, run), values in zip(jobs, answers, strict=True):
-            found[index][run] = self.measured[run] - values
+            found[index][run] = values
         return found
 
 
@@ -168,8 +173,14 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     parameters = _list_parameters(recording.header, scenario, settings.fit)
     return DiagnosisProblem(
         recording, scenario, tuple(tables), tuple(loud), measured, inputs, parameters, settings, pool,
-        current_falls=shows_falling_current(recording),
+        current_falls=shows_falling_current(recording), reached=_measure_reach(recording.channels, tables.values()),
     )  # fmt: skip
+
+
+def _measure_reach(recorded: Container[str], tables: Collection[Mapping[str, Array]]) -> dict[str, float]:
+    """Return the largest value of the first recorded channel of each unit, in any run."""
+    first = {unit: next((name for name in names if name in recorded), "") for unit, names in REACHED.items()}
+    return {unit: max(float(np.abs(table[name]).max()) for table in tables) for unit, name in first.items() if name}
 
 
 def _list_parameters(header: Header, scenario: Scenario, settings: FitSettings) -> tuple[Nuisance, ...]:

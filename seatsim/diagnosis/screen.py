@@ -20,10 +20,10 @@ from seatsim.diagnosis.parameters import Parameters
 Array = NDArray[np.float64]
 
 
-class Sensitivity(NamedTuple):
-    """A candidate and what it changes, at its start, in the whitened outputs of each run, shape (channels, rows)."""
+class Sensitivities(NamedTuple):
+    """Candidates and what each changes, at its start, in the whitened outputs: `changes[run]`, (candidates, ...)."""
 
-    candidate: Candidate
+    candidates: Sequence[Candidate]
     changes: dict[str, Array]
 
 
@@ -36,26 +36,29 @@ class Prediction(NamedTuple):
 
 def measure_sensitivities(
     objective: Objective, calibrated: Evaluation, candidates: Sequence[Candidate]
-) -> list[Sensitivity]:
+) -> Sensitivities:
     """Return the change of the calibrated rig by each candidate at its start; unstable ones are dropped.
 
     At the deadline they are those of the candidates so far.
     """
-    starts: list[Evaluation] = []
+    kept: list[Candidate] = []
+    changes = {run: np.empty((len(candidates), *base.shape)) for run, base in calibrated.whitened.items()}
     with suppress(OutOfTimeError):
         for first in range(0, len(candidates), AT_ONCE):
             part = candidates[first : first + AT_ONCE]
-            starts += objective.evaluate([calibrated.parameters.add(each, np.array(each.start)) for each in part])
-    return [
-        Sensitivity(candidate, {run: base - start.whitened[run] for run, base in calibrated.whitened.items()})
-        for candidate, start in zip(candidates, starts, strict=False) if np.isfinite(start.cost)
-    ]  # fmt: skip
+            starts = objective.evaluate([calibrated.parameters.add(each, np.array(each.start)) for each in part])
+            for candidate, start in zip(part, starts, strict=True):
+                if np.isfinite(start.cost):
+                    for run, base in calibrated.whitened.items():
+                        np.subtract(base, start.whitened[run], out=changes[run][len(kept)])
+                    kept.append(candidate)
+    return Sensitivities(kept, {run: values[: len(kept)] for run, values in changes.items()})
 
 
-def name_unstable(candidates: Sequence[Candidate], kept: Sequence[Sensitivity]) -> tuple[str, ...]:
+def name_unstable(candidates: Sequence[Candidate], kept: Sequence[Candidate]) -> tuple[str, ...]:
     """Return a sentence on each effect of which starts were dropped, since the rig cannot be simulated with them."""
     offered = Counter(candidate.effect for candidate in candidates)
-    left = offered - Counter(each.candidate.effect for each in kept)
+    left = offered - Counter(candidate.effect for candidate in kept)
     return tuple(
         f"{effect} could not be simulated from {count} of {offered[effect]} starts, which were dropped"
         for effect, count in left.items()
@@ -63,50 +66,73 @@ def name_unstable(candidates: Sequence[Candidate], kept: Sequence[Sensitivity]) 
 
 
 def screen_candidates(
-    objective: Objective, base: Evaluation, offered: Sequence[Sensitivity], nuisances: Linearisation, bound: float,
-    count: int,
-) -> list[Evaluation]:  # fmt: skip
+    objective: Objective, base: Evaluation, offered: Sensitivities, nuisances: Linearisation, bound: float, count: int
+) -> list[Evaluation]:
     """Return the most promising starts of fits, with one candidate each added to a base.
 
     Args:
         objective: what is minimised.
         base: the fitted set to which a candidate is added.
-        offered: candidates with their sensitivities.
+        offered: sensitivities to the candidates; those of the effects of the base are left out.
         nuisances: linearisation of the nuisance parameters.
         bound: predicted cost from which a candidate is not tried.
         count: most candidates that are tried, each in one structure.
     """
-    own = objective.linearise_effects(base)
-    predicted = list(objective.problem.pool.map(lambda each: _predict(objective, base, each, nuisances, own), offered))
+    predicted = _predict(objective, base, offered, nuisances)
     first: dict[Hashable, int] = {}
-    for k in sorted(range(len(offered)), key=lambda k: predicted[k].cost):
+    for k in sorted(predicted, key=lambda k: predicted[k].cost):
         if predicted[k].cost < bound:
-            first.setdefault(offered[k].candidate.structure, k)
+            first.setdefault(offered.candidates[k].structure, k)
     shortlist = list(first.values())[:count]
-    starts = [_starts_around(objective, base.parameters, offered[k].candidate, predicted[k].factor) for k in shortlist]
+    starts = [_starts_around(objective, base.parameters, offered.candidates[k], predicted[k].factor) for k in shortlist]
     evaluations = iter(objective.evaluate([parameters for several in starts for parameters in several]))
     return [min(islice(evaluations, len(several)), key=lambda each: each.cost) for several in starts]
 
 
 def _predict(
-    objective: Objective, base: Evaluation, sensitivity: Sensitivity, nuisances: Linearisation, own: Linearisation
-) -> Prediction:
-    """Return the predicted cost of the best multiple of a candidate, for a rig that is linear in all parameters."""
-    candidate, changes = sensitivity
-    vector, (low, high) = base.parameters.vector, base.parameters.limits
-    parts = [
-        nuisances.normal_equations(run, np.vstack([own.jacobian[run], changes[run].ravel()]), residuals)
+    objective: Objective, base: Evaluation, offered: Sensitivities, nuisances: Linearisation
+) -> dict[int, Prediction]:
+    """Return the predicted cost of the best multiple of each candidate, for a rig that is linear in all parameters.
+
+    Candidates are known by their place among those offered; those of the effects of the base are left out.
+    """
+    others = [k for k, each in enumerate(offered.candidates) if each.effect not in base.parameters.names]
+    own = objective.linearise_effects(base)
+    matrix, right, mixed, squares, slopes = (np.sum(parts, axis=0) for parts in zip(*(
+        _multiply(np.vstack([nuisances.jacobian[run], own.jacobian[run]]), offered.changes[run], residuals.ravel())
         for run, residuals in base.whitened.items()
-    ]
-    matrix, right = np.sum([part[0] for part in parts], axis=0), np.sum([part[1] for part in parts], axis=0)
+    ), strict=True))  # fmt: skip
+    return {
+        k: _predict_one(
+            objective, base, offered.candidates[k],
+            np.block([[matrix, mixed[k][:, None]], [mixed[k], squares[k]]]), np.append(right, slopes[k]),
+        )
+        for k in others
+    }  # fmt: skip
+
+
+def _multiply(jacobian: Array, changes: Array, residuals: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """Return the products of a run for the normal equations: of the Jacobian, of all changes at once, with each other.
+
+    They are `J J'`, `J r`, `C J'`, the squares of the rows of C, and `C r`.
+    """
+    changes = changes.reshape(-1, residuals.size)
+    squares = np.einsum("ij,ij->i", changes, changes)
+    return jacobian @ jacobian.T, jacobian @ residuals, changes @ jacobian.T, squares, changes @ residuals
+
+
+def _predict_one(
+    objective: Objective, base: Evaluation, candidate: Candidate, matrix: Array, right: Array
+) -> Prediction:
+    """Return the prediction for a candidate, the last component of the normal equations."""
+    vector, (low, high) = base.parameters.vector, base.parameters.limits
     count, stretch = len(base.parameters.deviations), objective.settings.selection.stretch
     ends = (np.array([candidate.low[0], candidate.high[0]]) - candidate.nominal) / (
         candidate.start[0] - candidate.nominal
     )
     low = np.append(low, 0.0 if ends.min() >= 0.0 else -stretch)
     high = np.append(high, stretch)
-    prior_std = objective.settings.fit.prior_std
-    step = solve_step(matrix, right, count, np.append(vector, 0.0), low, high, prior_std)
+    step = solve_step(matrix, right, count, np.append(vector, 0.0), low, high, objective.settings.fit.prior_std)
     return Prediction(base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step), float(step[-1]))
 
 

@@ -12,7 +12,7 @@ from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, scale
 from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.screen import Sensitivity, measure_sensitivities, name_unstable, screen_candidates
+from seatsim.diagnosis.screen import Sensitivities, measure_sensitivities, name_unstable, screen_candidates
 
 
 class LinearisedRig(NamedTuple):
@@ -20,7 +20,7 @@ class LinearisedRig(NamedTuple):
 
     nominal: Evaluation
     nuisances: Linearisation
-    sensitivities: list[Sensitivity]
+    sensitivities: Sensitivities
 
     @property
     def calibrated(self) -> Evaluation:
@@ -40,7 +40,7 @@ class Selection:
     nominal: Evaluation
     sets: tuple[tuple[Evaluation, ...], ...]
     linearisations: tuple[Linearisation, ...]
-    sensitivities: Sequence[Sensitivity] = field(default=(), kw_only=True)
+    sensitivities: Sensitivities = field(default=Sensitivities((), {}), kw_only=True)
     notes: tuple[str, ...] = field(default=(), kw_only=True)
 
     @property
@@ -64,7 +64,7 @@ class Selection:
         jacobian = scale(self.linearisations[0].jacobian, old, new)
         nearest = min(nominal, calibrated, key=lambda each: each.cost)
         refitted = fit(new.unhurried, nearest, Linearisation(calibrated, jacobian))
-        sensitivities = [each._replace(changes=scale(each.changes, old, new)) for each in self.sensitivities]
+        sensitivities = self.sensitivities._replace(changes=scale(self.sensitivities.changes, old, new))
         return LinearisedRig(nominal, Linearisation(refitted, jacobian), sensitivities)
 
 
@@ -87,7 +87,7 @@ def select_effects(
     nuisances, sensitivities = rig.nuisances, rig.sensitivities
     sets: list[list[Evaluation]] = [[rig.calibrated]]
     linearisations = [nuisances]
-    notes = () if objective.problem.deadline.is_past else name_unstable(candidates, sensitivities)
+    notes = () if objective.problem.deadline.is_past else name_unstable(candidates, sensitivities.candidates)
     # At the deadline the sets so far are the answer.
     with suppress(OutOfTimeError):
         for size in range(1, largest + 1):
@@ -133,7 +133,7 @@ def _gains(objective: Objective, sets: Sequence[Sequence[Evaluation]]) -> bool:
 
 
 def _extend(
-    objective: Objective, sets: Sequence[Sequence[Evaluation]], sensitivities: Sequence[Sensitivity],
+    objective: Objective, sets: Sequence[Sequence[Evaluation]], sensitivities: Sensitivities,
     nuisances: Linearisation,
 ) -> list[Evaluation]:  # fmt: skip
     """Return the fitted enlargements of the best sets by one effect, best first, one structure of each set."""
@@ -142,11 +142,10 @@ def _extend(
     begun = []
     for base in bases:
         taken = base.parameters.names
-        offered = [each for each in sensitivities if each.candidate.effect not in taken]
         count = settings.further_shortlist if taken else settings.first_shortlist
         # A first effect is always tried; a further one only where a linear model predicts that it helps.
         bound = base.rows * (1.0 + settings.promising * bases[0].excess) if taken else float("inf")
-        starts = screen_candidates(objective, base, offered, nuisances, bound, count)
+        starts = screen_candidates(objective, base, sensitivities, nuisances, bound, count)
         begun += [fit(objective, start, nuisances, settings.begun_steps) for start in starts]
     ranked, finalists = _best_of_each_set(begun), settings.finalists
     finished = [fit(objective, evaluation, nuisances) for evaluation in ranked[:finalists]]

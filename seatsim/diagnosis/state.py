@@ -9,7 +9,7 @@ import numpy as np
 
 from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
 from seatsim.diagnosis.augmented import write_augmented
-from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown
+from seatsim.diagnosis.decide import Decision, call_unknown, decide_beside_unknown, doubt_single
 from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
@@ -20,7 +20,7 @@ from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
 from seatsim.diagnosis.movement import share_removable
 from seatsim.diagnosis.nuisance import list_calibrated
-from seatsim.diagnosis.objective import Evaluation, Linearisation
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment, RunGaps
 from seatsim.diagnosis.sentences import write_answer
@@ -126,12 +126,13 @@ def state_diagnosis(
     """
     progress("holding out a run")
     validation = validate_on_held_out(solution)
-    solution = validation.solution
-    objective, decision = solution.objective, solution.decision
-    problem = objective.problem
+    solution, causes, runs = validation.solution, _list_causes(validation), validation.runs
+    objective, problem = solution.objective, solution.objective.problem
     recording = problem.recording
     rig, channels = recording.header.rig, recording.channels
-    causes, runs = _list_causes(validation), validation.runs
+    decision = solution.decision
+    if not solution.stochastic:
+        decision = doubt_single(problem.settings.decision, decision, causes)
     nuisances = solution.selection.linearise_nuisances(objective, decision.chosen)
     forms = _list_alternatives(validation, damper_forms, progress)
     none = describe_obstacle(problem) or "No other form of the damper was found to fit its force better."
@@ -142,7 +143,7 @@ def state_diagnosis(
         name=recording.folder.name, verdict=decision.verdict, sentence="", where=list(solution.where), causes=causes,
         probability_none=decision.none, probability_unknown=decision.unknown,
         selected=[name for name in decision.probabilities if name in at_work], stochastic=solution.stochastic,
-        indistinguishable=decision.groups, experiment=_propose_experiment(solution, nuisances),
+        indistinguishable=decision.groups, experiment=_propose_experiment(objective, decision, nuisances),
         held_out=[validation.run], isolable=find_isolable_groups(rig, channels), gap=validation.gaps,
         notes=[
             *notes, *solution.selection.notes, *describe_missing_sensors(rig, channels), *asked,
@@ -181,12 +182,13 @@ def _list_alternatives(validation: Validation, asked: bool, progress: Callable[[
     return compare_damper_forms(problem, calibrated, augmented, validation.run)
 
 
-def _propose_experiment(solution: Solution, nuisances: Linearisation) -> ProposedExperiment | None:
+def _propose_experiment(
+    objective: Objective, decision: Decision, nuisances: Linearisation
+) -> ProposedExperiment | None:
     """Return the experiment that separates the first group of equivalent effects, None where there is no group."""
-    decision = solution.decision
-    if decision.verdict != "ambiguous" or solution.objective.problem.bench:
+    if decision.verdict != "ambiguous" or objective.problem.bench:
         return None
-    return propose_experiment(solution.objective, nuisances, decision.groups[0])
+    return propose_experiment(objective, nuisances, decision.groups[0])
 
 
 def _collect_evidence(validation: Validation, nuisances: Linearisation, causes: Sequence[Cause]) -> Evidence:

@@ -3,7 +3,7 @@
 import pytest
 
 from seatsim.schema.errors import InputError
-from seatsim.schema.units import STANDARD_GRAVITY, conversion
+from seatsim.schema.units import CONVERSIONS, STANDARD_GRAVITY, conversion
 
 
 @pytest.mark.parametrize(
@@ -64,3 +64,10 @@ def test_pint_is_not_loaded_for_si_units():
         "import sys; from seatsim.schema.units import conversion as c; c('m/s2', 'm/s^2'); c('C', 'degC'); c('N', 'N')"
     )
     subprocess.run([sys.executable, "-c", f"{code}; assert 'pint' not in sys.modules"], check=True)
+
+
+@pytest.mark.parametrize("wanted", CONVERSIONS)
+def test_usual_units_are_those_of_pint(wanted):
+    for unit, found in CONVERSIONS[wanted].items():
+        # A spelling that only pint knows, since the name itself is found without it.
+        assert conversion(f" {unit}", wanted) == pytest.approx(found, rel=1e-12)

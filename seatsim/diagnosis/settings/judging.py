@@ -59,6 +59,24 @@ class DecisionSettings(NamedTuple):
         float,
         Threshold("-", "excess added to it, for sets that leave almost nothing", "as `equivalent`", SIMULATED_RIGS),
     ] = 0.02
+    strong_evidence: Annotated[
+        float,
+        Threshold(
+            "-",
+            "ratio of the probabilities of two effects from which a held-out run that contradicts it no longer counts",
+            "higher: more is ambiguous; lower: a confident wrong effect with few parameters",
+            "a Bayes factor above 20 is strong (Kass and Raftery, 1995)",
+        ),
+    ] = 20.0
+    contradicted: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the gap by which another effect has to reduce it further in the held-out run",
+            "as `strong_evidence`",
+            "on simulated rigs and on effects put into measured records",
+        ),
+    ] = 0.02
     first_effect_helps: Annotated[
         float,
         Threshold(

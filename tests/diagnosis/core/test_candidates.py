@@ -16,6 +16,7 @@ from seatsim.effects.driver import Biodynamics, Mass
 from seatsim.effects.sensor import Bias, ClockSkew, Gain, SensorLag
 from seatsim.effects.suspension import EndStop, Friction
 from seatsim.recordings.recording import ChannelEntry
+from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.scenario.scenario import DamperChoice
 from seatsim.schema.fields import bounds
@@ -167,6 +168,21 @@ def test_a_limit_is_started_at_several_sizes_and_its_shape_at_one(listed):
     stop = listed["suspension.end_stop"][1]
     assert stop.start == (-0.006, 0.006, 10000.0, 0.5)
     assert (stop.low[2], stop.high[2]) == (5000.0, 1e6)
+
+
+def test_a_limit_starts_within_what_the_recording_reaches():
+    found = by_effect(list_candidates(dataclasses.replace(posed(), reached={"m": 0.006, "A": 2.0})))
+    assert [each.start[:2] for each in found["suspension.end_stop"][:2]] == [(-0.006, 0.006), (-0.003, 0.003)]
+    # What lies within the reach is left where it is.
+    assert found["coil.current_limit"][0].start == (0.8,)
+
+
+def test_buffers_beside_a_soft_spring_are_softer():
+    problem = posed()
+    plant = Plant(20.0, 60.0, 920.0, 100.0, 8e4, 300.0)
+    soft = dataclasses.replace(problem, scenario=dataclasses.replace(problem.scenario, plant=plant))
+    stop = by_effect(list_candidates(soft))["suspension.end_stop"][0]
+    assert (stop.start[2], stop.low[2], stop.high[2]) == pytest.approx((2000.0, 1000.0, 2e5))
 
 
 def test_only_what_grows_towards_off_is_a_limit(listed):

@@ -6,7 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown, decide_verdict
+from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown, decide_verdict, doubt_single
+from seatsim.diagnosis.result import Cause
 from seatsim.diagnosis.select import Selection
 
 from .toy import offer, place, pose_tones
@@ -272,3 +273,20 @@ def test_a_cause_that_takes_too_little_of_the_gap_is_called_unknown(rig):
     called = call_unknown(rig.settings.decision, known)
     assert (called.verdict, called.unknown, called.chosen) == ("unknown", 0.55, known.chosen)
     assert called.probabilities == known.probabilities
+
+
+@pytest.mark.parametrize(
+    ("probability", "shrink", "doubted"), [(0.06, 0.55, True), (0.04, 0.55, False), (0.06, 0.51, False)]
+)
+def test_a_held_out_run_that_speaks_for_another_effect_makes_a_known_one_ambiguous(rig, probability, shrink, doubted):
+    known = decide(rig, 10.0, [({"b.two": 0.5}, 0.1)])
+    causes = [Cause("b.two", 0.9, 0.5, {}), Cause("a.one", probability, shrink, {}), Cause("c.three", 0.006, 0.9, {})]
+    found = doubt_single(rig.settings.decision, known, causes)
+    assert (found.verdict, found.groups) == (("ambiguous", [["b.two", "a.one"]]) if doubted else ("known", []))
+    joined = doubt_single(rig.settings.decision, dataclasses.replace(known, groups=[["b.two", "d.four"]]), causes)
+    assert joined.groups == [["b.two", "d.four", "a.one"] if doubted else ["b.two", "d.four"]]
+
+
+def test_no_set_of_two_is_doubted(rig):
+    pair = decide(rig, 10.0, [({"b.two": 0.5}, 5.0)], [(both(), 0.1)])
+    assert doubt_single(rig.settings.decision, pair, [Cause("c.three", 0.9, 0.9, {})]) is pair

@@ -6,7 +6,7 @@ from scipy.optimize import lsq_linear
 
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.parameters import Parameters
-from seatsim.diagnosis.screen import Sensitivity, measure_sensitivities, name_unstable, screen_candidates
+from seatsim.diagnosis.screen import measure_sensitivities, name_unstable, screen_candidates
 
 from .toy import (
     Limited,
@@ -58,18 +58,17 @@ def test_a_sensitivity_is_what_a_candidates_start_changes():
         objective, calibrated, [offer("b.two", start=-0.5), offer("c.three", cls=Wild), offer("c.three", start=2.0)]
     )
     # What makes the rig leave all bounds is left out.
-    assert [each.candidate.effect for each in found] == ["b.two", "c.three"]
-    for each, expected in zip(found, (-0.5, 2.0), strict=True):
-        changes = np.concatenate([each.changes[run].ravel() for run in objective.problem.runs])
-        np.testing.assert_allclose(changes, expected * whiten(objective, each.candidate.effect), atol=1e-8)
+    assert [each.effect for each in found.candidates] == ["b.two", "c.three"]
+    for k, expected in enumerate((-0.5, 2.0)):
+        changes = np.concatenate([found.changes[run][k].ravel() for run in objective.problem.runs])
+        np.testing.assert_allclose(changes, expected * whiten(objective, found.candidates[k].effect), atol=1e-8)
 
 
 def test_effects_that_cannot_be_simulated_are_named_with_the_number_of_their_starts():
     offered = [offer("b.two"), offer("c.three", cls=Wild), offer("c.three"), offer("c.three", cls=Wild)]
-    kept = [Sensitivity(offered[0], {}), Sensitivity(offered[2], {})]
-    said = name_unstable(offered, kept)
+    said = name_unstable(offered, [offered[0], offered[2]])
     assert said == ("c.three could not be simulated from 2 of 3 starts, which were dropped",)
-    assert name_unstable(offered[:1], kept[:1]) == ()
+    assert name_unstable(offered[:1], offered[:1]) == ()
 
 
 def shortlisted_below(objective, candidate, bound, base=()):

@@ -1,0 +1,33 @@
+"""Bounded minima against the conditions that only the minimum of a strictly convex quadratic meets."""
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.bounded import minimise_bounded
+
+
+@pytest.mark.parametrize("count", [1, 3, 12, 24])
+@pytest.mark.parametrize("collinear", [0.0, 1e-4])
+def test_the_gradient_points_outwards_at_each_bound_and_vanishes_between(count, collinear):
+    draw = np.random.default_rng(count)
+    for _ in range(50):
+        rows = draw.normal(size=(40, count))
+        if collinear:
+            rows = rows[:, :1] + collinear * rows
+        size = np.sqrt(np.sum(rows**2, axis=0))
+        matrix = rows.T @ rows / np.outer(size, size) + 1e-8 * np.eye(count)
+        right, low, high = draw.normal(size=count), -draw.uniform(0.0, 1.0, count), draw.uniform(0.0, 1.0, count)
+        low[draw.random(count) < 0.2] = 0.0
+        found = minimise_bounded(matrix, right, low, high)
+        gradient = matrix @ found - right
+        assert np.all((low <= found) & (found <= high))
+        between = (low < found) & (found < high)
+        assert np.abs(gradient[between]).max(initial=0.0) < 1e-6
+        assert np.all(gradient[(found == low) & (low < high)] > -1e-6)
+        assert np.all(gradient[(found == high) & (low < high)] < 1e-6)
+
+
+def test_without_active_bounds_it_is_the_solution_of_the_normal_equations():
+    matrix, right = np.array([[1.0, 0.5], [0.5, 1.0]]), np.array([0.3, -0.2])
+    wide = np.full(2, 9.0)
+    np.testing.assert_allclose(minimise_bounded(matrix, right, -wide, wide), np.linalg.solve(matrix, right))
