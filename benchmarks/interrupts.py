@@ -69,10 +69,9 @@ def main() -> None:
             said = [f"{name}: {problem}" for problem in tried]
         print(f"{number + 1} of {asked.moments}, {name}: {'; '.join(said) or 'right'}", flush=True)
         problems += said
-    print(f"{asked.moments} moments, {len(problems)} problems", end="")
-    print(
-        f"; the end took {max(times):.2f} s at most, {sorted(times)[len(times) // 2]:.2f} s in the middle" * bool(times)
-    )
+    print(f"{asked.moments} moments, {len(problems)} problems")
+    if times:
+        print(f"the end took {max(times):.2f} s at most, {sorted(times)[len(times) // 2]:.2f} s in the middle")
     raise SystemExit(bool(problems))
 
 
