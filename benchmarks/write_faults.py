@@ -45,7 +45,20 @@ COMMANDS: Mapping[str, Sequence[str]] = {
     "identify": ("identify", str(BENCH), "--model", "bingham", "--out", OUT),
     "seat-test": ("seat-test", "quickstart", "--class", "EM1", "--out", OUT),
     "diagnose": ("diagnose", str(RECORDING), "--budget", "5", "--out", OUT),
+    "compare": ("compare", "quickstart", "--set", "excitation.duration=1", "--out", OUT),
+    "sweep-report": ("sweep-report", "{made}/sweep", "--out", OUT),
+    "reproduce": ("reproduce", "{made}/comfort", "--out", OUT),
+    "export": ("export", "quickstart", "--to", "c", "--what", "controller", "--out", f"{OUT}/controller.c"),
+    "describe": ("describe", "bouc_wen", "--picture", f"{OUT}/bouc_wen.png"),
+    "blind make": ("blind", "make", "--cases", "1", "--seed", "1", "--sealed", f"{OUT}/sealed", "--out", f"{OUT}/set"),
 }  # fmt: skip
+
+
+MADE: Mapping[str, Sequence[str]] = {
+    "sweep-report": ("sweep", "{sweep}", "--jobs", "1", "--out", "{made}/sweep"),
+    "reproduce": ("comfort", str(RECORDING), "--hours", "6", "--out", "{made}/comfort"),
+}
+"""What makes the input of a command, once."""
 
 
 def main() -> None:
@@ -101,7 +114,18 @@ def try_command(name: str, faults: ctypes.CDLL, every: int = 1) -> list[str]:
     return problems
 
 
-REPLACING = ("gap", "comfort", "run", "synthesise", "characterise", "seat-test", "diagnose", "import")
+REPLACING = (
+    "gap",
+    "comfort",
+    "run",
+    "sweep-report",
+    "reproduce",
+    "synthesise",
+    "characterise",
+    "seat-test",
+    "diagnose",
+    "import",
+)
 """Commands that write over the results of an earlier one."""
 KEEPING = ("sweep", "identify")
 """Commands whose finished parts stay when they fail, to be gone on with."""
@@ -126,12 +150,20 @@ def judge(
 
 def run(name: str, root: Path, faults: ctypes.CDLL, failing: int) -> str | None:
     """Run a command whose call of the number `failing` fails; return the error that it ends with."""
+    made = root.parent / "made" / name
+    if name in MADE and not made.exists():
+        call(MADE[name], root, made, faults, 0)
+    return call(COMMANDS[name], root, made, faults, failing)
+
+
+def call(words: Sequence[str], root: Path, made: Path, faults: ctypes.CDLL, failing: int) -> str | None:
+    """Run a command of these words."""
     from seatsim.cli.app import app
     from seatsim.schema.errors import SeatsimError
 
     sweep = root.parent / "sweep.yaml"
     sweep.write_text(SWEEP, encoding="utf-8")
-    arguments = [word.format(out=root / "out", sweep=sweep) for word in COMMANDS[name]]
+    arguments = [word.format(out=root / "out", sweep=sweep, made=made) for word in words]
     said = io.StringIO()
     faults.fault_arm(failing)
     try:

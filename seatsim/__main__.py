@@ -7,6 +7,6 @@ import sys
 if not sys.flags.safe_path:
     del sys.path[0]
 
-from seatsim.cli.app import main
+from seatsim.cli.start import start
 
-main()
+start()

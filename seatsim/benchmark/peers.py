@@ -7,7 +7,6 @@ rms of the difference to a tight solution over rms of that.
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
@@ -20,6 +19,7 @@ from seatsim.benchmark.native import native_run
 from seatsim.benchmark.seat_run import Array, make_floor, make_setup, prepare_run
 from seatsim.kernel.channels import CHANNELS
 from seatsim.schema.errors import RunError
+from seatsim.schema.leftovers import temporary_folder
 
 AGREEMENT = {"loop.c": 1e-7, "lean.c": 1e-2}
 """Largest difference of a channel from seatsim's, over its largest value.
@@ -48,7 +48,7 @@ def measure_c() -> Iterator[Cost]:
     acceleration, setup = make_floor(DURATION), make_setup(SAMPLE_EVERY)
     run, history = prepare_run(acceleration, setup)
     runs = {"seatsim": run}
-    with tempfile.TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         for source, permitted in AGREEMENT.items():
             runs[source], channels = native_run(source, Path(folder), acceleration, setup)
             runs[source]()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -13,6 +12,7 @@ from pathlib import Path
 from seatsim.benchmark.measurement import Cost, compare_least, time_in_turns
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.leftovers import temporary_folder
 from seatsim.simulation.ensemble import simulate_ensemble
 from seatsim.simulation.runs import run_one
 from seatsim.sweeps.engines.choice import open_engine
@@ -84,7 +84,7 @@ def load_seat(duration: float) -> Scenario:
 
 def time_sweep(engine: str, jobs: int) -> float:
     """Return the time on the clock for each run of a sweep in ms, once the engine is there."""
-    with tempfile.TemporaryDirectory() as name:
+    with temporary_folder() as name:
         file = Path(name) / "sweep.yaml"
         file.write_text(SWEEP.format(runs=RUNS), encoding="utf-8")
         prepared = prepare(file)

@@ -71,6 +71,9 @@ class _Commands(TyperGroup):
         except UsageError as error:
             answer_error(error.format_message())
             raise
+        except KeyboardInterrupt:  # which typer would turn into an empty line
+            fail("interrupted")
+            raise typer.Exit(130) from None
 
 
 app = typer.Typer(

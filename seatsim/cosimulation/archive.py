@@ -14,10 +14,10 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
-from tempfile import TemporaryDirectory
 
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import in_mib, read_bytes
+from seatsim.schema.leftovers import temporary_folder
 from seatsim.schema.modules import LARGEST_UNIT
 
 UNPACKED = 4
@@ -103,7 +103,7 @@ def unpack(path: Path, version: int, identifier: str) -> Iterator[tuple[Path, Pa
 
     The folder is removed afterwards, also where a run is interrupted.
     """
-    with TemporaryDirectory(prefix="seatsim-fmu-", ignore_cleanup_errors=True) as name:
+    with temporary_folder("seatsim-fmu-") as name:
         folder = Path(name)
         with open_archive(path) as archive:
             library = find_library(path, archive, version, identifier)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import platform
 import re
 import sys
-import tempfile
 import uuid
 import zipfile
 from hashlib import sha256
@@ -16,6 +15,7 @@ from seatsim.exchange.compiler import compile_library
 from seatsim.exchange.description import Unit, describe_build, describe_fmi2, describe_fmi3
 from seatsim.exchange.model_source import print_model, print_variables, resource
 from seatsim.exchange.variables import list_variables
+from seatsim.schema.leftovers import temporary_folder
 
 FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 """The date of the files in the archive, so that the same model gives the same archive."""
@@ -31,7 +31,7 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
         RunError: the compiler failed.
     """
     files = make_files(block, version)
-    with tempfile.TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         for name, content in files.items():
             (Path(folder) / Path(name).name).write_bytes(content)
         library = Path(folder) / "library"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -23,6 +22,7 @@ from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
+from seatsim.schema.leftovers import temporary_folder
 
 OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
@@ -168,6 +168,6 @@ def _commented(assembled: Assembled) -> ImportMap:
 
 def _examined(assembled: Assembled, scenario: Mapping[str, object]) -> list[Issue]:
     """Return the issues that `gap` and `diagnose` will name, from a copy in a temporary folder."""
-    with tempfile.TemporaryDirectory() as place:
+    with temporary_folder() as place:
         write_recording(Path(place), assembled, scenario)
         return examine(load_recording(place)).issues

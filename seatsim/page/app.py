@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +24,7 @@ from seatsim.report.rendering import digest_of, make_environment, read_asset
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.files import write_whole
+from seatsim.schema.leftovers import temporary_folder
 
 if TYPE_CHECKING:
     from seatsim.page.recording_view import RecordingView
@@ -113,7 +113,7 @@ class _Page:
         path = self._folder.name_new(str(values.get("name", "")))
         content = {**self._target.encode(values), "name": path.stem}
         dump = YAML(typ="safe").dump
-        with TemporaryDirectory() as drafts:
+        with temporary_folder() as drafts:
             # What could not be read again is never saved.
             dump(content, Path(drafts) / path.name)
             single(Path(drafts) / path.name)

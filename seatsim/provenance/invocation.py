@@ -21,7 +21,7 @@ REPEATABLE: Mapping[str, frozenset[str]] = {
         "identify": "--model --test --test-fraction --fix --ignore-temperature --predict --moving-average --centred"
                     " --seed",
         "import": "--map --nominal", "comfort": "--channel --hours --run --block --rate --unit",
-        "seat-test": "--class --set", "sweep-report": "",
+        "seat-test": "--class --set", "sweep": "", "sweep-report": "",
     }.items()
 }  # fmt: skip
 """Commands that can be run again, with the options on which their answer hangs: none writes, loads code or connects."""

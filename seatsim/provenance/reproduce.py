@@ -7,38 +7,28 @@ manifest states, into a temporary folder. Code that it names is run only where t
 
 from __future__ import annotations
 
-import csv
-import io
-import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple, cast
 
+from seatsim.provenance.differences import LARGEST, Difference, compare_outputs
 from seatsim.provenance.invocation import REPEATABLE, digest
 from seatsim.provenance.manifest import EXAMPLE, MANIFEST
 from seatsim.provenance.versions import list_platform, list_versions
 from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, RunError, nearest
 from seatsim.schema.guarded import expect, is_there, read_bytes, read_json
+from seatsim.schema.leftovers import temporary_folder
 from seatsim.schema.text import explain_bad_name
 
-LARGEST = 2**32
-"""Bytes of an input or an output."""
 FIELDS = {
     "command": str, "arguments": list, "directory": str, "folder": str, "own_code": list, "versions": dict,
     "platform": dict, "inputs": list, "outputs": list, "measured": dict,
 }  # fmt: skip
 KIND = "manifest of a command of seatsim"
-
-
-class Difference(NamedTuple):
-    """What is not as it was: an input, an output or a piece of the user's own code, and how it differs."""
-
-    path: str
-    problem: str
 
 
 class Reproduction(NamedTuple):
@@ -75,11 +65,11 @@ def reproduce(
     command = manifest["command"]
     if changed:
         return Reproduction(command, False, [], changed, versions)
-    with TemporaryDirectory() as place:
+    with temporary_folder() as place:
         again = Path(place) / manifest["folder"]
-        tell(f"running {command} again")
+        tell(f"running {command} again{_count_runs(manifest)}")
         again = _run(command, arguments, own_code, directory, again)
-        differences = list(_compare_outputs(manifest, folder, again))
+        differences = list(compare_outputs(manifest, folder, read_manifest(again), again))
     compared = [each["path"] for each in manifest["outputs"]]
     return Reproduction(command, not differences, compared, differences, versions)
 
@@ -96,11 +86,7 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     content = cast("dict[str, Any]", read_json(path, KIND))
     with expect(path, KIND):
         if "identity" in content:
-            raise InputError(
-                f"{folder}: holds a sweep, which is not run again here since it may take days; run"
-                f" 'seatsim sweep FILE --out OTHER' and compare the rows: seatsim.read_sweep({folder.as_posix()!r})"
-                ".equals(seatsim.read_sweep('OTHER'))"
-            )
+            _check_sweep(content, folder)
         for key, kind in FIELDS.items():
             if not isinstance(content[key], kind):
                 raise TypeError(f"{key} is {content[key]!r}")
@@ -112,6 +98,17 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     if problem := explain_bad_name(content["folder"]):
         raise InputError(f"{path}: folder {content['folder']!r} {problem}")
     return content
+
+
+def _check_sweep(content: Mapping[str, Any], folder: Path) -> None:
+    """Refuse a sweep that was not made by a command, or of which runs are missing."""
+    if "command" not in content:
+        raise InputError(
+            f"{folder}: holds a sweep that no command of seatsim made; run 'seatsim sweep FILE --out OTHER' and compare"
+            f" the rows: seatsim.read_sweep({folder.as_posix()!r}).equals(seatsim.read_sweep('OTHER'))"
+        )
+    if left := content["counts"]["pending"]:
+        raise InputError(f"{folder}: {left} runs of this sweep are missing; go on with it with --resume first")
 
 
 def _check_arguments(manifest: Mapping[str, Any], folder: Path) -> list[str]:
@@ -201,7 +198,10 @@ def _run(command: str, arguments: Sequence[str], own_code: Sequence[Path], direc
     """
     code = [word for path in own_code for word in ("--with", str(path.absolute()))]
     words = [sys.executable, "-P", "-m", "seatsim", command, "--json", "--out", str(out), *code, *arguments]
-    done = subprocess.run(words, cwd=directory, capture_output=True, stdin=subprocess.DEVNULL, check=False)
+    # What the process would leave behind in the middle goes with the folder.
+    place = {"TMPDIR": str(out.parent)}
+    done = subprocess.run(words, cwd=directory, capture_output=True, stdin=subprocess.DEVNULL, check=False,
+                          env=os.environ | place)  # fmt: skip
     for folder in (out, out / out.name):
         if (folder / MANIFEST).is_file():
             return folder
@@ -209,39 +209,5 @@ def _run(command: str, arguments: Sequence[str], own_code: Sequence[Path], direc
     raise RunError(f"{command} cannot be run again: {said[-1].removeprefix('error: ') if said else 'no reason'}")
 
 
-def _compare_outputs(manifest: Mapping[str, Any], folder: Path, again: Path) -> Iterator[Difference]:
-    """Yield files that are not as the manifest states, or not what the command writes now."""
-    made = {each["path"]: each["sha256"] for each in read_manifest(again)["outputs"]}
-    for each in manifest["outputs"]:
-        name, fields = each["path"], manifest["measured"].get(each["path"], [])
-        if Path(name).is_absolute() or ".." in Path(name).parts:
-            raise InputError(f"{folder / MANIFEST}: output {name!r} lies outside its folder")
-        if not (folder / name).is_file():
-            yield Difference(name, "is not there any more")
-            continue
-        content = read_bytes(folder / name, LARGEST, "a file that seatsim wrote")
-        if digest(content).sha256 != each["sha256"]:
-            yield Difference(name, "was changed after it was written")
-        if name not in made:
-            yield Difference(name, "is not written any more")
-        elif not _is_same(content, (again / name).read_bytes(), name, fields):
-            yield Difference(name, "differs")
-    for name in made.keys() - {each["path"] for each in manifest["outputs"]}:
-        yield Difference(name, "was not written before")
-
-
-def _is_same(old: bytes, new: bytes, name: str, measured: Sequence[str]) -> bool:
-    """Tell whether two files are the same, bytes alike but for what was measured in them."""
-    if old == new or not measured:
-        return old == new
-    with expect(name, "file with measured times"):
-        return _without(old, name, measured) == _without(new, name, measured)
-
-
-def _without(content: bytes, name: str, fields: Sequence[str]) -> object:
-    """Return the content of a JSON or CSV file without some keys or columns."""
-    text = content.decode("utf-8")
-    if name.endswith(".json"):
-        return {key: value for key, value in json.loads(text).items() if key not in fields}
-    rows = csv.DictReader(io.StringIO(text))
-    return [{key: value for key, value in row.items() if key not in fields} for row in rows]
+def _count_runs(manifest: Mapping[str, Any]) -> str:
+    return f": {manifest['counts']['runs']} runs" if "identity" in manifest else ""

@@ -11,6 +11,8 @@ from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation, group_by_setting
 from seatsim.report.blocks import Block, Items, Report, Section, Table
+from seatsim.report.credibility.card import show_card
+from seatsim.report.credibility.evidence import collect_characterisation
 from seatsim.report.formatting import format_number, format_percent, format_quantity, format_sentence
 from seatsim.report.method import describe_method
 from seatsim.report.packing import Axis, Panel, pack_signals
@@ -38,6 +40,7 @@ def report_characterisation(found: Characterisation, remarks: Sequence[str], com
         Section("loops", "Loops", _draw_loops(found.rows)),
         Section("steps", "Response to steps of the current", _show_steps(found.responses)),
         Section("notes", "Notes", [Items([format_sentence(text) for text in remarks])] * bool(remarks)),
+        show_card(collect_characterisation(found)),
         describe_method(METHOD, {"source": found.source}, command),
     ]
     return Report(f"Characterisation: {found.name}", say_character(found), [], _advise(found), sections)

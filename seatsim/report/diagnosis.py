@@ -7,6 +7,8 @@ from pathlib import Path
 from seatsim.diagnosis.result import Cause, Diagnosis
 from seatsim.report.blocks import Report, Section
 from seatsim.report.causes import show_causes, show_confusions, show_forms
+from seatsim.report.credibility.card import show_card
+from seatsim.report.credibility.evidence import collect_diagnosis
 from seatsim.report.effect_words import say_action, say_cause
 from seatsim.report.evidence import (
     show_budget,
@@ -67,6 +69,7 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
         Section("budget", "What the remaining error is made of", show_budget(diagnosis)),
         Section("comfort", "Comfort and travel", show_comfort(diagnosis)),
         Section("notes", "Notes on the data", show_notes(diagnosis)),
+        show_card(collect_diagnosis(diagnosis)),
         describe_method(METHOD, {}, f"seatsim diagnose {diagnosis.name}"),
     ]
     if diagnosis.verdict == "none":

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from seatsim.metrics.motion import rms
 from seatsim.recordings.gap import Gap, ReplayedPair
 from seatsim.report.blocks import Block, Items, Matrix, Report, Section, Signals, Table, Text
+from seatsim.report.credibility.card import show_card
+from seatsim.report.credibility.evidence import Evidence
 from seatsim.report.formatting import format_percent, format_sentence
 from seatsim.report.method import describe_method
 from seatsim.report.packing import Axis, Panel, make_density, pack_signals
@@ -30,13 +32,14 @@ METHOD = (
 )
 
 
-def report_gap(name: str, found: Gap, pairs: Mapping[str, ReplayedPair], command: str) -> Report:
+def report_gap(name: str, found: Gap, pairs: Mapping[str, ReplayedPair], evidence: Evidence, command: str) -> Report:
     """Return the report of a gap.
 
     Args:
         name: of scenario and recording, for the head.
         found: the gap.
         pairs: measured and simulated channels of every run.
+        evidence: for the credibility of the figures.
         command: what makes the report again.
     """
     channels = list(found.channels)
@@ -45,6 +48,7 @@ def report_gap(name: str, found: Gap, pairs: Mapping[str, ReplayedPair], command
         Section("signals", "Measured and simulated over time", [show_pairs(channels, pairs)]),
         Section("spectra", "What is left over frequency", _show_left(channels, pairs)),
         Section("notes", "Notes on the data", _list_notes(found)),
+        show_card(evidence),
         describe_method(METHOD, {}, command),
     ]
     return Report(f"Gap: {name}", say_gap(found), [], _advise(found), sections)

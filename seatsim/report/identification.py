@@ -10,6 +10,8 @@ from seatsim.identification.agreement import Agreement
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
 from seatsim.report.blocks import Block, Items, Report, Section, Table
+from seatsim.report.credibility.card import show_card
+from seatsim.report.credibility.evidence import collect_identification
 from seatsim.report.formatting import format_number, format_quantity, format_sentence
 from seatsim.report.method import describe_method
 from seatsim.report.packing import Axis, Panel, pack_signals
@@ -43,6 +45,7 @@ def report_identification(found: Identification, command: str) -> Report:
         Section("signals", "Measured and predicted over time", [_show_time(chosen)]),
         Section("parameters", "Parameters", _show_parameters(found)),
         Section("notes", "Notes", [Items([format_sentence(note) for note in found.notes])] * bool(found.notes)),
+        show_card(collect_identification(found)),
         describe_method(METHOD, {}, command),
     ]
     return Report(f"Identification: {found.model}", say_fit(found), [], _advise(found), sections)

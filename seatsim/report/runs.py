@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from seatsim.plots.runs.naming import find_unit, select_shown
 from seatsim.report.blocks import Block, Items, Report, Section, Table, Text
+from seatsim.report.credibility.card import show_card
+from seatsim.report.credibility.evidence import collect_runs
 from seatsim.report.formatting import describe_channel, format_number, format_percent, format_quantity, format_sentence
 from seatsim.report.method import describe_method
 from seatsim.report.packing import Axis, Panel, make_density, pack_signals
@@ -61,6 +63,7 @@ def report_runs(runs: Sequence[Run], command: str, title: str) -> Report:
         Section("spectra", "Driver and floor over frequency", _show_spectra(shown, lines)),
         Section("loops", "Damper force over velocity", [_draw_loops(shown, lines)]),
         Section("notes", "Notes", _list_notes(runs)),
+        show_card(collect_runs(runs)),
         describe_method(METHOD, _list_settings(runs[0]), command),
     ]
     single = len(runs) == 1

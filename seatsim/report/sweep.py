@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from seatsim.report.blocks import Bar, Bars, Block, Report, Section, Table, Text
+from seatsim.report.credibility.card import show_card
+from seatsim.report.credibility.evidence import collect_sweep
 from seatsim.report.formatting import format_number, format_percent
 from seatsim.report.method import describe_method
 from seatsim.report.rendering import write_html
@@ -61,6 +63,7 @@ def report_sweep(
         Section("maps", "Over two keys", tabulate_maps(rows, _order(found, rows))),
         Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
         Section("states", "Failed and unverified runs", _show_states(rows)),
+        show_card(collect_sweep(rows, found, exceeded)),
         describe_method(METHOD, {"identity": rows.manifest["identity"]}, f"seatsim sweep-report {rows.folder.name}"),
     ]
     about = f"Sweep: {rows.folder.name}"

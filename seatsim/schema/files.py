@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from seatsim.schema.errors import InputError, OutputError
+from seatsim.schema.leftovers import noted, uncut
 
 _HOST = re.sub(r"[^0-9A-Za-z]", "_", socket.gethostname())[:40]
 _PART = re.compile(rf"\..+\.{_HOST}-(\d+)-[0-9a-f]{{8}}\.part(\..*)?")
@@ -41,18 +42,24 @@ def write_whole(path: Path, write: Callable[[Path], object], lasting: bool = Fal
     """
     _check_place(path)
     part = _name_part(path)
+    with noted(part):
+        _fill(part, path, write, lasting)
+    return path
+
+
+def _fill(part: Path, path: Path, write: Callable[[Path], object], lasting: bool) -> None:
     try:
         # As any file of the user: its mode is what the umask leaves of 0o666.
         os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
         write(part)
         if lasting:
             _synchronise(part)
-        part.replace(path)
+        with uncut():
+            part.replace(path)
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing of it is left") from error
     finally:
         part.unlink(missing_ok=True)
-    return path
 
 
 def write_packed(path: Path, write: Callable[[gzip.GzipFile], object], level: int = 6) -> Path:
@@ -79,14 +86,16 @@ def write_together(folder: Path, write: Callable[[Path], Iterable[Path]]) -> lis
     above = folder if folder.is_dir() else folder.parent
     remove_left(above)
     part = _name_part(above / os.path.basename(os.path.abspath(folder)))
-    try:
-        part.mkdir()
-        names = [path.relative_to(part) for path in write(part)]
-        _put_in_place(part, folder, names)
-    except OSError as error:
-        raise OutputError(f"{folder}: cannot be written: {error.strerror or error}; it is as it was") from error
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
+    with noted(part):
+        try:
+            part.mkdir()
+            names = [path.relative_to(part) for path in write(part)]
+            with uncut():
+                _put_in_place(part, folder, names)
+        except OSError as error:
+            raise OutputError(f"{folder}: cannot be written: {error.strerror or error}; it is as it was") from error
+        finally:
+            shutil.rmtree(part, ignore_errors=True)
     return [folder / name for name in names]
 
 

@@ -34,6 +34,10 @@ MISTAKEN: Mapping[str, tuple[MistakenUnit, ...]] = {
 """Units that stand in place of the SI unit, the likelier first."""
 
 
+UNUSUAL = "is unusual, since seats have"
+"""In every sentence of a doubt, by which such sentences are found among others."""
+
+
 def doubt(field: FieldSpecification, value: object) -> str:
     """Return why a value of a field is unusual and what was probably meant, empty where it is usual.
 
@@ -47,7 +51,7 @@ def doubt(field: FieldSpecification, value: object) -> str:
     if odd is None:
         return ""
     unit = "" if field.unit == "-" else f" {field.unit}"
-    return f"{odd:g}{unit} is unusual, since seats have {low:g} to {high:g}{unit}{guess(odd, field)}"
+    return f"{odd:g}{unit} {UNUSUAL} {low:g} to {high:g}{unit}{guess(odd, field)}"
 
 
 def guess(value: object, field: FieldSpecification) -> str:

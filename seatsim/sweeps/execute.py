@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.schema.errors import InputError, RunError
+from seatsim.schema.leftovers import uncut
 from seatsim.sweeps.checks import check_plan
 from seatsim.sweeps.definition import SweepDefinition, read_definition
 from seatsim.sweeps.engines.base import Engine, Work
@@ -122,8 +123,8 @@ def execute(
             if left := sum(map(len, rows.missing())):
                 raise RunError(f"{folder}: the engine ended without {left} of its runs; go on with --resume")
         finally:
-            rows.flush()
-            with hold_file(folder / ".lock-manifest", wait=True):
+            with uncut(), hold_file(folder / ".lock-manifest", wait=True):
+                rows.flush()
                 found = list(read_states(folder, plan.runs))
                 counts = count_states((state for _, state, _ in found), plan.runs)
                 write_manifest(folder, identity, definition.limits, counts)

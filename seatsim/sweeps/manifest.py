@@ -7,6 +7,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, cast
 
+from seatsim.provenance.invocation import current_invocation
+from seatsim.provenance.manifest import describe_invocation, describe_outputs
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_json
 from seatsim.schema.guarded import expect, read_json
@@ -20,10 +22,15 @@ FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limit
 
 
 def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float], counts: Mapping[str, int]) -> Path:
-    """Write the manifest of a sweep."""
+    """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work."""
+    invocation = current_invocation()
+    parts = {path.relative_to(folder).as_posix(): path for path in sorted(folder.glob("runs/part-*.parquet"))}
+    stated = {} if invocation is None else {
+        **describe_invocation(invocation, folder), **describe_outputs({} if counts["pending"] else parts),
+    }  # fmt: skip
     content = {
         "identity": identity.digest, "versions": identity.versions, "seed": identity.seed, "counts": counts,
-        "limits": limits, "configuration": identity.configuration, "design": identity.design,
+        "limits": limits, "configuration": identity.configuration, "design": identity.design, **stated,
     }  # fmt: skip
     return write_json(folder / NAME, content, lasting=True)
 

@@ -18,7 +18,7 @@ def readers(fuzzing):
 @pytest.mark.parametrize(
     "name",
     ["scenario", "variants", "recording", "table", "bench", "sweep", "design", "import", "formats", "synthesis",
-     "diagnosis", "sealed"],
+     "diagnosis", "manifest", "sealed"],
 )  # fmt: skip
 def test_damaged_files_are_read_or_refused_by_a_sentence(fuzzing, readers, name):
     found = fuzzing.fuzz(readers[name], MUTANTS, seed=7, limit=60.0)
@@ -27,7 +27,7 @@ def test_damaged_files_are_read_or_refused_by_a_sentence(fuzzing, readers, name)
 
 
 def test_every_reader_is_fuzzed(readers):
-    assert len(readers) == 12
+    assert len(readers) == 13
 
 
 def test_valid_files_are_read(readers, tmp_path):

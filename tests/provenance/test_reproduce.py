@@ -9,6 +9,7 @@ import pytest
 
 from seatsim.cli.app import main
 from seatsim.provenance import reproduce as reproduction
+from seatsim.provenance.differences import _is_same
 from seatsim.provenance.reproduce import reproduce
 from seatsim.schema.errors import InputError
 
@@ -101,10 +102,31 @@ def test_what_a_strangers_manifest_may_not_ask_for_is_refused(project, never, fi
         reproduce(project / "out" / "c")
 
 
-def test_a_sweep_says_why_it_is_not_run_again(project, never):
-    change(project, identity="0")
-    with pytest.raises(InputError, match=r"holds a sweep.*'seatsim sweep FILE --out OTHER'"):
+def test_a_sweep_of_python_or_one_that_is_not_complete_is_not_run_again(project, never):
+    change(project, identity="0", counts={"runs": 9, "pending": 2})
+    with pytest.raises(InputError, match="2 runs of this sweep are missing"):
         reproduce(project / "out" / "c")
+    path = project / "out" / "c" / "manifest.json"
+    path.write_text(json.dumps({"identity": "0"}))
+    with pytest.raises(InputError, match=r"holds a sweep that no command.*'seatsim sweep FILE --out OTHER'"):
+        reproduce(project / "out" / "c")
+
+
+def test_a_sweep_is_run_again(tmp_path, monkeypatch):
+    (tmp_path / "s.yaml").write_text(
+        "scenario: quickstart\nvary: {plant.driver_mass: [60, 70], excitation.duration: [1]}\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["seatsim", "sweep", "s.yaml", "--jobs", "1", "--out", "s"])
+    with pytest.raises(SystemExit):
+        main()
+    found = reproduce(tmp_path / "s")
+    assert found.identical and found.compared == ["runs/part-000000.parquet"]
+    path = tmp_path / "s" / "manifest.json"
+    content = json.loads(path.read_text())
+    content["configuration"]["files"] = {"road.csv": "0"}
+    path.write_text(json.dumps(content))
+    assert [each.path for each in reproduce(tmp_path / "s").differences] == ["manifest.json"]
 
 
 def test_a_folder_of_folders_with_manifests_names_one(project, never):
@@ -129,7 +151,7 @@ def test_code_beside_a_strangers_manifest_is_not_run(project):
     ],
 )
 def test_measured_times_may_differ_and_nothing_else(name, old, new, same):
-    assert reproduction._is_same(old, new, name, ["seconds"]) is same
+    assert _is_same(old, new, name, ["seconds"]) is same
 
 
 def test_a_file_that_was_changed_is_said(project, monkeypatch):

@@ -34,13 +34,25 @@ from seatsim.schema.registry import names
 from .diagnoses import CASES, ambiguous, known, none, unknown
 from .outline import Outline
 
-SHORT = ["gaps", "signals", "spectra", "comfort", "notes", "method"]
-FULL = ["gaps", "causes", "signals", "confusions", "maps", "spectra", "comfort", "notes", "method"]
+SHORT = ["gaps", "signals", "spectra", "comfort", "notes", "credibility", "method"]
+FULL = ["gaps", "causes", "signals", "confusions", "maps", "spectra", "comfort", "notes", "credibility", "method"]
 SHOWN = {
     "none": SHORT,
     "known": FULL,
     "ambiguous": FULL,
-    "unknown": ["gaps", "causes", "signals", "missing", "confusions", "maps", "spectra", "comfort", "notes", "method"],
+    "unknown": [
+        "gaps",
+        "causes",
+        "signals",
+        "missing",
+        "confusions",
+        "maps",
+        "spectra",
+        "comfort",
+        "notes",
+        "credibility",
+        "method",
+    ],
     "bench": [name for name in FULL if name != "comfort"],
 }
 ANSWERS = {
@@ -140,7 +152,7 @@ def test_little_is_known(tmp_path):
         found, evidence=nothing, gap=gap, notes=[], held_out=[], isolable=[], where=[], selected=[], parameters=[]
     )
     outline = Outline(write_report(found, tmp_path / "report.html").read_text(encoding="utf-8"))
-    assert outline.anchors == ["gaps", "causes", "method"]
+    assert outline.anchors == ["gaps", "causes", "credibility", "method"]
     assert "–" in outline.words and not any("nan" in words for words in outline.words)
 
 

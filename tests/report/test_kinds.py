@@ -16,6 +16,7 @@ from seatsim.identification.information import Information, ParameterEstimate
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.gap import Gap, NoiseFloor, ReplayedPair
 from seatsim.report.characterisation import report_characterisation
+from seatsim.report.credibility.evidence import Evidence
 from seatsim.report.gap import report_gap, say_gap
 from seatsim.report.identification import report_identification
 from seatsim.report.rendering import render_report
@@ -71,7 +72,9 @@ def gap(size, floor=0.02):
 
 
 def test_a_gap_says_where_it_is_largest_and_what_to_do():
-    report = report_gap("nominal against rig", gap(0.3), {"run-a": pair(20.0), "run-b": pair(5.0)}, "seatsim gap a b")
+    report = report_gap(
+        "nominal against rig", gap(0.3), {"run-a": pair(20.0), "run-b": pair(5.0)}, Evidence(), "seatsim gap a b"
+    )
     outline = Outline(render_report(report))
     assert "furthest off in the damper force, by 30 %" in outline.headings[0]
     assert any("seatsim diagnose" in words for words in outline.words) and "A note." in outline.words
@@ -85,7 +88,7 @@ def test_a_short_recording_has_no_spectrum_and_says_so():
         time=short.time[:40], measured={"damper_force": short.measured["damper_force"][:40]},
         simulated={"damper_force": short.simulated["damper_force"][:40]},
     )  # fmt: skip
-    outline = Outline(render_report(report_gap("x", gap(0.3), {"run-a": short}, "seatsim gap a b")))
+    outline = Outline(render_report(report_gap("x", gap(0.3), {"run-a": short}, Evidence(), "seatsim gap a b")))
     assert "The runs are too short for a spectrum." in outline.words
 
 
@@ -99,7 +102,8 @@ def identification(parts):
     ]
     known = [ParameterEstimate("c_a", 500.0, 2.0, "N s/m", True), ParameterEstimate("k0", 3.0, 30.0, "N/m", False)]
     return SimpleNamespace(
-        model="bouc_wen", assessments=judged, information=Information(known, [("c_a", "k0", 0.99)], 100.0), notes=[],
+        model="bouc_wen", bench=SimpleNamespace(damper=None), assessments=judged,
+        information=Information(known, [("c_a", "k0", 0.99)], 100.0), notes=[],
         mean=lambda part: Agreement(0.99, 0.02, 5.0, 93.2) if part in parts else None,
     )  # fmt: skip
 
@@ -141,7 +145,7 @@ def test_text_of_files_stays_text_in_every_kind(text):
     hostile.assessments[0] = hostile.assessments[0]._replace(record=hostile.assessments[0].record._replace(name=text))
     pages = [
         render_report(report_identification(hostile, text)),
-        render_report(report_gap(text, gap(0.3), {text: pair(3.0)}, text)),
+        render_report(report_gap(text, gap(0.3), {text: pair(3.0)}, Evidence(), text)),
         render_report(report_characterisation(Characterisation(text, text, True, [], [], [text]), [text], text)),
     ]
     for page in pages:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from seatsim.recordings.compared import select_compared, stands_out
 from seatsim.recordings.recording import ChannelEntry, load_recording
 from seatsim.recordings.replay import replay_table
 from seatsim.scenario.loading import single
+from seatsim.schema.leftovers import temporary_folder
 
 MATERIAL_SHARE = 0.05
 """Of a channel's standard deviation (contract, section 4)."""
@@ -101,7 +101,7 @@ def residuals(carrier: Carrier) -> Residuals:
 
     The displacement of a bench is interpolated, not smoothed, which is much faster and enough for a size.
     """
-    with tempfile.TemporaryDirectory() as temporary:
+    with temporary_folder() as temporary:
         folder = Path(temporary)
         for name, data in encode_carrier(carrier, ()).items():
             (folder / name).write_bytes(data)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from seatsim.blind.score.measures import Rate, count_true
 from seatsim.blind.score.verdicts import NAMING, Verdict
 from seatsim.blind.sealed import Sealed
 from seatsim.schema.errors import SeatsimError
+from seatsim.schema.leftovers import temporary_folder
 
 FEWEST_FOR_PROCESSES = 8
 """Cases below which a new process costs more time, for its imports, than it saves."""
@@ -57,7 +57,7 @@ def score_shrink(
     claims = [name for name in opened.labels if _claims_shrink(verdicts[name])]
     if not claims:
         return None
-    with tempfile.TemporaryDirectory() as temporary:
+    with temporary_folder() as temporary:
         unseen = [opened.extract(name, Path(temporary)) for name in claims]
         jobs = [
             (base / name / "nominal.yaml", verdicts[name].augmented, folder)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING, Annotated, NamedTuple
@@ -11,8 +12,10 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from seatsim.cli.options import Json, Out, OwnCode, Scenarios, Settings, scenario_settings
+from seatsim.cli.start import go_on
 from seatsim.cli.terminal import answer, complain, count_progress, show_progress, warn, wrote
 from seatsim.schema.errors import InputError, SeatsimError
+from seatsim.schema.leftovers import uncut
 
 if TYPE_CHECKING:
     from seatsim.scenario.scenario import Scenario
@@ -76,7 +79,9 @@ def _execute(
     for group in groups:
         runs = [simulated.runs[id(scenario)] for scenario in group.scenarios if id(scenario) in simulated.runs]
         if runs:
-            content, written = _present(runs, group.folder, bracket, simulated.interrupted)
+            # What an interrupt left done is kept before the process ends.
+            with uncut() if simulated.interrupted else nullcontext():
+                content, written = _present(runs, group.folder, bracket, simulated.interrupted)
             encoded.append(content)
             paths += written
     if simulated.interrupted:
@@ -177,6 +182,7 @@ def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:
                 else:
                     found[rig] = answer
         except KeyboardInterrupt:
+            go_on()
             warn(["interrupted: the brackets that were not finished are left out"])
     if found:
         show_table(distances(runs, found))

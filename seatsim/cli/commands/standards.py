@@ -78,15 +78,12 @@ def seat_test(
     as_json: Json = False,
 ) -> None:
     """Put a seat to the test of ISO 7096: SEAT factors of two drivers, damping, end stops."""
-    from seatsim.cli.outputs.seat_test import encode, list_failures, make_tables, summarise
+    from seatsim.cli.outputs.seat_test import encode, list_failures, make_tables, summarise, write_seat_test
     from seatsim.cli.show_table import show_table
-    from seatsim.provenance.manifest import write_documented
-    from seatsim.schema.files import write_json
     from seatsim.standards.seat_test import seat_test as test
 
     with count_progress("simulating") as count:
         found = test(source, spectral_class or (), scenario_settings(settings), count)
-    content = encode(found, source)
     for table in make_tables(found):
         show_table(table)
     say(summarise(found))
@@ -94,8 +91,8 @@ def seat_test(
         complain(f"failed: {failure}")
     warn(found.notes)
     folder = out_folder or Path("out") / f"seat-test-{Path(source).stem}"
-    paths = write_documented(folder, lambda part: [write_json(part / "seat_test.json", content)])
+    paths = write_seat_test(found, source, folder)
     wrote(folder, paths)
-    answer(content, paths)
+    answer(encode(found, source), paths)
     if found.failures:
         raise typer.Exit(1)

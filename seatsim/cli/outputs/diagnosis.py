@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from rich.table import Table
 from ruamel.yaml import YAML
@@ -19,6 +18,7 @@ from seatsim.report.diagnosis import write_report
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import plain, write_json, write_whole
+from seatsim.schema.leftovers import temporary_folder
 from seatsim.schema.registry import is_own
 
 PROCESSES = 2
@@ -37,7 +37,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> list[Path]:
     if diagnosis.experiment is not None and diagnosis.experiment.scenario is not None:
         scenarios["experiment.yaml"] = dict(diagnosis.experiment.scenario)
     dump = YAML(typ="safe").dump
-    with TemporaryDirectory() as drafts:
+    with temporary_folder() as drafts:
         for name, content in scenarios.items():
             dump(content, Path(drafts) / name)
             single(Path(drafts) / name)

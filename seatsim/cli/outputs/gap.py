@@ -7,6 +7,7 @@ from pathlib import Path
 
 from seatsim.provenance.manifest import write_documented
 from seatsim.recordings.gap import Gap, replay_every_run
+from seatsim.report.credibility.evidence import collect_gap
 from seatsim.report.gap import report_gap
 from seatsim.report.rendering import write_html
 from seatsim.schema.files import write_json
@@ -28,7 +29,13 @@ def write_gap(
     if found is not None:
         pairs = replay_every_run(scenario, recording)
         name = f"{Path(scenario).stem} against {recording.resolve().name}"
-        report = report_gap(name, found, pairs, f"seatsim gap {Path(scenario).name} {recording.name}")
+        report = report_gap(
+            name,
+            found,
+            pairs,
+            collect_gap(scenario, recording, found),
+            f"seatsim gap {Path(scenario).name} {recording.name}",
+        )
     return write_documented(
         folder,
         lambda part: [

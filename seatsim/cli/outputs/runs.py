@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+MOST_KEPT = 400_000
+"""Rows of the histories that are written after an interrupt, which takes about half a second."""
+
+
 def write_result(result: Result, folder: Path, command: str = "seatsim run SCENARIO") -> list[Path]:
     """Write `summary.csv`, `summary.json`, `history.parquet`, `report.html` and the pictures; return their paths.
 
@@ -36,11 +40,14 @@ def write_result(result: Result, folder: Path, command: str = "seatsim run SCENA
 
 
 def write_interrupted(result: Result, folder: Path) -> list[Path]:
-    """Write `summary.csv`, `summary.json` and `history.parquet` alone: who interrupts does not wait for pictures."""
-    return write_together(
-        folder,
-        lambda part: [*_write_summaries(result, part), write_histories(result.runs, part / "history.parquet")],
-    )
+    """Write `summary.csv`, `summary.json` and, where it is short, `history.parquet`: who interrupts does not wait."""
+    is_short = sum(len(run.history["time"]) for run in result.runs) <= MOST_KEPT
+
+    def write(part: Path) -> list[Path]:
+        histories = [write_histories(result.runs, part / "history.parquet")] if is_short else []
+        return [*_write_summaries(result, part), *histories]
+
+    return write_together(folder, write)
 
 
 def _write_summaries(result: Result, folder: Path) -> list[Path]:

@@ -9,6 +9,11 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
+from seatsim.provenance.manifest import write_documented
+from seatsim.recordings.recording import HEADER
+from seatsim.report.rendering import write_html
+from seatsim.report.seat_test import report_seat_test
+from seatsim.schema.files import write_json
 from seatsim.standards.iso7096 import ACCEPTANCE, DAMPING, LIMITS, RECALLED, SEATED_SHARE
 from seatsim.standards.seat_rows import DampingRow, SeatFailure, SeatRow, SeatTest
 
@@ -18,6 +23,20 @@ def make_tables(found: SeatTest) -> list[Table]:
     runs = dict.fromkeys(row.run for row in found.rows)
     tables = [_seat_table(run, [row for row in found.rows if row.run == run]) for run in runs]
     return [*tables, *([_damping_table(found.damping_rows)] if found.damping_rows else [])]
+
+
+def write_seat_test(found: SeatTest, source: str, folder: Path) -> list[Path]:
+    """Write `seat_test.json` and `report.html`; return their paths."""
+    path = Path(source)
+    is_measured = (path / HEADER).exists()
+    report = report_seat_test(found, path.resolve().stem, is_measured, f"seatsim seat-test {path.name}")
+    return write_documented(
+        folder,
+        lambda part: [
+            write_json(part / "seat_test.json", encode(found, source)),
+            write_html(report, part / "report.html"),
+        ],
+    )
 
 
 def summarise(found: SeatTest) -> str:

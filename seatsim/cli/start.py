@@ -1,0 +1,97 @@
+"""The start of a command as a process of its own, and its end by a signal: soon, whatever it is doing.
+
+Ctrl-C (SIGINT) and SIGTERM raise KeyboardInterrupt in the main thread: what a command keeps is written, temporary
+folders are removed, the status is 128 and the number of the signal (130, 143). Python can only do so between two of its
+own instructions. Where the main thread compiles, runs compiled code or waits for other threads, another one ends the
+process `GRACE` seconds after the signal. Nothing heavy is imported before signals are watched.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import sys
+from threading import Event, Thread
+from types import FrameType
+from typing import NoReturn
+
+from seatsim.schema.leftovers import remove_leftovers
+
+GRACE = 1.2
+"""Seconds from a signal to the end of a process that does not end by itself."""
+PATIENCE = 10.0
+"""Seconds for which that end waits for files that are being put in place."""
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_received: list[int] = []
+_answered = Event()
+
+
+def start() -> None:
+    """Run the command line; where a signal ends it, its threads are not waited for."""
+    watch_signals()
+    try:
+        from seatsim.cli.app import main
+
+        main()
+    except KeyboardInterrupt:
+        _say_interrupted()
+    except SystemExit:
+        if not _received:
+            raise
+    if _received:
+        for stream in (sys.stdout, sys.stderr):
+            stream.flush()
+        _end(_received[-1])
+
+
+def go_on() -> None:
+    """Say that a signal was answered: what was interrupted is left out, and the command goes on."""
+    _received.clear()
+    _answered.set()
+
+
+def watch_signals() -> None:
+    """Raise KeyboardInterrupt at each signal that is not ignored, and watch that the process ends."""
+    ours, theirs = socket.socketpair()
+    theirs.setblocking(False)
+    for number in SIGNALS:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, _interrupt)
+    signal.set_wakeup_fd(theirs.detach(), warn_on_full_buffer=False)
+    Thread(target=_end_in_time, args=(ours,), daemon=True).start()
+
+
+def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
+    _received.append(number)
+    _answered.clear()
+    raise KeyboardInterrupt
+
+
+def _end_in_time(wakeups: socket.socket) -> None:
+    """Wait for a signal, which the system reports at once, then end the process where it has not ended by itself."""
+    while number := wakeups.recv(1)[0]:
+        if number in SIGNALS:
+            if not _answered.wait(GRACE):
+                break
+            _answered.clear()
+    remove_leftovers(PATIENCE)
+    _say_interrupted()
+    os._exit(128 + number)
+
+
+def _end(number: int) -> NoReturn:
+    """End the process without the threads and the compiled code, whose orderly end takes seconds."""
+    remove_leftovers(PATIENCE)
+    os._exit(128 + number)
+
+
+def _say_interrupted() -> None:
+    """Say why the command ends, where it could not itself: what it prints with may not be loaded."""
+    if os.isatty(2):
+        os.write(2, b"\x1b[?25h")  # a progress bar hides the cursor
+    terminal = sys.modules.get("seatsim.cli.terminal")
+    if terminal is not None and hasattr(terminal, "fail"):
+        terminal.fail("interrupted")
+    else:
+        os.write(2, b"error: interrupted\n")

@@ -1,0 +1,257 @@
+"""What is known of the figures of a report: collected from the results themselves, never stated by anybody."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from seatsim.dampers.base import DAMPERS, find_confidence
+from seatsim.provenance.invocation import current_invocation
+from seatsim.schema.errors import InputError, RunError
+from seatsim.schema.plausible import UNUSUAL
+from seatsim.schema.registry import name_of
+from seatsim.simulation.result import Run
+from seatsim.simulation.runs import share_a_loop
+from seatsim.simulation.step_error import measure_step_error
+
+if TYPE_CHECKING:
+    from seatsim.characterisation.summary import Characterisation
+    from seatsim.diagnosis.result import Diagnosis
+    from seatsim.identification.identify import Identification
+    from seatsim.recordings.gap import Gap
+    from seatsim.recordings.header import Tolerances
+    from seatsim.standards.seat_rows import SeatTest
+    from seatsim.sweeps.statistics.exceedance import Exceedance
+    from seatsim.sweeps.statistics.inputs import SweepRows
+    from seatsim.sweeps.statistics.sensitivity import Sensitivities
+
+COMFORT = "driver_acceleration_weighted"
+MOST_HALVED = 24
+"""Runs of a comparison that are simulated again with half the step."""
+
+
+class Evidence(NamedTuple):
+    """What is known of some figures; None where it does not exist, shares of 1.
+
+    is_simulated: False where the figures are measured alone. energy: largest part of the energy that is unaccounted
+    for. step: largest change of an output by halving the step. compared, held_out: recorded runs that were compared,
+    and those of them that took no part in a fit. error, noise: gap on the latter, where there are some, and that of the
+    sensors' noise. inputs: files whose hashes the manifest keeps. doubts: ranges left, values that no seat has.
+    dampers: models with the word on their source. parameters_known: the recording states how well, or records of this
+    damper determine them. loose: parameters that no data determine. intervals: what has one. parameter_intervals,
+    answer_interval: whether parameters and the answer do. budget: the error is divided into its parts. runs: that were
+    simulated or recorded. varied: keys that were varied or refitted. drawn: those from a distribution. explained: share
+    of the variance that the keys explain. limits: shares of runs beyond limits are known. versions: a manifest states
+    them.
+    """
+
+    is_simulated: bool = True
+    energy: float | None = None
+    step: float | None = None
+    compared: int = 0
+    held_out: int = 0
+    error: float | None = None
+    noise: float | None = None
+    inputs: int | None = None
+    doubts: Sequence[str] = ()
+    dampers: Mapping[str, str] = {}
+    parameters_known: bool = False
+    loose: Sequence[str] = ()
+    intervals: Sequence[str] = ()
+    parameter_intervals: bool = False
+    answer_interval: bool = False
+    budget: bool = False
+    runs: int = 0
+    varied: Sequence[str] = ()
+    drawn: Sequence[str] = ()
+    explained: float | None = None
+    limits: bool = False
+    versions: bool = False
+
+
+def collect_runs(runs: Sequence[Run]) -> Evidence:
+    """Return what is known of simulated runs; the first ones are simulated again with half the step."""
+    energies = [run.metrics["energy_residual"].value for run in runs if "energy_residual" in run.metrics]
+    carry_all = share_a_loop([run.scenario for run in runs])
+    steps = [_halve(run, carry_all) for run in runs[:MOST_HALVED]]
+    return _record(
+        Evidence(
+            energy=_largest(energies),
+            step=_largest(step for step in steps if step is not None),
+            doubts=tuple(dict.fromkeys(text for run in runs for text in run.warnings)),
+            dampers=_judge_dampers({type(run.scenario.damper.record) for run in runs}),
+            runs=len(runs),
+        )
+    )
+
+
+def collect_sweep(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exceedance]) -> Evidence:
+    """Return what is known of a sweep, whose identity keeps the hashes of its inputs."""
+    stated = rows.manifest["configuration"]
+    damper = stated["scenario"].get("damper", {}) if isinstance(stated.get("scenario"), dict) else {}
+    model = damper.get("model") if isinstance(damper, dict) else None
+    reasons = tuple(sorted({str(text) for text in rows.every.reason.dropna() if text}))
+    return Evidence(
+        energy=_largest(rows.usable["energy_residual"].dropna()) if "energy_residual" in rows.metrics else None,
+        inputs=1 + len(stated.get("files", {})),
+        doubts=reasons,
+        dampers=_judge_dampers([DAMPERS.find(model)]) if model in DAMPERS.names() else {},
+        intervals=[*(["shares of the variance"] if found.rows else []), *(["shares above limits"] if exceeded else [])],
+        answer_interval=bool(found.rows),
+        runs=len(rows.usable),
+        varied=rows.keys,
+        drawn=rows.drawn,
+        explained=next((row.explained for row in found.of(COMFORT) or found.rows), None),
+        limits=bool(exceeded),
+        versions=True,
+    )
+
+
+def collect_gap(scenario: str, folder: Path, found: Gap) -> Evidence:
+    """Return what is known of a gap; every run is replayed again with half the step."""
+    from seatsim.diagnosis.error_budget import measure_step_error as measure_replay_step_error
+    from seatsim.recordings.quality.gravity import without_gravity
+    from seatsim.recordings.recording import load_recording
+    from seatsim.recordings.replay import replay
+    from seatsim.scenario.loading import single
+
+    chosen, recording = single(scenario), without_gravity(load_recording(folder))
+    steps = []
+    for run in recording.runs:
+        changes = measure_replay_step_error(chosen, recording, recording.table(run))
+        _, simulated = replay(chosen, recording, run)
+        spreads = {name: float(np.std(values)) for name, values in simulated.items()}
+        steps += [change / spreads[name] for name, change in changes.items() if spreads.get(name, 0.0) > 0]
+    is_known = _is_known(recording.header.parameter_tolerance)
+    is_nominal = Path(scenario).is_file() and Path(scenario).samefile(folder / recording.header.nominal)
+    return _record(
+        Evidence(
+            step=_largest(steps),
+            compared=len(recording.runs),
+            error=found.overall,
+            noise=found.floor["overall"],
+            doubts=found.notes,
+            dampers=_judge_dampers([type(chosen.damper.record)]),
+            held_out=len(recording.runs) if is_known and is_nominal else 0,
+            parameters_known=is_known,
+            intervals=["the gap, as the noise of the sensors"],
+            runs=len(recording.runs),
+        )
+    )
+
+
+def collect_diagnosis(diagnosis: Diagnosis) -> Evidence:
+    """Return what is known of a diagnosis on the runs that it held out."""
+    gap = diagnosis.gap
+    spreads = {trace.channel: float(np.std(trace.measured)) for trace in diagnosis.evidence.traces}
+    steps = [each.u_num / spreads[each.channel] for each in diagnosis.error_budget if spreads.get(each.channel, 0) > 0]
+    model = diagnosis.augmented.get("damper", {})
+    name = model.get("model") if isinstance(model, Mapping) else None
+    uncertain = ["the shrink of the gap"] if all(map(math.isfinite, gap.shrink_interval)) else []
+    fitted = [cause for cause in diagnosis.causes if cause.effect in diagnosis.selected and cause.parameters]
+    return _record(
+        Evidence(
+            step=_largest(steps),
+            compared=max(len(diagnosis.by_run), len(diagnosis.held_out)),
+            held_out=len(diagnosis.held_out),
+            error=gap.after.overall,
+            noise=gap.floor.overall,
+            doubts=[note for note in diagnosis.notes if UNUSUAL in note],
+            dampers=_judge_dampers([DAMPERS.find(name)]) if name in DAMPERS.names() else {},
+            parameters_known=bool(diagnosis.parameters),
+            loose=[each.name for each in diagnosis.parameters if each.at_bound],
+            intervals=[*(["the parameters of the effects"] if fitted else []), *uncertain],
+            parameter_intervals=bool(fitted),
+            answer_interval=bool(uncertain),
+            budget=bool(diagnosis.error_budget),
+            runs=len(diagnosis.by_run),
+            varied=[each.name for each in diagnosis.parameters],
+        )
+    )
+
+
+def collect_identification(found: Identification) -> Evidence:
+    """Return what is known of an identified damper, on held-out records where there are some."""
+    test, train = found.mean("test"), found.mean("train")
+    mean, parts = test or train, [each.part for each in found.assessments]
+    return _record(
+        Evidence(
+            compared=len(parts),
+            held_out=parts.count("test"),
+            error=None if mean is None else 1.0 - mean.fit_percent / 100.0,
+            dampers=_judge_dampers([type(found.bench.damper)]),
+            parameters_known=True,
+            loose=[each.name for each in found.information.estimates if not each.identified],
+            intervals=["the parameters"],
+            parameter_intervals=True,
+            runs=len(parts),
+        )
+    )
+
+
+def collect_characterisation(found: Characterisation) -> Evidence:
+    """Return what is known of the figures of a bench's records, or of a model's tests."""
+    models = [] if found.measured or found.name not in DAMPERS.names() else [DAMPERS.find(found.name)]
+    return _record(
+        Evidence(
+            is_simulated=not found.measured,
+            doubts=tuple(dict.fromkeys([*found.notes, *(note for row in found.rows for note in row.notes)])),
+            dampers=_judge_dampers(models),
+            intervals=["the response times"] if any(math.isfinite(each.t95_sd) for each in found.responses) else [],
+            runs=len(found.rows),
+        )
+    )
+
+
+def collect_seat_test(found: SeatTest, is_measured: bool) -> Evidence:
+    """Return what is known of a seat test, simulated or measured."""
+    spread = [row for row in found.rows if row.within_spread is not None]
+    return _record(
+        Evidence(
+            is_simulated=not is_measured,
+            doubts=(*found.notes, *(failure.reason for failure in found.failures)),
+            intervals=["the SEAT factors, by the spread of their runs"] if spread else [],
+            runs=len(found.rows),
+            varied=["spectral class", "mass of the test person"] if len({row.person for row in found.rows}) > 1 else [],
+        )
+    )
+
+
+def _record(evidence: Evidence) -> Evidence:
+    """Return evidence with what the manifest of the command at work keeps; from Python there is none."""
+    invocation = current_invocation()
+    if invocation is None:
+        return evidence
+    # Drafts that were read back are gone.
+    return evidence._replace(inputs=sum(path.is_file() for path in invocation.reads), versions=True)
+
+
+def _halve(run: Run, carry_all_effects: bool | None) -> float | None:
+    try:
+        return measure_step_error(run.scenario, run.history, carry_all_effects)
+    except (InputError, RunError):
+        return None
+
+
+def _largest(values: Iterable[float]) -> float | None:
+    """Return the largest of some values, None where there is none or one is not known."""
+    found = [float(value) for value in values]
+    return max(found) if found and all(map(math.isfinite, found)) else None
+
+
+def _judge_dampers(classes: Iterable[type]) -> dict[str, str]:
+    """Return the word on the source of each damper model, by its name."""
+    return dict(sorted((name_of("damper", cls), find_confidence(cls)) for cls in classes if cls in _registered()))
+
+
+def _registered() -> set[type]:
+    return {DAMPERS.find(name) for name in DAMPERS.names()}
+
+
+def _is_known(tolerances: Tolerances) -> bool:
+    """Whether a recording states how well the parameters are known, and not that they were fitted to such data."""
+    return "fitted" not in (tolerances.values() if isinstance(tolerances, Mapping) else [tolerances])

@@ -1,0 +1,96 @@
+"""The report of a seat test: which classes of ISO 7096 a seat passes, and by how much."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatsim.report.blocks import Block, Items, Report, Section, Table
+from seatsim.report.credibility.card import show_card
+from seatsim.report.credibility.evidence import collect_seat_test
+from seatsim.report.formatting import UNKNOWN, format_number, format_percent, format_sentence
+from seatsim.report.method import describe_method
+from seatsim.report.planes import Curve, draw_curves
+from seatsim.schema.text import join_names
+from seatsim.standards.iso7096 import LIMITS, RECALLED
+from seatsim.standards.seat_rows import DampingRow, SeatRow, SeatTest
+
+METHOD = (
+    "The SEAT factor is the weighted acceleration at the driver over that at the floor, each a mean over the runs of a"
+    " class and driver; the spread is the largest deviation of a run from that mean.",
+    "The damping test gives the transmissibility at resonance, with an inert mass on the seat.",
+    format_sentence(RECALLED),
+)
+
+
+def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str) -> Report:
+    """Return the report of a seat test.
+
+    Args:
+        found: its lines.
+        name: of the scenario or recording, for the head.
+        is_measured: whether the lines are of a recording.
+        command: what makes the report again.
+    """
+    texts = [*found.notes, *(f"{each.run} failed: {each.reason}" for each in found.failures)]
+    sections = [
+        Section("classes", "SEAT factors", _tabulate_classes(found.rows)),
+        Section("damping", "Damping at resonance", [*_tabulate_damping(found.damping_rows), *_draw_damping(found)]),
+        Section("notes", "Notes", [Items([format_sentence(text) for text in texts])] * bool(texts)),
+        show_card(collect_seat_test(found, is_measured)),
+        describe_method(METHOD, {}, command),
+    ]
+    return Report(f"Seat test: {name}", say_seat_test(found), [], _advise(found), sections)
+
+
+def say_seat_test(found: SeatTest) -> str:
+    """Return in a sentence which lines of the test are passed."""
+    rows: list[SeatRow | DampingRow] = [*found.rows, *found.damping_rows]
+    failed = dict.fromkeys(row.spectral_class for row in rows if not row.passed)
+    count = f"{sum(row.passed for row in rows)} of {len(rows)} lines of the test are within the limits of ISO 7096"
+    return f"{count}; {join_names(list(failed))} not in all of theirs." if failed else f"{count}."
+
+
+def _advise(found: SeatTest) -> list[str]:
+    worst = max(found.rows, key=lambda row: row.seat / row.limit, default=None)
+    texts = []
+    if worst is not None and not worst.passed:
+        texts.append(f"Look at {worst.spectral_class} with {worst.mass:g} kg first: its SEAT factor is"
+                     f" {format_percent(worst.seat / worst.limit)} of the limit.")  # fmt: skip
+    if any(row.end_stop_hits for row in found.rows):
+        texts.append("Look at the travel: end stops are met, which no limit of the standard counts.")
+    return [*texts, "Compare laws and settings of the seat on the same floors: seatsim compare takes kind: iso7096."]
+
+
+def _tabulate_classes(rows: Sequence[SeatRow]) -> list[Block]:
+    lines = [
+        [row.run, row.spectral_class, LIMITS[row.spectral_class].machines, "yes" if row.passed else "no",
+         f"{row.mass:g}", format_number(row.seat), format_number(row.limit), format_percent(row.spread),
+         UNKNOWN if row.end_stop_hits is None else str(row.end_stop_hits)]
+        for row in rows
+    ]  # fmt: skip
+    head = ["run", "class", "machine", "passed", "driver [kg]", "SEAT", "limit", "spread", "end stops met"]
+    strong = [k for k, row in enumerate(rows) if not row.passed]
+    caption = "A line for each class and driver; in bold what is above its limit"
+    return [Table(caption, head, lines, 4, strong)] * bool(lines)
+
+
+def _tabulate_damping(rows: Sequence[DampingRow]) -> list[Block]:
+    lines = [
+        [row.run, row.spectral_class, "yes" if row.passed else "no", format_number(row.resonance),
+         format_number(row.transmissibility), format_number(row.limit)]
+        for row in rows
+    ]  # fmt: skip
+    head = ["run", "class", "passed", "resonance [Hz]", "transmissibility", "limit"]
+    strong = [k for k, row in enumerate(rows) if not row.passed]
+    return [Table("A line for each class; in bold what is above its limit", head, lines, 3, strong)] * bool(lines)
+
+
+def _draw_damping(found: SeatTest) -> list[Block]:
+    curves = [
+        Curve(name, np.asarray(test.frequencies), np.asarray(test.transmissibilities), (k + 1) % 8)
+        for k, (name, test) in enumerate(found.damping.items())
+    ]
+    axes = ("frequency [Hz]", "transmissibility")
+    return [draw_curves("Transmissibility", "Tones from half to twice the resonance.", axes, curves)] * bool(curves)

@@ -1,0 +1,91 @@
+"""The credibility card: evidence is of the result itself, and a level is the number of conditions that hold."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from seatsim.provenance.invocation import at_work
+from seatsim.report.credibility.card import show_card
+from seatsim.report.credibility.evidence import Evidence, collect_diagnosis, collect_runs
+from seatsim.report.credibility.rules import FACTORS, find_level
+from seatsim.scenario.loading import load
+from seatsim.simulation.runs import run_one
+from seatsim.simulation.step_error import measure_step_error
+
+from .diagnoses import with_every_run
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "reports.md"
+BEST = Evidence(
+    energy=1e-6, step=1e-5, compared=4, held_out=2, error=0.05, noise=0.02, inputs=3, dampers={"bouc_wen": "published"},
+    parameters_known=True, intervals=["all"], parameter_intervals=True, answer_interval=True, budget=True, runs=200,
+    varied=["a"], drawn=["a"], explained=0.9, limits=True, versions=True,
+)  # fmt: skip
+
+
+def level(name, evidence):
+    return find_level(next(factor for factor in FACTORS if factor.name == name), evidence)
+
+
+@pytest.mark.parametrize(("name", "reached"), [
+    ("verification", 4), ("validation", 4), ("input pedigree", 4), ("uncertainty", 4), ("robustness", 4),
+    ("use history", 1),
+])  # fmt: skip
+def test_levels_rise_from_nothing_known_to_all_known(name, reached):
+    assert level(name, Evidence()) == 0 and level(name, BEST) == reached
+
+
+@pytest.mark.parametrize(("name", "change", "reached"), [
+    ("verification", {"energy": None}, 2), ("verification", {"energy": 0.02}, 1), ("verification", {"step": 0.005}, 3),
+    ("validation", {"held_out": 0}, 1), ("validation", {"error": 0.2}, 3), ("validation", {"error": 0.5}, 2),
+    ("validation", {"held_out": 1}, 3), ("input pedigree", {"inputs": None}, 0),
+    ("input pedigree", {"doubts": ["x"]}, 1),
+    ("input pedigree", {"dampers": {"mine": "own"}}, 2), ("input pedigree", {"loose": ["c_a"]}, 3),
+    ("uncertainty", {"answer_interval": False}, 2), ("robustness", {"explained": 0.5}, 2),
+    ("robustness", {"runs": 64}, 3),
+])  # fmt: skip
+def test_a_condition_that_fails_ends_the_level(name, change, reached):
+    assert level(name, BEST._replace(**change)) == reached
+
+
+@pytest.mark.parametrize("change", [{"noise": 0.0}, {"error": 0.001}])
+def test_a_recording_that_agrees_better_than_its_noise_was_made_of_the_simulation(change):
+    assert level("validation", BEST._replace(**change)) == 2
+
+
+def test_measured_figures_have_no_level_of_what_is_simulated():
+    rows = show_card(BEST._replace(is_simulated=False)).blocks[1].rows
+    assert [row[1] for row in rows[:2]] == ["–", "–"] and rows[2][1] == "4\u00a0of\u00a04"
+
+
+def test_evidence_of_a_run_is_measured_on_it_and_on_what_was_read():
+    scenario = load("quickstart", {"excitation.duration": 2.0})[2]
+    run = run_one(scenario)
+    found = collect_runs([run])
+    assert 0 < found.energy < 1e-3 and 0 < found.step < 1e-3
+    assert found.inputs is None and not found.versions and found.dampers == {"bouc_wen": "published"}
+    with at_work("run", [], ["quickstart"]):
+        load("quickstart")
+        assert collect_runs([run]).inputs == 1
+    doubted = collect_runs([replace(run, warnings=("a reason",))])
+    assert doubted.doubts == ("a reason",) and level("input pedigree", doubted._replace(inputs=1)) == 1
+
+
+def test_half_the_step_changes_less_with_a_finer_one():
+    coarse, fine = (
+        load("quickstart", {"excitation.duration": 2.0, "solver.step": step})[2] for step in (0.001, 0.00025)
+    )
+    errors = [measure_step_error(each, run_one(each).history) for each in (coarse, fine)]
+    assert errors[1] < errors[0]
+
+
+def test_evidence_of_a_diagnosis_is_of_its_held_out_run():
+    found = collect_diagnosis(with_every_run())
+    assert found.held_out == 1 and found.error == with_every_run().gap.after.overall and found.answer_interval
+
+
+def test_the_documentation_has_every_condition_word_for_word():
+    lines = {line.split("|")[1].strip(): line for line in DOCUMENT.read_text().splitlines() if line.startswith("| ")}
+    for factor in FACTORS:
+        cells = [cell.strip() for cell in lines[factor.name].split("|")[2:-1]]
+        assert cells == [condition.words for condition in factor.conditions] + [""] * (4 - len(factor.conditions))
