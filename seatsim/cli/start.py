@@ -12,6 +12,7 @@ import os
 import signal
 import socket
 import sys
+from contextlib import suppress
 from threading import Event, Thread
 from types import FrameType
 from typing import NoReturn
@@ -27,22 +28,26 @@ _received: list[int] = []
 _answered = Event()
 
 
-def start() -> None:
-    """Run the command line; where a signal ends it, its threads are not waited for."""
+def start() -> NoReturn:
+    """Run the command line; threads and the orderly end of compiled code, which takes a second, are not waited for."""
     watch_signals()
+    status = 0
     try:
         from seatsim.cli.app import main
 
         main()
     except KeyboardInterrupt:
         _say_interrupted()
-    except SystemExit:
-        if not _received:
+    except SystemExit as ended:
+        if isinstance(ended.code, str):
             raise
-    if _received:
-        for stream in (sys.stdout, sys.stderr):
+        status = ended.code or 0
+    for stream in (sys.stdout, sys.stderr):
+        # Whoever read the output may have closed it.
+        with suppress(BrokenPipeError):
             stream.flush()
-        _end(_received[-1])
+    remove_leftovers(PATIENCE)
+    os._exit(128 + _received[-1] if _received else status)
 
 
 def go_on() -> None:
@@ -77,12 +82,6 @@ def _end_in_time(wakeups: socket.socket) -> None:
             _answered.clear()
     remove_leftovers(PATIENCE)
     _say_interrupted()
-    os._exit(128 + number)
-
-
-def _end(number: int) -> NoReturn:
-    """End the process without the threads and the compiled code, whose orderly end takes seconds."""
-    remove_leftovers(PATIENCE)
     os._exit(128 + number)
 
 
