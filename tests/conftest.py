@@ -1,5 +1,6 @@
 """Shared fixtures."""
 
+import signal
 import sys
 from pathlib import Path
 
@@ -22,6 +23,11 @@ temperature: 20.0
 controller: {law: static_output_feedback, gain: [2.0, 2147.6], sample_time: 0.005}
 excitation: {kind: iso7096, spectral_class: EM5, duration: 6.0}
 """
+
+
+def pytest_configure():
+    """Have SIGINT mean what it does in a terminal: a shell lets what it starts in the background ignore it."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

@@ -61,6 +61,9 @@ def test_a_command_says_that_it_was_interrupted(number, tmp_path):
     with pytest.raises(subprocess.TimeoutExpired):
         process.communicate(timeout=1.5)
     process.send_signal(number)
-    _, said = process.communicate(timeout=30)
+    try:
+        _, said = process.communicate(timeout=30)
+    finally:
+        process.kill()
     assert process.returncode == 128 + number and said.endswith(b"error: interrupted\n")
     assert not any(path.name.endswith(".part") for path in tmp_path.rglob("*"))
