@@ -74,23 +74,28 @@ def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
 
 
 def _end_in_time(wakeups: socket.socket) -> None:
-    """Wait for a signal, which the system reports at once, then end the process where it has not ended by itself."""
+    """Wait for a signal, which the system reports at once, then end the process where it has not ended by itself.
+
+    The main thread may have lost its KeyboardInterrupt, and may hold any lock, that of imports too: nothing that is done
+    here waits for one.
+    """
     while number := wakeups.recv(1)[0]:
         if number in SIGNALS:
             if not _answered.wait(GRACE):
                 break
             _answered.clear()
-    remove_leftovers(PATIENCE)
-    _say_interrupted()
-    os._exit(128 + number)
+    try:
+        remove_leftovers(PATIENCE)
+        _say_interrupted()
+    finally:
+        os._exit(128 + number)
 
 
 def _say_interrupted() -> None:
-    """Say why the command ends, where it could not itself: what it prints with may not be loaded."""
-    if os.isatty(2):
-        os.write(2, b"\x1b[?25h")  # a progress bar hides the cursor
-    terminal = sys.modules.get("seatsim.cli.terminal")
-    if terminal is not None and hasattr(terminal, "fail"):
-        terminal.fail("interrupted")
-    else:
+    """Say why the command ends, by system calls alone, as what it prints with may be locked or not be loaded."""
+    with suppress(OSError):  # whoever read the output may have closed it
+        if os.isatty(2):
+            os.write(2, b"\x1b[?25h")  # a progress bar hides the cursor
         os.write(2, b"error: interrupted\n")
+        if "--json" in sys.argv:
+            os.write(1, b'{"error": "interrupted"}\n')

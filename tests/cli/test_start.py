@@ -10,8 +10,9 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 STUCK = """
+import _imp
 import time
-from seatsim.cli import start
+from seatsim.cli import start, terminal
 from seatsim.schema.leftovers import temporary_folder
 start.GRACE = 0.2
 start.watch_signals()
@@ -36,9 +37,10 @@ def stuck(answer, place):
     return process
 
 
+@pytest.mark.parametrize("answer", ["pass", "_imp.acquire_lock()"])  # which an interrupt within an import may leave locked
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_main_thread_that_does_not_answer_is_not_waited_for(number, tmp_path):
-    process = stuck("pass", tmp_path)
+def test_a_main_thread_that_does_not_answer_is_not_waited_for(number, answer, tmp_path):
+    process = stuck(answer, tmp_path)
     process.send_signal(number)
     _, said = process.communicate(timeout=10)
     assert process.returncode == 128 + number and said == b"error: interrupted\n"
