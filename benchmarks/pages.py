@@ -14,6 +14,7 @@ import statistics
 import subprocess
 import sys
 import time
+import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -78,6 +79,8 @@ def measure_page(browser: Browser, target: str, axe: str) -> None:
         assert started.stdout is not None
         address = started.stdout.readline().strip()
         print(f"address after {time.perf_counter() - began:.2f} s")
+        with urllib.request.build_opener(urllib.request.HTTPCookieProcessor()).open(address) as answer:
+            print(f"answered after {time.perf_counter() - began:.2f} s ({answer.status})")
         page = browser.new_page(viewport={"width": 1280, "height": 900})
         said, asked = watch(page)
         page.goto(address)

@@ -19,6 +19,9 @@ from seatsim.compilation.watch import watch_compilation
 class _Terminal(Console):
     """A console whose reader may go away, as that of `| head` does, without the command coming to its end."""
 
+    answered = False
+    """Whether the one object of `--json` is printed: what fails after that is said on standard error alone."""
+
     def on_broken_pipe(self) -> None:
         """Go on without printing."""
         drop_output(sys.stdout if not self.stderr else sys.stderr)
@@ -51,6 +54,7 @@ Count = Callable[[int, int], None]
 def answer_as_json(wanted: bool) -> bool:
     """Leave standard output to the one object of `answer`, or not; returns what was wanted."""
     out.quiet = wanted
+    out.answered = False
     return wanted
 
 
@@ -109,6 +113,9 @@ def answer_error(text: str) -> None:
 
 
 def _write_line(text: str) -> None:
+    if out.answered:
+        return
+    out.answered = True
     try:
         sys.stdout.write(f"{text}\n")
         sys.stdout.flush()

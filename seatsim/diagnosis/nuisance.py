@@ -32,7 +32,7 @@ NONE_OF_ITS_OWN: Mapping[str, float] = MappingProxyType({})
 
 
 class Nuisance(NamedTuple):
-    """One parameter: section and name in the scenario, nominal value, largest deviation, and its permitted range."""
+    """One parameter: section and name in the scenario, nominal value, largest deviation, permitted range, and unit."""
 
     section: str
     name: str
@@ -40,6 +40,7 @@ class Nuisance(NamedTuple):
     tolerance: float
     low: float = -math.inf
     high: float = math.inf
+    unit: str = "-"
 
     @property
     def key(self) -> str:
@@ -55,7 +56,12 @@ def list_calibrated(parameters: Sequence[Nuisance], deviations: Array, at_bound:
     """List the refitted parameters, of deviations of shape (parameters,); from `at_bound` on one is at its bound."""
     return [
         CalibratedParameter(
-            each.key, each.nominal, each.at(deviation), (each.at(-1.0), each.at(1.0)), abs(deviation) >= at_bound
+            each.key,
+            each.nominal,
+            each.at(deviation),
+            (each.at(-1.0), each.at(1.0)),
+            abs(deviation) >= at_bound,
+            each.unit,
         )
         for each, deviation in zip(parameters, deviations.tolist(), strict=True)
     ]
@@ -86,7 +92,8 @@ def list_nuisances(
             # Rates and times have no scale: a coil without a delay has none, and not one that is known to be small.
             largest = own.get(key, usual) * (abs(value) if value else scales.get(specification.unit, 0.0))
             if largest > 0.0:
-                found.append(Nuisance(section, name, float(value), largest, *_range(type(record), name, value)))
+                permitted = _range(type(record), name, value)
+                found.append(Nuisance(section, name, float(value), largest, *permitted, specification.unit))
     return found
 
 

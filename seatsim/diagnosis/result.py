@@ -71,6 +71,7 @@ class CalibratedParameter(NamedTuple):
     value: float
     bound: tuple[float, float]
     at_bound: bool
+    unit: str = "-"
 
 
 class ErrorBudget(NamedTuple):

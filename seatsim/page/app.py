@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import Future
 from functools import partial
 from pathlib import Path
 from threading import Lock
@@ -10,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import jinja2
 from markupsafe import Markup
-from ruamel.yaml import YAML
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
@@ -21,7 +21,6 @@ from starlette.types import ASGIApp
 from seatsim.page.folder import Folder, NotInFolderError, TooLargeError
 from seatsim.page.guard import POLICY, Guard
 from seatsim.report.rendering import digest_of, make_environment, read_asset
-from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.files import write_whole
 from seatsim.schema.leftovers import temporary_folder
@@ -35,10 +34,15 @@ STYLES = ("uPlot.min.css", "report.css", "page.css")
 HEADERS = {"X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer", "Cache-Control": "no-store"}
 READABLE = (".yaml", ".yml")
 """Endings of files that are shown as they are."""
+WAITING = "wait"
+"""In the address of the request that is answered when everything is loaded."""
 
 
-def make_app(target: ScenarioView | RecordingView, folder: Folder, token: str, port: int) -> ASGIApp:
-    """Return the page of a scenario or recording, which reads and writes files of one folder alone."""
+def make_app(target: Future[ScenarioView | RecordingView], folder: Folder, token: str, port: int) -> ASGIApp:
+    """Return the page of a scenario or recording, which reads and writes files of one folder alone.
+
+    Until its target is loaded, the page says so; every other request waits.
+    """
     page = _Page(target, folder)
     app = Starlette(
         routes=[
@@ -54,7 +58,7 @@ def make_app(target: ScenarioView | RecordingView, folder: Folder, token: str, p
 class _Page:
     """Answers the requests of one target, one at a time."""
 
-    def __init__(self, target: ScenarioView | RecordingView, folder: Folder) -> None:
+    def __init__(self, target: Future[ScenarioView | RecordingView], folder: Folder) -> None:
         self._target, self._folder, self._lock = target, folder, Lock()
         script, style = read_asset(SCRIPTS), read_asset(STYLES)
         self._headers = HEADERS | {
@@ -66,11 +70,17 @@ class _Page:
         self._tables = environment.get_template("tables.html")
         self._page = environment.get_template("page.html")
         self._given = {"script": Markup(script), "style": Markup(style)}
+        self._loading = environment.get_template("loading.html").render(style=Markup(style))
 
     async def show(self, request: Request) -> Response:
-        """Return the page with what it shows at first."""
-        view = await run_in_threadpool(self._compute, {})
-        text = self._page.render(target=self._target, view=view, **self._given)
+        """Return the page with what it shows at first, or one that asks for it and is replaced by it."""
+        if not self._target.done() and WAITING not in request.query_params:
+            return HTMLResponse(self._loading, headers=self._headers | {"Refresh": f"0; url=/?{WAITING}"})
+        try:
+            view = await run_in_threadpool(self._compute, {})
+        except SeatsimError as error:
+            return PlainTextResponse(f"{error}\n", status_code=422, headers=self._headers)
+        text = self._page.render(target=self._target.result(), view=view, **self._given)
         return HTMLResponse(text, headers=self._headers)
 
     async def compute(self, request: Request) -> Response:
@@ -107,11 +117,16 @@ class _Page:
 
     def _compute(self, values: Mapping[str, Any]) -> Any:
         with self._lock:
-            return self._target.show(values)
+            return self._target.result().show(values)
 
     def _save(self, values: Mapping[str, Any]) -> Path:
+        # Loading these takes longer than everything that the first page needs.
+        from ruamel.yaml import YAML
+
+        from seatsim.scenario.loading import single
+
         path = self._folder.name_new(str(values.get("name", "")))
-        content = {**self._target.encode(values), "name": path.stem}
+        content = {**self._target.result().encode(values), "name": path.stem}
         dump = YAML(typ="safe").dump
         with temporary_folder() as drafts:
             # What could not be read again is never saved.

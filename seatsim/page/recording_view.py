@@ -119,7 +119,7 @@ class RecordingView:
             for words, value, look in zip(("nominal", "with effects"), values, ("high", "low"), strict=True)
         ]  # fmt: skip
         caption = "RMS of measured less simulated over the spread of the measured signal, over all runs."
-        return Bars("Gap of each channel", caption, "channel", rows)
+        return Bars("Gap of each channel", caption, "channel", "gap", rows)
 
     def _tabulate(self, after: Mapping[str, Array]) -> Table:
         before, now, floor = self._measure(self.nominal), self._measure(after), self.problem.noise / self.problem.spread

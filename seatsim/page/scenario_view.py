@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 from seatsim.page.controls import Choice, Slider, read_choice, read_number
 from seatsim.report.blocks import Block, Table
 from seatsim.report.formatting import format_quantity
+from seatsim.report.run_pictures import show_signals
 from seatsim.report.runs import TABLE as METRICS_SHOWN
-from seatsim.report.runs import describe_run, show_signals
+from seatsim.report.runs import describe_run
 from seatsim.scenario.loading import load, read_scenario
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
@@ -76,7 +77,7 @@ class ScenarioView:
             RunError: the run cannot be carried to its end.
         """
         run, own = run_one(self.choose(request)), self._own
-        signals = show_signals([own, run], [("as in the file", 0), ("as set", 2)])
+        signals = show_signals({"": {"as in the file": own, "as set": run}})
         return View(describe_run(run), [_compare(own, run)], signals)
 
     def choose(self, request: Mapping[str, Any]) -> Scenario:

@@ -7,6 +7,7 @@ import socket
 import threading
 import webbrowser
 from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ import uvicorn
 
 from seatsim.page.app import make_app
 from seatsim.page.folder import LARGEST, Folder
-from seatsim.scenario.loading import find_file
+from seatsim.scenario.finding import find_file
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,39 +25,47 @@ if TYPE_CHECKING:
 HOST = "127.0.0.1"
 
 
-def open_target(path: Path) -> ScenarioView | RecordingView:
-    """Return what the page shows of a path: a folder is a recording, a file or the name of an example a scenario.
+def find_target(path: Path) -> Path:
+    """Return the path of what the page is to show: the folder of a recording, a scenario, or an example of that name.
 
     Raises:
         InputError: it is neither, or larger than the page reads.
     """
+    if not path.is_dir():
+        return find_file(path)
+    for file in path.iterdir():
+        if file.is_file() and file.stat().st_size > LARGEST:
+            raise InputError(f"{file}: larger than {LARGEST / 1e6:.0f} MB, which is the most that the page reads")
+    return path
+
+
+def open_target(path: Path) -> ScenarioView | RecordingView:
+    """Return what the page shows of a path that `find_target` found; the models are loaded here, not before.
+
+    Raises:
+        InputError: the file or the recording has a fault.
+    """
     if path.is_dir():
-        for file in path.iterdir():
-            if file.is_file() and file.stat().st_size > LARGEST:
-                raise InputError(f"{file}: larger than {LARGEST / 1e6:.0f} MB, which is the most that the page reads")
-        # The views are loaded when they are wanted: what a diagnosis needs takes a second, which a scenario is spared.
         from seatsim.page.recording_view import RecordingView
 
         return RecordingView(path)
     from seatsim.page.scenario_view import ScenarioView
 
-    return ScenarioView(find_file(path))
+    return ScenarioView(path)
 
 
-def serve(
-    target: ScenarioView | RecordingView, folder: Path, port: int, browser: bool, say: Callable[[str], None]
-) -> None:
-    """Serve the page until it is interrupted.
+def serve(path: Path, folder: Path, port: int, browser: bool, say: Callable[[str], None]) -> None:
+    """Serve the page until it is interrupted. Its target is loaded while the page is already answered.
 
     Args:
-        target: what it shows.
+        path: what it shows, as `find_target` found it.
         folder: from which it reads, and into which it saves.
         port: of loopback; 0 takes a free one.
         browser: whether a browser is opened.
         say: is called with the address.
 
     Raises:
-        InputError: the port is taken.
+        InputError: the port is taken, or the target has a fault.
     """
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -66,9 +75,16 @@ def serve(
         raise InputError(f"--port {port}: {error.strerror}; give another port, or 0 for a free one") from error
     taken, token = listener.getsockname()[1], secrets.token_urlsafe(24)
     address = f"http://{HOST}:{taken}/?token={token}"
+    target = ThreadPoolExecutor(1).submit(open_target, path)
     app = make_app(target, Folder(folder), token, taken)
     server = uvicorn.Server(uvicorn.Config(app, log_level="warning", access_log=False, server_header=False))
+
+    def end_where_failed(loaded: Future[ScenarioView | RecordingView]) -> None:
+        server.should_exit = loaded.exception() is not None
+
+    target.add_done_callback(end_where_failed)
     say(address)
     if browser:
         threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
     server.run(sockets=[listener])
+    target.result()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.schema.guarded import watch_reads
+from seatsim.schema.modules import used_files
 
 REPEATABLE: Mapping[str, frozenset[str]] = {
     name: frozenset(options.split())
@@ -69,6 +71,20 @@ def at_work(command: str, options: Sequence[tuple[str, object]], operands: Seque
 def current_invocation() -> Invocation | None:
     """Return the command at work, None where seatsim is used from Python."""
     return _current.get()
+
+
+def state_command(otherwise: str) -> str:
+    """Return the command at work as it can be typed again in the folder where it was started.
+
+    Own code is named by its files alone. `otherwise` is returned where seatsim is used from Python.
+    """
+    invocation = _current.get()
+    if invocation is None:
+        return otherwise
+    split = invocation.arguments.index("--")
+    options, operands = invocation.arguments[:split], invocation.arguments[split + 1 :]
+    code = [word for path in used_files() for word in ("--with", path.name)]
+    return shlex.join(["seatsim", invocation.command, *operands, *options, *code])
 
 
 def digest(content: bytes) -> FileDigest:

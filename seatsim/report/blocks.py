@@ -31,13 +31,17 @@ class Code(NamedTuple):
 
 
 class Table(NamedTuple):
-    """A table: the first columns hold `words`, the others numbers; rows in `strong` stand out."""
+    """A table: the first columns hold `words`, the others numbers; rows in `strong` stand out.
+
+    A `folded` one shows its caption alone until it is opened, or printed.
+    """
 
     caption: str
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
     words: int = 1
     strong: Sequence[int] = ()
+    folded: bool = False
     kind: str = "table"
 
 
@@ -53,11 +57,12 @@ class Bar(NamedTuple):
 
 
 class Bars(NamedTuple):
-    """A bar chart whose rows are those of a table."""
+    """A bar chart whose rows are those of a table; `heading` and `value` head its names and its figures."""
 
     title: str
     caption: str
     heading: str
+    value: str
     rows: Sequence[Bar]
     kind: str = "bars"
 
@@ -115,7 +120,17 @@ class Plane(NamedTuple):
     kind: str = "plane"
 
 
-Block = Text | Items | Code | Table | Bars | Matrix | Signals | Plane
+class Facets(NamedTuple):
+    """Planes of one figure, each under its title, with one legend."""
+
+    title: str
+    caption: str
+    planes: Sequence[Plane]
+    legend: Sequence[tuple[str, int, str]]
+    kind: str = "facets"
+
+
+Block = Text | Items | Code | Table | Bars | Matrix | Signals | Plane | Facets
 
 
 class Section(NamedTuple):

@@ -41,7 +41,7 @@ def show_causes(diagnosis: Diagnosis) -> list[Block]:
             for cause in shown
         ]  # fmt: skip
         strong = [row for row, cause in enumerate(shown) if cause.effect in diagnosis.selected]
-        head = ["effect", "what it is", "parameters", "alone takes off the refitted gap"]
+        head = ["effect", "what it is", "parameters", "shrink of the refitted gap by this effect alone"]
         blocks.append(Table("Parameters of the likely effects, ± one standard deviation", head, rows, 3, strong))
     return blocks
 
@@ -58,7 +58,8 @@ def show_confusions(diagnosis: Diagnosis) -> list[Block]:
         rows = [[found.name.replace("_", " "), found.kind, format_number(found.likeness_now),
                  format_number(found.likeness_then)]]  # fmt: skip
         head = ["what would decide", "kind", "likeness now", "likeness then"]
-        blocks += [Table("1: alike, 0: nothing in common", head, rows, 2), Text(format_sentence(found.reason))]
+        table = Table("Likeness: 1 is alike, 0 has nothing in common", head, rows, 2)
+        blocks += [table, Text(format_sentence(found.reason))]
     matrix = _draw_collinearity(diagnosis)
     return [*blocks, matrix] if matrix else blocks
 
@@ -98,7 +99,8 @@ def _draw_location(diagnosis: Diagnosis) -> Bars:
         title = f"The gap lies in the {' or the '.join(blocks)}"
     else:
         title = f"{format_percent(first.share)} of the gap lies in the {first.block}"
-    return Bars(title, "Shares of the gap by block of the rig; they add up to 100 %.", "block", bars)
+    caption = "How the gap divides among the parts of the rig; the shares add up to 100 %."
+    return Bars(title, caption, "part", "share of the gap", bars)
 
 
 def _draw_ranking(diagnosis: Diagnosis) -> Bars:
@@ -108,10 +110,14 @@ def _draw_ranking(diagnosis: Diagnosis) -> Bars:
             "chosen" if cause.effect in diagnosis.selected else "alike" if cause.effect in alike else "plain")
         for cause in diagnosis.causes[:MOST]
     ]  # fmt: skip
-    ends = (("no effect at all", diagnosis.probability_none), ("none of the library", diagnosis.probability_unknown))
+    ends = (("no effect at all", diagnosis.probability_none), ("another cause", diagnosis.probability_unknown))
     bars += [Bar(name, 0.0, round(100 * value, 2), format_percent(value)) for name, value in ends]
-    caption = "Bold: selected. Probabilities are of being at work: two can both be near 100 %."
-    return Bars("Which effects are at work", caption, "effect", bars)
+    caption = (
+        "Each figure is the probability that this effect is at work. Several can be at work together, so that the"
+        " figures need not add up to 100 %. In bold are the effects that the diagnosis names; another cause is one"
+        " that the library lacks."
+    )
+    return Bars("Which effects are at work", caption, "effect", "probability", bars)
 
 
 def _select_causes(diagnosis: Diagnosis) -> Iterator[Cause]:

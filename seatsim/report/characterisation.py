@@ -10,13 +10,13 @@ import numpy as np
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation, group_by_setting
-from seatsim.report.blocks import Block, Items, Report, Section, Table
+from seatsim.report.blocks import Block, Code, Items, Plane, Report, Section, Table, Text
 from seatsim.report.credibility.card import show_card
 from seatsim.report.credibility.evidence import collect_characterisation
 from seatsim.report.formatting import format_number, format_percent, format_quantity, format_sentence
 from seatsim.report.method import describe_method
 from seatsim.report.packing import Axis, Panel, pack_signals
-from seatsim.report.planes import Curve, draw_curves
+from seatsim.report.planes import Curve, draw_curves, join_planes
 
 MOST_SETTINGS = 6
 """Settings of amplitude and frequency whose loops are drawn."""
@@ -26,7 +26,7 @@ ROUNDING = 1e-9
 """Share of the peak force below which an offset is no finding."""
 METHOD = (
     "A loop is the mean of a record's steady cycles; energy is its area, damping that of a dashpot that dissipates as"
-    " much, E / (pi w X²).",
+    " much, E / (π ω X²).",
     "Asymmetry: RMS of the difference from the centrosymmetric loop over that of the force.",
     "t95 is the time from a step of the current to 95 % of the change of force; its ± is one standard deviation by"
     " resampling the steps.",
@@ -36,12 +36,12 @@ METHOD = (
 def report_characterisation(found: Characterisation, remarks: Sequence[str], command: str) -> Report:
     """Return the report of a characterisation; `remarks` are sentences on it, `command` makes it again."""
     sections = [
-        Section("figures", "Figures of each record", [_make_table(found.rows)]),
+        Section("figures", "Figures of each record", [_make_table(found)]),
         Section("loops", "Loops", _draw_loops(found.rows)),
         Section("steps", "Response to steps of the current", _show_steps(found.responses)),
         Section("notes", "Notes", [Items([format_sentence(text) for text in remarks])] * bool(remarks)),
         show_card(collect_characterisation(found)),
-        describe_method(METHOD, {"source": found.source}, command),
+        describe_method(METHOD, command, [Text("What was tested:"), Code(found.source)]),
     ]
     return Report(f"Characterisation: {found.name}", say_character(found), [], _advise(found), sections)
 
@@ -52,12 +52,11 @@ def say_character(found: Characterisation) -> str:
     said = f"{len(found.rows)} records were characterised"
     if group:
         low, high = min(group, key=lambda row: row.current), max(group, key=lambda row: row.current)
-        force = f"up to {format_quantity(high.peak_rebound, 'N')} at {format_number(high.current)} A"
-        motion = f"±{format_quantity(high.amplitude, 'm')} and {format_number(high.frequency)} Hz"
-        said = f"At {motion} the damper gives {force}"
+        force = f"up to {format_quantity(high.peak_rebound, 'N')} at {high.current:.3g} A"
+        said = f"Moved by {_name_motion(high)}, the damper gives {force}"
         if high.current > low.current and low.peak_rebound > 0:
             ratio = format_number(high.peak_rebound / low.peak_rebound, 2)
-            said += f", {ratio} times its force at {format_number(low.current)} A"
+            said += f", {ratio} times its force at {low.current:.3g} A"
     times = [answer.t95 for answer in found.responses if math.isfinite(answer.t95)]
     if times:
         said += f"; it follows a step of the current within {format_number(1e3 * float(np.median(times)))} ms"
@@ -75,20 +74,27 @@ def _advise(found: Characterisation) -> list[str]:
     return texts
 
 
-def _make_table(rows: Sequence[Row]) -> Table:
+def _name_motion(row: Row) -> str:
+    """Return amplitude and frequency of a row in words."""
+    return f"±{1e3 * row.amplitude:.3g} mm at {row.frequency:.3g} Hz"
+
+
+def _make_table(found: Characterisation) -> Table:
+    rows, named = found.rows, int(found.measured)
     head = [
-        "record", "current [A]", "amplitude [mm]", "frequency [Hz]", "speed [m/s]", "rebound [N]", "compression [N]",
-        "energy [J]", "damping [N·s/m]", "offset [N]", "asymmetry",
+        *["record"] * named, "motion", "current [A]", "temperature [°C]", "speed [m/s]", "rebound [N]",
+        "compression [N]", "energy [J]", "damping [N·s/m]", "offset [N]", "asymmetry",
     ]  # fmt: skip
     lines = [
-        [row.record,
-         *map(format_number, (row.current, 1e3 * row.amplitude, row.frequency, row.peak_speed, row.peak_rebound,
-                              row.peak_compression, row.energy, row.damping, _clean(row))),
+        [*[row.record] * named, _name_motion(row) if math.isfinite(row.amplitude) else "no steady cycles",
+         *map(format_number, (row.current, row.temperature, row.peak_speed, row.peak_rebound, row.peak_compression,
+                              row.energy, row.damping, _clean(row))),
          format_percent(row.asymmetry)]
         for row in rows[:MOST_ROWS]
     ]  # fmt: skip
     more = f"; {len(rows) - MOST_ROWS} more in cycles.csv" if len(rows) > MOST_ROWS else ""
-    return Table(f"Peaks, energy and damping of the mean cycle{more}", head, lines)
+    caption = f"Largest forces of rebound and compression, energy and damping of the mean cycle{more}"
+    return Table(caption, head, lines, named + 1)
 
 
 def _clean(row: Row) -> float:
@@ -97,18 +103,22 @@ def _clean(row: Row) -> float:
 
 
 def _draw_loops(rows: Sequence[Row]) -> list[Block]:
-    """Return the loops of each setting over velocity and over displacement, and clouds of records without cycles."""
-    blocks: list[Block] = []
-    for group in group_by_setting(rows)[:MOST_SETTINGS]:
-        title = f"±{format_quantity(group[0].amplitude, 'm')}, {format_number(group[0].frequency)} Hz"
-        loops = [(f"{row.current:.2f} A", row.loop, k % 8) for k, row in enumerate(group[:8]) if row.loop is not None]
-        over_velocity = [Curve(name, _thin(loop.velocity), _thin(loop.force), look) for name, loop, look in loops]
-        over_travel = [
-            Curve(name, 1e3 * _thin(loop.displacement), _thin(loop.force), look) for name, loop, look in loops
-        ]
-        caption = "Mean cycle by current."
-        blocks.append(draw_curves(f"{title}: over velocity", caption, ("velocity [m/s]", "force [N]"), over_velocity))
-        blocks.append(draw_curves(f"{title}: over travel", caption, ("travel [mm]", "force [N]"), over_travel))
+    """Return one figure of the loops over velocity and over travel, and one of records without steady cycles."""
+    planes: list[Plane] = []
+    groups = group_by_setting(rows)[:MOST_SETTINGS]
+    names = sorted({round(row.current, 2) for group in groups for row in group})
+    looks = {current: k % 8 for k, current in enumerate(names)}
+    for group in groups:
+        over_velocity, over_travel = [], []
+        for row in group[:8]:
+            if row.loop is not None:
+                name, look, force = f"{row.current:.2f} A", looks[round(row.current, 2)], _thin(row.loop.force)
+                over_velocity.append(Curve(name, _thin(row.loop.velocity), force, look))
+                over_travel.append(Curve(name, 1e3 * _thin(row.loop.displacement), force, look))
+        title = _name_motion(group[0])
+        planes.append(draw_curves(title, "", ("velocity [m/s]", "force [N]"), over_velocity))
+        planes.append(draw_curves(title, "", ("travel [mm]", "force [N]"), over_travel))
+    blocks: list[Block] = [join_planes("Damper force", "Mean cycle at each current.", planes)] if planes else []
     clouds = [row for row in rows if row.cloud is not None][:8]
     if clouds:
         curves = [
@@ -116,7 +126,8 @@ def _draw_loops(rows: Sequence[Row]) -> list[Block]:
             for k, row in enumerate(clouds) if row.cloud is not None
         ]  # fmt: skip
         axes = ("velocity [m/s]", "force [N]")
-        blocks.append(draw_curves("Records without steady cycles", "Samples by mean current.", axes, curves))
+        caption = "Samples, by the mean current of the record."
+        blocks.append(draw_curves("Records without steady cycles", caption, axes, curves))
     return blocks
 
 
@@ -134,24 +145,17 @@ def _show_steps(answers: Sequence[Response]) -> list[Block]:
         for each in answers
     ]  # fmt: skip
     head = [
-        "record",
-        "from [A]",
-        "to [A]",
-        "steps",
-        "t90 [ms]",
-        "t95 [ms]",
-        "± [ms]",
-        "delay [ms]",
-        "rate [1/s]",
-        "how",
-    ]
-    blocks: list[Block] = [Table("Times from the step of the current", head, rows)]
+        "record", "from [A]", "to [A]", "steps", "t90 [ms]", "t95 [ms]", "± [ms]", "delay [ms]", "rate [1/s]", "how",
+    ]  # fmt: skip
+    caption = "Time from the step of the current to 90 % and 95 % of the change of force"
+    blocks: list[Block] = [Table(caption, head, rows)]
     known = [each for each in answers if each.time is not None and each.share is not None][:8]
     if known:
         time = max((np.asarray(each.time) for each in known), key=len)
         lines = [(f"{each.before:.2f} to {each.after:.2f} A", k % 8) for k, each in enumerate(known)]
         values = [np.interp(time, np.asarray(each.time), np.asarray(each.share)) for each in known]
         panel = Panel("share of the change of force", "-", "", {"": list(values)})
-        axis = Axis("time from the step", "s", {"": time})
-        blocks.append(pack_signals("signals-steps", "Mean over the steps.", lines, axis, [panel]))
+        axis = Axis("time from the step", "ms", {"": 1e3 * time})
+        caption = "Force after a step of the current, mean over the steps."
+        blocks.append(pack_signals("signals-steps", caption, lines, axis, [panel]))
     return blocks

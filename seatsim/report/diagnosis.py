@@ -30,7 +30,7 @@ BADGES = {
     "none": ("No material gap", "Nothing to explain beyond noise and the tolerance of the parameters."),
     "known": ("Cause known", "Effects of the library explain the gap on a run that took no part in the fit."),
     "ambiguous": ("Ambiguous", "Two or more effects explain the gap equally well on this recording."),
-    "unknown": ("Cause unknown", "A material gap stays that no effect of the library explains."),
+    "unknown": ("Cause unknown", "A gap remains that no effect of the library explains."),
 }
 NEARLY_ALL = 0.98
 METHOD = (
@@ -61,16 +61,16 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
         Section("gaps", "How far: gaps before and after", show_gaps(diagnosis)),
         Section("causes", "Where it lies and what causes it", show_causes(diagnosis)),
         Section("signals", "Measured and simulated, before and after", show_signals(diagnosis)),
-        Section("missing", "What is missing", show_discrepancy(diagnosis)),
+        Section("missing", "The missing signal", show_discrepancy(diagnosis)),
         Section("forms", "Other forms of the damper", show_forms(diagnosis)),
         Section("confusions", "Which effects look alike", show_confusions(diagnosis)),
-        Section("maps", "Where in the operating range", show_maps(diagnosis)),
-        Section("spectra", "What is left over frequency", show_spectra(diagnosis)),
+        Section("maps", "Where in the operating range the error is large", show_maps(diagnosis)),
+        Section("spectra", "Spectrum of the difference", show_spectra(diagnosis)),
         Section("budget", "What the remaining error is made of", show_budget(diagnosis)),
         Section("comfort", "Comfort and travel", show_comfort(diagnosis)),
         Section("notes", "Notes on the data", show_notes(diagnosis)),
         show_card(collect_diagnosis(diagnosis)),
-        describe_method(METHOD, {}, f"seatsim diagnose {diagnosis.name}"),
+        describe_method(METHOD, f"seatsim diagnose {diagnosis.name}"),
     ]
     if diagnosis.verdict == "none":
         sections = [
@@ -115,10 +115,11 @@ def advise(diagnosis: Diagnosis) -> list[str]:
         found.append(format_sentence(what))
     if diagnosis.verdict == "unknown":
         found.append(
-            "Record what the section on the missing signal points at, or describe it as an effect of your own."
+            "Read the section on the missing signal: it shows over which motion or current the simulation lacks"
+            " something. Measure that, or write it as an effect of your own."
         )
         if diagnosis.where:
-            found.append(f"Look at the {diagnosis.where[0].block} of the rig first: most of what is left lies there.")
+            found.append(f"Begin with the {diagnosis.where[0].block} of the rig: most of what is unexplained is there.")
     at_bound = [each.name for each in diagnosis.parameters if each.at_bound]
     if at_bound:
         found.append(f"Measure {join_names(at_bound)}: the refit stops at the bound of its tolerance.")

@@ -29,7 +29,7 @@ from seatsim.report.formatting import (
     format_sentence,
 )
 from seatsim.report.packing import Axis, Panel, make_density, pack_signals
-from seatsim.report.planes import Curve, Range, draw_cells, draw_curves
+from seatsim.report.planes import Curve, Range, draw_cells, draw_curves, join_planes
 from seatsim.report.spectra import estimate_spectrum
 from seatsim.schema.text import join_names
 
@@ -61,7 +61,8 @@ def show_signals(diagnosis: Diagnosis) -> list[Block]:
               {_mark(run, diagnosis): _lines_of(group, name) for run, group in traces.items()})
         for name in channels
     ]  # fmt: skip
-    whole = pack_signals("signals-time", "Whole runs.", lines, Axis("time", "s", axes), panels)
+    caption = "Every run is in the list above the pictures."
+    whole = pack_signals("signals-time", caption, lines, Axis("time", "s", axes), panels)
     return [whole, *_show_close_up(next(iter(traces.values())), channels, lines)]
 
 
@@ -73,8 +74,9 @@ def _show_close_up(group: Sequence[Trace], channels: Sequence[str], lines: Seque
         Panel(name, trace.unit, "", {"": [signal[inside] for signal in (trace.measured, trace.nominal, trace.after)]})
         for name in channels for trace in group if trace.channel == name and len(trace.time) == len(first.time)
     ]  # fmt: skip
-    caption = f"{window} of {first.run}, every sample: where the nominal {channels[0].replace('_', ' ')} is most wrong."
-    return [pack_signals("signals-closely", caption, lines, Axis("time", "s", {"": first.time[inside]}), panels)]
+    lead = f"{window} of {first.run}, where the nominal {channels[0].replace('_', ' ')} is most wrong:"
+    axis = Axis("time", "s", {"": first.time[inside]})
+    return [Text(lead), pack_signals("signals-closely", "Every sample is drawn.", lines, axis, panels)]
 
 
 def show_spectra(diagnosis: Diagnosis) -> list[Block]:
@@ -96,10 +98,11 @@ def show_spectra(diagnosis: Diagnosis) -> list[Block]:
             found.append(make_density(name, trace.unit, {"": values}))
     if not found:
         return []
-    after = f"left, {_name_last(diagnosis)}"
-    lines = [("measured", 0), ("left, nominal", 1), (after, 2), ("noise", 3)]
+    after = f"difference, {_name_last(diagnosis)}"
+    lines = [("measured", 0), ("difference, nominal", 1), (after, 2), ("sensor noise", 3)]
     axis = Axis("frequency", "Hz", {"": frequency}, logarithmic=True)
-    return [pack_signals("signals-frequency", f"Run {group[0].run}.", lines, axis, found, logarithmic=True)]
+    caption = f"Run {group[0].run}; the difference is measured less simulated."
+    return [pack_signals("signals-frequency", caption, lines, axis, found, logarithmic=True)]
 
 
 def show_maps(diagnosis: Diagnosis) -> list[Block]:
@@ -121,12 +124,12 @@ def show_maps(diagnosis: Diagnosis) -> list[Block]:
     noise = shown.factor * trace.noise_rms
     ends = Range(max(noise, float(known.max()) / 100), float(known.max()) * 1.0001)
     axes = (OVER["velocity"][0], OVER[other][0])
-    caption = f"RMS of what is left in {shown.unit}, {trace.run}; cells of too few samples stay empty."
-    words = (f"{shown.words}, nominal", f"{shown.words}, {_name_last(diagnosis)}")
-    return [
-        draw_cells(f"{title[:1].upper()}{title[1:]}", caption, axes, borders, values, ends)
-        for title, values in zip(words, cells, strict=True)
+    caption = f"RMS of measured less simulated on {trace.run}; cells of too few samples stay empty."
+    planes = [
+        draw_cells(title, axes, borders, values, ends, shown.unit)
+        for title, values in zip(("nominal", _name_last(diagnosis)), cells, strict=True)
     ]
+    return [join_planes(f"Error of the {shown.words} over velocity and {other.replace('_', ' ')}", caption, planes)]
 
 
 def show_discrepancy(diagnosis: Diagnosis) -> list[Block]:
@@ -135,25 +138,29 @@ def show_discrepancy(diagnosis: Diagnosis) -> list[Block]:
     if found is None or len(found.values) < 2:
         return []
     blocks: list[Block] = [
-        Text(f"What would close the gap in the {found.block}, estimated from the recording."),
+        Text(
+            f"The {found.quantity} that the simulation lacks in the {found.block}: with it, it would follow the"
+            " recording. It is estimated from the measured signals."
+        ),
         Items([format_sentence(text) for text in found.description]),
     ]
     panel = Panel(f"missing {found.quantity}", found.unit, "", {"": [found.values]})
     blocks.append(
         pack_signals(
-            "signals-missing", "The held-out run.", [("missing", 6)], Axis("time", "s", {"": found.time}), [panel]
+            "signals-missing", "On the held-out run.", [("missing", 6)], Axis("time", "s", {"": found.time}), [panel]
         )
     )
     shown = describe_channel(found.quantity, found.unit)
     every = -(-len(found.values) // DOTS)
+    planes = []
     for name, values in diagnosis.evidence.motion.items():
         if len(values) == len(found.values) and varies(values):
             label, factor = OVER.get(name, (name.replace("_", " "), 1.0))
             curve = Curve("", factor * values[::every], shown.factor * found.values[::every], 6, "dots")
-            title = f"Missing {shown.words} over {label.partition(' [')[0]}"
-            blocks.append(
-                draw_curves(title, "Samples of the held-out run.", (label, f"missing [{shown.unit}]"), [curve])
-            )
+            title = f"over {label.partition(' [')[0]}"
+            planes.append(draw_curves(title, "", (label, f"missing {shown.axis}"), [curve]))
+    if planes:
+        blocks.append(join_planes(f"Missing {shown.words}", "Samples of the held-out run.", planes))
     return blocks
 
 
@@ -176,15 +183,16 @@ def show_budget(diagnosis: Diagnosis) -> list[Block]:
     if not diagnosis.error_budget:
         return []
     lead = (
-        "Comparison error E of the scenario stated, in the terms of ASME V&V 20, as RMS: u_num from halving the step of"
-        " the integration, u_input from the noise of the recorded inputs, u_D the noise of the sensor; what these leave"
-        " is the error of the model's form."
+        "The error E is the RMS of measured less simulated, of the scenario with the effects found. Its parts are those"
+        " of ASME V&V 20: what halving the step of the integration changes (u_num), what the noise of the recorded"
+        " inputs makes (u_input), and the noise of the sensor itself (u_D). What these leave is the error of the"
+        " form of the model."
     )
     rows = []
     for channel, unit, *parts in diagnosis.error_budget:
         shown = describe_channel(channel, unit)
         rows.append([shown.words, shown.unit, *(format_number(shown.factor * part) for part in parts)])
-    head = ["channel", "unit", "E", "u_num", "u_input", "u_D", "model form"]
+    head = ["channel", "unit", "error E", "step u_num", "inputs u_input", "sensor u_D", "model form"]
     return [Text(lead), Table("Parts of the error", head, rows, 2)]
 
 
@@ -224,7 +232,7 @@ def _describe_residual(traces: dict[str, list[Trace]], channel: str, diagnosis: 
     trace = next(each for group in traces.values() for each in group if each.channel == channel)
     before, after = (format_quantity(rms(signal), trace.unit) for signal in compute_residual(trace))
     noise = f", noise {format_quantity(trace.noise_rms, trace.unit)}" if trace.noise_rms > 0 else ""
-    return f"RMS of what is left on {trace.run}: {before} nominal, {after} {_name_last(diagnosis)}{noise}."
+    return f"RMS of the difference on {trace.run}: {before} nominal, {after} {_name_last(diagnosis)}{noise}."
 
 
 def _mark(run: str, diagnosis: Diagnosis) -> str:

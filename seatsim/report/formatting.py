@@ -50,7 +50,12 @@ def format_percent(share: float | None) -> str:
         return UNKNOWN
     value = 100.0 * share
     text = f"{value:.0f} %" if abs(value) >= 9.95 or value == 0 else f"{value:.1f} %"
-    return text.replace("-", MINUS)
+    return text.replace("-0.0", "0.0").replace("-", MINUS)
+
+
+def format_setting(value: float) -> str:
+    """Return a number that somebody chose, with no more digits than it has."""
+    return f"{value:.6g}".replace("-", MINUS)
 
 
 def format_estimate(value: Estimate | str) -> str:
@@ -72,6 +77,7 @@ def format_estimate(value: Estimate | str) -> str:
 def format_sentence(text: str) -> str:
     """Return a text with a capital letter in front, a full stop behind and units as printed; names stay as they are."""
     text = re.sub(r"\bdegC\b", "°C", text.strip()).replace("^2", "²")
+    text = re.sub(r"(?<=\d)%", " %", text)
     if not text:
         return ""
     # A first word such as `damper.remanence` is a name and keeps its small letter.

@@ -27,7 +27,7 @@ METHOD = (
     " each run is left out.",
     "The gap of a channel is the RMS of measured less simulated over the standard deviation of the measured signal,"
     " over all samples of all runs; overall is the root of the mean square over the channels.",
-    "The noise floor is the same for the stated noise of the sensor alone.",
+    "The noise floor is the gap that the stated noise of the sensor alone would make.",
     SPECTRA,
 )
 
@@ -46,10 +46,10 @@ def report_gap(name: str, found: Gap, pairs: Mapping[str, ReplayedPair], evidenc
     sections = [
         Section("gaps", "How far: gap of each channel", [_make_table(found), *_make_matrix(channels, pairs)]),
         Section("signals", "Measured and simulated over time", [show_pairs(channels, pairs)]),
-        Section("spectra", "What is left over frequency", _show_left(channels, pairs)),
+        Section("spectra", "Spectrum of the difference", _show_left(channels, pairs)),
         Section("notes", "Notes on the data", _list_notes(found)),
         show_card(evidence),
-        describe_method(METHOD, {}, command),
+        describe_method(METHOD, command),
     ]
     return Report(f"Gap: {name}", say_gap(found), [], _advise(found), sections)
 
@@ -70,7 +70,7 @@ def say_gap(found: Gap) -> str:
 def _advise(found: Gap) -> list[str]:
     if found.overall <= NEAR_NOISE * found.floor["overall"]:
         return ["Use the scenario as it is; test it on a recording of another road or driver."]
-    return ["Ask what causes the gap: seatsim diagnose names the effect and says how far the gap shrinks with it."]
+    return ["Find the cause with seatsim diagnose: it names the effect, and says how far the gap shrinks with it."]
 
 
 def show_pairs(channels: Sequence[str], pairs: Mapping[str, ReplayedPair]) -> Signals:
@@ -82,7 +82,8 @@ def show_pairs(channels: Sequence[str], pairs: Mapping[str, ReplayedPair]) -> Si
         for name in channels
     ]  # fmt: skip
     lines = [("measured", 0), ("simulated", 1)]
-    return pack_signals("signals-time", "Measured and simulated.", lines, Axis("time", "s", axes), panels)
+    caption = "Every run is in the list above the pictures."
+    return pack_signals("signals-time", caption, lines, Axis("time", "s", axes), panels)
 
 
 def _make_table(found: Gap) -> Table:
@@ -108,7 +109,7 @@ def _make_matrix(channels: Sequence[str], pairs: Mapping[str, ReplayedPair]) -> 
         ]
         cells = [(format_percent(gap), shade_share(gap)) if np.isfinite(gap) else ("", 0) for gap in gaps]
         rows.append((name.replace("_", " "), cells))
-    caption = "The darker, the larger; over the standard deviation within the run."
+    caption = "In per cent of the standard deviation of the signal in the run; the darker, the larger."
     return [Matrix("Gap of each run", caption, "channel", list(pairs), rows)]
 
 
@@ -132,7 +133,8 @@ def _show_left(channels: Sequence[str], pairs: Mapping[str, ReplayedPair]) -> li
     panels = [make_density(name, units[name], values[name]) for name in channels]
     lines = [("measured", 0), ("measured less simulated", 1)]
     axis = Axis("frequency", "Hz", axes, logarithmic=True)
-    return [pack_signals("signals-frequency", "Welch's method.", lines, axis, panels, logarithmic=True)]
+    caption = "Spectra of the measured signal and of what the simulation does not reproduce."
+    return [pack_signals("signals-frequency", caption, lines, axis, panels, logarithmic=True)]
 
 
 def _list_notes(found: Gap) -> list[Block]:

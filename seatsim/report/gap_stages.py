@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from typing import Literal
 
 from seatsim.diagnosis.result import CalibratedParameter, Diagnosis, Gaps
+from seatsim.plots.labels import format_unit
 from seatsim.report.blocks import Bar, Bars, Block, Table, Text
-from seatsim.report.formatting import format_number, format_percent
+from seatsim.report.formatting import format_number, format_percent, format_setting
 
 Stage = Literal["before", "calibrated", "after", "floor"]
 HEADINGS: dict[Stage, str] = {
@@ -84,17 +85,17 @@ def _draw_stages(diagnosis: Diagnosis, keys: Sequence[Stage]) -> Bars:
     bars = [
         Bar(HEADINGS[key], 0.0, round(100 * value / most, 2), format_percent(value), looks[key]) for key, value in known
     ]
-    return Bars("Overall gap, step by step", "On the run held out; shorter is better.", "scenario", bars)
+    return Bars("Overall gap, step by step", "On the run held out; shorter is better.", "scenario", "gap", bars)
 
 
 def _list_parameters(parameters: Sequence[CalibratedParameter]) -> Table:
     ranked = sorted(parameters, key=lambda each: not each.at_bound)
     rows = [
-        [each.name, format_number(each.nominal, 4), format_number(each.value, 4),
-         f"{format_number(each.bound[0], 4)} to {format_number(each.bound[1], 4)}",
-         "at its bound" if each.at_bound else "inside"]
+        [each.name, format_unit(each.unit), "at its bound" if each.at_bound else "within its bounds",
+         format_setting(each.nominal), format_number(each.value, 4),
+         f"{format_setting(each.bound[0])} to {format_setting(each.bound[1])}"]
         for each in ranked
     ]  # fmt: skip
     strong = [k for k, each in enumerate(ranked) if each.at_bound]
-    caption = "Refitted parameters in SI units, within their tolerance; in bold those that the refit pushes to a bound"
-    return Table(caption, ["parameter", "nominal", "refitted", "bound", "where"], rows, 1, strong)
+    caption = "Parameters refitted within their tolerance; in bold those that the refit pushes to a bound"
+    return Table(caption, ["parameter", "unit", "refit", "nominal", "refitted", "bounds"], rows, 3, strong)

@@ -9,13 +9,14 @@ import numpy as np
 from seatsim.identification.agreement import Agreement
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.identify import Identification
+from seatsim.plots.labels import format_unit
 from seatsim.report.blocks import Block, Items, Report, Section, Table
 from seatsim.report.credibility.card import show_card
 from seatsim.report.credibility.evidence import collect_identification
 from seatsim.report.formatting import format_number, format_quantity, format_sentence
 from seatsim.report.method import describe_method
 from seatsim.report.packing import Axis, Panel, pack_signals
-from seatsim.report.planes import Curve, draw_curves
+from seatsim.report.planes import Curve, draw_curves, join_planes
 from seatsim.schema.text import join_names
 
 MOST = 6
@@ -30,9 +31,9 @@ METHOD = (
     "Minimised is the mean over records of the squared error of the force over the variance of the measured one: a"
     " global search on short stretches, then least squares on all records that are fitted.",
     "Fit: 100 (1 - |measured - predicted| / |measured - its mean|), in the norm over the samples; R² is of the same"
-    " error; MD is the mean deviation over the measured force where that is above 5 % of its peak.",
-    "A parameter's ± is 1.96 standard deviations, which respect that neighbouring residuals are alike; not identified:"
-    " its standard deviation is above a tenth of its size.",
+    " error; the mean deviation is |measured - predicted| over |measured|, where that is above 5 % of its peak.",
+    "A parameter's ± is 1.96 standard deviations, which respect that neighbouring residuals are alike; not"
+    " determined: its standard deviation is above a tenth of its size.",
 )
 
 
@@ -46,7 +47,7 @@ def report_identification(found: Identification, command: str) -> Report:
         Section("parameters", "Parameters", _show_parameters(found)),
         Section("notes", "Notes", [Items([format_sentence(note) for note in found.notes])] * bool(found.notes)),
         show_card(collect_identification(found)),
-        describe_method(METHOD, {}, command),
+        describe_method(METHOD, command),
     ]
     return Report(f"Identification: {found.model}", say_fit(found), [], _advise(found), sections)
 
@@ -74,8 +75,8 @@ def _advise(found: Identification) -> list[str]:
     if mean is not None and mean.fit_percent < FAIR:
         texts.append("Try other models: --model all compares them on the same records.")
     if loose:
-        texts.append(f"Fix {join_names(loose)} with --fix, or record motion that shows them: the data do not.")
-    texts.append("Put damper and actuator of parameters.yaml into a scenario, and run it.")
+        texts.append(f"The data do not determine {join_names(loose)}: fix them with --fix, or record other motions.")
+    texts.append("Copy the sections damper and actuator of parameters.yaml into a scenario, and run it.")
     return texts
 
 
@@ -95,7 +96,7 @@ def _make_table(found: Identification) -> Table:
         if mean is not None:
             strong.append(len(rows))
             rows.append([f"mean, {words}", words, "", *_format_agreement(mean)])
-    head = ["record", "part", "current [A]", "fit [%]", "R²", "RMSE [N]", "MD"]
+    head = ["record", "part", "current [A]", "fit [%]", "R²", "RMS error [N]", "mean deviation"]
     return Table("Agreement of the predicted force with the measured one", head, rows, 2, strong)
 
 
@@ -113,7 +114,7 @@ def _select_records(judged: Sequence[Assessment]) -> list[Assessment]:
 
 
 def _draw_loops(chosen: Sequence[Assessment]) -> list[Block]:
-    blocks: list[Block] = []
+    planes = []
     for each in chosen:
         record = each.record
         start, stop = record.liveliest(POINTS)
@@ -123,8 +124,9 @@ def _draw_loops(chosen: Sequence[Assessment]) -> list[Block]:
             Curve("predicted", record.velocity[part], each.predicted[part], 1),
         ]
         title = f"{record.name} ({PARTS[each.part]}), fit {format_number(each.agreement.fit_percent)} %"
-        blocks.append(draw_curves(title, "Its stretch of highest speed.", ("velocity [m/s]", "force [N]"), curves))
-    return blocks
+        planes.append(draw_curves(title, "", ("velocity [m/s]", "force [N]"), curves))
+    caption = "Of each record, the part with the highest speed."
+    return [join_planes("Damper force over velocity", caption, planes)] if planes else []
 
 
 def _show_time(chosen: Sequence[Assessment]) -> Block:
@@ -138,21 +140,23 @@ def _show_time(chosen: Sequence[Assessment]) -> Block:
     current = {name: [each.record.current[part], None] for name, each, part in zip(names, chosen, parts, strict=True)}
     panels = [Panel("damper force", "N", "", force), Panel("current", "A", "", current)]
     lines = [("measured", 0), ("predicted", 1)]
-    caption = "The stretch of highest speed of each record."
+    caption = "The part of each record with the highest speed."
     return pack_signals("signals-time", caption, lines, Axis("time", "s", times), panels)
 
 
 def _show_parameters(found: Identification) -> list[Block]:
     known = found.information
     rows = [
-        [each.name, format_number(each.value, 5), format_number(1.96 * each.std, 2), each.unit,
-         "identified" if each.identified else "not identified"]
+        [each.name, format_unit(each.unit), "determined" if each.identified else "not determined",
+         format_number(each.value, 5), format_number(1.96 * each.std, 2)]
         for each in known.estimates
     ]  # fmt: skip
     strong = [k for k, each in enumerate(known.estimates) if not each.identified]
-    head = ["parameter", "value", "±", "unit", "the data"]
-    blocks: list[Block] = [Table("In bold what the data do not determine", head, rows, 1, strong)]
+    head = ["parameter", "unit", "by the data", "value", "±"]
+    caption = "Fitted values, ± 1.96 standard deviations; in bold those that the data do not determine"
+    blocks: list[Block] = [Table(caption, head, rows, 3, strong)]
     if known.correlated:
         pairs = [[first, second, format_number(value)] for first, second, value in known.correlated]
-        blocks.append(Table("Parameters that stand in for each other", ["one", "other", "correlation"], pairs, 2))
+        caption = "Pairs of parameters that can replace each other"
+        blocks.append(Table(caption, ["one", "other", "correlation"], pairs, 2))
     return blocks

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.report.blocks import Plane, Shape, Tick
+from seatsim.report.blocks import Facets, Plane, Shape, Tick
 from seatsim.report.formatting import format_number
 
 Array = NDArray[np.float64]
@@ -58,8 +58,13 @@ def draw_curves(title: str, caption: str, axes: tuple[str, str], curves: Sequenc
     return Plane(title, caption, *axes, list_ticks(across), list_ticks(up), shapes, legend)
 
 
+def join_planes(title: str, caption: str, planes: Sequence[Plane]) -> Facets:
+    """Return planes as one figure; the legend names each look once."""
+    return Facets(title, caption, planes, list(dict.fromkeys(entry for plane in planes for entry in plane.legend)))
+
+
 def draw_cells(
-    title: str, caption: str, axes: tuple[str, str], borders: tuple[Array, Array], values: Array, ends: Range
+    title: str, axes: tuple[str, str], borders: tuple[Array, Array], values: Array, ends: Range, unit: str
 ) -> Plane:
     """Return a map: values, shape (rows, columns), between borders of columns and rows, shaded over log10 of `ends`."""
     across, up = (Range(float(edges[0]), float(edges[-1])) for edges in borders)
@@ -72,9 +77,11 @@ def draw_cells(
         paths.setdefault(level, []).append(f"M{left:.0f} {bottom:.0f}H{right:.0f}V{top:.0f}H{left:.0f}Z")
     shapes = [Shape("".join(parts), level, "cell") for level, parts in sorted(paths.items())]
     steps = np.geomspace(ends.low, ends.high, SHADES + 1)
-    legend = [(f"{format_number(steps[k], 2)} to {format_number(steps[k + 1], 2)}", k, "cell") for k in (0, 3, 6, 9)]
+    legend = [
+        (f"{format_number(steps[k], 2)} to {format_number(steps[k + 1], 2)} {unit}", k, "cell") for k in range(SHADES)
+    ]
     empty = "" if shapes else "Nothing to draw: too few samples in every cell."
-    return Plane(title, caption, *axes, list_ticks(across), list_ticks(up), shapes, legend, empty)
+    return Plane(title, "", *axes, list_ticks(across), list_ticks(up), shapes, legend, empty)
 
 
 def find_range(values: Array) -> Range:

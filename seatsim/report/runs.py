@@ -7,19 +7,25 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.plots.runs.naming import find_unit, select_shown
-from seatsim.report.blocks import Block, Items, Report, Section, Table, Text
+from seatsim.plots.labels import format_unit
+from seatsim.plots.runs.naming import find_unit, label_runs
+from seatsim.report.blocks import Block, Items, Report, Section, Table
 from seatsim.report.credibility.card import show_card
 from seatsim.report.credibility.evidence import collect_runs
-from seatsim.report.formatting import describe_channel, format_number, format_percent, format_quantity, format_sentence
+from seatsim.report.formatting import (
+    describe_channel,
+    format_number,
+    format_percent,
+    format_quantity,
+    format_sentence,
+    format_setting,
+)
 from seatsim.report.method import describe_method
-from seatsim.report.packing import Axis, Panel, make_density, pack_signals
-from seatsim.report.planes import Curve, draw_curves
+from seatsim.report.run_pictures import draw_loops, group_runs, name_runs, show_signals, show_spectra
 from seatsim.report.spectra import METHOD as SPECTRA
-from seatsim.report.spectra import estimate_spectrum
 from seatsim.scenario.numbers import list_numbers
 from seatsim.schema.text import join_names
-from seatsim.simulation.result import UNITS, Run
+from seatsim.simulation.result import Run
 
 Array = NDArray[np.float64]
 
@@ -27,17 +33,9 @@ COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_peak"
 TABLE = {
     COMFORT: "driver, weighted RMS", "driver_acceleration_rms": "driver, RMS", "driver_vdv": "driver, VDV",
     "seat_factor": "SEAT factor", "suspension_displacement_rms": "travel, RMS", TRAVEL: "travel, peak",
-    "end_stop_hits": "end stops met", "current_rms": "current, RMS",
+    "end_stop_hits": "end-stop hits", "current_rms": "current, RMS",
 }  # fmt: skip
 """Metrics of the table of several runs, and their headings; `summary.csv` has all of them."""
-CHANNELS = (
-    "driver_acceleration", "suspension_displacement", "damper_force", "coil_current", "frame_acceleration",
-    "floor_acceleration", "damper_temperature",
-)  # fmt: skip
-HIGHEST = 50.0
-"""Hz up to which spectra are drawn: more than a seat passes on."""
-LOOP_SECONDS = 6.0
-"""Seconds of the loops: more of them hide each other."""
 METHOD = (
     "Accelerations are of the whole run after the settling time that the scenario states; 'weighted' is by Wk of ISO"
     " 2631-1; the SEAT factor is the driver's weighted acceleration over the floor's.",
@@ -53,29 +51,22 @@ def report_runs(runs: Sequence[Run], command: str, title: str) -> Report:
         command: what makes the report again.
         title: of the folder that they share.
     """
-    shown = select_shown(runs)
-    names = name_runs(shown)
-    lines = list(zip(names, _choose_looks(len(shown)), strict=True))
-    omitted = f" {len(shown)} of {len(runs)} runs are drawn." if len(shown) < len(runs) else ""
+    groups = group_runs(runs)
+    drawn = sum(map(len, groups.values()))
+    omitted = f" {drawn} of {len(runs)} runs are drawn." if drawn < len(runs) else ""
     sections = [
         Section("figures", "Comfort, travel and effort", [_make_table(runs)]),
-        Section("signals", "Signals over time", [show_signals(shown, lines, omitted)]),
-        Section("spectra", "Driver and floor over frequency", _show_spectra(shown, lines)),
-        Section("loops", "Damper force over velocity", [_draw_loops(shown, lines)]),
+        Section("signals", "Signals over time", [show_signals(groups, omitted)]),
+        Section("spectra", "Driver and floor over frequency", show_spectra(groups)),
+        Section("loops", "Loops", [draw_loops(groups)]),
         Section("notes", "Notes", _list_notes(runs)),
         show_card(collect_runs(runs)),
-        describe_method(METHOD, _list_settings(runs[0]), command),
+        describe_method(METHOD, command, [_list_settings(runs)]),
     ]
     single = len(runs) == 1
     about = f"Simulated run: {title}" if single else f"Comparison of {len(runs)} simulated runs: {title}"
     answer = describe_run(runs[0]) if single else _compare(runs)
     return Report(about, answer, [], _advise(runs), sections)
-
-
-def name_runs(runs: Sequence[Run]) -> list[str]:
-    """Return what sets runs apart, numbered where two are alike."""
-    titles = [run.scenario.title for run in runs]
-    return [f"{title} ({k + 1})" if titles.count(title) > 1 else title for k, title in enumerate(titles)]
 
 
 def describe_run(run: Run) -> str:
@@ -97,61 +88,6 @@ def read_metric(run: Run, name: str) -> float:
     return run.metrics[name].value if name in run.metrics else float("nan")
 
 
-def show_signals(runs: Sequence[Run], lines: Sequence[tuple[str, int]], note: str = "") -> Block:
-    """Return linked pictures of the channels that some run has, a line for each run."""
-    longest = max(runs, key=lambda run: len(run["time"]))
-    time = np.asarray(longest["time"])
-    panels = [
-        Panel(channel, UNITS[channel], "", {"": [_read_channel(run, channel, len(time)) for run in runs]})
-        for channel in CHANNELS
-        if any(_read_channel(run, channel, len(time)) is not None for run in runs)
-    ]
-    return pack_signals("signals-time", f"All runs over time.{note}", lines, Axis("time", "s", {"": time}), panels)
-
-
-def _read_channel(run: Run, channel: str, length: int) -> Array | None:
-    """Return a channel, filled up with NaN to a length; None where it has none."""
-    if channel not in run.history.channels:
-        return None
-    values = np.asarray(run[channel], dtype=float)
-    if not np.isfinite(values).any():
-        return None
-    return np.pad(values, (0, length - len(values)), constant_values=np.nan)
-
-
-def _show_spectra(runs: Sequence[Run], lines: Sequence[tuple[str, int]]) -> list[Block]:
-    time = [np.asarray(run["time"]) for run in runs]
-    drivers, floors = (
-        [estimate_spectrum(t, np.asarray(run[channel]), HIGHEST) for t, run in zip(time, runs, strict=True)]
-        for channel in ("driver_acceleration", "floor_acceleration")
-    )
-    known = [found[0] for found in drivers if found is not None]
-    if not known:
-        return [Text("The runs are too short for a spectrum.")]
-    frequency = min(known, key=len)
-    values, floor = (
-        [None if each is None or not each[1].any() else each[1][: len(frequency)] for each in found]
-        for found in (drivers, floors)
-    )
-    axis = Axis("frequency", "Hz", {"": frequency}, logarithmic=True)
-    panels = [make_density("driver acceleration", "m/s^2", {"": values})]
-    if any(each is not None for each in floor):
-        panels.append(make_density("floor acceleration", "m/s^2", {"": floor}))
-    return [pack_signals("signals-frequency", "All runs over frequency.", lines, axis, panels, logarithmic=True)]
-
-
-def _draw_loops(runs: Sequence[Run], lines: Sequence[tuple[str, int]]) -> Block:
-    curves = []
-    for run, (name, look) in zip(runs, lines, strict=True):
-        time = np.asarray(run["time"])
-        part = time >= time[-1] - LOOP_SECONDS
-        every = max(1, int(part.sum()) // 1500)
-        velocity, force = np.asarray(run["suspension_velocity"])[part], np.asarray(run["damper_force"])[part]
-        curves.append(Curve(name, velocity[::every], force[::every], look, "dots"))
-    caption = f"Samples of the last {LOOP_SECONDS:g} s; positive force opposes extension."
-    return draw_curves("Damper force over velocity", caption, ("suspension velocity [m/s]", "damper force [N]"), curves)
-
-
 def _make_table(runs: Sequence[Run]) -> Table:
     if len(runs) == 1:
         return list_metrics(runs[0])
@@ -161,13 +97,17 @@ def _make_table(runs: Sequence[Run]) -> Table:
     rows = [
         [
             f"{name} (unverified)" if run.unverified else name,
-            *(format_number(shown[metric].factor * read_metric(run, metric)) for metric in chosen),
+            *(_format_metric(metric, shown[metric].factor * read_metric(run, metric)) for metric in chosen),
         ]
         for name, run in zip(name_runs(runs), runs, strict=True)
     ]
-    best = _rank(runs)[:1]
-    bold = " The most comfortable run is in bold." if best else ""
+    best = [order[0] for order in _rank_within(runs)]
+    bold = f" The most comfortable run{' of each scenario' * (len(best) > 1)} is in bold." if best else ""
     return Table(f"Figures of each run; summary.csv has more.{bold}", head, rows, 1, best)
+
+
+def _format_metric(name: str, value: float) -> str:
+    return f"{value:.0f}" if name == "end_stop_hits" and np.isfinite(value) else format_number(value)
 
 
 def list_metrics(run: Run) -> Table:
@@ -189,7 +129,19 @@ def _rank(runs: Sequence[Run]) -> list[int]:
     return sorted(known, key=lambda k: read_metric(runs[k], COMFORT))
 
 
+def _rank_within(runs: Sequence[Run]) -> list[list[int]]:
+    """Return the order of comfort within each scenario, whose runs share a floor, or over all where each has one."""
+    order = _rank(runs)
+    groups: dict[str, list[int]] = {}
+    for k in order:
+        groups.setdefault(runs[k].scenario.name, []).append(k)
+    return list(groups.values()) if 1 < len(groups) < len(order) else [order] * bool(order)
+
+
 def _compare(runs: Sequence[Run]) -> str:
+    orders = _rank_within(runs)
+    if len(orders) > 1:
+        return _name_winners(runs, [order[0] for order in orders])
     order = _rank(runs)
     if len(order) < 2:
         return f"{len(runs)} runs were simulated; too few of them have figures that can be relied on to be compared."
@@ -197,29 +149,43 @@ def _compare(runs: Sequence[Run]) -> str:
     low, high = read_metric(best, COMFORT), read_metric(worst, COMFORT)
     if high <= 1.005 * low:
         return f"All {len(order)} runs are alike in comfort: {format_quantity(low, 'm/s^2')} (weighted RMS)."
+    names = name_runs(runs)
     return (
-        f"Of {len(order)} runs {best.scenario.title} is the most comfortable: the driver feels"
+        f"Of {len(order)} runs “{names[order[0]]}” is the most comfortable: the driver feels"
         f" {format_quantity(low, 'm/s^2')} (weighted RMS), {format_percent(1 - low / high)} less than with"
-        f" {worst.scenario.title}; it travels up to {format_quantity(read_metric(best, TRAVEL), 'm')}."
+        f" “{names[order[-1]]}”; the suspension travels up to {format_quantity(read_metric(best, TRAVEL), 'm')}."
     )
+
+
+def _name_winners(runs: Sequence[Run], best: Sequence[int]) -> str:
+    """Return the most comfortable run of each scenario in a sentence."""
+    names = {k: label_runs([runs[k]])[0] for k in best}
+    size = {k: f"{runs[k].scenario.name}: {format_quantity(read_metric(runs[k], COMFORT), 'm/s^2')}" for k in best}
+    if len(set(names.values())) == 1:
+        listed = "; ".join(size.values())
+        return f"In every scenario “{names[best[0]]}” is the most comfortable (weighted RMS of the driver in {listed})."
+    listed = "; ".join(f"“{names[k]}” in {size[k]}" for k in best)
+    return f"The most comfortable runs, by the weighted RMS of the driver's acceleration, are {listed}."
 
 
 def _advise(runs: Sequence[Run]) -> list[str]:
     found = []
-    hitting = [name for name, run in zip(name_runs(runs), runs, strict=True) if read_metric(run, "end_stop_hits") > 0]
-    doubtful = [name for name, run in zip(name_runs(runs), runs, strict=True) if run.unverified]
+    named = list(zip(name_runs(runs), runs, strict=True))
+    hitting = [name for name, run in named if read_metric(run, "end_stop_hits") > 0]
+    doubtful = [name for name, run in named if run.unverified]
     if doubtful:
         found.append(f"Do not rely on {join_names(doubtful[:3])}: the notes say why the figures are unverified.")
     if hitting:
-        found.append(f"Look at the travel of {join_names(hitting[:3])}: end stops are met, which is felt as a jolt.")
-    amplifies = [name for name, run in zip(name_runs(runs), runs, strict=True) if read_metric(run, "seat_factor") > 1]
+        found.append(f"Look at the travel of {join_names(hitting[:3])}: the seat hits its end stops, which the driver"
+                     " feels as a jolt.")  # fmt: skip
+    amplifies = [name for name, run in named if read_metric(run, "seat_factor") > 1]
     if amplifies:
-        found.append(f"The driver feels more than the floor moves in {join_names(amplifies[:3])}: more damping near the"
-                     " seat's resonance, or a law such as skyhook, lowers it.")  # fmt: skip
+        found.append(f"The driver feels more than the floor moves in {join_names(amplifies[:3])}: try more damping near"
+                     " the resonance of the seat, or a law such as skyhook.")  # fmt: skip
     if len(runs) == 1:
         found.append("Compare it with other laws or settings: seatsim compare takes several scenarios or a sweep.")
     else:
-        found.append("Ask whether the order holds on other roads and drivers: seatsim sweep varies both.")
+        found.append("Check that the order holds on other roads and with other drivers: seatsim sweep varies both.")
     return found
 
 
@@ -230,14 +196,11 @@ def _list_notes(runs: Sequence[Run]) -> list[Block]:
     return [Items([format_sentence(text) for text in dict.fromkeys(texts)])] if texts else []
 
 
-def _list_settings(run: Run) -> dict[str, object]:
-    """Return the numbers of a scenario by dotted key, with their units."""
-    found: dict[str, object] = {}
-    for key, value in list_numbers(run.scenario).items():
-        unit = find_unit(run.scenario, key)
-        found[f"{key} [{unit}]" if unit else key] = value
-    return found
-
-
-def _choose_looks(count: int) -> list[int]:
-    return [2] if count == 1 else [k % 8 for k in range(count)]
+def _list_settings(runs: Sequence[Run]) -> Table:
+    """Return the numbers of the first scenario by dotted key, with their units."""
+    scenario = runs[0].scenario
+    rows = [
+        [key, format_unit(find_unit(scenario, key)) or "-", format_setting(value)]
+        for key, value in list_numbers(scenario).items()
+    ]
+    return Table(f"Settings of {scenario.title}", ["key", "unit", "value"], rows, 2, folded=True)

@@ -16,6 +16,8 @@ from seatsim.schema.text import join_names
 from seatsim.standards.iso7096 import LIMITS, RECALLED
 from seatsim.standards.seat_rows import DampingRow, SeatRow, SeatTest
 
+NAMED = 3
+"""Failures that the answer names."""
 METHOD = (
     "The SEAT factor is the weighted acceleration at the driver over that at the floor, each a mean over the runs of a"
     " class and driver; the spread is the largest deviation of a run from that mean.",
@@ -39,7 +41,7 @@ def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str
         Section("damping", "Damping at resonance", [*_tabulate_damping(found.damping_rows), *_draw_damping(found)]),
         Section("notes", "Notes", [Items([format_sentence(text) for text in texts])] * bool(texts)),
         show_card(collect_seat_test(found, is_measured)),
-        describe_method(METHOD, {}, command),
+        describe_method(METHOD, command),
     ]
     return Report(f"Seat test: {name}", say_seat_test(found), [], _advise(found), sections)
 
@@ -47,20 +49,21 @@ def report_seat_test(found: SeatTest, name: str, is_measured: bool, command: str
 def say_seat_test(found: SeatTest) -> str:
     """Return in a sentence which lines of the test are passed."""
     rows: list[SeatRow | DampingRow] = [*found.rows, *found.damping_rows]
-    failed = dict.fromkeys(row.spectral_class for row in rows if not row.passed)
-    count = f"{sum(row.passed for row in rows)} of {len(rows)} lines of the test are within the limits of ISO 7096"
-    return f"{count}; {join_names(list(failed))} not in all of theirs." if failed else f"{count}."
+    failed = list(dict.fromkeys(f"{row.run} on {row.spectral_class}" for row in rows if not row.passed))
+    count = f"{sum(row.passed for row in rows)} of {len(rows)} checks are within the limits of ISO 7096"
+    others = [f"{len(failed) - NAMED} others"] * (len(failed) > NAMED)
+    return f"{count}; {join_names([*failed[:NAMED], *others])} exceed theirs." if failed else f"{count}."
 
 
 def _advise(found: SeatTest) -> list[str]:
     worst = max(found.rows, key=lambda row: row.seat / row.limit, default=None)
     texts = []
     if worst is not None and not worst.passed:
-        texts.append(f"Look at {worst.spectral_class} with {worst.mass:g} kg first: its SEAT factor is"
-                     f" {format_percent(worst.seat / worst.limit)} of the limit.")  # fmt: skip
+        texts.append(f"Begin with {worst.run} on {worst.spectral_class} under a driver of {worst.mass:g} kg: its SEAT"
+                     f" factor is {format_percent(worst.seat / worst.limit)} of the limit.")  # fmt: skip
     if any(row.end_stop_hits for row in found.rows):
-        texts.append("Look at the travel: end stops are met, which no limit of the standard counts.")
-    return [*texts, "Compare laws and settings of the seat on the same floors: seatsim compare takes kind: iso7096."]
+        texts.append("Look at the travel: the seat hits its end stops, for which the standard has no limit.")
+    return [*texts, "Try other laws and settings on the floor of a class: excitation: {kind: iso7096} in a scenario."]
 
 
 def _tabulate_classes(rows: Sequence[SeatRow]) -> list[Block]:
@@ -70,9 +73,11 @@ def _tabulate_classes(rows: Sequence[SeatRow]) -> list[Block]:
          UNKNOWN if row.end_stop_hits is None else str(row.end_stop_hits)]
         for row in rows
     ]  # fmt: skip
-    head = ["run", "class", "machine", "passed", "driver [kg]", "SEAT", "limit", "spread", "end stops met"]
+    head = [
+        "run", "class", "machine", "passed", "driver [kg]", "SEAT factor", "limit", "spread of runs", "end-stop hits",
+    ]  # fmt: skip
     strong = [k for k, row in enumerate(rows) if not row.passed]
-    caption = "A line for each class and driver; in bold what is above its limit"
+    caption = "Each class with a light and a heavy driver; in bold what is above its limit"
     return [Table(caption, head, lines, 4, strong)] * bool(lines)
 
 
@@ -84,7 +89,8 @@ def _tabulate_damping(rows: Sequence[DampingRow]) -> list[Block]:
     ]  # fmt: skip
     head = ["run", "class", "passed", "resonance [Hz]", "transmissibility", "limit"]
     strong = [k for k, row in enumerate(rows) if not row.passed]
-    return [Table("A line for each class; in bold what is above its limit", head, lines, 3, strong)] * bool(lines)
+    caption = "Transmissibility at the resonance; in bold what is above its limit"
+    return [Table(caption, head, lines, 3, strong)] * bool(lines)
 
 
 def _draw_damping(found: SeatTest) -> list[Block]:
@@ -92,5 +98,6 @@ def _draw_damping(found: SeatTest) -> list[Block]:
         Curve(name, np.asarray(test.frequencies), np.asarray(test.transmissibilities), (k + 1) % 8)
         for k, (name, test) in enumerate(found.damping.items())
     ]
-    axes = ("frequency [Hz]", "transmissibility")
-    return [draw_curves("Transmissibility", "Tones from half to twice the resonance.", axes, curves)] * bool(curves)
+    axes = ("frequency [Hz]", "transmissibility [-]")
+    caption = "Mass on the seat over floor, for sines from half to twice the resonance."
+    return [draw_curves("Transmissibility", caption, axes, curves)] * bool(curves)

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from seatsim.report.blocks import Bar, Bars, Block, Report, Section, Table, Text
+from seatsim.report.blocks import Block, Report, Section, Table, Text
 from seatsim.report.credibility.card import show_card
 from seatsim.report.credibility.evidence import collect_sweep
 from seatsim.report.formatting import format_number, format_percent
@@ -16,11 +14,12 @@ from seatsim.report.method import describe_method
 from seatsim.report.rendering import write_html
 from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
 from seatsim.report.sweep_pictures import draw_pareto, tabulate_maps
+from seatsim.report.sweep_sensitivity import choose_metric, show_sensitivity
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.statistics.exceedance import Exceedance
 from seatsim.sweeps.statistics.inputs import SweepRows
 from seatsim.sweeps.statistics.quantiles import NAMES
-from seatsim.sweeps.statistics.sensitivity import Sensitivities, Sensitivity, choose_key
+from seatsim.sweeps.statistics.sensitivity import Sensitivities, choose_key
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,10 +28,7 @@ SHOWN = (COMFORT, "driver_vdv", "seat_factor", TRAVEL, "suspension_displacement_
 """Metrics of the tables of the page; `table.csv` has all of them."""
 MOST_LINES = 60
 """Lines of a table on the page."""
-MOST_KEYS = 14
 MOST_REASONS = 8
-ENOUGH = 0.8
-"""Share of the variance that an expansion must predict before nothing is said about it."""
 METHOD = (
     "Every run has a seed of its own, derived from the sweep's; failed and unverified runs take no part in any figure.",
     "Shares of variance are Sobol indices of a polynomial chaos expansion, with 95 % intervals by resampling the runs;"
@@ -56,15 +52,18 @@ def report_sweep(
     rows: SweepRows, quantiles: pd.DataFrame, found: Sensitivities, exceeded: Sequence[Exceedance]
 ) -> Report:
     """Return the report of a sweep from its rows and the statistics on them."""
+    identity = rows.manifest["identity"]
     sections = [
         Section("limits", "How often limits are exceeded", _show_limits(exceeded, rows)),
-        Section("sensitivity", "What matters most", _show_sensitivity(found, rows)),
+        Section("sensitivity", "What matters most", show_sensitivity(found, rows)),
         Section("pareto", "Comfort and travel", draw_pareto(rows, _order(found, rows))),
-        Section("maps", "Over two keys", tabulate_maps(rows, _order(found, rows))),
+        Section("maps", "Means over two keys", tabulate_maps(rows, _order(found, rows))),
         Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
         Section("states", "Failed and unverified runs", _show_states(rows)),
         show_card(collect_sweep(rows, found, exceeded)),
-        describe_method(METHOD, {"identity": rows.manifest["identity"]}, f"seatsim sweep-report {rows.folder.name}"),
+        describe_method(
+            METHOD, f"seatsim sweep-report {rows.folder.name}", [Text(f"Identity of the sweep: {identity}")]
+        ),
     ]
     about = f"Sweep: {rows.folder.name}"
     return Report(about, state_importance(found, rows), [_count_runs(rows)], _advise(found, exceeded, rows), sections)
@@ -72,7 +71,7 @@ def report_sweep(
 
 def state_importance(found: Sensitivities, rows: SweepRows) -> str:
     """Return in one sentence which key matters most to comfort, or to the first metric that varies."""
-    here = found.of(_main_metric(found)) if found.rows else []
+    here = found.of(choose_metric(found)) if found.rows else []
     chosen = choose_key(here, rows)
     if chosen is None:
         return f"Which key matters most cannot be said: {found.problem or 'no key but the variant varies'}."
@@ -81,45 +80,40 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> str:
     many = len(rows.drawn or [row for row in here if row.key != "variant"])
     among = f"Of {many} {what} {chosen.key} matters most" if many > 1 else f"{chosen.key} is the only one of the {what}"
     return (
-        f"{among} to {words}: it explains {format_percent(chosen.total)} of its variance with its interactions (95 %"
-        f" interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}), "
-        f"{format_percent(chosen.first)} alone."
+        f"{among} to the {words}: together with its interactions it explains {format_percent(chosen.total)} of the"
+        f" variance (95 % interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)})."
     )
 
 
 def _count_runs(rows: SweepRows) -> str:
     counts: Mapping[str, int] = rows.manifest["counts"]
     states = {state: int((rows.every.state == state).sum()) for state in (FAILED, UNVERIFIED)}
-    return (
-        f"{len(rows.every)} of {counts['runs']} runs have ended; {states[FAILED]} of them failed and"
-        f" {states[UNVERIFIED]} are unverified, which take no part in any figure."
-    )
+    out = [f"{count} {state}" for state, count in states.items() if count]
+    left = f" {' and '.join(out)}: these take no part in any figure." if out else ""
+    return f"{len(rows.every)} of {counts['runs']} runs have ended.{left}"
 
 
 def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRows) -> list[str]:
     texts = []
     worst = max(exceeded, key=lambda row: row.share, default=None)
     if worst is not None and worst.share > 0:
-        who = "".join(f" with {value}" for value in worst.group.values())
-        words = describe_column(worst.metric, rows.units).words
-        texts.append(f"Look at {words}{who} first: {format_percent(worst.share)} of the runs are above the limit.")
-    chosen = choose_key(found.of(_main_metric(found)), rows) if found.rows else None
+        where = ", ".join(str(value) for value in worst.group.values())
+        shown = describe_column(worst.metric, rows.units)
+        limit = f"{format_number(shown.factor * worst.limit)} {shown.unit}".removesuffix(" -")
+        texts.append(f"Begin with the {shown.words}{f' of {where}' * bool(where)}: {worst.exceeding} of {worst.runs}"
+                     f" runs are above the limit of {limit}.")  # fmt: skip
+    chosen = choose_key(found.of(choose_metric(found)), rows) if found.rows else None
     if chosen is not None:
         verb = "Tighten the tolerance of" if rows.drawn else "Settle"
-        texts.append(f"{verb} {chosen.key} before any other key: what is gained elsewhere is smaller.")
+        texts.append(f"{verb} {chosen.key} before any other key: none of the others changes as much.")
     if len(rows.every) < rows.manifest["counts"]["runs"]:
         texts.append("Go on with the sweep: seatsim sweep with --resume.")
     return texts
 
 
-def _main_metric(found: Sensitivities) -> str:
-    metrics = dict.fromkeys(row.metric for row in found.rows)
-    return COMFORT if COMFORT in metrics else next(iter(metrics))
-
-
 def _order(found: Sensitivities, rows: SweepRows) -> list[str]:
     """Return the varied keys, what matters most to comfort first."""
-    ranked = [row.key for row in found.of(_main_metric(found))] if found.rows else []
+    ranked = [row.key for row in found.of(choose_metric(found))] if found.rows else []
     return [*ranked, *(key for key in rows.keys if key not in ranked)]
 
 
@@ -128,7 +122,7 @@ def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]
         return []
     what = "probability" if rows.is_random else "share of the runs"
     lead = (
-        "Runs are taken as drawn independently of each other."
+        "The interval holds for runs that were drawn independently of each other."
         if rows.is_random
         else "No key is drawn from a distribution: these are shares of the runs of the design, no probabilities."
     )
@@ -143,57 +137,6 @@ def _show_limits(exceeded: Sequence[Exceedance], rows: SweepRows) -> list[Block]
     return [Text(lead), Table("Runs above each limit", head, lines, words=len(exceeded[0].group) + 1)]
 
 
-def _show_sensitivity(found: Sensitivities, rows: SweepRows) -> list[Block]:
-    if not found.rows:
-        return [Text(f"{found.problem[0].upper()}{found.problem[1:]}.")]
-    metrics = [name for name in (COMFORT, TRAVEL, *rows.manifest["limits"]) if found.of(name)]
-    blocks: list[Block] = []
-    for metric in dict.fromkeys(metrics or [_main_metric(found)]):
-        here = found.of(metric)
-        words = describe_column(metric, rows.units).words
-        blocks += [_draw_shares(here, words), _list_swings(here, rows)]
-        if here[0].explained < ENOUGH:
-            known = format_percent(max(0.0, here[0].explained))
-            blocks.append(Text(f"The expansion predicts {known} of the variance of {words} of runs left out; the rest"
-                               " is road, noise, or interactions that it has no terms for."))  # fmt: skip
-    return blocks
-
-
-def _draw_shares(found: Sequence[Sensitivity], words: str) -> Bars:
-    bars = [
-        Bar(row.key, 0.0, round(100 * _known(row.first), 2),
-            f"{format_percent(row.first)} alone, {format_percent(row.total)} in all", "chosen" if k == 0 else "plain",
-            (round(100 * _known(row.total_low), 2), round(100 * _known(row.total_high), 2)))
-        for k, row in enumerate(found[:MOST_KEYS])
-    ]  # fmt: skip
-    cut = f" The {MOST_KEYS} strongest of {len(found)} keys." if len(found) > MOST_KEYS else ""
-    caption = f"Bar: share of the variance by the key alone; line: 95 % interval of its share with interactions.{cut}"
-    return Bars(f"What {words} hangs on", caption, "key", bars)
-
-
-class Swing(NamedTuple):
-    """A value of a key and the mean of a metric there."""
-
-    level: object
-    mean: float
-
-
-def _list_swings(found: Sequence[Sensitivity], rows: SweepRows) -> Table:
-    shown = describe_column(found[0].metric, rows.units)
-    lines = []
-    for row in found[:MOST_KEYS]:
-        ends = (Swing(row.low, row.at_low), Swing(row.high, row.at_high))
-        values = [text for end in ends for text in (format_level(end.level), format_number(shown.factor * end.mean))]
-        lines.append([row.key, rows.units.get(row.key, ""), *values])
-    head = ["key", "unit", "low value", "mean there", "high value", "mean there"]
-    caption = f"Mean of {shown.axis} at the 5 % and the 95 % quantile of each key (of a text: least and greatest mean)"
-    return Table(caption, head, lines, 2)
-
-
-def _known(value: float) -> float:
-    return min(1.0, max(0.0, value)) if np.isfinite(value) else 0.0
-
-
 def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Block]:
     groups = rows.texts
     figures = ["mean", "min", *NAMES, "max"]
@@ -204,8 +147,8 @@ def _show_quantiles(quantiles: pd.DataFrame, rows: SweepRows) -> list[Block]:
         values = [format_number(shown.factor * float(record[name])) for name in figures]
         lines.append([*names, shown.words, shown.unit, str(record["runs"]), *values])
     head = [*groups, "metric", "unit", "runs", "mean", "least", "5 %", "25 %", "median", "75 %", "95 %", "greatest"]
-    caption = "Over the runs of each group; table.csv has every metric"
-    return [Table(caption, head, lines, words=len(groups) + 2)] if lines else []
+    caption = f"Quantiles of the runs of each group: {len(lines)} lines; table.csv has every group and metric"
+    return [Table(caption, head, lines, words=len(groups) + 2, folded=True)] if lines else []
 
 
 def _show_states(rows: SweepRows) -> list[Block]:

@@ -10,8 +10,9 @@ from seatsim.report.formatting import describe_channel, format_number
 
 COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
 WORDS = {
-    COMFORT: "driver, weighted RMS", TRAVEL: "RMS suspension travel",
-    "suspension_displacement_peak": "peak suspension travel",
+    COMFORT: "weighted driver acceleration", TRAVEL: "RMS suspension travel", "driver_vdv": "driver VDV",
+    "suspension_displacement_peak": "peak suspension travel", "seat_factor": "SEAT factor",
+    "end_stop_hits": "end-stop hits", "current_rms": "RMS current",
 }  # fmt: skip
 
 

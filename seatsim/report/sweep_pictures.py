@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.report.blocks import Block, Matrix
+from seatsim.report.blocks import Block, Matrix, Plane
 from seatsim.report.formatting import format_number
-from seatsim.report.planes import Curve, draw_curves
+from seatsim.report.planes import Curve, draw_curves, join_planes
 from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
 from seatsim.sweeps.statistics.inputs import SweepRows, is_number
 
@@ -23,7 +23,7 @@ ROAD = "excitation."
 """How the keys of the excitation begin; the first of them with few values gives each value a picture of its own."""
 MOST_PICTURES = 6
 MOST_POINTS = 4000
-"""Runs that are drawn in a picture; more of them hide each other."""
+"""Runs that are drawn in all pictures; more of them hide each other."""
 MOST_GROUPS = 8
 MOST_LEVELS = 10
 """Values of a key that have rows or columns of their own; numbers with more are taken in `BINS` of as many runs."""
@@ -43,19 +43,24 @@ def draw_pareto(rows: SweepRows, order: Sequence[str]) -> list[Block]:
     few = {key: shown[key].nunique() for key in order}
     road = next((key for key in order if key.startswith(ROAD) and 1 < few[key] <= MOST_PICTURES), None)
     colour = next((key for key in order if key != road and few[key] <= MOST_GROUPS), None)
-    if road is None:
-        return [_draw_plane(shown, "Comfort against travel", colour)]
-    return [
-        _draw_plane(part, f"Comfort against travel, {road} {format_level(value)}", colour)
-        for value, part in shown.groupby(road)
-    ]
+    said = "" if colour is None or colour == "variant" else f" The colours are values of {colour}."
+    parts = [("", shown)] if road is None else [
+        (f"{road} {format_level(value)}", part) for value, part in shown.groupby(road)
+    ]  # fmt: skip
+    values = [] if colour is None else sorted(shown[colour].unique())
+    most = MOST_POINTS // len(parts)
+    planes = [_draw_plane(part, most, title, colour, values) for title, part in parts]
+    drawn = sum(min(most, len(part)) for _, part in parts)
+    some = f" {drawn} of {len(shown)} runs are drawn." if drawn < len(shown) else ""
+    caption = f"A point for each run; lower left is better.{said}{some}"
+    return [join_planes("Comfort against travel", caption, planes)]
 
 
-def _draw_plane(shown: pd.DataFrame, title: str, colour: str | None) -> Block:
+def _draw_plane(shown: pd.DataFrame, most: int, title: str, colour: str | None, values: Sequence[object]) -> Plane:
     """Return comfort over travel of some runs, with their Pareto front; each value of a key has its colour."""
-    drawn = shown.sample(MOST_POINTS, random_state=0) if len(shown) > MOST_POINTS else shown
+    drawn = shown.sample(most, random_state=0) if len(shown) > most else shown
     groups = [("runs", drawn)] if colour is None else [
-        (f"{colour} {format_level(value)}", part) for value, part in drawn.groupby(colour)
+        (format_level(value), drawn[drawn[colour] == value]) for value in values
     ]  # fmt: skip
     curves = [
         Curve(name, 1e3 * part[TRAVEL].to_numpy(float), part[COMFORT].to_numpy(float), (k + 1) % 8, "dots")
@@ -64,9 +69,7 @@ def _draw_plane(shown: pd.DataFrame, title: str, colour: str | None) -> Block:
     travel, comfort = shown[TRAVEL].to_numpy(float), shown[COMFORT].to_numpy(float)
     front = find_front(travel, comfort)
     curves.append(Curve("Pareto front", 1e3 * travel[front], comfort[front], 0))
-    some = f" {len(drawn)} of {len(shown)} runs are drawn." if len(drawn) < len(shown) else ""
-    axes = ("RMS suspension travel [mm]", "driver, weighted RMS [m/s²]")
-    return draw_curves(title, f"A point for each run; lower left is better.{some}", axes, curves)
+    return draw_curves(title, "", ("RMS suspension travel [mm]", "weighted driver acceleration [m/s²]"), curves)
 
 
 def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:

@@ -17,10 +17,10 @@ from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.damper import stated_damper
 from seatsim.scenario.expansion import expand
+from seatsim.scenario.finding import find_file
 from seatsim.scenario.published import check_published
 from seatsim.scenario.scenario import Control, DamperChoice, Inverse, Scenario, Solver, Start
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.guarded import is_there
 from seatsim.schema.registry import Record, Registry
 from seatsim.schema.text import explain_bad_name
 from seatsim.schema.validation import build, check_keys, chosen_class, mapping, sweep_hint
@@ -35,7 +35,6 @@ SEAT_KEYS = (*BENCH_KEYS, "plant", "driver", "controller", "excitation", "start"
 CONTROL_KEYS = ("law", "sample_time", "inverse", "sensors")
 # An excitation may read a recording, whose nominal is a scenario: their package builds on this one.
 EXCITATIONS: Registry[Excitation, object] = Registry("excitation")
-EXAMPLES = (Path(__file__).parents[1] / "examples", Path(__file__).parents[2] / "scenarios")
 
 
 def load(path: str | Path, settings: Mapping[str, object] | None = None) -> list[Scenario]:
@@ -59,26 +58,6 @@ def single(path: str | Path, settings: Mapping[str, object] | None = None) -> Sc
     if len(scenarios) != 1:
         raise InputError(f"{path}: holds {len(scenarios)} runs; this command takes one, without sweep or variants")
     return scenarios[0]
-
-
-def find_file(path: Path) -> Path:
-    """Return the path of a scenario file, or of the example that has this name.
-
-    Raises:
-        InputError: there is neither.
-    """
-    if is_there(path):
-        return path
-    if not path.is_absolute():
-        inside = Path(*path.parts[1:]) if path.parts[:1] == ("scenarios",) else path
-        for folder in EXAMPLES:
-            for name in (inside, inside.with_name(f"{inside.name}.yaml")):
-                if is_there(folder / name):
-                    return folder / name
-    found = {path.relative_to(folder) for folder in EXAMPLES if folder.is_dir() for path in folder.rglob("*.yaml")}
-    known = sorted(str(path.with_suffix("")) for path in found if "data" not in path.parts)
-    near = nearest(path, [*known, *(str(file) for file in path.parent.glob("*.yaml"))])
-    raise InputError(f"{path}: no such file{near}; give the path of a scenario, or an example: {', '.join(known)}")
 
 
 def read_scenario(source: Source, label: Mapping[str, object]) -> Scenario:

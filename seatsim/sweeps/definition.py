@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Literal, NamedTuple, cast, get_args
 
 from seatsim.metrics.table import METRICS
-from seatsim.scenario.loading import find_file
+from seatsim.scenario.finding import find_file
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.validation import check_keys, mapping

@@ -37,7 +37,9 @@ def stuck(answer, place):
     return process
 
 
-@pytest.mark.parametrize("answer", ["pass", "_imp.acquire_lock()"])  # which an interrupt within an import may leave locked
+@pytest.mark.parametrize(
+    "answer", ["pass", "_imp.acquire_lock()"]
+)  # which an interrupt within an import may leave locked
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_main_thread_that_does_not_answer_is_not_waited_for(number, answer, tmp_path):
     process = stuck(answer, tmp_path)

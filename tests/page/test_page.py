@@ -1,6 +1,7 @@
 """The local page: who may ask, what may be read, what is shown of values, what is saved."""
 
 import asyncio
+from concurrent.futures import Future
 from pathlib import Path
 
 import httpx
@@ -11,10 +12,11 @@ from seatsim.page.app import make_app
 from seatsim.page.controls import Choice, Slider, read_choice, read_number
 from seatsim.page.folder import Folder, NotInFolderError, TooLargeError
 from seatsim.page.scenario_view import View
-from seatsim.page.serve import open_target
+from seatsim.page.serve import find_target, open_target
 from seatsim.report.blocks import Table
 from seatsim.report.packing import Axis, Panel, pack_signals
-from seatsim.scenario.loading import EXAMPLES, load, single
+from seatsim.scenario.finding import EXAMPLES
+from seatsim.scenario.loading import load, single
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import plain
 
@@ -40,9 +42,16 @@ class Plain:
         return plain(dict(load("road-b")[0].source.data))
 
 
+def loaded(target):
+    """Return a target that is loaded."""
+    future = Future()
+    future.set_result(target)
+    return future
+
+
 @pytest.fixture
 def app(tmp_path):
-    return make_app(Plain(), Folder(tmp_path), TOKEN, PORT)
+    return make_app(loaded(Plain()), Folder(tmp_path), TOKEN, PORT)
 
 
 def ask(app, method, path, token=TOKEN, base=HOME, **options):
@@ -92,10 +101,29 @@ def test_only_the_folder_is_read(tmp_path, path):
     (inside / "run.csv").write_text("secret")
     (inside / "link.yaml").symlink_to(tmp_path / "secret.yaml")
     (inside / "own.yaml").write_text("own")
-    app = make_app(Plain(), Folder(inside), TOKEN, PORT)
+    app = make_app(loaded(Plain()), Folder(inside), TOKEN, PORT)
     assert ask(app, "GET", "/files/own.yaml").text == "own"
     answer = ask(app, "GET", path)
     assert answer.status_code == 404 and "secret\n" not in answer.text
+
+
+def test_the_page_is_answered_while_its_target_loads(tmp_path):
+    target = Future()
+    app = make_app(target, Folder(tmp_path), TOKEN, PORT)
+    first = ask(app, "GET", "/")
+    assert first.status_code == 200 and "are loading" in first.text and "<script" not in first.text
+    target.set_result(Plain())
+    address = first.headers["refresh"].partition("url=")[2]
+    assert "80 kg" in ask(app, "GET", address).text
+
+
+def test_a_target_with_a_fault_is_said(tmp_path):
+    target = Future()
+    target.set_exception(InputError("quickstart.yaml: no such key <b>"))
+    answer = ask(make_app(target, Folder(tmp_path), TOKEN, PORT), "GET", "/")
+    assert answer.status_code == 422 and answer.headers["content-type"].startswith("text/plain")
+    with pytest.raises(InputError, match="no such file"):
+        find_target(tmp_path / "none.yaml")
 
 
 def test_large_files_and_requests_are_refused(tmp_path, monkeypatch, app):
@@ -139,7 +167,7 @@ def test_numbers_and_choices_are_checked():
 
 
 def test_a_scenario_follows_what_is_moved():
-    view = open_target(Path("road-b"))
+    view = open_target(find_target(Path("road-b")))
     changed = view.choose({"mass": 95.0, "road": "C", "law": "off"})
     assert changed.plant.driver_mass == 95.0 and changed.excitation.road_class == "C"
     assert changed.excitation.duration == 20.0 and changed.title.endswith("(off)")

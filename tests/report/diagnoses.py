@@ -123,8 +123,8 @@ def known(channels=tuple(SEAT), bench=False, runs=("run-c",)):
         gap=gaps_of(found), notes=["no run is warmer than 35 degC: thermal fade cannot be assessed"],
         augmented={},
         evidence=Evidence(found, rig(bench=bench)[0], None, alike(), [] if bench else comfort),
-        parameters=[CalibratedParameter("plant.suspension_damping", 150.0, 147.0, (147.0, 153.0), True),
-                    CalibratedParameter("plant.frame_mass", 20.0, 20.2, (19.6, 20.4), False)],
+        parameters=[CalibratedParameter("plant.suspension_damping", 150.0, 147.0, (147.0, 153.0), True, "N s/m"),
+                    CalibratedParameter("plant.frame_mass", 20.0, 20.2, (19.6, 20.4), False, "kg")],
     )  # fmt: skip
 
 

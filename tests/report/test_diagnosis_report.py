@@ -107,9 +107,9 @@ def test_the_table_has_the_gaps_of_each_channel(pages):
 
 
 def test_refitted_parameters_stand_between_their_bounds_and_are_flagged_there(pages):
-    cells = Outline(pages["known"][1]).rows("Refitted parameters")
-    assert cells["plant.suspension_damping"] == ["150.0", "147.0", "147.0 to 153.0", "at its bound"]
-    assert cells["plant.frame_mass"] == ["20.00", "20.20", "19.60 to 20.40", "inside"]
+    cells = Outline(pages["known"][1]).rows("Parameters refitted")
+    assert cells["plant.suspension_damping"] == ["N·s/m", "at its bound", "150", "147.0", "147 to 153"]
+    assert cells["plant.frame_mass"] == ["kg", "within its bounds", "20", "20.20", "19.6 to 20.4"]
 
 
 def test_every_run_is_drawn_and_the_held_out_one_is_named(pages):
@@ -170,7 +170,7 @@ def test_short_runs_and_motion_that_stands_still(tmp_path):
 def test_a_group_names_both_blocks_and_what_would_decide(pages):
     outline = Outline(pages["ambiguous"][1])
     assert "The gap lies in the suspension or the damper" in outline.headings
-    assert outline.rows("1: alike")["add load cell"] == ["intervention", "0.988", "0.346"]
+    assert outline.rows("Likeness")["add load cell"] == ["intervention", "0.988", "0.346"]
     assert any("cannot distinguish suspension.friction and damper.seal_friction" in words for words in outline.words)
     assert any("To tell the likely causes apart: add load cell" in text for text in outline.words)
 

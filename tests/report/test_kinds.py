@@ -40,22 +40,38 @@ def test_a_run_says_comfort_and_travel():
     assert outline.anchors[:4] == ["figures", "signals", "spectra", "loops"] and outline.anchors[-1] == "method"
     assert outline.rows("Every figure of the run")["RMS suspension travel"][0].endswith(" mm")
     assert "seatsim run quickstart.yaml" in outline.words
-    assert outline.rows("Settings")["plant.driver_mass [kg]"]
+    assert outline.rows("Settings")["plant.driver_mass"] == ["kg", "60"]
 
 
 def test_a_comparison_names_the_most_comfortable_run_and_marks_it():
     text = render_report(report_runs(runs(), "seatsim compare quickstart.yaml", "quickstart"))
     best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
-    assert f"{best.scenario.title} is the most comfortable" in Outline(text).headings[0]
+    assert f"“{best.scenario.label['variant']}” is the most comfortable" in Outline(text).headings[0]
     assert text.count('<tr class="strong">') == 1 and len(text) < 600_000
+
+
+def test_scenarios_with_several_runs_are_compared_each_by_itself():
+    others = [
+        replace(run, scenario=replace(run.scenario, name="softer"), metrics={
+            name: metric._replace(value=0.5 * metric.value) for name, metric in run.metrics.items()
+        })
+        for run in runs()
+    ]  # fmt: skip
+    report = report_runs([*runs(), *others], "seatsim compare a b", "two")
+    assert report.answer.startswith("In every scenario “hybrid skyhook” is the most comfortable")
+    blocks = {section.anchor: section.blocks[0] for section in report.sections if section.blocks}
+    assert list(blocks["signals"].runs) == ["quickstart", "softer"] and len(blocks["signals"].lines) == 4
+    assert blocks["figures"].strong == [0, 4] and len(blocks["loops"].planes) == 2
+    render_report(report)
 
 
 def test_a_run_that_cannot_be_relied_on_is_marked_and_never_the_best():
     best = min(runs(), key=lambda run: run.metrics["driver_acceleration_weighted"].value)
     doubted = [replace(run, unverified=("a reason",)) if run is best else run for run in runs()]
     outline = Outline(render_report(report_runs(doubted, "seatsim compare quickstart.yaml", "quickstart")))
-    assert f"{best.scenario.title} is the most comfortable" not in outline.headings[0]
-    assert f"{best.scenario.title} (unverified)" in outline.rows("Figures of each run")
+    name = best.scenario.label["variant"]
+    assert f"“{name}” is the most comfortable" not in outline.headings[0]
+    assert f"{name} (unverified)" in outline.rows("Figures of each run")
     assert any(words.endswith("is unverified: a reason.") for words in outline.words)
 
 
@@ -112,9 +128,9 @@ def test_an_identification_says_how_well_it_predicts_and_what_the_data_leave_ope
     outline = Outline(render_report(report_identification(identification(["train", "test"]), "seatsim identify")))
     assert outline.headings[0].startswith("bouc_wen predicts the damper's force well: a fit of 93.2 %")
     assert outline.headings[0].endswith("on records that took no part in the fit.")
-    assert any("Fix k0 with --fix" in words for words in outline.words)
-    assert outline.rows("In bold")["k0"] == ["3.0000", "59", "N/m", "not identified"]
-    assert outline.rows("Parameters that stand in")["c_a"] == ["k0", "0.990"]
+    assert any("do not determine k0" in words for words in outline.words)
+    assert outline.rows("Fitted values")["k0"] == ["N/m", "not determined", "3.0000", "59"]
+    assert outline.rows("Pairs of parameters")["c_a"] == ["k0", "0.990"]
 
 
 def test_an_identification_without_held_out_records_asks_for_some():
@@ -131,10 +147,10 @@ def test_a_characterisation_says_force_and_response():
     found = Characterisation("rig", "data", True, rows, [step], [])
     outline = Outline(render_report(report_characterisation(found, ["a remark"], "seatsim characterise data")))
     assert outline.headings[0] == (
-        "At ±10.0 mm and 1.00 Hz the damper gives up to 450 N at 1.00 A, 4.5 times its force at 0 A; it follows a step"
+        "Moved by ±10 mm at 1 Hz, the damper gives up to 450 N at 1 A, 4.5 times its force at 0 A; it follows a step"
         " of the current within 23.1 ms."
     )
-    assert outline.rows("Peaks, energy")["a"][8] == "0" and "steps" in outline.anchors
+    assert outline.rows("Largest forces")["a"][8] == "0" and "steps" in outline.anchors
     assert any("three currents" in words for words in outline.words)
 
 

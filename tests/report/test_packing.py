@@ -70,6 +70,6 @@ def test_a_gap_in_a_line_lifts_the_pen():
 
 def test_cells_are_shaded_by_the_logarithm():
     borders = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0])
-    plane = draw_cells("t", "c", ("x", "y"), borders, np.array([[1.0, np.nan]]), Range(0.01, 1.0))
+    plane = draw_cells("t", ("x", "y"), borders, np.array([[1.0, np.nan]]), Range(0.01, 1.0), "mm")
     [shape] = plane.shapes
     assert shape.look == 9 and shape.path == "M0 1000H500V0H0Z"

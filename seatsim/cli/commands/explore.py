@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from seatsim.cli.options import Json, OwnCode
-from seatsim.cli.terminal import announce, show_progress
+from seatsim.cli.terminal import announce
 from seatsim.schema.errors import InputError
 
 EXTRA = 'the page needs an extra; install it with: pip install "seatsim[page]"'
@@ -27,13 +27,11 @@ def explore(
 ) -> None:
     """Open a page on this machine: move driver, temperature, road and controller, or effects, and see what follows."""
     try:
-        from seatsim.page.serve import open_target, serve
+        from seatsim.page.serve import find_target, serve
     except ModuleNotFoundError as error:
         if error.name is None or error.name.partition(".")[0] not in ("starlette", "uvicorn"):
             raise
         raise InputError(EXTRA) from error
     path = Path(target)
-    with show_progress():
-        opened = open_target(path)
     folder = path if path.is_dir() else path.parent if path.exists() else Path()
-    serve(opened, folder, port, not no_browser, announce)
+    serve(find_target(path), folder, port, not no_browser, announce)

@@ -156,15 +156,9 @@ def _present(runs: list[Run], folder: Path, bracket: bool, interrupted: bool) ->
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
     result = Result(runs, _performance_bounds(runs) if bracket and not interrupted else {})
-    paths = write_interrupted(result, folder) if interrupted else write_result(result, folder, _command(runs))
+    paths = write_interrupted(result, folder) if interrupted else write_result(result, folder)
     wrote(folder, paths)
     return encode_result(result), paths
-
-
-def _command(runs: Sequence[Run]) -> str:
-    """Return the command that makes these runs again, by the names of their scenarios."""
-    names = list(dict.fromkeys(run.scenario.name for run in runs))
-    return f"seatsim {'run' if len(names) == 1 else 'compare'} {' '.join(f'{name}.yaml' for name in names)}"
 
 
 def _performance_bounds(runs: list[Run]) -> dict[str, PerformanceBounds]:

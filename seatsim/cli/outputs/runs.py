@@ -28,12 +28,9 @@ MOST_KEPT = 400_000
 """Rows of the histories that are written after an interrupt, which takes about half a second."""
 
 
-def write_result(result: Result, folder: Path, command: str = "seatsim run SCENARIO") -> list[Path]:
-    """Write `summary.csv`, `summary.json`, `history.parquet`, `report.html` and the pictures; return their paths.
-
-    `command`: what makes the files again, for the report.
-    """
-    report = report_runs(result.runs, command, os.path.basename(os.path.abspath(folder)))
+def write_result(result: Result, folder: Path) -> list[Path]:
+    """Write `summary.csv`, `summary.json`, `history.parquet`, `report.html` and the pictures; return their paths."""
+    report = report_runs(result.runs, "seatsim run SCENARIO", os.path.basename(os.path.abspath(folder)))
     seeds = {run.scenario.seed for run in result.runs}
     seed = seeds.pop() if len(seeds) == 1 else None
     return write_documented(folder, partial(_write_files, result, report), seed)

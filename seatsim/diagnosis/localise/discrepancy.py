@@ -70,11 +70,11 @@ def describe_in_words(settings: LocalisationSettings, found: Discrepancy) -> lis
     families = {family: share for family, share in found.shares.items() if family != "everything"}
     best = max(families, key=lambda family: families[family])
     if families[best] < settings.worth_naming:
-        sentences.append("Nothing that the simulated rig does predicts it on runs left out.")
+        sentences.append("No motion, current or temperature of the simulated rig predicts it on a run left out.")
     else:
         sentences.append(f"It follows {best} best, which predicts {families[best]:.0%} of its power on runs left out.")
     for family, share in sorted(families.items(), key=lambda item: -item[1])[1:3]:
-        sentences.append(f"{family.capitalize()} predicts {share:.0%}.")
+        sentences.append(f"The {family} predicts {share:.0%} of it.")
     return sentences
 
 

@@ -80,8 +80,8 @@ def test_words_name_what_predicts_it_best_and_the_next_two():
     assert describe_in_words(SETTINGS, found([3.0 * np.ones(5), 4.0 * np.ones(5)], shares)) == [
         "The unexplained force in the suspension has an RMS of 3.54 N.",
         "It follows velocity best, which predicts 31% of its power on runs left out.",
-        "Displacement predicts 22%.",
-        "Floor motion predicts 12%.",
+        "The displacement predicts 22% of it.",
+        "The floor motion predicts 12% of it.",
     ]
 
 
@@ -89,8 +89,8 @@ def test_what_nothing_predicts_is_said_so():
     shares = {"velocity": 0.099, "displacement": 0.01, "everything": 0.099}
     said = describe_in_words(SETTINGS, found([np.ones(5)], shares))
     assert said[1:] == [
-        "Nothing that the simulated rig does predicts it on runs left out.",
-        "Displacement predicts 1%.",
+        "No motion, current or temperature of the simulated rig predicts it on a run left out.",
+        "The displacement predicts 1% of it.",
     ]
     shares["velocity"] = 0.1
     assert describe_in_words(SETTINGS, found([np.ones(5)], shares))[1].startswith("It follows velocity best")
