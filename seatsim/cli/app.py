@@ -28,6 +28,7 @@ from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.sweeps import sweep, sweep_report
 from seatsim.cli.commands.synthesis import synthesise
 from seatsim.cli.terminal import answer_as_json, answer_error, complain, fail, print_any_letter, warn
+from seatsim.compilation.reasons import explain, is_compilation
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.modules import MissingModuleError
 
@@ -137,6 +138,8 @@ def main() -> None:
 
 def _describe_fault(error: Exception) -> str:
     """Say where what nobody foresaw went wrong, in place of a traceback."""
+    if is_compilation(error):
+        return f"own code: {explain(error)}; seatsim check tries a file of your own"
     last = traceback.extract_tb(error.__traceback__)[-1]
     said = str(error).split("\n")[0]
     return (

@@ -1,4 +1,4 @@
-"""What `seatsim check` does with a file: it is read as the commands would read it, and nothing is simulated."""
+"""What `seatsim check` does with a file: it is read as the commands would read it; own code is tried for an instant."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.characterisation.specimen import load_specimen
+from seatsim.cli.trial import try_class
 from seatsim.cosimulation.description import describe_unit
 from seatsim.excitations.recording import RecordedRun
 from seatsim.importing.import_map import read_map
@@ -78,9 +79,10 @@ def _check_recording(folder: Path) -> Checked:
 def _check_code(path: Path) -> Checked:
     use(path)
     module = path.stem
-    own = [f"{kind} {name}" for kind in KINDS for name in names(kind) if find(kind, name).__module__ == module]
+    own = [(kind, name) for kind in KINDS for name in names(kind) if find(kind, name).__module__ == module]
     warnings = [] if own else ["no class is registered: put a decorator such as @damper(...) before it"]
-    return Checked("own code", own, warnings)
+    warnings += [sentence for kind, name in own for sentence in try_class(kind, name, find(kind, name))]
+    return Checked("own code", [f"{kind} {name}" for kind, name in own], warnings)
 
 
 def _check_unit(path: Path) -> Checked:

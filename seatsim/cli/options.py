@@ -46,8 +46,8 @@ OwnCode = Annotated[
     list[Path] | None,
     typer.Option(
         "--with", metavar="FILE.py", callback=_use_files,
-        help="Run a file of your own, whose classes are then named as FILE:Class, or a damper's FMU; may be"
-        " given several times.",
+        help="Run a file of your own, whose classes are then known by the names in their decorators, or a damper's"
+        " FMU; may be given several times.",
     ),
 ]  # fmt: skip
 Json = Annotated[

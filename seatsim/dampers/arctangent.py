@@ -48,7 +48,7 @@ class WengArctangent(NamedTuple):
         """Return F in N."""
         held = min(i, self.law_end)
         angle = math.atan(self.k_h * (v + cubic(self.v_h, held) * branch(z)))
-        yielding = cubic(self.fc, held) * scaling.yielding * 2.0 / math.pi * angle
+        yielding = cubic(self.fc, held) * scaling.yield_force * 2.0 / math.pi * angle
         return cubic(self.c0, held) * scaling.viscous * v + yielding + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:

@@ -108,7 +108,7 @@ class Yu2019(NamedTuple):
         asymmetric = 0.5 * (here - mirrored + up - down)
         linear = quadratic(self.c, i) * scaling.viscous * v + (self.k[0] + self.k[1] * i) * scaling.stiffness * x
         shape = symmetric + self.asymmetry * asymmetric
-        return linear + quadratic(self.alpha, i) * scaling.yielding * shape + self.f0
+        return linear + quadratic(self.alpha, i) * scaling.yield_force * shape + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""

@@ -17,6 +17,7 @@ from typing import Literal, NamedTuple, Protocol, TypeVar
 from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.errors import InputError
 from seatsim.schema.registry import Record, Registry, is_own
 
 T = TypeVar("T", bound=type)
@@ -93,6 +94,9 @@ def damper(
     """Register a record class as the damper `model: name`; see `DamperSpecification` for the facts.
 
     `factors` are the temperature factors that a scenario may leave out, none where they are not given.
+
+    Raises:
+        InputError: the class lacks a method that a damper has.
     """
     specification = DamperSpecification(
         source,
@@ -109,4 +113,15 @@ def damper(
         fixed,
         smooth,
     )
-    return DAMPERS.register(name, specification)
+    enter = DAMPERS.register(name, specification)
+
+    def check_and_enter(cls: T) -> T:
+        for method in ("force", "rates") if initial else ("force",):
+            if not callable(getattr(cls, method, None)):
+                has = "a state at rest (initial=...) and " if method == "rates" else ""
+                raise InputError(
+                    f"damper '{name}': has {has}no method {method}(self, x, v, i, scaling, z); see seatsim new damper"
+                )
+        return enter(cls)
+
+    return check_and_enter

@@ -43,12 +43,12 @@ class Bingham(NamedTuple):
         smooth = (self.c_a + self.c_b * i) * scaling.viscous * v + self.f0
         if self.v_ref < SET_VALUED_BELOW:
             return smooth
-        return smooth + (self.fc_a + self.fc_b * i) * scaling.yielding * math.tanh(v / self.v_ref)
+        return smooth + (self.fc_a + self.fc_b * i) * scaling.yield_force * math.tanh(v / self.v_ref)
 
     def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the set-valued friction in N; 0 where the sign is regularised."""
         if self.v_ref < SET_VALUED_BELOW:
-            return max(0.0, (self.fc_a + self.fc_b * i) * scaling.yielding)
+            return max(0.0, (self.fc_a + self.fc_b * i) * scaling.yield_force)
         return 0.0
 
 
@@ -77,4 +77,4 @@ class OriginalBingham(NamedTuple):
 
     def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the set-valued yield force in N."""
-        return max(0.0, cubic(self.fc, i) * scaling.yielding)
+        return max(0.0, cubic(self.fc, i) * scaling.yield_force)

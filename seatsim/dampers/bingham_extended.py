@@ -48,7 +48,7 @@ class UpdatedBingham(NamedTuple):
 
     def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the set-valued yield force in N."""
-        return max(0.0, cubic(self.fc, min(i, self.law_end)) * scaling.yielding)
+        return max(0.0, cubic(self.fc, min(i, self.law_end)) * scaling.yield_force)
 
 
 @damper(
@@ -85,4 +85,4 @@ class Powell(NamedTuple):
         held = min(i, self.law_end)
         friction = (1.0 + (self.r - 1.0) * math.exp(-self.a * abs(v))) * math.tanh(self.e * v)
         linear = self.k * scaling.stiffness * x + cubic(self.c, held) * scaling.viscous * v
-        return linear + cubic(self.fc, held) * scaling.yielding * friction + self.f0
+        return linear + cubic(self.fc, held) * scaling.yield_force * friction + self.f0

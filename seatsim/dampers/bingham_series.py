@@ -54,7 +54,7 @@ class ModifiedBingham(NamedTuple):
         """Return (e',)."""
         held = min(i, self.law_end)
         q = (self.k_a + self.k_b * held) * scaling.stiffness * z[0]
-        return (v - slip(q, cubic(self.fc, held) * scaling.yielding, cubic(self.c0, held) * scaling.viscous),)
+        return (v - slip(q, cubic(self.fc, held) * scaling.yield_force, cubic(self.c0, held) * scaling.viscous),)
 
 
 @damper(
@@ -100,6 +100,6 @@ class GamotaFilisko(NamedTuple):
         """Return (e2', e1')."""
         held = min(i, self.law_end)
         q = (self.k2_a + self.k2_b * held) * scaling.stiffness * z[0]
-        flow = slip(q, cubic(self.fc, held) * scaling.yielding, cubic(self.c0, held) * scaling.viscous)
+        flow = slip(q, cubic(self.fc, held) * scaling.yield_force, cubic(self.c0, held) * scaling.viscous)
         creep = (q - self.k1 * scaling.stiffness * z[1]) / (self.c1 * scaling.viscous)
         return (v - flow - creep, creep)

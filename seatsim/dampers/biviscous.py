@@ -51,7 +51,7 @@ class Biviscous(NamedTuple):
         """Return F in N."""
         held = min(i, self.law_end)
         pre, post = cubic(self.c_pre, held) * scaling.viscous, cubic(self.c_post, held) * scaling.viscous
-        return two_slopes(pre, post, cubic(self.fy, held) * scaling.yielding, v, 0.0) + self.f0
+        return two_slopes(pre, post, cubic(self.fy, held) * scaling.yield_force, v, 0.0) + self.f0
 
 
 @damper(
@@ -93,7 +93,7 @@ class HystereticBiviscous(NamedTuple):
         held = min(i, self.law_end)
         pre, post = cubic(self.c_pre, held) * scaling.viscous, cubic(self.c_post, held) * scaling.viscous
         shift = pre * (self.v0_a + self.v0_b * held) * branch(z)
-        return two_slopes(pre, post, cubic(self.fy, held) * scaling.yielding, v, shift) + self.f0
+        return two_slopes(pre, post, cubic(self.fy, held) * scaling.yield_force, v, shift) + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
@@ -139,7 +139,7 @@ class HystereticArctangent(NamedTuple):
         held = min(i, self.law_end)
         shifted = v + (self.v0_a + self.v0_b * held) * branch(z)
         angle = math.atan(between(self.k_0, self.k_1, i, self.law_end) * shifted)
-        yielding = cubic(self.fy, held) * scaling.yielding * 2.0 / math.pi * angle
+        yielding = cubic(self.fy, held) * scaling.yield_force * 2.0 / math.pi * angle
         return cubic(self.c_post, held) * scaling.viscous * v + yielding + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
@@ -190,7 +190,7 @@ class LumpedBiviscous(NamedTuple):
         """Return (e', u')."""
         held, u = min(i, self.law_end), z[1]
         pre, post = cubic(self.c_pre, held) * scaling.viscous, cubic(self.c_post, held) * scaling.viscous
-        fy = cubic(self.fy, held) * scaling.yielding
+        fy = cubic(self.fy, held) * scaling.yield_force
         slope = pre if abs((pre - post) * u) < fy else post
         driven = (self.k_a + self.k_b * held) * scaling.stiffness * z[0] - two_slopes(pre, post, fy, u, 0.0)
         return (v - u, driven / (self.m * scaling.viscous + SETTLING * slope))

@@ -48,7 +48,7 @@ class BoucWen(NamedTuple):
         """Return F in N."""
         viscous = (self.c_a + self.c_b * i) * scaling.viscous * v
         elastic = self.k0 * scaling.stiffness * (x - self.x0)
-        return viscous + elastic + (self.alpha_a + self.alpha_b * i) * scaling.yielding * z[0] + self.f0
+        return viscous + elastic + (self.alpha_a + self.alpha_b * i) * scaling.yield_force * z[0] + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (z',)."""
@@ -90,7 +90,7 @@ class SimpleBoucWen(NamedTuple):
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         viscous = cubic(self.c0, i) * scaling.viscous * v
-        return viscous + self.k0 * scaling.stiffness * x + cubic(self.alpha, i) * scaling.yielding * z[0] + self.f0
+        return viscous + self.k0 * scaling.stiffness * x + cubic(self.alpha, i) * scaling.yield_force * z[0] + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (z',)."""
@@ -142,13 +142,13 @@ class ModifiedBoucWen(NamedTuple):
         """Return F in N."""
         held = min(i, self.law_end)
         c0, c1 = cubic(self.c0, held) * scaling.viscous, cubic(self.c1, held) * scaling.viscous
-        inner = cubic(self.alpha, held) * scaling.yielding * z[1] + self.k0 * scaling.stiffness * (x - z[0])
+        inner = cubic(self.alpha, held) * scaling.yield_force * z[1] + self.k0 * scaling.stiffness * (x - z[0])
         return c1 * (inner + c0 * v) / (c0 + c1) + self.k1 * scaling.stiffness * (x - self.x0) + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (y', z')."""
         held = min(i, self.law_end)
         c0, c1 = cubic(self.c0, held) * scaling.viscous, cubic(self.c1, held) * scaling.viscous
-        inner = cubic(self.alpha, held) * scaling.yielding * z[1] + self.k0 * scaling.stiffness * (x - z[0])
+        inner = cubic(self.alpha, held) * scaling.yield_force * z[1] + self.k0 * scaling.stiffness * (x - z[0])
         flow = (inner + c0 * v) / (c0 + c1)
         return (flow, bouc_wen_rate(self.A, self.beta, self.gamma, self.n, v - flow, z[1]))

@@ -86,7 +86,7 @@ class CurrentDependentBoucWen(NamedTuple):
         c = saturating(self.c_0, self.c_1, self.c_2, self.c_3, i, self.i_c)
         alpha = saturating(self.alpha_0, self.alpha_1, self.alpha_2, self.alpha_3, i, self.i_c)
         smooth = c * scaling.viscous * v + self.k * scaling.stiffness * x
-        return smooth + alpha * scaling.yielding * z[0] + self.f0
+        return smooth + alpha * scaling.yield_force * z[0] + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
@@ -147,7 +147,7 @@ class FrequencyDependentBoucWen(NamedTuple):
         c = saturating(self.c_0, self.c_1, self.c_2, self.c_3, i, self.i_c)
         alpha = saturating(self.alpha_0, self.alpha_1, self.alpha_2, self.alpha_3, i, self.i_c)
         smooth = c * scaling.viscous * v + self.k * scaling.stiffness * x
-        return excitation_factor(self.d2, self.d4, z[1], z[2]) * (smooth + alpha * scaling.yielding * z[3]) + self.f0
+        return excitation_factor(self.d2, self.d4, z[1], z[2]) * (smooth + alpha * scaling.yield_force * z[3]) + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (d', s', r', w')."""

@@ -61,7 +61,7 @@ class ShearBoucWen(NamedTuple):
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        return cubic(self.kx, held) * scaling.viscous * v + cubic(self.kw, held) * scaling.yielding * z[0] + self.f0
+        return cubic(self.kx, held) * scaling.viscous * v + cubic(self.kw, held) * scaling.yield_force * z[0] + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
@@ -113,7 +113,7 @@ class LargeScaleBoucWen(NamedTuple):
         held = min(i, self.law_end)
         thinned = cubic(self.a1, held) * math.exp(-power(self.a2 * abs(v), self.p)) * v
         flow = (thinned + inertance(self.m, v, z[1])) * scaling.viscous
-        return flow + self.k * scaling.stiffness * x + cubic(self.alpha, held) * scaling.yielding * z[0] + self.f0
+        return flow + self.k * scaling.stiffness * x + cubic(self.alpha, held) * scaling.yield_force * z[0] + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w', u')."""
@@ -163,7 +163,7 @@ class NonsymmetricalBoucWen(NamedTuple):
         """Return F in N."""
         held = min(i, self.law_end)
         smooth = cubic(self.c, held) * scaling.viscous * v + self.k * scaling.stiffness * x
-        return smooth + cubic(self.alpha, held) * scaling.yielding * z[0] + self.f0
+        return smooth + cubic(self.alpha, held) * scaling.yield_force * z[0] + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""

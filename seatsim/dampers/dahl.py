@@ -47,7 +47,7 @@ class ModifiedDahl(NamedTuple):
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         smooth = self.k0 * scaling.stiffness * x + (self.c00 + self.c01 * i) * scaling.viscous * v
-        return smooth + (self.fd0 + self.fd1 * i) * scaling.yielding * z[0] + self.f0
+        return smooth + (self.fd0 + self.fd1 * i) * scaling.yield_force * z[0] + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
@@ -89,7 +89,7 @@ class ViscousDahl(NamedTuple):
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        return cubic(self.kx, held) * scaling.viscous * v + cubic(self.kw, held) * scaling.yielding * z[0] + self.f0
+        return cubic(self.kx, held) * scaling.viscous * v + cubic(self.kw, held) * scaling.yield_force * z[0] + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""

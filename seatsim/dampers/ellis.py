@@ -57,7 +57,7 @@ def series_force(d: Ellis, v: float, i: float, scaling: TemperatureScaling, stop
     """Return the force q in N through fluid and play, where the stops of the play push with `stop` N."""
     play = d.c_y * scaling.viscous
     damping = 1.0 / (1.0 / (d.c_p * scaling.viscous) + 1.0 / play)
-    height = max(cubic(d.K, i), LEAST_FORCE) * scaling.yielding
+    height = max(cubic(d.K, i), LEAST_FORCE) * scaling.yield_force
     return ellis_force(v + stop / play, damping, height, max(d.p_a + d.p_b * i, LEAST_EXPONENT))
 
 
@@ -112,7 +112,9 @@ class Ellis(NamedTuple):
         stop = scaling.stiffness * self.k_s * beyond(z[0], self.half)
         q = series_force(self, v, held, scaling, stop)
         elastic = scaling.stiffness * self.k0 * x
-        return q + cubic(self.c0, held) * scaling.viscous * v + self.f_s * scaling.yielding * z[1] + elastic + self.f0
+        return (
+            q + cubic(self.c0, held) * scaling.viscous * v + self.f_s * scaling.yield_force * z[1] + elastic + self.f0
+        )
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (y', w')."""

@@ -55,8 +55,8 @@ class EquivalentOhOnoda(NamedTuple):
         """Return (e',)."""
         held = min(i, self.law_end)
         q = self.ks * scaling.stiffness * z[0]
-        return (v - slip(q, cubic(self.fy, held) * scaling.yielding, cubic(self.c, held) * scaling.viscous),)
+        return (v - slip(q, cubic(self.fy, held) * scaling.yield_force, cubic(self.c, held) * scaling.viscous),)
 
     def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the friction of the seal in N."""
-        return self.fs * scaling.yielding
+        return self.fs * scaling.yield_force

@@ -64,12 +64,12 @@ class HydroMechanical(NamedTuple):
 
     def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the seal's set-valued friction in N."""
-        return self.fs * scaling.yielding
+        return self.fs * scaling.yield_force
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (V', Q')."""
         held, flow = min(i, self.law_end), z[1]
-        resistance, yielding = cubic(self.R, held) * scaling.viscous, cubic(self.P_y, held) * scaling.yielding
+        resistance, yielding = cubic(self.R, held) * scaling.viscous, cubic(self.P_y, held) * scaling.yield_force
         sign = math.tanh(flow / self.Q_r)
         slope = resistance + yielding * (1.0 - sign * sign) / self.Q_r
         driven = z[0] / self.C * scaling.stiffness - resistance * flow - yielding * sign

@@ -55,7 +55,7 @@ class KwokTanh(NamedTuple):
         viscous = (self.c_a + self.c_b * held) * scaling.viscous * v
         elastic = (self.k_a + self.k_b * held) * scaling.stiffness * x
         curve = math.tanh(self.beta * v + (self.delta_a + self.delta_b * held) * branch(z))
-        yielding = quadratic(self.alpha, held) * scaling.yielding * curve
+        yielding = quadratic(self.alpha, held) * scaling.yield_force * curve
         return viscous + elastic + yielding + self.f0_a + self.f0_b * held
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:

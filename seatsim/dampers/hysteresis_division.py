@@ -73,7 +73,7 @@ class Yu2017(NamedTuple):
         height = max(0.0, self.c1 + self.c2 * share + self.c_i1 * math.exp(self.c_i2 * i))
         backbone = (1.0 - math.exp(self.b1 * speed)) / (1.0 + math.exp(self.b2 * speed))
         loop = self.d1 * math.exp(-((speed - self.d2) ** 2) / self.d3) * branch(z)
-        return height * scaling.yielding * (math.copysign(backbone, v) + loop)
+        return height * scaling.yield_force * (math.copysign(backbone, v) + loop)
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w', e')."""

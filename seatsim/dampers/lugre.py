@@ -50,7 +50,7 @@ class LuGreJimenez(NamedTuple):
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         level = i + self.i0
-        bristles = level / (self.a0 * (1.0 + self.a1 * level)) * scaling.yielding * z[0]
+        bristles = level / (self.a0 * (1.0 + self.a1 * level)) * scaling.yield_force * z[0]
         return bristles + (self.sigma1 * (v - abs(v) * z[0]) + self.sigma2 * v) * scaling.viscous + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
@@ -94,7 +94,7 @@ class LuGreSakai(NamedTuple):
 
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
-        bristles = (self.fa + self.fb * i) * scaling.yielding * z[0]
+        bristles = (self.fa + self.fb * i) * scaling.yield_force * z[0]
         slip = self.sigma1 * (v - abs(v) * z[0])
         return bristles + (slip + (self.sigma2 + self.sigmab * i) * v) * scaling.viscous + self.f0
 

@@ -49,7 +49,7 @@ class Bingmax(NamedTuple):
 
     def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the set-valued friction in N."""
-        return max(0.0, cubic(self.fy, min(i, self.law_end)) * scaling.yielding)
+        return max(0.0, cubic(self.fy, min(i, self.law_end)) * scaling.yield_force)
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e',)."""
@@ -128,4 +128,4 @@ def slider(d: MaxwellNonlinearSlider, v: float, held: float, scaling: Temperatur
     """Return the magnitude in N of the post-yield force at the current `held`."""
     braking = min(0.0, min(max(v / d.v_t, -1.0), 1.0) * inertance(d.m0, v, u))
     rising = rising_power(cubic(d.b, held), d.n, abs(v), d.v_t)
-    return (rising + braking) * scaling.viscous + cubic(d.a, held) * scaling.yielding
+    return (rising + braking) * scaling.viscous + cubic(d.a, held) * scaling.yield_force

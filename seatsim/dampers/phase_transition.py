@@ -53,7 +53,7 @@ class PhaseTransition(NamedTuple):
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N."""
         held = min(i, self.law_end)
-        return cubic(self.c, held) * scaling.viscous * v + cubic(self.fy, held) * scaling.yielding * z[0] + self.f0
+        return cubic(self.c, held) * scaling.viscous * v + cubic(self.fy, held) * scaling.yield_force * z[0] + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (p',)."""

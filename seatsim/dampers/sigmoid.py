@@ -68,7 +68,7 @@ class Sigmoid(NamedTuple):
         height = self.ft0 * (1.0 + math.exp(self.a1 * z[1])) * logistic(self.k2, self.a2, i + self.i0)
         shift = self.k4 * z[1] * logistic(self.k3, self.a3, i + self.i1) * branch(z)
         curve = math.tanh(0.5 * self.a0 / (1.0 + self.k0 * z[1]) * (v + shift))
-        return height * curve * (scaling.yielding + self.kv * abs(v) * scaling.viscous) + self.f0
+        return height * curve * (scaling.yield_force + self.kv * abs(v) * scaling.viscous) + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w', e')."""

@@ -128,7 +128,7 @@ class HongSigmoidGaussian(NamedTuple):
         # G is written about its middle a + b/2, so that it cannot overflow.
         mean = -0.5 * b * math.tanh(0.5 * c * u)
         thickness = r / (math.sqrt(2.0 * math.pi) * sigma) * math.exp(-0.5 * (u / sigma) ** 2)
-        return 1e3 * (scaling.yielding * (mean + branch(z) * thickness) + self.offset_share * (a + 0.5 * b))
+        return 1e3 * (scaling.yield_force * (mean + branch(z) * thickness) + self.offset_share * (a + 0.5 * b))
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""
@@ -177,7 +177,9 @@ class SigmoidGaussian(NamedTuple):
         held = min(i, self.law_end)
         mean = cubic(self.s, held) * math.tanh(0.5 * v / self.v_c)
         thickness = cubic(self.r, held) * math.exp(-0.5 * (v / self.sigma) ** 2)
-        return cubic(self.c0, held) * scaling.viscous * v + scaling.yielding * (mean + branch(z) * thickness) + self.f0
+        return (
+            cubic(self.c0, held) * scaling.viscous * v + scaling.yield_force * (mean + branch(z) * thickness) + self.f0
+        )
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (w',)."""

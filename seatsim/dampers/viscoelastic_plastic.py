@@ -74,7 +74,7 @@ class ViscoelasticPlastic(NamedTuple):
         post = 0.5 * (1.0 + math.tanh((abs(v) - self.v_y) / width))
         solid = (1.0 - post) * (self.k_a + self.k_b * held) * scaling.stiffness * z[0]
         flow = post * scaling.viscous * (cubic(self.c, held) * v + inertance(self.m, post * v, z[1]))
-        return solid + flow + 0.5 * (low + high) * cubic(self.fc, held) * scaling.yielding + self.f0
+        return solid + flow + 0.5 * (low + high) * cubic(self.fc, held) * scaling.yield_force + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e', u')."""
@@ -127,19 +127,19 @@ class LiViscoelasticPlastic(NamedTuple):
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return F in N, without the friction of the seal."""
         held = min(i, self.law_end)
-        f, fc = solid_force(self.k_a + self.k_b * held, self.k2, scaling, z), cubic(self.fc, held) * scaling.yielding
+        f, fc = solid_force(self.k_a + self.k_b * held, self.k2, scaling, z), cubic(self.fc, held) * scaling.yield_force
         share = yielded(f, fc)
         flow = cubic(self.cv, held) * v + inertance(self.R, share * v, z[2])
         return limited(f, fc) + share * scaling.viscous * flow + self.f0
 
     def coulomb(self, i: float, scaling: TemperatureScaling) -> float:
         """Return the magnitude of the seal's set-valued friction in N."""
-        return self.fs * scaling.yielding
+        return self.fs * scaling.yield_force
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e1', e2', u')."""
         held = min(i, self.law_end)
-        k1, fc = self.k_a + self.k_b * held, cubic(self.fc, held) * scaling.yielding
+        k1, fc = self.k_a + self.k_b * held, cubic(self.fc, held) * scaling.yield_force
         f = solid_force(k1, self.k2, scaling, z)
         rate = v - slip(f, fc, (k1 + self.k2) * scaling.stiffness * SETTLING)
         creep = self.k2 * scaling.stiffness * z[1] / (self.c2 * scaling.viscous)
@@ -183,10 +183,10 @@ class StiffnessViscosityElastoSlide(NamedTuple):
         held = min(i, self.law_end)
         linear = self.k0 * scaling.stiffness * x + cubic(self.c0, held) * scaling.viscous * v
         elastic = (self.ke_a + self.ke_b * held) * scaling.stiffness * z[0]
-        return linear + limited(elastic, cubic(self.n_s, held) * scaling.yielding) + self.f0
+        return linear + limited(elastic, cubic(self.n_s, held) * scaling.yield_force) + self.f0
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return (e',)."""
         held = min(i, self.law_end)
         ke = (self.ke_a + self.ke_b * held) * scaling.stiffness
-        return (v - slip(ke * z[0], cubic(self.n_s, held) * scaling.yielding, ke * SETTLING),)
+        return (v - slip(ke * z[0], cubic(self.n_s, held) * scaling.yield_force, ke * SETTLING),)

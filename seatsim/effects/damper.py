@@ -73,7 +73,7 @@ class Asymmetry(NamedTuple):
         side = math.tanh(v / self.speed) + self.offset
         viscous, yielding = (
             scaling.viscous * (1.0 + self.viscous * side),
-            scaling.yielding * (1.0 + self.yielding * side),
+            scaling.yield_force * (1.0 + self.yielding * side),
         )
         return TemperatureScaling(viscous, scaling.stiffness, yielding)
 

@@ -5,7 +5,7 @@
     F   = S + added forces, P(u) = S           behind an elastic mount with the force S
 
 P is the demanded force: the force of the damper without play or mount. The yield part is the part of the force that
-vanishes when the temperature factor `yielding` is zero.
+vanishes when the temperature factor `yield_force` is zero.
 """
 
 from __future__ import annotations

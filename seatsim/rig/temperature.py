@@ -13,7 +13,7 @@ class TemperatureScaling(NamedTuple):
 
     viscous: float = 1.0
     stiffness: float = 1.0
-    yielding: float = 1.0
+    yield_force: float = 1.0
 
 
 class TemperatureFactors(NamedTuple):

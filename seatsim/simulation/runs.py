@@ -9,6 +9,7 @@ from pathlib import Path
 from threading import Lock, Thread
 from typing import TypeVar
 
+from seatsim.compilation.reasons import explain
 from seatsim.metrics import Metric, summarise
 from seatsim.scenario.loading import load
 from seatsim.scenario.plausibility import list_doubts
@@ -87,8 +88,7 @@ def run_many(
         except InputError:
             raise
         except Exception as error:  # a model of the user's own may raise anything, and is not to end the other runs
-            said = str(error).strip().split("\n")[0]
-            return RunError(f"{scenario.title}: {type(error).__name__}: {said}")
+            return RunError(f"{scenario.title}: {explain(error)}")
         finally:
             done(scenario)
 

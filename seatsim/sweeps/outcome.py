@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.compilation.reasons import explain
 from seatsim.excitations.base import Excitation, Floor
 from seatsim.metrics.table import METRICS, Metric
 from seatsim.scenario.scenario import Scenario
@@ -58,7 +59,7 @@ def simulate_run(number: int, make_scenario: Callable[[], Scenario], histories: 
     except SeatsimError as error:
         return Outcome(number, FAILED, str(error), seed, (None,) * len(METRICS))
     except Exception as error:  # a model of the user's own may raise anything, and the other runs go on
-        return Outcome(number, FAILED, f"{type(error).__name__}: {error}", seed, (None,) * len(METRICS))
+        return Outcome(number, FAILED, explain(error), seed, (None,) * len(METRICS))
     return outcome_of(number, seed, metrics, reason)
 
 

@@ -21,7 +21,7 @@ class Cubes(NamedTuple):
     """Rates that are cubes of what drives them, which Simpson's rule integrates exactly along straight lines."""
 
     def rates(self, x, v, i, scaling, z):
-        return (x**3, v**3, i + scaling.yielding)
+        return (x**3, v**3, i + scaling.yield_force)
 
 
 class Decay(NamedTuple):

@@ -38,7 +38,7 @@ class Scaled(NamedTuple):
 
     def part_scaling(self, scaling, v, z):
         rebound = 2.0 if v > 0.0 else 1.0
-        return TemperatureScaling(scaling.viscous * rebound, scaling.stiffness, scaling.yielding * 0.5)
+        return TemperatureScaling(scaling.viscous * rebound, scaling.stiffness, scaling.yield_force * 0.5)
 
 
 @plugged("saturated")

@@ -25,7 +25,7 @@ class Linear(NamedTuple):
         return (self.c + self.b * i) * scaling.viscous * v + self.k * scaling.stiffness * x
 
     def coulomb(self, i, scaling):
-        return self.friction * scaling.yielding
+        return self.friction * scaling.yield_force
 
 
 @plugged("hysteretic", initial=(0.0, 0.0))
@@ -37,7 +37,7 @@ class Hysteretic(NamedTuple):
     a: float = 50.0
 
     def force(self, x, v, i, scaling, z):
-        return self.c * scaling.viscous * v + self.s * i * scaling.yielding * z[0] + 100.0 * z[1]
+        return self.c * scaling.viscous * v + self.s * i * scaling.yield_force * z[0] + 100.0 * z[1]
 
     def rates(self, x, v, i, scaling, z):
         return (self.a * (v - z[0]), x)
@@ -55,10 +55,10 @@ class Yielding(NamedTuple):
 
     def force(self, x, v, i, scaling, z):
         part = (self.fa + self.fb * i) * math.tanh(v / 0.01) + self.offset
-        return self.c * scaling.viscous * v + scaling.yielding * part
+        return self.c * scaling.viscous * v + scaling.yield_force * part
 
     def coulomb(self, i, scaling):
-        return self.coulomb_force * (1.0 + i) * scaling.yielding
+        return self.coulomb_force * (1.0 + i) * scaling.yield_force
 
 
 class Feedback(NamedTuple):
