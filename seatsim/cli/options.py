@@ -38,6 +38,9 @@ NewFolder = Annotated[
 ]
 Scenarios = Annotated[list[str], typer.Argument(help="Scenario files, or names of examples.", show_default=False)]
 OneScenario = Annotated[str, typer.Argument(help="A scenario file, or the name of an example.", show_default=False)]
+RecordingFolder = Annotated[
+    Path, typer.Argument(help="The folder of a recording: it holds recording.yaml.", show_default=False)
+]
 Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Replace a value by dotted key, such as plant.driver_mass=55."),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -12,13 +13,16 @@ from seatsim.importing.alignment import Channel, describe_offset, estimate_offse
 from seatsim.importing.channels import make_channel, no_column
 from seatsim.importing.clocks import SHORTEST_RUN, Clocked, clock_groups, split_at_gaps
 from seatsim.importing.import_map import ImportMap
-from seatsim.importing.resampling import resample
+from seatsim.importing.resampling import HELD, hold, resample
 from seatsim.importing.signals import Array, DataFile
 from seatsim.recordings.channel_units import CHANNELS
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import conversion
+
+SAME_RATE = 1e-4
+"""Fraction by which rates differ that are one rate by the clocks of two loggers: nothing is said of it."""
 
 
 class Run(NamedTuple):
@@ -141,9 +145,10 @@ def _tabulate(
             table[name] = np.full(len(times), found.factor * entry.value + found.zero)
             continue
         each = held[name]
-        if abs(each.rate / rate - 1.0) > 1e-9:
-            notes.append(f"{name}: resampled from {each.rate:.6g} to {rate:.6g} Hz, band-limited")
-        table[name] = resample(each.values, each.start - entry.delay, each.rate, times, rate)
+        how, take = ("each value held", hold) if name in HELD else ("band-limited", partial(resample, new_rate=rate))
+        if abs(each.rate / rate - 1.0) > SAME_RATE:
+            notes.append(f"{name}: resampled from {each.rate:.6g} to {rate:.6g} Hz, {how}")
+        table[name] = take(each.values, each.start - entry.delay, each.rate, times)
     return table
 
 

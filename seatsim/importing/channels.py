@@ -37,7 +37,7 @@ def make_channel(
     values = _in_si(name, entry, values, clocked, wanted)
     rate = clocked.axis.rate
     doubts = [issue for issue in doubt_channel(name, values, rate, _quantity(name, entry)) if not _mends(entry, issue)]
-    channel = _evened(*_filled(name, entry, values, clocked, notes), clocked.axis)
+    channel = _evened(name, *_filled(name, entry, values, clocked, notes), clocked.axis)
     return channel._replace(values=_corrected(name, channel.values, entry, channel.rate, notes)), doubts
 
 
@@ -111,7 +111,7 @@ def _filled(name: str, entry: ChannelMap, values: Array, clocked: Clocked, notes
     return np.interp(rows, there, values[there])[inner], clocked.axis.times[inner]
 
 
-def _evened(values: Array, times: Array, axis: Axis) -> Channel:
+def _evened(name: str, values: Array, times: Array, axis: Axis) -> Channel:
     """Return values on an even time base, with their own rate."""
     start, rate = float(times[0]), axis.rate
     share = (axis.times[-1] - axis.times[0]) / (times[-1] - start) * (len(times) - 1) / (len(axis.times) - 1)
@@ -120,7 +120,7 @@ def _evened(values: Array, times: Array, axis: Axis) -> Channel:
     if axis.is_even:
         return Channel(values, start, rate)
     grid = start + np.arange(int((times[-1] - times[0]) * rate + 1e-6) + 1) / rate
-    return Channel(evened(values, times, grid), start, rate)
+    return Channel(evened(name, values, times, grid), start, rate)
 
 
 def _corrected(name: str, values: Array, entry: ChannelMap, rate: float, notes: list[str]) -> Array:

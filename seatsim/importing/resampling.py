@@ -3,7 +3,8 @@
     y(t) = sum_k x_k h(t - t_k) / sum_k h(t - t_k),   h(s) = sinc(2 c s) kaiser(s / W),   2 c = ROLL min(rate, new rate)
 
 so that what lies above the lower of the two Nyquist frequencies is attenuated and not folded. The rows beyond both ends
-are mirrored through the end value.
+are mirrored through the end value. A command is a staircase that the controller holds from row to row: it keeps its
+levels, and no ripple of the sinc makes a current of them that nobody commanded.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from seatsim.importing.signals import Array
 HALF, BETA, ROLL = 32, 9.0, 0.92
 """Zero crossings of the sinc on each side, shape of the Kaiser window (stop band -90 dB), share of the band kept."""
 CHUNK = 20_000
+HELD = ("current_command", "command_voltage")
+"""Channels that hold each value until the next row."""
 SAME = 1e-6
 """Fraction of a row by which times may differ from rows, and still need no interpolation."""
 
@@ -40,6 +43,12 @@ def resample(values: Array, start: float, rate: float, times: Array, new_rate: f
     return np.concatenate(parts)
 
 
+def hold(values: Array, start: float, rate: float, times: Array) -> Array:
+    """Return at other times, shape (M,), the value of the last row before each; the first and last one outside."""
+    rows = np.floor((times - start) * rate + SAME * len(values))
+    return np.asarray(values[np.clip(rows.astype(int), 0, len(values) - 1)])
+
+
 def _extended(values: Array, reach: int) -> Array:
     """Return values continued at both ends, mirrored through the end value, or as the end value where too short."""
     if len(values) <= reach + 1:
@@ -56,8 +65,14 @@ def _interpolate(padded: Array, rows: Array, reach: int, band: float) -> Array:
     return np.asarray(np.sum(weights * taken, axis=1) / np.sum(weights, axis=1))
 
 
-def evened(values: Array, times: Array, grid: Array) -> Array:
-    """Return unevenly spaced values on an even grid, by cubic splines through them."""
+def evened(name: str, values: Array, times: Array, grid: Array) -> Array:
+    """Return unevenly spaced values of a channel on an even grid: held, or by cubic splines through them.
+
+    Of rows with the same time the first one counts.
+    """
     from scipy.interpolate import CubicSpline
 
-    return np.asarray(CubicSpline(times, values)(grid), dtype=np.float64)
+    if name in HELD:
+        return np.asarray(values[np.clip(np.searchsorted(times, grid, side="right") - 1, 0, None)])
+    later = np.concatenate([[True], np.diff(times) > 0.0])
+    return np.asarray(CubicSpline(times[later], values[later])(grid), dtype=np.float64)

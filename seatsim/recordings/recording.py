@@ -18,6 +18,7 @@ from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
+from seatsim.schema.guarded import is_there
 from seatsim.schema.tables import numbers, read_table
 from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import build, check_keys, mapping
@@ -129,6 +130,9 @@ def _nominal_numbers(path: Path, stamp: Stamp) -> Mapping[str, float]:
 
 @lru_cache(maxsize=KEPT)
 def _load(folder: Path, stamp: Stamp) -> tuple[Recording, Source]:
+    if not is_there(folder / HEADER):
+        lacks = "holds no recording.yaml" if folder.is_dir() else "no such folder"
+        raise InputError(f"{folder}: {lacks}; give the folder of a recording, which seatsim import makes of your files")
     source = Source(folder / HEADER)
     data = source.data
     check_keys(data, KEYS, source, ())

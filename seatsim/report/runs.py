@@ -132,10 +132,11 @@ def _rank(runs: Sequence[Run]) -> list[int]:
 def _rank_within(runs: Sequence[Run]) -> list[list[int]]:
     """Return the order of comfort within each scenario, whose runs share a floor, or over all where each has one."""
     order = _rank(runs)
-    groups: dict[str, list[int]] = {}
+    groups: dict[str, list[int]] = {run.scenario.name: [] for run in runs}
     for k in order:
-        groups.setdefault(runs[k].scenario.name, []).append(k)
-    return list(groups.values()) if 1 < len(groups) < len(order) else [order] * bool(order)
+        groups[runs[k].scenario.name].append(k)
+    known = [group for group in groups.values() if group]
+    return known if 1 < len(known) < len(order) else [order] * bool(order)
 
 
 def _compare(runs: Sequence[Run]) -> str:

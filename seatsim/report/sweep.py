@@ -30,7 +30,7 @@ MOST_LINES = 60
 """Lines of a table on the page."""
 MOST_REASONS = 8
 METHOD = (
-    "Every run has a seed of its own, derived from the sweep's; failed and unverified runs take no part in any figure.",
+    "Failed and unverified runs take no part in any figure.",
     "Shares of variance are Sobol indices of a polynomial chaos expansion, with 95 % intervals by resampling the runs;"
     " they assume that keys vary independently, as this design has them.",
     "Shares of runs above a limit have Wilson's interval of 95 %.",
@@ -52,7 +52,7 @@ def report_sweep(
     rows: SweepRows, quantiles: pd.DataFrame, found: Sensitivities, exceeded: Sequence[Exceedance]
 ) -> Report:
     """Return the report of a sweep from its rows and the statistics on them."""
-    identity = rows.manifest["identity"]
+    settings = [Text(_say_seeds(rows)), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
     sections = [
         Section("limits", "How often limits are exceeded", _show_limits(exceeded, rows)),
         Section("sensitivity", "What matters most", show_sensitivity(found, rows)),
@@ -61,9 +61,7 @@ def report_sweep(
         Section("quantiles", "Quantiles", _show_quantiles(quantiles, rows)),
         Section("states", "Failed and unverified runs", _show_states(rows)),
         show_card(collect_sweep(rows, found, exceeded)),
-        describe_method(
-            METHOD, f"seatsim sweep-report {rows.folder.name}", [Text(f"Identity of the sweep: {identity}")]
-        ),
+        describe_method(METHOD, f"seatsim sweep-report {rows.folder.name}", settings),
     ]
     about = f"Sweep: {rows.folder.name}"
     return Report(about, state_importance(found, rows), [_count_runs(rows)], _advise(found, exceeded, rows), sections)
@@ -79,10 +77,22 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> str:
     what = "tolerances" if rows.drawn else "varied keys"
     many = len(rows.drawn or [row for row in here if row.key != "variant"])
     among = f"Of {many} {what} {chosen.key} matters most" if many > 1 else f"{chosen.key} is the only one of the {what}"
+    first = max(here, key=lambda row: row.total)
+    lead = "" if first is chosen else (
+        f"{first.key} explains {format_percent(first.total)} of the variance of the {words}. "
+    )  # fmt: skip
     return (
-        f"{among} to the {words}: together with its interactions it explains {format_percent(chosen.total)} of the"
-        f" variance (95 % interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)})."
+        f"{lead}{among} to the {words}: together with its interactions it explains {format_percent(chosen.total)} of"
+        f" the variance (95 % interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)})."
     )
+
+
+def _say_seeds(rows: SweepRows) -> str:
+    """Return over how many random floors the runs are."""
+    count = rows.usable.seed.nunique()
+    if count > 1:
+        return f"The runs have {count} seeds: as many random floors and noises of each kind."
+    return "All runs have one seed, so that equal roads are the same random floor; replicates in the sweep adds others."
 
 
 def _count_runs(rows: SweepRows) -> str:

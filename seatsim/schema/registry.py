@@ -139,7 +139,8 @@ def find(kind: str, name: str, beside: Path | None = None) -> type[Record]:
     if name not in known:
         permitted = ", ".join(sorted(known))
         raise InputError(
-            f"no {kind} is called '{name}'{nearest(name, known)}; permitted: {permitted}, or 'package.module:Class'"
+            f"no {kind} is called '{name}'{nearest(name, known)}; permitted: {permitted}, or 'package.module:Class', or"
+            " one of a file that --with names"
         )
     return known[name]
 

@@ -70,6 +70,8 @@ def read_definition(path: Path) -> SweepDefinition:
         InputError: the file cannot be read, or a key is unknown, missing or has a value that is not permitted.
     """
     source = Source(path)
+    if "scenario" not in source.data and {"plant", "damper"} & set(source.data):
+        raise InputError(f"{path}: is a scenario; a sweep is a file that names one under scenario, and what varies")
     check_keys(source.data, KEYS, source, ())
     design = _read_design(source)
     table = _read_table(source) if design == "table" else None

@@ -91,6 +91,7 @@ def test_each_road_has_a_picture_of_comfort_over_travel():
     )
     rows = rows_of(frame, ["plant.driver_mass", "excitation.road_class"])
     rows = rows._replace(metrics=[COMFORT, travel])
-    pictures = draw_pareto(rows, rows.keys)
-    assert [picture.title[-1] for picture in pictures] == ["B", "C", "D"]
-    assert len(draw_pareto(rows, ["plant.driver_mass"])) == 1
+    [figure] = draw_pareto(rows, rows.keys)
+    assert [plane.title[-1] for plane in figure.planes] == ["B", "C", "D"]
+    assert [name for name, *_ in figure.legend] == ["60.00", "80.00", "Pareto front"]
+    assert len(draw_pareto(rows, ["plant.driver_mass"])[0].planes) == 1

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seatsim.cli.options import Json, OneScenario, Out, OwnCode
+from seatsim.cli.options import Json, OneScenario, Out, OwnCode, RecordingFolder
 from seatsim.cli.terminal import answer, say, show_progress, warn, wrote
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def gap(
     scenario: OneScenario,
-    recording: Path,
+    recording: RecordingFolder,
     out_folder: Out = None,
     predict: Annotated[
         Path | None,
@@ -49,7 +49,7 @@ def gap(
 
 
 def diagnose(
-    recording: Path,
+    recording: RecordingFolder,
     out_folder: Out = None,
     without: Annotated[
         list[str] | None, typer.Option("--without", metavar="EFFECT", help="Withhold an effect from the library.")

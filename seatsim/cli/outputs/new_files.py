@@ -62,7 +62,7 @@ def _recording(path: Path) -> Mapping[Path, bytes]:
 
 
 def _code(kind: str, path: Path) -> Mapping[Path, bytes]:
-    name = path.stem
+    name = path.name.removesuffix(".py")
     if not name.isidentifier():
         raise InputError(
             f"{path}: '{name}' cannot be the name of a module; letters, digits and _ can, such as my_{kind}"

@@ -86,6 +86,7 @@ def _named(run: RunUnderTest, explanations: Sequence[DataFault]) -> Issue:
     first, *others = explanations
     said = [f"{' and '.join(first.channels)}: {first.says}"]
     said += [f"{' and '.join(d.channels)} {d.says}" for d in others if d.channels != first.channels]
-    text = f"{run.name}, {', or '.join(said)}; correct it and diagnose again"
+    mend = "correct it, in an import by the keys sign, unit or delay of the map, and compare again"
+    text = f"{run.name}, {', or '.join(said)}; {mend}"
     severity: Severity = "warning" if first.kind == "late" and first.channels == ("coil_current",) else "error"
     return Issue(severity, first.kind, text, first.channels[0], run.name)

@@ -28,6 +28,8 @@ QUIET = ("smooth", "resolution")
 """Kinds of doubts because of which the floor at high frequencies is not the noise of a sensor."""
 COARSE, LEVELLED = 1.2, 0.3
 """Share of its step below which noise is hidden by the resolution; ratio of small to usual gaps of what has steps."""
+COMMANDS = ("current_command", "command_voltage")
+"""Channels that may jump from row to row, and that no sensor measures: they have neither spikes nor noise."""
 MOST_ROWS = 200_000
 """Rows that the slower checks look at."""
 
@@ -51,8 +53,10 @@ def doubt_shape(doubter: Doubter, values: Array, lengths: NDArray[np.int_]) -> I
     """Yield clipping, spikes, held values and the floor of a channel that varies."""
     for extreme, rows in flat_tops(values):
         yield doubter.say("warning", "clipped", f"{rows} rows stand at its extreme {extreme:.5g}; it is clipped")
-    yield from doubt_spikes(doubter, values)
-    if doubter.rate is None:
+    is_command = doubter.channel in COMMANDS
+    if not is_command:
+        yield from doubt_spikes(doubter, values)
+    if doubter.rate is None or is_command:
         return
     level, step = measure_level(values[:MOST_ROWS], doubter.rate), find_resolution(values[:MOST_ROWS])
     usual = float(np.median(lengths[:MOST_ROWS]))
