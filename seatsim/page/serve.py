@@ -73,6 +73,7 @@ def serve(path: Path, folder: Path, port: int, browser: bool, say: Callable[[str
         listener.bind((HOST, port))
     except OSError as error:
         raise InputError(f"--port {port}: {error.strerror}; give another port, or 0 for a free one") from error
+    listener.listen()  # who asks before the server runs is kept waiting, and not refused
     taken, token = listener.getsockname()[1], secrets.token_urlsafe(24)
     address = f"http://{HOST}:{taken}/?token={token}"
     target = ThreadPoolExecutor(1).submit(open_target, path)
