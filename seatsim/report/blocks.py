@@ -24,9 +24,10 @@ class Items(NamedTuple):
 
 
 class Code(NamedTuple):
-    """A command, or several lines of them."""
+    """A command, or another text to be copied; `label` names it to who hears the page."""
 
     text: str
+    label: str = "Command"
     kind: str = "code"
 
 

@@ -41,7 +41,7 @@ def report_characterisation(found: Characterisation, remarks: Sequence[str], com
         Section("steps", "Response to steps of the current", _show_steps(found.responses)),
         Section("notes", "Notes", [Items([format_sentence(text) for text in remarks])] * bool(remarks)),
         show_card(collect_characterisation(found)),
-        describe_method(METHOD, command, [Text("What was tested:"), Code(found.source)]),
+        describe_method(METHOD, command, [Text("What was tested:"), Code(found.source, "What was tested")]),
     ]
     return Report(f"Characterisation: {found.name}", say_character(found), [], _advise(found), sections)
 
