@@ -126,7 +126,8 @@ runs:
         ("channels: {floor_acceleration: {unit: g}}", "give either the name of its column"),
         ("channels: {floor_acceleration: {column: a}}\nruns: {a: b}", "is no list of files"),
         ("channels: {floor_acceleration: {column: a}}\ngaps: cut", "gaps"),
-        ("channels: {floor_acceleration: {column: a}}\nalign: {b: soon}", "is no number"),
+        ("channels: {floor_acceleration: {column: a}}\nalign: {b: soon}", "is no finite number"),
+        ("channels: {floor_acceleration: {column: a}}\nalign: {b: .nan}", "is no finite number"),
     ],
 )
 def test_a_wrong_map_is_one_clear_error(tmp_path, text, expected):
