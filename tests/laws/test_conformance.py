@@ -68,7 +68,7 @@ def test_random_parameters_give_finite_answers_that_only_the_state_decides(bench
 
 def test_weights_too_far_apart_are_refused():
     for law in (Lqr(WIDE), Lqg(WIDE)):
-        with pytest.raises(SynthesisError, match="Riccati equation of the .* has no solution in numbers"):
+        with pytest.raises(SynthesisError, match=r"Riccati equation of the .* has no solution in numbers"):
             prepare_law(law, SEAT, COIL, 0.005)
 
 
