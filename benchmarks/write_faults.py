@@ -49,6 +49,8 @@ COMMANDS: Mapping[str, Sequence[str]] = {
     "sweep-report": ("sweep-report", "{made}/sweep", "--out", OUT),
     "reproduce": ("reproduce", "{made}/comfort", "--out", OUT),
     "export": ("export", "quickstart", "--to", "c", "--what", "controller", "--out", f"{OUT}/controller.c"),
+    "export mat": ("export", "quickstart", "--to", "mat", "--what", "rig", "--out", f"{OUT}/rig.mat"),
+    "export fmu": ("export", "quickstart", "--to", "fmu2", "--what", "damper", "--out", f"{OUT}/damper.fmu"),
     "describe": ("describe", "bouc_wen", "--picture", f"{OUT}/bouc_wen.png"),
     "blind make": ("blind", "make", "--cases", "1", "--seed", "1", "--sealed", f"{OUT}/sealed", "--out", f"{OUT}/set"),
 }  # fmt: skip
