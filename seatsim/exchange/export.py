@@ -38,8 +38,8 @@ def export(scenario: Scenario, form: str, what: str, path: Path) -> Block:
         path: the file; its folder is made where it is missing.
 
     Raises:
-        InputError: a name is unknown, a model or law has no counterpart in C, there is no C compiler, or the file cannot
-            be written.
+        InputError: a name is unknown, a model or law has no counterpart in C, there is no C compiler, or the file
+            cannot be written.
         RunError: the compiler failed. OutputError: the disk is full.
     """
     for name, known, kind in ((form, FORMATS, "--to"), (what, BLOCKS, "--what")):
