@@ -68,9 +68,9 @@ class _Numbers(NamedTuple):
     """The numbers at the top of a map."""
 
     sample_rate: Annotated[
-        float | None, param("Hz", "rows per second of files that have no time", above=0, high=1e6)
+        float | None, param("Hz", "rows per second of files that have no time", low=1e-3, high=1e6)
     ] = None
-    resample: Annotated[float | None, param("Hz", "rows per second of the recording", above=0, high=1e6)] = None
+    resample: Annotated[float | None, param("Hz", "rows per second of the recording", low=1.0, high=1e6)] = None
     rig: Rig = "seat"
     gaps: Gaps | None = None
 
