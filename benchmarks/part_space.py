@@ -17,7 +17,9 @@ seat; an excitation makes its floor. Counted by part are:
 from __future__ import annotations
 
 import argparse
+import importlib
 import math
+import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -37,7 +39,6 @@ from seatsim.metrics.motion import energy_residual
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Measurement, prepare_law
 from seatsim.rig.plant import Plant
-from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.fields import bounds, choices, describe, validated
@@ -46,6 +47,7 @@ from seatsim.simulation.augment import read_sensors
 from seatsim.simulation.simulate import simulate
 from seatsim.simulation.validity import LARGEST_RESIDUAL
 
+ROOT = Path(__file__).resolve().parents[1]
 FINDINGS = ("raised", "finite", "split", "open", "refused")
 HARMLESS = ("open", "refused")
 STEP, SAMPLES = 1e-3, 600
@@ -54,17 +56,6 @@ OF_WHOLE_RUN = ("frame_force", "truth")
 """Hooks that are given a whole run, by whose length their answer may change."""
 SEAT = Plant(20.0, 80.0, 4600.0, 150.0, 60000.0, 1500.0)
 DRAWN = SEAT._fields[:6]
-SCENARIO = """\
-plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,
-        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
-damper: {model: bingham, parameters: {c_a: 250.0, c_b: 350.0, fc_a: 45.0, fc_b: 620.0, f0: 0.0, v_ref: 0.004},
-         temperature_factors: {viscous: -0.004, yield_force: -0.004}}
-actuator: {rate: 130.0, max_current: 1.0}
-temperature: 40.0
-controller: {law: on_off_skyhook, sample_time: 0.005}
-excitation: {kind: chirp, amplitude: 0.03, start_frequency: 0.7, stop_frequency: 5.0, duration: 3.0}
-seed: 3
-"""
 SIZES = Measurement(1.0, 0.02, 0.2, 0.2, 0.2, 1.0, 2.0, 2.0, 300.0, 0.5, 20.0, 1.0)
 """Usual size of each measurement, in its unit."""
 USUAL: Mapping[str, Mapping[str, Any]] = {
@@ -126,11 +117,12 @@ def usual_values(rng: np.random.Generator, kind: str, name: str, cls: type) -> d
 
 @cache
 def seat() -> Scenario:
-    """Return the seat that effects are put on."""
+    """Return the seat that effects are put on: that of their tests."""
+    sys.path.insert(0, str(ROOT))
+    rigs: Any = importlib.import_module("tests.effects.rigs")
     with tempfile.TemporaryDirectory() as place:
-        path = Path(place) / "seat.yaml"
-        path.write_text(SCENARIO, encoding="utf-8")
-        return single(path)
+        scenario: Scenario = rigs.seat(Path(place))
+    return scenario
 
 
 @cache
