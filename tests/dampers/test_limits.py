@@ -21,6 +21,7 @@ def test_a_set_valued_friction_is_what_the_regularised_one_tends_to(name, curren
         rest = sharp.force(0.0, v, current, SCALING, ())
         assert smooth.force(0.0, v, current, SCALING, ()) == pytest.approx(rest + sign * friction, rel=1e-12)
     assert friction > 0.0 and smooth.coulomb(current, SCALING) == 0.0
+    assert sharp._replace(fc_a=-1.0, fc_b=0.0).coulomb(current, SCALING) == 0.0
 
 
 def test_at_rest_a_frequency_is_the_usual_one_and_the_amplitude_the_least():

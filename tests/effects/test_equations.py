@@ -73,7 +73,8 @@ def test_gas_spring_and_asymmetry(rng):
 
 
 def test_magnetism(rng):
-    i, z = float(rng.uniform(0, 1.5)), tuple(map(float, rng.uniform(-0.2, 1.5, 3)))
+    most = rng.choice([0.3, 1.5])
+    i, z = float(rng.uniform(0, most)), tuple(map(float, most * rng.uniform(-0.2, 1, 3)))
     e = drawn("damper.magnetic_saturation", rng, bend=(0.1, 3), sharpness=(0.6, 6))
     assert e.yield_current(i, ()) == near(i / (1 + (e.bend * i) ** e.sharpness) ** (1 / e.sharpness))
     e = drawn("damper.remanence", rng, width=(0.01, 0.3), spread=(0.1, 1), lift=(0.1, 1), decay=(1, 30), share=(0.1, 1))
@@ -195,7 +196,7 @@ def test_coil(rng):
 
 def test_frame_force(rng):
     time, seed = 0.002 * np.arange(2000), int(rng.integers(100))
-    e = drawn("floor.unmeasured_input", rng, rms=(1, 50), tone=(1, 50), frequency=(1, 20), phase=(-3, 3))
+    e = drawn("floor.unmeasured_input", rng, rms=(0.1, 2), tone=(1, 50), frequency=(1, 20), phase=(-3, 3))
     e = e._replace(low=1.0, high=9.0)
     white = np.fft.rfft(np.random.default_rng(seed).standard_normal(len(time)))
     frequency = np.fft.rfftfreq(len(time), 0.002)
