@@ -21,7 +21,7 @@ SNIFFED = 4096
 """Bytes from which a format is recognised."""
 LEAST_ROWS = 2
 LARGEST_NUMBER = 1e100
-"""What is larger, or infinite, was never measured and counts as a row without a number: its square is beyond doubles."""
+"""What is larger, or infinite, was never measured and counts as a row without a number: its square overflows."""
 
 
 class TextLayout(NamedTuple):
