@@ -70,7 +70,7 @@ class Planner:
         effort = weights.force**2
         with solving("planner"):
             to_go = solve_discrete_are(transition, input_gain, z.T @ z, np.array([[effort]]))
-        gain = -np.linalg.solve(input_gain.T @ to_go @ input_gain + effort, input_gain.T @ to_go @ transition)
+            gain = -np.linalg.solve(input_gain.T @ to_go @ input_gain + effort, input_gain.T @ to_go @ transition)
         closed = [np.linalg.matrix_power(transition + input_gain @ gain, j) for j in range(horizon)]
         self.first = np.vstack([gain @ power for power in closed])
         self.ratio, self.envelope = plant.damper_ratio, envelope

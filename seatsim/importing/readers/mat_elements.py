@@ -72,13 +72,14 @@ def split(content: bytes, order: str) -> Iterator[Element]:
             raise ValueError("it ends within an element")
         kind, size = struct.unpack_from(f"{order}II", content, at)
         begin = at + 8
+        # Packed elements are not filled up.
+        end = begin + size + (0 if kind == PACKED else -size % 8)
         if kind >> 16:  # a small one, whose content stands in the place of its size
-            kind, size, begin = kind & 0xFFFF, kind >> 16, at + 4
+            kind, size, begin, end = kind & 0xFFFF, kind >> 16, at + 4, at + 8
         if begin + size > len(content):
             raise ValueError(f"an element states {size} bytes, and {len(content) - begin} are left")
         yield Element(kind, content[begin : begin + size])
-        # Packed elements are not filled up.
-        at = begin + size + (0 if kind == PACKED else -(begin + size) % 8)
+        at = end
 
 
 def read_array(content: bytes, order: str, depth: int) -> tuple[str, Value]:
