@@ -13,6 +13,8 @@ null         A gap is one where chi^2 exceeds what noise alone exceeds in 1 % of
              that a right model may miss.
 material     An effect of any size counts.
 whitening    Weights are the stated noise alone, the same at all frequencies.
+shortcuts    Every candidate is fitted to its end, from every start, and every set is enlarged by every effect: the
+             verdicts should be those of the full method, which saves this time.
 """
 
 from __future__ import annotations
@@ -47,6 +49,15 @@ ONE_PERCENT = 2.33
 BESIDE_DAMPER = 0.4
 """Share of the effects found where the damper is blamed for what they do not explain."""
 FULL = DiagnosisSettings()
+EVERY = 1000
+EXHAUSTIVE = FULL._replace(
+    fit=FULL.fit._replace(settled=1e-6, most_steps=12),
+    selection=FULL.selection._replace(
+        first_shortlist=EVERY, further_shortlist=EVERY, finalists=EVERY, beam=4, promising=float("inf"),
+        swap_within=float("inf"), most_swaps=EVERY,
+    ),
+)  # fmt: skip
+"""Settings without the shortcuts of the search."""
 
 
 class Ablation(NamedTuple):
@@ -113,6 +124,7 @@ PARTS: Mapping[str, Ablation] = {
     ),
     "material": Ablation(FULL._replace(decision=FULL.decision._replace(material=0.0))),
     "whitening": Ablation(method=Method(weigh_noise=weigh_stated_noise)),
+    "shortcuts": Ablation(EXHAUSTIVE),
 }
 """The diagnosis without each part."""
 

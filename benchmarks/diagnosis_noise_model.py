@@ -46,7 +46,7 @@ DOUBT = np.log(3.0)
 
 
 def measure_processes(objective: Objective, evaluation: Evaluation) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Return by run the power of the residuals, and its smooth spectrum, not below the noise, by channel and frequency."""
+    """Return by run the power of the residuals, and their smooth spectrum above the noise, by channel and frequency."""
     powers, spectra = {}, {}
     for run, noise in objective.weights.power.items():
         power = np.abs(np.fft.rfft(evaluation.residuals[run], axis=1)[:, : noise.shape[1]]) ** 2

@@ -4,15 +4,28 @@ from __future__ import annotations
 
 import gzip
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from fuzz_files import KEY, make_design, make_diagnosis, make_formats, make_manifest, make_sealed
+from fuzz_files import (
+    KEY,
+    make_design,
+    make_diagnosis,
+    make_formats,
+    make_manifest,
+    make_map,
+    make_sealed,
+    make_sweep,
+    make_unit,
+    make_up,
+)
 
 HERE = Path(__file__).resolve().parents[1]
 EXAMPLES = HERE / "scenarios"
 RECORDING, BENCH = EXAMPLES / "data" / "recording", EXAMPLES / "data" / "bench"
 SHORT_ROWS = 600
+ROWS = "runs/part-000000.parquet"
 
 
 class Reader(NamedTuple):
@@ -37,6 +50,11 @@ def make_readers() -> dict[str, Reader]:
     sweep = b"scenario: quickstart.yaml\nseed: 1\ndesign: lhs\nruns: 10\n"
     sweep += b"vary:\n  plant.driver_mass: {normal: [80, 12], low: 50}\n"
     design = b"plant.driver_mass,temperature\n55,20\n75,40\n98,60\n"
+    formats = make_formats(table)
+    rows_of_sweep = make_sweep(scenario, sweep)
+    floor = b"time,up\n" + b"".join(b"%.3f,%d\n" % (0.005 * row, row * 37 % 11 - 5) for row in range(SHORT_ROWS))
+    measured = scenario[: scenario.index(b"excitation:")]
+    measured += b"excitation: {kind: table, path: floor.csv, column: up, time_column: time, duration: 1.0}\n"
     designed = b"scenario: quickstart.yaml\ndesign: table\ntable: points.csv\nlimits: {driver_acceleration_rms: 2}\n"
     return {
         "scenario": Reader({"a.yaml": scenario}, ("a.yaml",), _read_scenario),
@@ -50,8 +68,13 @@ def make_readers() -> dict[str, Reader]:
             ("a.yaml", "points.csv"),
             _read_sweep,
         ),
+        "floor": Reader({"a.yaml": measured, "floor.csv": floor}, ("a.yaml", "floor.csv"), _read_floor),
+        "rows": Reader(rows_of_sweep, ("manifest.json", ROWS), _read_rows),
+        "resumed": Reader(rows_of_sweep, ("manifest.json", ROWS), _read_resumed),
+        "unit": Reader({"a.fmu": make_unit()}, ("a.fmu",), _read_unit),
         "import": Reader({"a.csv": table}, ("a.csv",), _read_import),
-        "formats": Reader(make_formats(table), tuple(make_formats(table)), _read_formats),
+        "map": Reader({"a.csv": table, "map.yaml": make_map()}, ("map.yaml",), _read_map),
+        "formats": Reader(formats, tuple(formats), partial(_read_formats, formats)),
         "synthesis": Reader({"design.yaml": make_design()}, ("design.yaml",), _read_design),
         "diagnosis": Reader({"diagnosis.json": make_diagnosis()}, ("diagnosis.json",), _read_diagnosis),
         "manifest": Reader({"manifest.json": make_manifest()}, ("manifest.json",), _read_manifest),
@@ -86,25 +109,57 @@ def _read_sweep(folder: Path) -> object:
     return prepare(folder / "a.yaml")
 
 
+def _read_floor(folder: Path) -> object:
+    from seatsim.scenario.loading import single
+
+    scenario = single(folder / "a.yaml")
+    return None if scenario.excitation is None else scenario.excitation.floor(scenario.solver.step, scenario.seed)
+
+
+def _read_rows(folder: Path) -> object:
+    from seatsim.report.sweep import report_sweep
+    from seatsim.sweeps.statistics.exceedance import count_exceedances
+    from seatsim.sweeps.statistics.inputs import read_rows
+    from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
+    from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity
+
+    rows = read_rows(folder)
+    return report_sweep(rows, tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows))
+
+
+def _read_resumed(folder: Path) -> object:
+    from seatsim.sweeps.execute import execute, prepare
+
+    return execute(prepare(folder / "a.yaml"), folder, make_up, resume=True)
+
+
+def _read_unit(folder: Path) -> object:
+    from seatsim.cosimulation.description import check_parameter, describe_unit, find_variable
+
+    unit = describe_unit(folder / "a.fmu")
+    variables = find_variable(unit, "v", "input"), find_variable(unit, "F", "output")
+    return variables, check_parameter(unit, "c", 2.0)
+
+
+def _read_map(folder: Path) -> object:
+    from seatsim.importing.importing import import_files
+
+    return import_files([folder / "a.csv"], folder / "imported", folder / "map.yaml")
+
+
 def _read_import(folder: Path) -> object:
     from seatsim.importing.inspection import inspect_file
 
     return inspect_file(folder / "a.csv")
 
 
-def _read_formats(folder: Path) -> object:
+def _read_formats(valid: Mapping[str, bytes], folder: Path) -> object:
+    """Read the file that is not as it was; all where each is."""
     from seatsim.importing.inspection import inspect_file
-    from seatsim.schema.errors import SeatsimError
 
-    last: Exception | None = None
-    for path in sorted(folder.iterdir()):
-        try:
-            inspect_file(path)
-        except SeatsimError as error:
-            last = error
-    if last is not None:
-        raise last
-    return None
+    paths = sorted(folder.iterdir())
+    changed = [path for path in paths if path.read_bytes() != valid[path.name]]
+    return [inspect_file(path) for path in changed or paths]
 
 
 def _read_design(folder: Path) -> object:

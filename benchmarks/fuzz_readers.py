@@ -75,6 +75,7 @@ def fuzz(reader: Reader, mutants: int, seed: int = 0, limit: float = 5.0) -> Fou
                 files[name] = mutate(files[name], generator)
             folder.mkdir()
             for each, content in files.items():
+                (folder / each).parent.mkdir(parents=True, exist_ok=True)
                 (folder / each).write_bytes(content)
             before = sorted(folder.rglob("*"))
             kind, said = "read", ""

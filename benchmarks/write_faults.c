@@ -35,7 +35,12 @@ static int watch(int fd, const char *path, int flags) {
     return fd;
 }
 
-#define IS_WATCHED(fd) ((fd) >= 0 && (fd) < MOST_FILES && watched[fd])
+/* Whether a file descriptor is of a file below the folder; its number may since be a socket's. */
+static int is_watched(int fd) {
+    struct stat status;
+    return fd >= 0 && fd < MOST_FILES && watched[fd] && fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 #define NEXT(name) static __typeof__(&name) next; if (!next) next = (__typeof__(&name))dlsym(RTLD_NEXT, #name)
 #define MODE(flags) mode_t mode = 0; if ((flags) & (O_CREAT | O_TMPFILE)) { va_list rest; va_start(rest, flags); mode = va_arg(rest, mode_t); va_end(rest); }
 
@@ -59,24 +64,29 @@ int openat64(int dir, const char *path, int flags, ...) {
     if (below(path) && (flags & (O_WRONLY | O_RDWR)) && fails()) return -1;
     return watch(next(dir, path, flags, mode), path, flags);
 }
+int close(int fd) {
+    NEXT(close);
+    if (fd >= 0 && fd < MOST_FILES) watched[fd] = 0;
+    return next(fd);
+}
 ssize_t write(int fd, const void *data, size_t size) {
     NEXT(write);
-    return IS_WATCHED(fd) && fails() ? -1 : next(fd, data, size);
+    return is_watched(fd) && fails() ? -1 : next(fd, data, size);
 }
 ssize_t pwrite(int fd, const void *data, size_t size, off_t at) {
     NEXT(pwrite);
-    return IS_WATCHED(fd) && fails() ? -1 : next(fd, data, size, at);
+    return is_watched(fd) && fails() ? -1 : next(fd, data, size, at);
 }
 ssize_t pwrite64(int fd, const void *data, size_t size, off64_t at) {
     NEXT(pwrite64);
-    return IS_WATCHED(fd) && fails() ? -1 : next(fd, data, size, at);
+    return is_watched(fd) && fails() ? -1 : next(fd, data, size, at);
 }
 ssize_t writev(int fd, const struct iovec *parts, int count) {
     NEXT(writev);
-    return IS_WATCHED(fd) && fails() ? -1 : next(fd, parts, count);
+    return is_watched(fd) && fails() ? -1 : next(fd, parts, count);
 }
-int fsync(int fd) { NEXT(fsync); return IS_WATCHED(fd) && fails() ? -1 : next(fd); }
-int fdatasync(int fd) { NEXT(fdatasync); return IS_WATCHED(fd) && fails() ? -1 : next(fd); }
+int fsync(int fd) { NEXT(fsync); return is_watched(fd) && fails() ? -1 : next(fd); }
+int fdatasync(int fd) { NEXT(fdatasync); return is_watched(fd) && fails() ? -1 : next(fd); }
 int rename(const char *from, const char *to) { NEXT(rename); return below(to) && fails() ? -1 : next(from, to); }
 int renameat(int a, const char *from, int b, const char *to) {
     NEXT(renameat);

@@ -1,5 +1,6 @@
 """Shared fixtures."""
 
+import importlib
 import signal
 import sys
 from pathlib import Path
@@ -50,6 +51,15 @@ def kept_seat_file(tmp_path_factory):
 def sound(kept_seat_file, tmp_path_factory):
     """The folder of a recording without faults, which no test edits."""
     return record_sound_rig(kept_seat_file, tmp_path_factory.mktemp("sound") / "recorded")
+
+
+@pytest.fixture(scope="module")
+def benchmark():
+    """Import a benchmark as the scripts beside it do."""
+    folder = str(ROOT / "benchmarks")
+    sys.path.insert(0, folder)
+    yield importlib.import_module
+    sys.path.remove(folder)
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
 from controllers.linear_systems import zero_order_hold
+from controllers.optimal.riccati import solving
 from seatsim.compilation.jit import jit
 from seatsim.rig.control import Measurement, State
 from seatsim.rig.plant import Plant, PlantMatrices, state_space
@@ -46,13 +47,17 @@ def design_kalman_filter(plant: Plant, noise: Noise, sample_time: float) -> Kalm
         plant: the seat, with state (x, v, zc - zs, its rate).
         noise: densities and RMS values of what is not known.
         sample_time: in s, over which the damper force is taken as held.
+
+    Raises:
+        SynthesisError: the noises are so far apart that the equation has no solution in numbers.
     """
     s = state_space(plant)
     transition, input_gain = zero_order_hold(s.A, s.B2, sample_time)
     process_noise = _process_noise(s, sample_time, noise.floor) + noise.force**2 * input_gain @ input_gain.T
     reading = np.diag([noise.displacement**2, noise.acceleration**2])
-    p = solve_discrete_are(transition.T, s.C1.T, process_noise, reading)
-    correction = np.linalg.solve(s.C1 @ p @ s.C1.T + reading, s.C1 @ p).astype(np.float64)
+    with solving("Kalman filter"):
+        p = solve_discrete_are(transition.T, s.C1.T, process_noise, reading)
+        correction = np.linalg.solve(s.C1 @ p @ s.C1.T + reading, s.C1 @ p).astype(np.float64)
     return KalmanFilter(_rows(transition), _rows(input_gain.T)[0], _rows(s.C1), _rows(correction))
 
 

@@ -11,6 +11,7 @@ from scipy.linalg import solve_discrete_are
 
 from controllers.linear_systems import zero_order_hold
 from controllers.optimal.regulator import QuadraticWeights
+from controllers.optimal.riccati import solving
 from seatsim.rig.plant import Plant, state_space
 from seatsim.schema.fields import param
 
@@ -55,7 +56,11 @@ class Planner:
     def __init__(
         self, plant: Plant, weights: QuadraticWeights, envelope: DeliverableForces, horizon: int, sample_time: float
     ) -> None:
-        """Set up the programme for a horizon of N samples; matrices and factorisation are kept."""
+        """Set up the programme for a horizon of N samples; matrices and factorisation are kept.
+
+        Raises:
+            SynthesisError: the weights are so far apart that the cost beyond the horizon is not found.
+        """
         import osqp
         from scipy.sparse import csc_matrix, eye
 
@@ -63,8 +68,9 @@ class Planner:
         transition, input_gain = zero_order_hold(s.A, s.B2, sample_time)
         z = s.C1 * [[weights.travel], [weights.acceleration]]
         effort = weights.force**2
-        to_go = solve_discrete_are(transition, input_gain, z.T @ z, np.array([[effort]]))
-        gain = -np.linalg.solve(input_gain.T @ to_go @ input_gain + effort, input_gain.T @ to_go @ transition)
+        with solving("planner"):
+            to_go = solve_discrete_are(transition, input_gain, z.T @ z, np.array([[effort]]))
+            gain = -np.linalg.solve(input_gain.T @ to_go @ input_gain + effort, input_gain.T @ to_go @ transition)
         closed = [np.linalg.matrix_power(transition + input_gain @ gain, j) for j in range(horizon)]
         self.first = np.vstack([gain @ power for power in closed])
         self.ratio, self.envelope = plant.damper_ratio, envelope

@@ -6,6 +6,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from controllers.optimal.riccati import solving
 from seatsim.rig.control import State
 from seatsim.rig.plant import Plant, state_space
 from seatsim.schema.fields import param
@@ -20,10 +21,15 @@ class QuadraticWeights(NamedTuple):
 
 
 def solve_regulator(plant: Plant, weights: QuadraticWeights) -> State:
-    """Return the gain k of `Fd = k . (x, v, zc - zs, its rate)` that minimises the cost, from the Riccati equation."""
+    """Return the gain k of `Fd = k . (x, v, zc - zs, its rate)` that minimises the cost, from the Riccati equation.
+
+    Raises:
+        SynthesisError: the weights are so far apart that it has no solution in numbers.
+    """
     import control
 
     s = state_space(plant)
     z = s.C1 * [[weights.travel], [weights.acceleration]]
-    gain, _, _ = control.lqr(s.A, s.B2, z.T @ z, np.array([[weights.force**2]]))
+    with solving("regulator"):
+        gain, _, _ = control.lqr(s.A, s.B2, z.T @ z, np.array([[weights.force**2]]))
     return tuple(-float(value) for value in gain[0])

@@ -14,7 +14,7 @@ from cryptography.fernet import Fernet, InvalidToken
 
 from seatsim.blind.labels import Label
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import write_text, write_whole
+from seatsim.schema.files import make_folder, write_bytes, write_text
 from seatsim.schema.guarded import read_bytes
 from seatsim.schema.text import explain_bad_name
 
@@ -53,9 +53,9 @@ class Sealed:
     def extract(self, case: str, folder: Path) -> Path:
         """Write the unseen recording of a case into `folder`/`case` and return that; empty where none was withheld."""
         out = folder / case
-        out.mkdir(parents=True, exist_ok=True)
+        make_folder(out)
         for name, content in self.unseen.get(case, {}).items():
-            (out / name).write_bytes(content)
+            write_bytes(out / name, content)
         return out
 
 
@@ -80,7 +80,7 @@ def seal(path: Path, folder: Path, key: str, content: Sealed) -> str:
             for name, data in files.items():
                 archive.writestr(f"unseen/{case}/{name}", data)
     token = Fernet(key.encode()).encrypt(packed.getvalue())
-    write_whole(path, lambda part: part.write_bytes(token))
+    write_bytes(path, token)
     digest = hashlib.sha256(token).hexdigest()
     write_text(folder / SEAL, f"sha256 {digest}  {path.name}\n")
     return digest

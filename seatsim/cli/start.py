@@ -76,8 +76,8 @@ def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
 def _end_in_time(wakeups: socket.socket) -> None:
     """Wait for a signal, which the system reports at once, then end the process where it has not ended by itself.
 
-    The main thread may have lost its KeyboardInterrupt, and may hold any lock, that of imports too: nothing that is done
-    here waits for one.
+    The main thread may have lost its KeyboardInterrupt, and may hold any lock, that of imports too: nothing that is
+    done here waits for one.
     """
     while number := wakeups.recv(1)[0]:
         if number in SIGNALS:

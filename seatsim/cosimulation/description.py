@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from seatsim.cosimulation.archive import find_library, open_archive, read_description
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import Conversion, conversion
+from seatsim.schema.validation import is_finite_number
 
 QUANTITIES = {
     "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "current": "A", "temperature": "degC",
@@ -121,8 +122,7 @@ def check_parameter(unit: UnitDescription, name: str, value: object) -> float:
     """
     found = find_variable(unit, name, "parameter")
     kind = SETTABLE[found.type]
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not (isinstance(value, bool) if kind is bool else is_number and kind(value) == value):
+    if not (isinstance(value, bool) if kind is bool else is_finite_number(value) and kind(value) == value):
         word = {float: "a number", int: "a whole number", bool: "true or false"}[kind]
         raise InputError(f"{value!r} is not permitted; '{name}' is {word}")
     for limit, low in ((found.min, True), (found.max, False)):

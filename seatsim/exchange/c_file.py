@@ -10,6 +10,7 @@ from typing import Any
 from seatsim.exchange.blocks.base import Block
 from seatsim.exchange.model_source import print_model, resource
 from seatsim.exchange.variables import Variable, list_variables
+from seatsim.schema.files import write_text
 
 SAMPLES = 200
 """Samples of the test vector."""
@@ -26,11 +27,9 @@ def write_c(block: Block, path: Path) -> None:
     """Write a block as one C file.
 
     Raises:
-        InputError: a function has no counterpart in C.
+        InputError: a function has no counterpart in C, or the file cannot be written. OutputError: the disk is full.
     """
-    partial = path.with_name(path.name + ".part")
-    partial.write_text(print_c(block), encoding="utf-8")
-    partial.replace(path)
+    write_text(path, print_c(block))
 
 
 def print_c(block: Block) -> str:

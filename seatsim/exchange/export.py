@@ -38,8 +38,9 @@ def export(scenario: Scenario, form: str, what: str, path: Path) -> Block:
         path: the file; its folder is made where it is missing.
 
     Raises:
-        InputError: a name is unknown, a model or law has no counterpart in C, there is no C compiler.
-        RunError: the compiler failed.
+        InputError: a name is unknown, a model or law has no counterpart in C, there is no C compiler, or the file
+            cannot be written.
+        RunError: the compiler failed. OutputError: the disk is full.
     """
     for name, known, kind in ((form, FORMATS, "--to"), (what, BLOCKS, "--what")):
         if name not in known:
@@ -47,9 +48,5 @@ def export(scenario: Scenario, form: str, what: str, path: Path) -> Block:
     if path.is_dir():
         raise InputError(f"--out {path}: this is a folder; name the file to be written")
     block = BLOCKS[what](scenario)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        FORMATS[form](block, scenario, path)
-    except OSError as error:
-        raise InputError(f"--out {path}: cannot be written ({error.strerror}); name another file") from error
+    FORMATS[form](block, scenario, path)
     return block

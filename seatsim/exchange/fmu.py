@@ -7,6 +7,7 @@ import re
 import sys
 import uuid
 import zipfile
+from collections.abc import Mapping
 from hashlib import sha256
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from seatsim.exchange.compiler import compile_library
 from seatsim.exchange.description import Unit, describe_build, describe_fmi2, describe_fmi3
 from seatsim.exchange.model_source import print_model, print_variables, resource
 from seatsim.exchange.variables import list_variables
+from seatsim.schema.files import write_whole
 from seatsim.schema.leftovers import temporary_folder
 
 FIRST_DAY = (1980, 1, 1, 0, 0, 0)
@@ -27,8 +29,8 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
     """Write a block as an FMU of version 2 or 3.
 
     Raises:
-        InputError: this machine has no C compiler, or a function has no counterpart in C.
-        RunError: the compiler failed.
+        InputError: this machine has no C compiler, a function has no counterpart in C, or the file cannot be written.
+        RunError: the compiler failed. OutputError: the disk is full.
     """
     files = make_files(block, version)
     with temporary_folder() as folder:
@@ -38,11 +40,13 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
         compile_library(Path(folder) / f"fmi{version}.c", library)
         binary = f"binaries/{platform_folder(version)}/{identifier(block)}{ENDINGS.get(platform.system(), '.so')}"
         files[binary] = library.read_bytes()
-    partial = path.with_name(path.name + ".part")
-    with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED) as archive:
+    write_whole(path, lambda part: _pack(files, part))
+
+
+def _pack(files: Mapping[str, bytes], path: Path) -> None:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             archive.writestr(zipfile.ZipInfo(name, FIRST_DAY), content, zipfile.ZIP_DEFLATED)
-    partial.replace(path)
 
 
 def make_files(block: Block, version: int) -> dict[str, bytes]:

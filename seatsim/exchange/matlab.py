@@ -10,6 +10,7 @@ import numpy as np
 from seatsim.exchange.blocks.base import Block
 from seatsim.rig.plant import Plant, control_system, state_space
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.files import write_whole
 from seatsim.schema.registry import Record
 
 LONGEST_NAME = 31
@@ -21,6 +22,9 @@ def write_mat(block: Block, scenario: Scenario, path: Path) -> None:
 
     `plant` holds A, B, C, D with the names of states, inputs and outputs, and A, B1, B2, C1, C2 as the H-infinity
     synthesis takes them; `parameters` holds the numbers of the block, among them those of the law's design.
+
+    Raises:
+        InputError: the file cannot be written. OutputError: the disk is full.
     """
     # Takes its time to load, and only this file format needs it.
     from scipy.io import savemat
@@ -33,9 +37,7 @@ def write_mat(block: Block, scenario: Scenario, path: Path) -> None:
     }
     if scenario.plant is not None:
         content["plant"] = _linear_plant(scenario.plant)
-    partial = path.with_name(path.name + ".part")
-    savemat(str(partial), content, appendmat=False, oned_as="row")
-    partial.replace(path)
+    write_whole(path, lambda part: savemat(str(part), content, appendmat=False, oned_as="row"))
 
 
 def _linear_plant(plant: Plant) -> dict[str, Any]:

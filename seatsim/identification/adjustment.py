@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TypeVar
 
@@ -11,6 +10,7 @@ from seatsim.identification.damper_record import DamperRecord, FieldValue, law_r
 from seatsim.identification.scales import parse_unit
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import bounds, describe
+from seatsim.schema.validation import is_finite_number
 
 R = TypeVar("R", bound=DamperRecord)
 
@@ -58,9 +58,7 @@ def fix_parameters(record: R, values: Mapping[str, float]) -> R:
 
 def _is_permitted(value: object, low: float, high: float, whole: bool) -> bool:
     """Whether a value, which may be any word of the command line, is a finite number within bounds."""
-    if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
-        return False
-    return low <= value <= high and not (whole and value != int(value))
+    return is_finite_number(value) and low <= value <= high and not (whole and value != int(value))
 
 
 def numeric_fields(cls: type) -> list[str]:

@@ -13,7 +13,7 @@ from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
 from seatsim.schema.text import explain_bad_name
 from seatsim.schema.units import conversion
-from seatsim.schema.validation import build, check_keys, mapping
+from seatsim.schema.validation import build, check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 
 Rig = Literal["seat", "damper_bench", "road"]
@@ -68,9 +68,9 @@ class _Numbers(NamedTuple):
     """The numbers at the top of a map."""
 
     sample_rate: Annotated[
-        float | None, param("Hz", "rows per second of files that have no time", above=0, high=1e6)
+        float | None, param("Hz", "rows per second of files that have no time", low=1e-3, high=1e6)
     ] = None
-    resample: Annotated[float | None, param("Hz", "rows per second of the recording", above=0, high=1e6)] = None
+    resample: Annotated[float | None, param("Hz", "rows per second of the recording", low=1.0, high=1e6)] = None
     rig: Rig = "seat"
     gaps: Gaps | None = None
 
@@ -191,8 +191,8 @@ def _runs(data: Mapping[str, object], source: Source) -> dict[str, list[str]]:
 def _align(data: Mapping[str, object], source: Source) -> dict[str, float]:
     stated = mapping(data.get("align", {}), source, ("align",))
     for name, value in stated.items():
-        if not isinstance(value, int | float) or isinstance(value, bool):
-            raise source.error(("align", name), f"{value} is no number; write seconds, such as 0.25")
+        if not is_finite_number(value):
+            raise source.error(("align", name), f"{value} is no finite number; write seconds, such as 0.25")
     return {name: float(cast("float", value)) for name, value in stated.items()}
 
 

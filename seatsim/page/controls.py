@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from seatsim.schema.errors import InputError
+from seatsim.schema.validation import is_finite_number
 
 
 class Slider(NamedTuple):
@@ -44,8 +44,7 @@ def read_number(request: Mapping[str, Any], slider: Slider) -> float:
         InputError: it is no number, or outside the range.
     """
     value = request.get(slider.name, slider.value)
-    number = not isinstance(value, bool) and isinstance(value, int | float) and math.isfinite(value)
-    if not number or not slider.low <= value <= slider.high:
+    if not is_finite_number(value) or not slider.low <= value <= slider.high:
         raise InputError(f"{slider.label}: {value!r} is not permitted; {slider.low:g} to {slider.high:g} {slider.unit}")
     return float(value)
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeGuard, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from seatsim.effects.base import EFFECTS
 from seatsim.rig.coil import Coil
@@ -23,7 +22,7 @@ from seatsim.scenario.scenario import Control, DamperChoice, Inverse, Scenario, 
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.registry import Record, Registry
 from seatsim.schema.text import explain_bad_name
-from seatsim.schema.validation import build, check_keys, chosen_class, mapping, sweep_hint
+from seatsim.schema.validation import build, check_keys, chosen_class, is_finite_number, mapping, sweep_hint
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
 
@@ -132,7 +131,7 @@ def _control(values: object, source: Source) -> Control:
     law = cast("Law", build(cls, own, source, keys))
     if sample_time is None:
         return Control(law, None, inverse, sensors)
-    if not (_is_number(sample_time) and 0 < sample_time <= 1):
+    if not (is_finite_number(sample_time) and 0 < sample_time <= 1):
         raise source.error(
             (*keys, "sample_time"),
             f"{sample_time!r} is not permitted; it must be 0 to 1 s{sweep_hint(sample_time, (*keys, 'sample_time'))}",
@@ -146,7 +145,7 @@ def _inverse(values: object, source: Source) -> Inverse:
     temperature = mapping(values, source, keys).get("temperature", "measured")
     if temperature == "measured":
         return Inverse(damper, None)
-    if not _is_number(temperature):
+    if not is_finite_number(temperature):
         raise source.error((*keys, "temperature"), f"{temperature!r} is not permitted; a number in degC or 'measured'")
     return Inverse(damper, float(temperature))
 
@@ -156,10 +155,6 @@ def _resolve_path(own: dict[str, object], key: str, source: Source) -> None:
     name = own.get(key)
     if isinstance(name, str):
         own[key] = str(source.path.parent / name)
-
-
-def _is_number(value: object) -> TypeGuard[float]:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _excitation(values: object, source: Source) -> Excitation:

@@ -10,12 +10,11 @@ A row names a run by what sets it apart, and gives metrics of it in SI units.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, cast
 
 from seatsim.metrics import METRICS
-from seatsim.schema.validation import check_keys, mapping
+from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 
 
@@ -54,5 +53,5 @@ def check_published(source: Source, labels: Sequence[str]) -> None:
         check_keys(row, [*naming, "variant", "temperature", *METRICS], source, keys)
         for name in [name for name in row if name in METRICS]:
             value = row[name]
-            if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            if not is_finite_number(value):
                 raise source.error((*keys, name), f"{value!r} is not permitted; it must be a finite number")

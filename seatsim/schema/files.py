@@ -219,6 +219,11 @@ def write_text(path: Path, text: str, lasting: bool = False) -> Path:
     return write_whole(path, lambda part: part.write_text(text, encoding="utf-8"), lasting)
 
 
+def write_bytes(path: Path, content: bytes) -> Path:
+    """Write bytes whole, as `write_whole` does."""
+    return write_whole(path, lambda part: part.write_bytes(content))
+
+
 def write_json(path: Path, value: object, lasting: bool = False) -> Path:
     """Write JSON whole; numbers that JSON has no word for become null. `lasting` as for `write_whole`."""
     return write_text(path, json.dumps(plain(value), indent=2, allow_nan=False) + "\n", lasting)

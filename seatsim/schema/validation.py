@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import TypeVar, cast
+from typing import TypeGuard, TypeVar, cast
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -94,6 +94,11 @@ def chosen_class(
         return registry.find(name, source.path.parent)
     except InputError as error:
         raise source.error((*keys, key), str(error)) from error
+
+
+def is_finite_number(value: object) -> TypeGuard[float]:
+    """Return whether a value is a finite number; a truth value is none."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _check_finite(value: object, source: Source, keys: KeyPath) -> None:

@@ -95,6 +95,11 @@ def select_in_loop(effects: Sequence[object], carry_all: bool | None = None) -> 
     return select(ON_DAMPER), select(ON_SEAT)
 
 
+def has_inner_masses(driver: Driver, effects: Sequence[object]) -> bool:
+    """Return whether anything moves within the driver's body, whose energy is then not recorded."""
+    return driver.model != SINGLE_MASS or any(acts_on(type(effect), ("inner_mass",)) for effect in effects)
+
+
 def seat_driver(driver: Driver, plant: Plant, effects: Sequence[object]) -> Effects:
     """Return the body that rests on the seat as a record of the time loop; none where the driver is a single mass.
 

@@ -11,12 +11,12 @@ from seatsim.excitations.base import Floor
 from seatsim.kernel.lane_records import numbers
 from seatsim.kernel.lane_run import LaneStart
 from seatsim.kernel.loop import delay_of
-from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.rig.sensors import READINGS, Direct, at_rest
 from seatsim.rig.state import MECHANICAL
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.registry import specification_of
+from seatsim.simulation.augment import has_inner_masses
 from seatsim.simulation.effect_hooks import FRAME_FORCE, TEMPERATURE, TRUTH
 from seatsim.simulation.simulate import set_up
 
@@ -56,7 +56,7 @@ def as_device_lane(place: int, scenario: Scenario) -> DeviceLane | None:
         InputError: the scenario is wrong.
     """
     plant, control, temperature = scenario.plant, scenario.control, scenario.temperature
-    if plant is None or control is None or scenario.driver.model != SINGLE_MASS:
+    if plant is None or control is None or has_inner_masses(scenario.driver, scenario.effects):
         return None
     if any(True for hook in (TEMPERATURE, FRAME_FORCE, TRUTH) for _ in hook.of(scenario.effects)):
         return None

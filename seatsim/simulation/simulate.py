@@ -21,7 +21,6 @@ from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.work import MOST_WORK
 from seatsim.rig.control import LawWithNotes, prepare_law
-from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, at_rest
 from seatsim.rig.temperature import Thermal
@@ -34,6 +33,7 @@ from seatsim.simulation.augment import (
     augment_factors,
     augment_plant,
     augment_temperature,
+    has_inner_masses,
     seat_driver,
     select_in_loop,
     sum_frame_forces,
@@ -107,7 +107,7 @@ def simulate(
         raise diverged(scenario, reached)
     notes = setup.law.notes() if isinstance(setup.law, LawWithNotes) else ()
     history = _history(setup.rig.plant, step, out, notes)
-    return history if scenario.driver.model == SINGLE_MASS else _without_balance(history)
+    return _without_balance(history) if has_inner_masses(scenario.driver, scenario.effects) else history
 
 
 def diverged(scenario: Scenario, reached: int) -> RunError:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple, TypeGuard
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.schema.validation import check_keys, mapping
+from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath, parse_value
 
@@ -72,7 +72,7 @@ def _choose(values: Sequence[object], probabilities: Array) -> Callable[[Array],
 def _read_range(stated: Mapping[str, object], source: Source, where: KeyPath) -> list[object]:
     check_keys(stated, ("from", "to", "steps"), source, where)
     for name in ("from", "to", "steps"):
-        if not _is_number(stated.get(name)):
+        if not is_finite_number(stated.get(name)):
             raise source.error((*where, name), f"{stated.get(name)!r} is not a finite number; a range is"
                                                " {from: A, to: B, steps: N}")  # fmt: skip
     steps, ends = stated["steps"], [stated["from"], stated["to"]]
@@ -104,7 +104,7 @@ def _read_distribution(stated: Mapping[str, object], source: Source, where: KeyP
 
 
 def _read_pair(values: object, kind: str, source: Source, where: KeyPath) -> tuple[float, float]:
-    if not (isinstance(values, list) and len(values) == 2 and all(map(_is_number, values))):
+    if not (isinstance(values, list) and len(values) == 2 and all(map(is_finite_number, values))):
         raise source.error(where, f"{values!r} is not permitted; {kind} takes {DISTRIBUTIONS[kind]}")
     first, second = map(float, values)
     if kind == "uniform" and not first < second:
@@ -118,7 +118,7 @@ def _read_truncation(stated: Mapping[str, object], source: Source, where: KeyPat
     ends = []
     for name, default in (("low", -math.inf), ("high", math.inf)):
         value = stated.get(name, default)
-        if name in stated and not _is_number(value):
+        if name in stated and not is_finite_number(value):
             raise source.error((*where, name), f"{value!r} is not a finite number")
         ends.append(float(str(value)))
     if not ends[0] < ends[1]:
@@ -139,7 +139,7 @@ def _truncated_normal(u: Array, mean: float, deviation: float, low: float, high:
 def _read_choice(stated: object, source: Source, where: KeyPath) -> Callable[[Array], list[object]]:
     shares = mapping(stated, source, where)
     for value, share in shares.items():
-        if not _is_number(share) or share < 0:
+        if not is_finite_number(share) or share < 0:
             raise source.error((*where, value), f"{share!r} is not permitted; a probability is at least 0")
     probabilities = np.array(list(shares.values()), dtype=float)
     if not shares or abs(probabilities.sum() - 1) > SLIGHTLY:
@@ -149,7 +149,3 @@ def _read_choice(stated: object, source: Source, where: KeyPath) -> Callable[[Ar
 
 def _log(value: float) -> float:
     return math.log(value) if value > 0 else -math.inf
-
-
-def _is_number(value: object) -> TypeGuard[float]:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

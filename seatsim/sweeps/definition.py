@@ -19,7 +19,7 @@ from seatsim.metrics.table import METRICS
 from seatsim.scenario.finding import find_file
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.guarded import is_there, read_bytes
-from seatsim.schema.validation import check_keys, mapping
+from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import YamlError, parse_value
 from seatsim.sweeps.axes import Axis, read_axis
@@ -135,7 +135,7 @@ def _read_limits(source: Source) -> Mapping[str, float]:
     stated = mapping(source.data.get("limits", {}), source, ("limits",))
     check_keys(stated, METRICS, source, ("limits",))
     for name, value in stated.items():
-        if isinstance(value, bool) or not isinstance(value, int | float):
+        if not is_finite_number(value):
             raise source.error(
                 ("limits", name), f"{value!r} is not permitted; it must be a finite number in {METRICS[name].unit}"
             )

@@ -73,17 +73,28 @@ def read_states(folder: Path, runs: int) -> Iterator[tuple[int, str, str]]:
 
 
 def _read_columns(folder: Path, part: int, names: Sequence[str]) -> Mapping[str, list[Any]]:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
     path = part_path(folder, part)
     if not path.exists():
         return {name: [] for name in names}
+    table = read_part(path, names)
+    return {name: table.column(name).to_pylist() for name in names}
+
+
+def read_part(path: Path, names: Sequence[str] | None = None) -> pa.Table:
+    """Return the rows of a part, with these columns or with all.
+
+    Raises:
+        InputError: the file is no part of a sweep.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     try:
-        table = pq.ParquetFile(path).read(columns=list(names))
-        return {name: table.column(name).to_pylist() for name in names}
-    except (pa.ArrowException, OSError, KeyError) as error:
+        table = pq.ParquetFile(path).read(columns=names if names is None else list(names))
+        table.select(names or [*LEADING, *METRICS])
+    except (pa.ArrowException, OSError, KeyError, ValueError) as error:
         raise InputError(f"{path}: is no part of a sweep: {error}; remove it, and its runs run again") from error
+    return table
 
 
 def write_outcomes(folder: Path, part: int, plan: Plan, schema: pa.Schema, outcomes: Iterable[Outcome]) -> Path:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from seatsim.schema.errors import InputError
 from seatsim.sweeps.manifest import read_manifest
+from seatsim.sweeps.parts import read_part
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,14 +23,18 @@ def read_sweep(folder: str | Path) -> pd.DataFrame:
     Raises:
         InputError: the folder holds no sweep, or none of its runs has ended.
     """
-    import pyarrow.dataset as ds
+    import pyarrow as pa
 
     folder = Path(folder)
     read_manifest(folder)
     parts = sorted(folder.glob("runs/part-*.parquet"))
     if not parts:
         raise InputError(f"{folder}: no run of this sweep has ended; go on with it with --resume")
-    table = ds.dataset([str(part) for part in parts], format="parquet").to_table()
+    tables = [read_part(part) for part in parts]
+    try:
+        table = pa.concat_tables(tables)
+    except pa.ArrowInvalid as error:
+        raise InputError(f"{folder}: holds parts of different sweeps: {error}; choose another folder") from error
     frame: pd.DataFrame = table.to_pandas()
     frame.attrs["units"] = units_of(table.schema)
     return frame

@@ -30,7 +30,7 @@ def test_an_ablation_takes_one_part_away_and_leaves_the_others(benchmark):
                        if own is not usual] for name, part in parts.items()}  # fmt: skip
     assert replaced == {
         "blocks": ["share_gap"], "nuisance": [], "instruments": ["select_effects", "decide_verdict"],
-        "null": ["decide_verdict"], "material": [], "whitening": ["weigh_noise"],
+        "null": ["decide_verdict"], "material": [], "whitening": ["weigh_noise"], "shortcuts": [],
     }  # fmt: skip
 
 

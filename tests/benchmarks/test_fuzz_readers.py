@@ -17,8 +17,8 @@ def readers(fuzzing):
 
 @pytest.mark.parametrize(
     "name",
-    ["scenario", "variants", "recording", "table", "bench", "sweep", "design", "import", "formats", "synthesis",
-     "diagnosis", "manifest", "sealed"],
+    ["scenario", "variants", "recording", "table", "bench", "sweep", "design", "floor", "rows", "resumed", "unit",
+     "import", "map", "formats", "synthesis", "diagnosis", "manifest", "sealed"],
 )  # fmt: skip
 def test_damaged_files_are_read_or_refused_by_a_sentence(fuzzing, readers, name):
     found = fuzzing.fuzz(readers[name], MUTANTS, seed=7, limit=60.0)
@@ -27,7 +27,7 @@ def test_damaged_files_are_read_or_refused_by_a_sentence(fuzzing, readers, name)
 
 
 def test_every_reader_is_fuzzed(readers):
-    assert len(readers) == 13
+    assert len(readers) == 18
 
 
 def test_valid_files_are_read(readers, tmp_path):
@@ -35,5 +35,6 @@ def test_valid_files_are_read(readers, tmp_path):
         folder = tmp_path / name
         folder.mkdir()
         for file, content in reader.files.items():
+            (folder / file).parent.mkdir(exist_ok=True)
             (folder / file).write_bytes(content)
         reader.read(folder)

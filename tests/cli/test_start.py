@@ -37,9 +37,8 @@ def stuck(answer, place):
     return process
 
 
-@pytest.mark.parametrize(
-    "answer", ["pass", "_imp.acquire_lock()"]
-)  # which an interrupt within an import may leave locked
+# An interrupt within an import may leave its lock held.
+@pytest.mark.parametrize("answer", ["pass", "_imp.acquire_lock()"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_main_thread_that_does_not_answer_is_not_waited_for(number, answer, tmp_path):
     process = stuck(answer, tmp_path)

@@ -75,6 +75,15 @@ def test_what_is_no_archive_is_refused(tmp_path):
         describe_unit(path)
 
 
+@pytest.mark.parametrize("cut", [1, 30, -30])
+def test_a_damaged_archive_is_refused(pack, cut):
+    path = pack(HERE)
+    content = path.read_bytes()
+    path.write_bytes(content[cut:])
+    with pytest.raises(InputError, match="is no archive"):
+        describe_unit(path)
+
+
 def test_an_archive_without_description_is_refused(pack):
     with pytest.raises(InputError, match=r"has no modelDescription\.xml"):
         describe_unit(pack(HERE, ""))

@@ -106,6 +106,12 @@ def test_each_form_moves_a_channel_at_its_start(even, nominal, name):
         assert distance(shaken(even, placed), nominal) > 1e-3, effect
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_random_parameters_give_finite_runs_that_a_shorter_run_begins(benchmark, name):
+    found = benchmark("part_space").check("effect", name, 4, seed=1)
+    assert set(found.counts) <= {"open", "refused"}, found.cases
+
+
 def test_the_order_of_effects_does_not_matter(bingham):
     effects = [starts(name)[0] for name in WITH_FORMS if not name.startswith("sensor.")]
     assert distance(shaken(bingham, *effects), shaken(bingham, *effects[::-1])) < 1e-12

@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from seatsim.scenario.scenario import Start
+from seatsim.simulation.runs import measure_run
+from seatsim.simulation.simulate import simulate
+from seatsim.simulation.validity import list_reasons
 
 from .rigs import distance, record, seat, shaken
 
@@ -115,6 +118,14 @@ def test_separation_limits_the_tension(bingham, held):
 def test_a_heavier_driver_is_a_plant_with_a_heavier_driver(bingham):
     heavier = replace(bingham, plant=bingham.plant._replace(driver_mass=95.0))
     assert distance(shaken(bingham, record("driver.mass", change=15.0)), shaken(heavier)) < 1e-12
+
+
+def test_a_body_of_its_own_has_no_energy_balance_and_is_not_marked_for_it(tmp_path):
+    effect = record("driver.biodynamics", share=0.3, frequency=5.0, damping=0.2)
+    scenario = replace(seat(tmp_path), effects=(effect,))
+    history = simulate(scenario, carry_all_effects=True)
+    assert np.all(np.isnan(history["energy_floor"]))
+    assert not any("energy" in reason for reason in list_reasons(scenario, history, measure_run(scenario, history)))
 
 
 def test_the_body_resonates_near_its_frequency(tmp_path):

@@ -79,6 +79,12 @@ def test_same_seed_same_motion_and_any_step(made):
     np.testing.assert_allclose(coarse.displacement[: len(shared)], shared, atol=1e-3 * np.abs(shared).max())
 
 
+@pytest.mark.parametrize("name", ["bumps", "chirp", "iso7096", "rest", "road", "sine", "stepped_sine"])
+def test_random_parameters_give_a_finite_floor_that_repeats_itself_at_any_step(benchmark, name):
+    found = benchmark("part_space").check("excitation", name, 8, seed=1)
+    assert set(found.counts) <= {"refused"}, found.cases
+
+
 @pytest.mark.parametrize(
     ("cls", "mapping"),
     [m for m in MAPPINGS if m[0] in (Road, Iso7096)],

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.importing.importing import import_files
+from seatsim.importing.inspection import inspect_file
 from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
 
@@ -93,3 +94,13 @@ def test_a_missing_library_is_one_sentence_with_the_command(tmp_path, monkeypatc
     monkeypatch.setitem(sys.modules, "nptdms", None)
     with pytest.raises(InputError, match=r'pip install "seatsim\[formats\]"'):
         read_file(path)
+
+
+@pytest.mark.parametrize("number", ["inf", "-1e300"])
+def test_numbers_beyond_all_measurements_are_rows_without_a_number(tmp_path, number):
+    rows = "".join(f"{0.002 * row},{number if row == 40 else row % 7}\n" for row in range(1000))
+    (tmp_path / "a.csv").write_text("time,force [N]\n" + rows)
+    (group,) = read_file(tmp_path / "a.csv").groups
+    values = group.signals[-1].values
+    assert np.isnan(values[40]) and np.isfinite(np.delete(values, 40)).all()
+    assert inspect_file(tmp_path / "a.csv")

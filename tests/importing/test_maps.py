@@ -126,7 +126,9 @@ runs:
         ("channels: {floor_acceleration: {unit: g}}", "give either the name of its column"),
         ("channels: {floor_acceleration: {column: a}}\nruns: {a: b}", "is no list of files"),
         ("channels: {floor_acceleration: {column: a}}\ngaps: cut", "gaps"),
-        ("channels: {floor_acceleration: {column: a}}\nalign: {b: soon}", "is no number"),
+        ("channels: {floor_acceleration: {column: a}}\nalign: {b: soon}", "is no finite number"),
+        ("channels: {floor_acceleration: {column: a}}\nalign: {b: .nan}", "is no finite number"),
+        ("channels: {floor_acceleration: {column: a}}\nsample_rate: 1.0e-300", "must be at least 0.001 Hz"),
     ],
 )
 def test_a_wrong_map_is_one_clear_error(tmp_path, text, expected):

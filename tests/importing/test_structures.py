@@ -3,9 +3,10 @@
 import numpy as np
 import pandas as pd
 import pytest
-from scipy.io import savemat
+from scipy.io import loadmat, savemat
 
 from seatsim.importing.importing import import_files
+from seatsim.importing.readers.mat_elements import read_variables
 from seatsim.importing.readers.reading import read_file
 
 from .helpers import read_run
@@ -107,3 +108,18 @@ def test_units_stand_in_the_metadata_of_parquet(tmp_path):
     )
     assert found_in(read_file(tmp_path / "a.parquet")) == {("", "t"): ("ms", None), ("", "acc floor"): ("g", None)}
     assert import_files([tmp_path / "a.parquet"], tmp_path / "out").rate == 500.0
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_variables_of_mat_files_are_those_that_scipy_reads(tmp_path, packed):
+    inner = {"x": np.eye(2), "unit": "m/s²", "deeper": {"y": np.arange(3.0)}}
+    stored = {"matrix": np.arange(6.0).reshape(2, 3), "short": np.arange(5, dtype=np.int16), "text": "hällo",
+              "on": np.array([True, False]), "empty": np.zeros((0, 3)), "inner": inner,
+              "cells": np.array(["a", 1.0], dtype=object), "complex": np.array([1 + 2j])}  # fmt: skip
+    savemat(tmp_path / "a.mat", stored, do_compression=packed)
+    found, expected = read_variables((tmp_path / "a.mat").read_bytes()), loadmat(tmp_path / "a.mat")
+    for name in ("matrix", "short", "on", "empty"):
+        assert np.array_equal(found[name], expected[name])
+    assert found["text"] == "hällo" and found["inner"]["unit"] == "m/s²"
+    assert np.array_equal(found["inner"]["x"], np.eye(2)) and found["inner"]["deeper"]["y"].tolist() == [[0, 1, 2]]
+    assert found["cells"] is None and found["complex"] is None

@@ -5,11 +5,16 @@ import numpy as np
 import pytest
 
 import seatsim
+from controllers.laws.gaussian import Lqg
+from controllers.laws.quadratic import Lqr
+from controllers.optimal.regulator import QuadraticWeights
 from seatsim.kernel.generic import evaluate_law, update
-from seatsim.rig.control import Measurement
+from seatsim.rig.control import Measurement, prepare_law
+from seatsim.schema.errors import SynthesisError
 
-from .records import LAWS, NOT_LINEAR, REQUIRED, ready
+from .records import COIL, LAWS, NOT_LINEAR, REQUIRED, SEAT, ready
 
+WIDE = QuadraticWeights(travel=345.0, acceleration=67148.0, force=2e-9)
 NOISY = {"displacement_noise": 1e-4, "acceleration_noise": 0.05}
 
 
@@ -53,6 +58,18 @@ def test_laws_without_a_linear_loop_only_take_energy_from_a_released_seat(interp
     energy = seatsim.run(kept_seat_file, rest).runs[0]["energy_stored"]
     assert energy.max() <= energy[0] * (1 + 1e-9)
     assert energy[-1] < energy[0]
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_random_parameters_give_finite_answers_that_only_the_state_decides(benchmark, law):
+    found = benchmark("part_space").check("law", law, 6, seed=1)
+    assert set(found.counts) <= {"refused"}, found.cases
+
+
+def test_weights_too_far_apart_are_refused():
+    for law in (Lqr(WIDE), Lqg(WIDE)):
+        with pytest.raises(SynthesisError, match=r"Riccati equation of the .* has no solution in numbers"):
+            prepare_law(law, SEAT, COIL, 0.005)
 
 
 def test_a_run_follows_its_seed_and_nothing_else(interpreted, kept_seat_file):

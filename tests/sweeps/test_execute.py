@@ -5,10 +5,12 @@ import subprocess
 import sys
 import time
 
+import pandas as pd
 import pytest
 
 import seatsim
 from seatsim.metrics.table import METRICS
+from seatsim.schema.errors import InputError
 from seatsim.sweeps import parts
 from seatsim.sweeps.engines.base import simulate_one
 from seatsim.sweeps.execute import Share
@@ -35,6 +37,28 @@ def test_rows_hold_state_keys_metrics_and_units(write_sweep, carry_out, tmp_path
     assert result.counts == {"runs": 4, "done": 4, "failed": 0, "unverified": 0, "pending": 0}
     manifest = json.loads((tmp_path / "out" / "manifest.json").read_text())
     assert set(manifest) >= {"identity", "versions", "seed", "counts"} and manifest["seed"] == 3
+
+
+@pytest.mark.parametrize("content", [b"PAR1 and no rows", b""])
+def test_a_damaged_part_is_named(write_sweep, carry_out, tmp_path, content):
+    carry_out(write_sweep(vary=MASSES, runs=2))
+    (part,) = (tmp_path / "out" / "runs").iterdir()
+    part.write_bytes(content)
+    with pytest.raises(InputError, match=r"part-000000\.parquet: is no part of a sweep"):
+        seatsim.read_sweep(tmp_path / "out")
+
+
+def test_parts_of_different_sweeps_and_foreign_tables_are_named(write_sweep, carry_out, tmp_path):
+    carry_out(write_sweep(vary=MASSES, runs=2))
+    (part,) = (tmp_path / "out" / "runs").iterdir()
+    other = pd.read_parquet(part)
+    other.drop(columns=MASS).to_parquet(part.with_name("part-000001.parquet"))
+    with pytest.raises(InputError, match="holds parts of different sweeps"):
+        seatsim.read_sweep(tmp_path / "out")
+    for missing in ("state", "driver_vdv"):
+        other.drop(columns=missing).to_parquet(part)
+        with pytest.raises(InputError, match=f"is no part of a sweep: .*{missing}"):
+            seatsim.read_sweep(tmp_path / "out")
 
 
 def test_a_row_is_what_the_run_alone_gives(write_sweep, carry_out, tmp_path, seat_file):

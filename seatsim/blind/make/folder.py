@@ -15,6 +15,7 @@ from ruamel.yaml import YAML
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, RunPlan
 from seatsim.blind.truth.noise import colour_noise
 from seatsim.blind.truth.sensors import Readings
+from seatsim.schema.files import write_together
 
 UNITS = {
     "floor_acceleration": "m/s^2", "frame_acceleration": "m/s^2", "driver_acceleration": "m/s^2",
@@ -123,11 +124,17 @@ def encode_recording(
 
 
 def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Write a folder under another name first, then rename it; its time stamps do not reveal how long a draw took."""
-    part = folder.with_name(f".{folder.name}.part")
-    part.mkdir(parents=True, exist_ok=True)
-    for name, content in files.items():
-        (part / name).write_bytes(content)
-        os.utime(part / name, (EPOCH, EPOCH))
-    os.utime(part, (EPOCH, EPOCH))
-    part.replace(folder)
+    """Write a folder, whole or not at all; its time stamps do not reveal how long a draw took.
+
+    Raises:
+        InputError: it cannot be written. OutputError: the disk is full.
+    """
+
+    def fill(part: Path) -> list[Path]:
+        for name, content in files.items():
+            (part / name).write_bytes(content)
+            os.utime(part / name, (EPOCH, EPOCH))
+        os.utime(part, (EPOCH, EPOCH))
+        return [part / name for name in files]
+
+    write_together(folder, fill)

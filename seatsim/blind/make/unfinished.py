@@ -7,7 +7,6 @@ deleted when the file is sealed.
 from __future__ import annotations
 
 import json
-import os
 import secrets
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import TypedDict, cast
 from seatsim.blind.labels import Label
 from seatsim.blind.sealed import SEAL, Sealed, new_key
 from seatsim.schema.errors import InputError
+from seatsim.schema.files import make_folder, write_bytes, write_text
 
 
 class State(TypedDict):
@@ -60,15 +60,13 @@ def begin_or_resume(
 
 
 def _write_state(note: Path, folder: Path, state: State) -> None:
-    """Write the note where only the owner can read it, since its key opens the labels."""
+    """Write the note into a folder that only the owner can read, since its key opens the labels."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         note.parent.mkdir(parents=True, mode=0o700)
     except OSError as error:
         raise InputError(f"{note.parent}: cannot be written: {error.strerror}; give another --sealed") from error
-    handle = os.open(note, os.O_WRONLY | os.O_CREAT, 0o600)
-    with os.fdopen(handle, "w", encoding="utf-8") as stream:
-        json.dump(state, stream)
+    write_text(note, json.dumps(state))
 
 
 def is_finished(folder: Path, partial: Path, name: str) -> bool:
@@ -78,14 +76,14 @@ def is_finished(folder: Path, partial: Path, name: str) -> bool:
 
 def keep_unseen(partial: Path, name: str, files: dict[str, bytes]) -> None:
     """Write the unseen recording of a case."""
-    (partial / name).mkdir(exist_ok=True)
+    make_folder(partial / name)
     for file, content in files.items():
-        (partial / name / file).write_bytes(content)
+        write_bytes(partial / name / file, content)
 
 
 def keep_label(partial: Path, name: str, label: Label) -> None:
     """Write the label of a case; it marks the case as finished."""
-    (partial / f"{name}.json").write_text(json.dumps(label), encoding="utf-8")
+    write_text(partial / f"{name}.json", json.dumps(label))
 
 
 def gather(state: State, partial: Path) -> Sealed:

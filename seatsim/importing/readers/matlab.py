@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import cast
 
 import numpy as np
-from scipy.io import loadmat
 
+from seatsim.importing.readers.mat_elements import Value, read_variables
 from seatsim.importing.readers.naming import as_text, signals_of, stated_rate, stated_unit
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import DataFile, Group, Signal, groups_by_length
@@ -20,35 +18,23 @@ VALUES = ("values", "data", "signal", "y")
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the variables of a file; a structure is a group, or a channel where it has values and a unit."""
-    stored = loadmat(cast("str", io.BytesIO(content)), squeeze_me=True)  # its stubs know names of files alone
-    variables = {name: value for name, value in stored.items() if not name.startswith("__")}
-    return DataFile(path, "", tuple(_groups("", variables)))
+    return DataFile(path, "", tuple(_groups("", read_variables(content))))
 
 
-def _groups(name: str, variables: Mapping[str, object]) -> Iterator[Group]:
+def _groups(name: str, variables: Mapping[str, Value]) -> Iterator[Group]:
     """Yield the channels that stand beside each other, then those of every structure among them."""
     units = variables.get("units", variables.get("unit"))
-    own = _fields(units) if units is not None else None
+    own = units if isinstance(units, dict) else {}
     signals: list[Signal] = []
-    inner: list[tuple[str, Mapping[str, object]]] = []
+    inner: list[tuple[str, Mapping[str, Value]]] = []
     for key, value in variables.items():
-        fields = _fields(value)
-        if fields is None:
-            signals += signals_of(key, np.asarray(value), as_text((own or {}).get(key, "")))
-        elif (channel := next((field for field in VALUES if field in fields), None)) and stated_unit(fields):
-            signals += signals_of(key, np.asarray(fields[channel]), stated_unit(fields))
+        if not isinstance(value, dict):
+            signals += signals_of(key, np.asarray(value), as_text(own.get(key, "")))
+        elif (channel := next((field for field in VALUES if field in value), None)) and stated_unit(value):
+            signals += signals_of(key, np.asarray(value[channel]), stated_unit(value))
         else:
-            inner.append((f"{name}.{key}" if name else key, fields))
+            inner.append((f"{name}.{key}" if name else key, value))
     if signals:
         yield from groups_by_length(name, signals, stated_rate(variables))
     for title, held in inner:
         yield from _groups(title, held)
-
-
-def _fields(value: object) -> dict[str, object] | None:
-    """Return the fields of a structure, None where a value is none."""
-    array = np.asarray(value)
-    if array.dtype.names is None or array.size != 1:
-        return None
-    record = array.reshape(-1)[0]
-    return {name: record[name] for name in array.dtype.names}

@@ -20,6 +20,8 @@ LARGEST_SHEETS = 2**30
 SNIFFED = 4096
 """Bytes from which a format is recognised."""
 LEAST_ROWS = 2
+LARGEST_NUMBER = 1e100
+"""What is larger, or infinite, was never measured and counts as a row without a number: its square overflows."""
 
 
 class TextLayout(NamedTuple):
@@ -149,12 +151,13 @@ def _checked(file: DataFile) -> DataFile:
 
 
 def _named_once(group: Group) -> Group:
-    """Return a group whose channels have distinct names: a second `force` is `force#2`."""
+    """Return a group whose channels hold finite numbers and have distinct names: a second `force` is `force#2`."""
     seen: dict[str, int] = {}
     signals = []
     for signal in group.signals:
         seen[signal.name] = seen.get(signal.name, 0) + 1
         number = seen[signal.name]
-        values = np.ascontiguousarray(signal.values, dtype=np.float64)
+        values = np.asarray(signal.values, dtype=np.float64)
+        values = np.where(np.abs(values) <= LARGEST_NUMBER, values, np.nan)
         signals.append(signal._replace(name=f"{signal.name}#{number}" if number > 1 else signal.name, values=values))
     return group._replace(signals=tuple(signals))

@@ -1,6 +1,7 @@
 """Selection on a linear rig: the planted effects are found among decoys, along each of the paths of the search."""
 
 import dataclasses
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -78,6 +79,21 @@ def test_two_planted_effects_are_found_among_decoys():
         term.effect: values[0] for term, values in zip(best.parameters.terms, best.parameters.values, strict=True)
     }
     assert amounts == pytest.approx({"true.one": 1.4, "true.two": -0.6}, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "amounts",
+    [{"true.one": 1.4}, {"true.one": 1.4, "true.two": -0.6}, {"true.one": 0.3, "true.two": 0.25, "true.three": -0.2},
+     {"decoy.mix": 0.8, "true.two": 0.5}, {"true.one": 1.0, "true.two": 0.9}],
+)  # fmt: skip
+def test_no_shortcut_of_the_search_misses_the_best_of_all_sets(amounts):
+    objective, offered = pose(amounts, MIXED), ("decoy.mix", *DECOYS[1:], *PLANTED)
+    found, _ = search(objective, offered)
+    assert len(found.sets) > len(amounts)
+    for size, sets in enumerate(found.sets):
+        best = min(combinations(offered, size), key=lambda names: best_cost(objective, names))
+        assert sets[0].parameters.names == set(best)
+        assert sets[0].cost == pytest.approx(best_cost(objective, best), rel=1e-5)
 
 
 def test_sets_are_in_the_order_of_their_cost_and_each_once():
