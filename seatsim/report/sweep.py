@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -34,7 +34,8 @@ MOST_REASONS = 8
 ENOUGH = 0.8
 """Share of the variance that an expansion must predict before nothing is said about it."""
 METHOD = (
-    "Every run has a seed of its own, derived from the sweep's; failed and unverified runs take no part in any figure.",
+    "All runs have the seed of the scenario, to which a replicate adds its number.",
+    "Failed and unverified runs take no part in any figure.",
     "Shares of variance are Sobol indices of a polynomial chaos expansion, with 95 % intervals by resampling the runs;"
     " they assume that keys vary independently, as this design has them.",
     "Shares of runs above a limit have Wilson's interval of 95 %.",
@@ -79,12 +80,13 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> str:
     words = describe_column(chosen.metric, rows.units).words
     what = "tolerances" if rows.drawn else "varied keys"
     many = len(rows.drawn or [row for row in here if row.key != "variant"])
-    among = f"Of {many} {what} {chosen.key} matters most" if many > 1 else f"{chosen.key} is the only one of the {what}"
-    return (
-        f"{among} to {words}: it explains {format_percent(chosen.total)} of its variance with its interactions (95 %"
-        f" interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}), "
-        f"{format_percent(chosen.first)} alone."
-    )
+    total, alone = format_percent(chosen.total), format_percent(chosen.first)
+    interval = f"95 % interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}"
+    if many > 1:
+        said = f"Of {many} {what} {chosen.key} matters most to {words}: it explains {total} of its variance"
+    else:
+        said = f"{chosen.key}, the only one of the {what}, explains {total} of the variance of {words}"
+    return f"{said} with its interactions ({interval}), {alone} alone."
 
 
 def _count_runs(rows: SweepRows) -> str:
@@ -151,7 +153,7 @@ def _show_sensitivity(found: Sensitivities, rows: SweepRows) -> list[Block]:
     for metric in dict.fromkeys(metrics or [_main_metric(found)]):
         here = found.of(metric)
         words = describe_column(metric, rows.units).words
-        blocks += [_draw_shares(here, words), _list_swings(here, rows)]
+        blocks += [_draw_shares(here, words), _draw_tornado(here, rows)]
         if here[0].explained < ENOUGH:
             known = format_percent(max(0.0, here[0].explained))
             blocks.append(Text(f"The expansion predicts {known} of the variance of {words} of runs left out; the rest"
@@ -171,23 +173,20 @@ def _draw_shares(found: Sequence[Sensitivity], words: str) -> Bars:
     return Bars(f"What {words} hangs on", caption, "key", bars)
 
 
-class Swing(NamedTuple):
-    """A value of a key and the mean of a metric there."""
-
-    level: object
-    mean: float
-
-
-def _list_swings(found: Sequence[Sensitivity], rows: SweepRows) -> Table:
-    shown = describe_column(found[0].metric, rows.units)
-    lines = []
-    for row in found[:MOST_KEYS]:
-        ends = (Swing(row.low, row.at_low), Swing(row.high, row.at_high))
-        values = [text for end in ends for text in (format_level(end.level), format_number(shown.factor * end.mean))]
-        lines.append([row.key, rows.units.get(row.key, ""), *values])
-    head = ["key", "unit", "low value", "mean there", "high value", "mean there"]
-    caption = f"Mean of {shown.axis} at the 5 % and the 95 % quantile of each key (of a text: least and greatest mean)"
-    return Table(caption, head, lines, 2)
+def _draw_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Bars:
+    """Return from where to where the mean of a metric goes between a low and a high value of each key."""
+    shown, strongest = describe_column(found[0].metric, rows.units), found[:MOST_KEYS]
+    means = [mean for row in strongest for mean in (row.at_low, row.at_high)]
+    least, scale = min(means), 100 / ((max(means) - min(means)) or 1.0)
+    bars = []
+    for row in strongest:
+        start, end = sorted(round(scale * (mean - least), 2) for mean in (row.at_low, row.at_high))
+        ends = ((row.low, row.at_low), (row.high, row.at_high))
+        texts = [f"{format_number(shown.factor * mean)} at {format_level(level)}" for level, mean in ends]
+        unit = rows.units.get(row.key, "")
+        bars.append(Bar(row.key, start, end, f"{texts[0]}, {texts[1]} {unit}".rstrip(" -")))
+    caption = "Between the 5 % and the 95 % quantile of each key; of a text, between its least and its greatest mean."
+    return Bars(f"How far each key moves the mean of {shown.axis}", caption, "key", bars)
 
 
 def _known(value: float) -> float:
