@@ -1,4 +1,6 @@
-"""What a sweep costs beside the runs in it, and how it grows: `python benchmarks/sweep_speed.py [RUNS] [--growth FILE]`.
+"""What a sweep costs beside the runs in it, and how that grows.
+
+    python benchmarks/sweep_speed.py [RUNS] [--growth FILE]
 
 Runs of 10 s at 1 kHz of the H-infinity seat of `road-d` and its two passive variants, with drawn masses and
 stiffnesses. Each line is of a process of its own: the compiled loop alone; every run with its set-up and metrics on a
@@ -6,8 +8,8 @@ floor that is at hand, before and after what it is compared with; a sweep of RUN
 the same, two at once. Given are the time of processors and on the clock for each run, and the largest memory of all
 processes together. On a machine that others use the times of processors are what can be compared.
 
-With `--growth` are measured instead sweeps of 100, 300, 1000, ... up to RUNS runs, two at once, and their reports. Their
-times are fitted by `start + runs * each` and drawn over the runs in FILE.
+With `--growth` are measured instead sweeps of 100, 300, 1000, ... up to RUNS runs, two at once, and their reports. The
+times of the sweeps are fitted by `start + runs * each`, and all is drawn over the runs in FILE.
 """
 
 from __future__ import annotations
