@@ -137,8 +137,10 @@ def kill_once(file: Path, out: Path, victim: str, moment: float, expected: dict[
 
 
 def read_bytes(out: Path) -> dict[str, bytes]:
-    """Return what a sweep holds by file."""
-    return {path.name: path.read_bytes() for path in [*out.glob("runs/*.parquet"), out / "manifest.json"]}
+    """Return what a sweep holds by file; its manifest names its folder, which is another one in each sweep."""
+    own = f'"folder": "{out.name}"'.encode()
+    files = [*out.glob("runs/*.parquet"), out / "manifest.json"]
+    return {path.name: path.read_bytes().replace(own, b"") for path in files}
 
 
 if __name__ == "__main__":
