@@ -129,7 +129,7 @@ def _await_outcomes(future: Any) -> list[Outcome]:
     """Return the outcomes of a task.
 
     Raises:
-        RunError: the scheduler was lost, the task ended one worker after the other, or its worker lacks what it needs.
+        RunError: the scheduler was lost, the task ended one worker after the other, or its worker has other versions.
     """
     from asyncio import CancelledError as CancelledTaskError
     from concurrent.futures import CancelledError
@@ -140,11 +140,6 @@ def _await_outcomes(future: Any) -> list[Outcome]:
         outcomes: list[Outcome] = future.result()
     except (KilledWorker, CancelledError, CancelledTaskError, OSError) as error:
         raise RunError(f"the cluster was lost ({type(error).__name__}: {error}); go on with --resume") from error
-    except (ImportError, AttributeError, RuntimeError) as error:  # what a task raises before the first line of it runs
-        raise RunError(
-            f"a worker cannot take a task ({error.__cause__ or error}); install this version of seatsim and its"
-            " libraries there, and go on with --resume"
-        ) from error
     return outcomes
 
 
