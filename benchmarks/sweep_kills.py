@@ -1,6 +1,6 @@
 """Kill a sweep at random moments and compare what a resumed one holds with an undisturbed one, bit for bit.
 
-    python benchmarks/sweep_kills.py [KILLS] [--victim command|worker|scheduler]
+    python benchmarks/sweep_kills.py [KILLS] [--victim command|worker|scheduler] [--seed N]
 
 Each kill is `kill -9`, at a moment that is uniform over the runs of an undisturbed sweep: of the command itself, of a
 worker of a dask cluster, which the sweep survives, or of its scheduler, which ends the command. Then the sweep is
@@ -38,8 +38,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("kills", nargs="?", type=int, default=30)
     parser.add_argument("--victim", choices=("command", "worker", "scheduler"), default="command")
+    parser.add_argument("--seed", type=int, default=0, help="draws the moments")
     options = parser.parse_args()
-    rng = random.Random(0)
+    rng = random.Random(options.seed)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         file = folder / "sweep.yaml"
@@ -136,8 +137,10 @@ def kill_once(file: Path, out: Path, victim: str, moment: float, expected: dict[
 
 
 def read_bytes(out: Path) -> dict[str, bytes]:
-    """Return what a sweep holds by file."""
-    return {path.name: path.read_bytes() for path in [*out.glob("runs/*.parquet"), out / "manifest.json"]}
+    """Return what a sweep holds by file; its manifest names its folder, which is another one in each sweep."""
+    own = f'"folder": "{out.name}"'.encode()
+    files = [*out.glob("runs/*.parquet"), out / "manifest.json"]
+    return {path.name: path.read_bytes().replace(own, b"") for path in files}
 
 
 if __name__ == "__main__":

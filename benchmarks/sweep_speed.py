@@ -1,11 +1,15 @@
-"""What a sweep costs beside the runs in it, and how it grows: `python benchmarks/sweep_speed.py [RUNS] [--plot FILE]`.
+"""What a sweep costs beside the runs in it, and how that grows.
+
+    python benchmarks/sweep_speed.py [RUNS] [--growth FILE]
 
 Runs of 10 s at 1 kHz of the H-infinity seat of `road-d` and its two passive variants, with drawn masses and
 stiffnesses. Each line is of a process of its own: the compiled loop alone; every run with its set-up and metrics on a
-floor that is at hand; a sweep of RUNS runs (10 000 by default), one at once; sweeps of 100, 300, 1000, ... up to RUNS
-runs, two at once. Given are the time of processors and on the clock for each run, and the largest memory of all
-processes together. The time of the latter is then fitted by `start + runs * each`. On a machine that others use the
-times of processors are what can be compared.
+floor that is at hand, before and after what it is compared with; a sweep of RUNS runs (10 000 by default), one at once;
+the same, two at once. Given are the time of processors and on the clock for each run, and the largest memory of all
+processes together. On a machine that others use the times of processors are what can be compared.
+
+With `--growth` are measured instead sweeps of 100, 300, 1000, ... up to RUNS runs, two at once, and their reports. The
+times of the sweeps are fitted by `start + runs * each`, and all is drawn over the runs in FILE.
 """
 
 from __future__ import annotations
@@ -24,7 +28,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from seatsim.cli.outputs.sweeps import report_sweep
 from seatsim.kernel.loop import run_loop
 from seatsim.metrics import summarise
 from seatsim.scenario.scenario import Scenario
@@ -44,9 +50,12 @@ vary:
   plant.suspension_stiffness: {{uniform: [4000, 5200]}}
 """
 VARIANTS = 3
-SIZES = (100, 300, 1000, 3000, 10_000, 30_000)
-SAMPLE, LOOPS = 900, 90
+SIZES = (100, 300, 1000, 3000, 10_000, 30_000, 100_000)
+SAMPLE, LOOPS = 2400, 90
 """Runs over which the cost of one is averaged, and runs whose arguments are kept for calls of the loop alone."""
+
+LIMIT = 1536.0
+"""Memory in MiB that a sweep of 100 000 runs may take; drawn in the picture."""
 
 
 class Cost(NamedTuple):
@@ -59,31 +68,51 @@ class Cost(NamedTuple):
 
 
 def main() -> None:
-    """Measure each in a process of its own, and fit a line to the sweeps."""
+    """Measure each in a process of its own, and compare."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("runs", nargs="?", type=int, default=10_000)
-    parser.add_argument("--plot", type=Path, help="draw the time and memory of the sweeps over their runs")
+    parser.add_argument(
+        "--growth", type=Path, help="measure how time and memory grow instead, and draw it in this file"
+    )
     parser.add_argument("--measure", help=argparse.SUPPRESS)
+    parser.add_argument("--folder", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.measure:
-        print(json.dumps(measure(options.measure, options.runs)._asdict()))
+        print(json.dumps(measure(options.measure, options.runs, options.folder)._asdict()))
         return
     print(f"{'':28}{'processors':>12}{'clock':>12}{'memory':>12}")
-    for what in ("loop", "run", "sweep-1"):
-        show(what, options.runs)
-    sizes = [size for size in SIZES if size < options.runs] + [options.runs]
-    costs = [show("sweep-2", size) for size in sizes]
-    spent = np.array([cost.processors for cost in costs])
-    each, start = np.polyfit(sizes, spent, 1, w=1 / spent)
-    worst = np.max(np.abs(start + each * np.array(sizes) - spent) / spent)
-    print(f"processors: {start:.2f} s + {1e3 * each:.3f} ms a run, within {100 * worst:.0f} % of each sweep")
-    if options.plot:
-        plot(costs, start, each, options.plot)
+    if options.growth:
+        draw_growth(options.runs, options.growth)
+    else:
+        compare_parts(options.runs)
 
 
-def show(what: str, runs: int) -> Cost:
+def compare_parts(runs: int) -> None:
+    """Print what a sweep adds to its runs, and what a second processor gives."""
+    _, before, one, after, two = (show(what, runs) for what in ("loop", "run", "sweep-1", "run", "sweep-2"))
+    alone = 0.5 * (before.processors / before.runs + after.processors / after.runs)
+    print(f"a sweep adds {100 * (one.processors / one.runs / alone - 1):.1f} % to its runs;"
+          f" two at once do {one.clock / two.clock:.2f} times as many as one")  # fmt: skip
+
+
+def draw_growth(runs: int, file: Path) -> None:
+    """Print and draw what sweeps of more and more runs cost."""
+    sweeps, reports = [], []
+    for size in [size for size in SIZES if size < runs] + [runs]:
+        with tempfile.TemporaryDirectory() as folder:
+            sweeps.append(show("sweep-2", size, folder))
+            reports.append(show("report", size, folder))
+    sizes, clocks = np.array([cost.runs for cost in sweeps]), np.array([cost.clock for cost in sweeps])
+    each, start = np.polyfit(sizes, clocks, 1, w=1 / clocks)
+    worst = np.max(np.abs(start + each * sizes - clocks) / clocks)
+    line = f"{start:.2f} s + {1e3 * each:.3f} ms a run"
+    print(f"clock: {line}, within {100 * worst:.0f} % of each sweep")
+    plot(sweeps, reports, start + each * sizes, line, file)
+
+
+def show(what: str, runs: int, folder: str | None = None) -> Cost:
     """Measure one thing in a process of its own, print a line, and return its cost."""
-    command = [sys.executable, __file__, str(runs), "--measure", what]
+    command = [sys.executable, __file__, str(runs), "--measure", what, *(["--folder", folder] if folder else [])]
     # What the runs alone would cost without this is another matter than what a sweep adds.
     environment = os.environ | KEEP_FREED_MEMORY
     done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, env=environment)
@@ -93,10 +122,10 @@ def show(what: str, runs: int) -> Cost:
     return cost
 
 
-def measure(what: str, runs: int) -> Cost:
-    """Measure one thing in this process and those that it starts."""
+def measure(what: str, runs: int, folder: Path | None) -> Cost:
+    """Measure one thing in this process and those that it starts; a folder keeps the sweep for its report."""
     with tempfile.TemporaryDirectory() as name:
-        file = Path(name) / "sweep.yaml"
+        file, out = Path(name) / "sweep.yaml", (folder or Path(name)) / "out"
         file.write_text(SWEEP.format(runs=-(-runs // VARIANTS)), encoding="utf-8")
         prepared = prepare(file)
         if what in ("loop", "run"):
@@ -105,8 +134,8 @@ def measure(what: str, runs: int) -> Cost:
             work = prepare_loops(scenarios) if what == "loop" else lambda: run_all(scenarios)
             run_all(scenarios[:VARIANTS])
         else:
-            runs, jobs = prepared.plan.runs, int(what.partition("-")[2])
-            work = partial(execute, prepared, Path(name) / "out", LocalEngine(jobs))
+            runs, jobs = prepared.plan.runs, what.partition("-")[2]
+            work = partial(execute, prepared, out, LocalEngine(int(jobs))) if jobs else partial(report_sweep, out, out)
         clock, processors = time.perf_counter(), time_of_processors()
         work()
         clock, processors = time.perf_counter() - clock, time_of_processors() - processors
@@ -120,19 +149,23 @@ def time_of_processors() -> float:
     return sum(times[:4])
 
 
-def plot(costs: Sequence[Cost], start: float, each: float, file: Path) -> None:
-    """Draw time of processors and memory over runs, with the fitted line."""
+def plot(sweeps: Sequence[Cost], reports: Sequence[Cost], fitted: NDArray[np.float64], line: str, file: Path) -> None:
+    """Draw time on the clock and memory over runs, with the fitted line."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7, 6), layout="constrained")
+    figure = Figure(figsize=(7, 6), layout="constrained", dpi=100)
     time_axes, memory_axes = figure.subplots(2, 1, sharex=True)
-    runs = [cost.runs for cost in costs]
-    time_axes.loglog(runs, [cost.processors for cost in costs], "o", label="measured")
-    time_axes.loglog(runs, [start + each * count for count in runs], label=f"{start:.2f} s + {1e3 * each:.3f} ms a run")
-    time_axes.set_ylabel("time of processors [s]")
-    time_axes.legend()
-    memory_axes.semilogx(runs, [cost.memory for cost in costs], "o-")
-    memory_axes.set(xlabel="runs", ylabel="memory [MiB]", ylim=(0, None))
+    runs = [cost.runs for cost in sweeps]
+    time_axes.loglog(runs, fitted, color="C0", label=line)
+    for name, costs, colour in (("sweep, two at once", sweeps, "C0"), ("report", reports, "C1")):
+        time_axes.loglog(runs, [cost.clock for cost in costs], "o", color=colour, label=name)
+        memory_axes.semilogx(runs, [cost.memory for cost in costs], "o-", color=colour, label=name)
+    memory_axes.axhline(LIMIT, color="0.5", linestyle="--", label="1.5 GiB")
+    time_axes.set(ylabel="time on the clock [s]")
+    memory_axes.set(xlabel="runs of 10 s at 1 kHz", ylabel="memory of all processes [MiB]", ylim=(0, 1.1 * LIMIT))
+    for axes in (time_axes, memory_axes):
+        axes.grid(alpha=0.3)
+        axes.legend()
     figure.savefig(file)
 
 

@@ -28,8 +28,8 @@ CHANNELS = (
     "coil_current",
 )  # fmt: skip
 Array = NDArray[np.float64]
-Floor = Sequence[float] | Array
 Number = TypeVar("Number", float, Array)
+Size = Callable[[float], float]
 Force = Callable[[float, float, float, float, float], tuple[float, float]]
 Root = Callable[[Force, float, float, float, float, float, float, float, float], float]
 
@@ -43,9 +43,16 @@ def damper(x: Number, v: Number, i: Number, y: Number, z: Number) -> tuple[Numbe
     return c1 * flow + K1 * (x - X0) + F0, flow
 
 
+def interpolate(floor: Array, t: float) -> float:
+    """Return the floor's acceleration at a time, of `floor` every `STEP` seconds."""
+    k = min(int(t / STEP), len(floor) - 2)
+    acceleration: float = floor[k] + (floor[k + 1] - floor[k]) * (t / STEP - k)
+    return acceleration
+
+
 def rates(
     damper: Force,
-    t: float,
+    size: Size,
     x: float,
     v: float,
     xc: float,
@@ -54,17 +61,15 @@ def rates(
     z: float,
     i: float,
     command: float,
-    floor: Floor,
+    floor: float,
 ) -> tuple[float, ...]:
-    """Return the time derivative of (x, v, xc, vc, y, z, i); `floor` holds z0'' every `STEP` seconds."""
-    k = min(int(t / STEP), len(floor) - 2)
-    excitation = floor[k] + (floor[k + 1] - floor[k]) * (t / STEP - k)
+    """Return the time derivative of (x, v, xc, vc, y, z, i); `size` is what returns an absolute value."""
     force, flow = damper(x, v, i, y, z)
     cushion = KC * xc + CC * vc
     frame = (cushion - KF * x - CF * v - force) / MS
     r = v - flow
-    hysteresis = A * r - BETA * r * z * z - GAMMA * abs(r) * z * abs(z)
-    return v, frame - excitation, vc, -cushion / M - frame, flow, hysteresis, RATE * (command - i)
+    hysteresis = A * r - BETA * r * z * z - GAMMA * size(r) * z * size(z)
+    return v, frame - floor, vc, -cushion / M - frame, flow, hysteresis, RATE * (command - i)
 
 
 def find_root(
@@ -104,52 +109,52 @@ def invert(damper: Force, find_root: Root, x: float, v: float, y: float, z: floa
 
 
 class Model(NamedTuple):
-    """The seat as `solve_ivp` wants it, the inverse, and what turns the floor into the form that both take."""
+    """The seat as `solve_ivp` wants it, and the inverse."""
 
-    rates: Callable[[float, Array, float, Floor], Sequence[float]]
+    rates: Callable[[float, Array, float, Array], Sequence[float]]
     inverse: Callable[[float, float, float, float], float]
-    floor: Callable[[Array], Floor]
 
 
 def compiled_model() -> Model:
     """Return the model compiled with numba."""
-    force, slope, root, solve = (numba.njit(part) for part in (damper, rates, find_root, invert))
+    force, slope, root, solve, excite = map(numba.njit, (damper, rates, find_root, invert, interpolate))
     return Model(
-        numba.njit(lambda t, s, u, floor: slope(force, t, s[0], s[1], s[2], s[3], s[4], s[5], s[6], u, floor)),
+        numba.njit(
+            lambda t, s, u, floor: slope(force, abs, s[0], s[1], s[2], s[3], s[4], s[5], s[6], u, excite(floor, t))
+        ),
         numba.njit(lambda x, v, y, z: solve(force, root, x, v, y, z)),
-        np.asarray,
     )
 
 
 MethodName = Literal["RK23", "RK45", "DOP853", "Radau", "LSODA"]
+Simulate = Callable[[float, Array, int], dict[str, Array]]
+"""Simulates with a relative tolerance under a floor acceleration, with the law every so many steps.
+
+It starts from rest and returns the channels at the law's samples, shape (N - 1) // sample_every + 1. The absolute
+tolerance is a thousandth of the relative one.
+"""
 
 
-class IntegrationMethod(NamedTuple):
-    """A method of `solve_ivp` and its relative tolerance; the absolute one is a thousandth of it."""
+def make_solver(name: MethodName) -> Simulate:
+    """Return what simulates the run with a method of `solve_ivp`."""
+    model = compiled_model()
 
-    name: MethodName
-    rtol: float
+    def simulate(rtol: float, acceleration: Array, sample_every: int) -> dict[str, Array]:
+        state = np.zeros(7)
+        states = [state]
+        for start in range(0, len(acceleration) - 1, sample_every):
+            x, v, _, _, y, z, _ = state.tolist()
+            command = model.inverse(x, v, y, z)
+            t, end = start * STEP, (start + sample_every) * STEP
+            solution = solve_ivp(
+                model.rates, (t, end), state, method=name, rtol=rtol, atol=1e-3 * rtol,
+                first_step=None if name == "LSODA" else end - t, args=(command, acceleration),
+            )  # fmt: skip
+            state = solution.y[:, -1]
+            states.append(state)
+        return list_channels(np.array(states), acceleration[::sample_every])
 
-
-Simulate = Callable[[IntegrationMethod, Array, int], dict[str, Array]]
-"""Simulates with a method under a floor acceleration, with the law every so many steps; returns the channels."""
-
-
-def simulate(model: Model, method: IntegrationMethod, acceleration: Array, sample_every: int) -> dict[str, Array]:
-    """Simulate from rest; return the channels at the law's samples, shape (N - 1) // sample_every + 1."""
-    floor, state = model.floor(acceleration), np.zeros(7)
-    states = [state]
-    for start in range(0, len(acceleration) - 1, sample_every):
-        x, v, _, _, y, z, _ = state.tolist()
-        command = model.inverse(x, v, y, z)
-        t, end = start * STEP, (start + sample_every) * STEP
-        solution = solve_ivp(
-            model.rates, (t, end), state, method=method.name, rtol=method.rtol, atol=1e-3 * method.rtol,
-            first_step=None if method.name == "LSODA" else end - t, args=(command, floor),
-        )  # fmt: skip
-        state = solution.y[:, -1]
-        states.append(state)
-    return list_channels(np.array(states), acceleration[::sample_every])
+    return simulate
 
 
 def list_channels(states: Array, floor: Array) -> dict[str, Array]:

@@ -13,16 +13,17 @@ from seatsim.benchmark.seat_run import STEP, Array
 
 
 def make_solver(name: ivp.MethodName) -> ivp.Simulate:
-    """Return what simulates the run with the method of this name, as `ivp.simulate` does."""
+    """Return what simulates the run with the method of this name, as `ivp.make_solver` does."""
     import numbalsoda
 
-    force, rates, root, invert = (numba.njit(part) for part in (ivp.damper, ivp.rates, ivp.find_root, ivp.invert))
+    parts = ivp.damper, ivp.rates, ivp.find_root, ivp.invert, ivp.interpolate
+    force, rates, root, invert, excite = map(numba.njit, parts)
 
     # What the right-hand side reads stands in one array: the command, the number of samples, the floor.
     @numba.cfunc(numbalsoda.lsoda_sig)  # type: ignore[untyped-decorator]  # numba has no types
     def slope(t: float, s: Any, ds: Any, data: Any) -> None:
-        floor = numba.carray(data, (2 + int(data[1]),))[2:]
-        found = rates(force, t, s[0], s[1], s[2], s[3], s[4], s[5], s[6], data[0], floor)
+        floor = excite(numba.carray(data, (2 + int(data[1]),))[2:], t)
+        found = rates(force, abs, s[0], s[1], s[2], s[3], s[4], s[5], s[6], data[0], floor)
         for k in range(7):
             ds[k] = found[k]
 
@@ -41,8 +42,8 @@ def make_solver(name: ivp.MethodName) -> ivp.Simulate:
 
     run: Callable[[Array, int, int, float], Array] = solve
 
-    def simulate(method: ivp.IntegrationMethod, acceleration: Array, sample_every: int) -> dict[str, Array]:
+    def simulate(rtol: float, acceleration: Array, sample_every: int) -> dict[str, Array]:
         data = np.concatenate(([0.0, len(acceleration)], acceleration))
-        return ivp.list_channels(run(data, len(acceleration), sample_every, method.rtol), acceleration[::sample_every])
+        return ivp.list_channels(run(data, len(acceleration), sample_every, rtol), acceleration[::sample_every])
 
     return simulate

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from seatsim.benchmark.dampers import measure_dampers
 from seatsim.benchmark.measurement import Cost
 from seatsim.benchmark.native import has_compiler
-from seatsim.benchmark.peers import measure_c, measure_numbalsoda, measure_scipy
+from seatsim.benchmark.peers import measure_c, measure_heyoka, measure_numbalsoda, measure_scipy
 from seatsim.benchmark.scaling import measure_cores, measure_dask, measure_lanes, measure_lengths
 
 
@@ -34,6 +34,7 @@ def list_parts(dampers: Sequence[str]) -> dict[str, Part]:
         "scipy": Part("a step of scipy.integrate.solve_ivp, as accurate", measure_scipy),
         "numbalsoda": Part("a step of numbalsoda, as accurate", measure_numbalsoda,
                            _need("numbalsoda", "pip install numbalsoda, which needs cmake and a Fortran compiler")),
+        "heyoka": Part("a step of heyoka, as accurate", measure_heyoka, _need("heyoka", "pip install heyoka")),
     }  # fmt: skip
 
 

@@ -27,11 +27,12 @@ AGREEMENT = {"loop.c": 1e-7, "lean.c": 1e-2}
 A force that comes close to the wanted one only where it turns is flat there, so that rounding moves the current of
 loop.c; lean.c integrates the current numerically.
 """
-REFERENCE = ivp.IntegrationMethod("DOP853", 1e-11)
-METHODS: dict[ivp.MethodName, tuple[float, ...]] = {
+REFERENCE: tuple[ivp.MethodName, float] = "DOP853", 1e-11
+METHODS: dict[str, tuple[float, ...]] = {
     "RK45": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
     "DOP853": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
     "LSODA": (1e-5, 1e-6, 1e-7),
+    "Taylor": (1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
 }
 """Relative tolerances that are tried of each method, the loosest first."""
 DURATION, SOLVED, SAMPLE_EVERY = 60.0, 2.0, 5
@@ -68,7 +69,7 @@ def _check_agreement(source: str, channels: Channels, history: Array, permitted:
 
 def measure_scipy() -> Iterator[Cost]:
     """Yield what `scipy.integrate.solve_ivp` costs with a right-hand side in numba, beside seatsim."""
-    yield from _measure_solver({name: partial(ivp.simulate, ivp.compiled_model()) for name in METHODS})
+    yield from _measure_solver({name: ivp.make_solver(name) for name in ("RK45", "DOP853", "LSODA")})
 
 
 def measure_numbalsoda() -> Iterator[Cost]:
@@ -78,19 +79,38 @@ def measure_numbalsoda() -> Iterator[Cost]:
     yield from _measure_solver({name: make_solver(name) for name in ("LSODA", "DOP853")})
 
 
-def _measure_solver(solver: Mapping[ivp.MethodName, ivp.Simulate]) -> Iterator[Cost]:
-    """Yield what each method costs at its loosest tolerance that is at least as accurate as seatsim's default step."""
+def measure_heyoka() -> Iterator[Cost]:
+    """Yield what heyoka costs for one run, and for each of as many as the processor calculates at once."""
+    from seatsim.benchmark.heyoka_run import count_lanes, make_solver
+
+    for lanes in (1, count_lanes()):
+        yield from _measure_solver({"Taylor": make_solver(lanes)}, lanes)
+
+
+def _measure_solver(solver: Mapping[str, ivp.Simulate], at_once: int = 1) -> Iterator[Cost]:
+    """Yield what each method costs at its loosest tolerance that is at least as accurate as seatsim's default step.
+
+    The costs are those of one of the runs that are simulated `at_once`.
+    """
     acceleration = make_floor(SOLVED)
-    exact = ivp.simulate(ivp.compiled_model(), REFERENCE, acceleration, SAMPLE_EVERY)
+    exact = solve_tightly(acceleration)
     run, history = prepare_run(acceleration, make_setup(SAMPLE_EVERY))
     permitted = _error({name: history[::SAMPLE_EVERY, CHANNELS.index(name)] for name in exact}, exact)
     for name, simulate in solver.items():
         for rtol in METHODS[name]:
-            solve = partial(simulate, ivp.IntegrationMethod(name, rtol), acceleration, SAMPLE_EVERY)
+            solve = partial(simulate, rtol, acceleration, SAMPLE_EVERY)
             if _error(solve(), exact) <= permitted:
                 times = time_in_turns({"solver": solve, "seatsim": run}, 3)
-                yield _compare(f"{name}, rtol {rtol:.0e}", times["solver"], times["seatsim"], acceleration)
+                what = f"{name}, rtol {rtol:.0e}" + (f", {at_once} at once" if at_once > 1 else "")
+                each = [t / at_once for t in times["solver"]]
+                yield _compare(what, each, times["seatsim"], acceleration)
                 break
+
+
+def solve_tightly(acceleration: Array) -> dict[str, Array]:
+    """Return the channels of a solution that is far more accurate than any that is timed."""
+    method, rtol = REFERENCE
+    return ivp.make_solver(method)(rtol, acceleration, SAMPLE_EVERY)
 
 
 def _compare(what: str, times: list[float], ours: list[float], acceleration: Array) -> Cost:

@@ -76,15 +76,17 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> str:
     words = describe_column(chosen.metric, rows.units).words
     what = "tolerances" if rows.drawn else "varied keys"
     many = len(rows.drawn or [row for row in here if row.key != "variant"])
-    among = f"Of {many} {what} {chosen.key} matters most" if many > 1 else f"{chosen.key} is the only one of the {what}"
     first = max(here, key=lambda row: row.total)
     lead = "" if first is chosen else (
         f"{first.key} explains {format_percent(first.total)} of the variance of the {words}. "
     )  # fmt: skip
-    return (
-        f"{lead}{among} to the {words}: together with its interactions it explains {format_percent(chosen.total)} of"
-        f" the variance (95 % interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)})."
-    )
+    total = format_percent(chosen.total)
+    interval = f"95 % interval {format_percent(chosen.total_low)} to {format_percent(chosen.total_high)}"
+    if many > 1:
+        said = f"Of {many} {what} {chosen.key} matters most to the {words}: it explains {total} of the variance"
+    else:
+        said = f"{chosen.key}, the only one of the {what}, explains {total} of the variance of the {words}"
+    return f"{lead}{said} together with its interactions ({interval})."
 
 
 def _say_seeds(rows: SweepRows) -> str:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.plots.labels import format_unit
-from seatsim.report.blocks import Bar, Bars, Block, Table, Text
+from seatsim.report.blocks import Bar, Bars, Block, Text
 from seatsim.report.formatting import format_number, format_percent
 from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
 from seatsim.sweeps.statistics.inputs import SweepRows
@@ -26,7 +25,7 @@ def choose_metric(found: Sensitivities) -> str:
 
 
 def show_sensitivity(found: Sensitivities, rows: SweepRows) -> list[Block]:
-    """Return bars and a table for comfort, travel and each limited metric."""
+    """Return the shares of variance and a tornado chart for comfort, travel and each limited metric."""
     if not found.rows:
         return [Text(f"{found.problem[0].upper()}{found.problem[1:]}.")]
     metrics = [name for name in (COMFORT, TRAVEL, *rows.manifest["limits"]) if found.of(name)]
@@ -34,7 +33,7 @@ def show_sensitivity(found: Sensitivities, rows: SweepRows) -> list[Block]:
     for metric in dict.fromkeys(metrics or [choose_metric(found)]):
         here = found.of(metric)
         words = describe_column(metric, rows.units).words
-        blocks += [_draw_shares(here, words), _list_swings(here, rows)]
+        blocks += [_draw_shares(here, words), _draw_tornado(here, rows)]
         if here[0].explained < ENOUGH:
             known = format_percent(max(0.0, here[0].explained))
             blocks.append(Text(f"The shares rest on a polynomial that predicts {known} of the variance of the {words}"
@@ -59,26 +58,23 @@ def _draw_shares(found: Sequence[Sensitivity], words: str) -> Bars:
     return Bars(f"What determines the {words}", caption, "key", "share of the variance", bars)
 
 
-class Swing(NamedTuple):
-    """A value of a key and the mean of a metric there."""
-
-    level: object
-    mean: float
-
-
-def _list_swings(found: Sequence[Sensitivity], rows: SweepRows) -> Table:
-    shown = describe_column(found[0].metric, rows.units)
-    lines = []
-    for row in found[:MOST_KEYS]:
-        ends = (Swing(row.low, row.at_low), Swing(row.high, row.at_high))
-        values = [text for end in ends for text in (format_level(end.level), format_number(shown.factor * end.mean))]
-        lines.append([row.key, format_unit(rows.units.get(row.key, "")) or "-", *values])
-    head = ["key", "unit", "low value", "mean there", "high value", "mean there"]
+def _draw_tornado(found: Sequence[Sensitivity], rows: SweepRows) -> Bars:
+    """Return from where to where the mean of a metric goes between a low and a high value of each key."""
+    shown, strongest = describe_column(found[0].metric, rows.units), found[:MOST_KEYS]
+    means = [mean for row in strongest for mean in (row.at_low, row.at_high)]
+    least, scale = min(means), 100 / ((max(means) - min(means)) or 1.0)
+    bars = []
+    for row in strongest:
+        start, end = sorted(round(scale * (mean - least), 2) for mean in (row.at_low, row.at_high))
+        ends = ((row.low, row.at_low), (row.high, row.at_high))
+        texts = [f"{format_number(shown.factor * mean)} at {format_level(level)}" for level, mean in ends]
+        unit = format_unit(rows.units.get(row.key, ""))
+        bars.append(Bar(row.key, start, end, f"{texts[0]}, {texts[1]} {unit}".rstrip(" -")))
     caption = (
-        f"Mean {shown.axis} where a key is low (its 5 % quantile) and high (its 95 % quantile); of a key whose values"
-        " are texts, the texts with the smallest and the largest mean"
+        "Mean where a key is low (its 5 % quantile) and high (its 95 % quantile); of a key whose values are texts, at"
+        " the texts with the smallest and the largest mean."
     )
-    return Table(caption, head, lines, 2)
+    return Bars(f"How far each key moves the mean {shown.axis}", caption, "key", "mean at the low and high value", bars)
 
 
 def _known(value: float) -> float:

@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from seatsim.schema.arrow_arrays import store_numbers, store_texts
 from seatsim.schema.files import write_whole
 from seatsim.simulation.result import UNITS, Run
-
-if TYPE_CHECKING:
-    import pyarrow as pa
 
 
 def write_histories(runs: Iterable[Run], path: Path) -> Path:
@@ -35,23 +31,8 @@ def _write(runs: Iterable[Run], path: Path) -> None:
     with pq.ParquetWriter(path, schema, compression="zstd", compression_level=1) as writer:
         for run in runs:
             length = len(run.history["time"])
-            titles = pa.DictionaryArray.from_arrays(_array(np.zeros(length), pa.int32()), _text(run.scenario.title))
-            columns = [_array(run.history[name], schema.field(name).type) for name in UNITS]
+            titles = pa.DictionaryArray.from_arrays(
+                store_numbers(np.zeros(length), pa.int32()), store_texts([run.scenario.title])
+            )
+            columns = [store_numbers(run.history[name], schema.field(name).type) for name in UNITS]
             writer.write_table(pa.Table.from_arrays([titles, *columns], schema=schema))
-
-
-def _array(values: NDArray[np.float64], kind: pa.DataType) -> pa.Array:
-    """Return numbers as pyarrow holds them. Its own conversion imports pandas, which takes longer than writing."""
-    import pyarrow as pa
-
-    stored = np.ascontiguousarray(values, dtype=kind.to_pandas_dtype())
-    return pa.Array.from_buffers(kind, len(stored), [None, pa.py_buffer(stored)])
-
-
-def _text(text: str) -> pa.Array:
-    """Return an array of one text."""
-    import pyarrow as pa
-
-    content = text.encode()
-    ends = np.array([0, len(content)], dtype=np.int32)
-    return pa.Array.from_buffers(pa.string(), 1, [None, pa.py_buffer(ends), pa.py_buffer(content)])

@@ -51,13 +51,18 @@ def _cross(definition: SweepDefinition) -> Columns:
 
 
 def _pair(definition: SweepDefinition) -> Columns:
-    """Return the first values of all keys, then the second ones, and so on; distributions are drawn as often."""
+    """Return the first values of all keys, then the second ones, and so on; distributions are drawn as often.
+
+    A value that is alone in its list goes with all the others.
+    """
     listed = {axis.key: list(axis.values) for axis in definition.axes if axis.values is not None}
-    lengths = {key: len(values) for key, values in listed.items()}
+    lengths = {key: len(values) for key, values in listed.items() if len(values) > 1}
     if len(set(lengths.values())) > 1:
         shown = ", ".join(f"{key} {length}" for key, length in lengths.items())
         raise definition.source.error(("vary",), f"design 'zip' pairs lists of one length; they have: {shown}")
-    count = next(iter(lengths.values()), 0) or _count_draws(definition)
+    needs_draws = len(listed) < len(definition.axes)
+    count = next(iter(lengths.values()), 0) or (_count_draws(definition) if needs_draws else 1)
+    listed = {key: values * (count // len(values)) for key, values in listed.items()}
     if definition.runs not in (None, count):
         raise definition.source.error(("runs",), f"{definition.runs} is not permitted; the lists have {count} values")
     drawn = _draw([axis for axis in definition.axes if axis.values is None], count, definition.seed)

@@ -13,7 +13,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from seatsim.metrics.table import METRICS
+from seatsim.schema.arrow_arrays import store_numbers, store_texts
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import remove_left, write_whole
 from seatsim.sweeps.outcome import Outcome
@@ -112,9 +115,9 @@ def make_table(plan: Plan, schema: pa.Schema, outcomes: Sequence[Outcome]) -> pa
 
     values = [plan.values(outcome.run) for outcome in outcomes]
     columns: list[Sequence[object]] = [[getattr(outcome, name) for outcome in outcomes] for name in LEADING]
-    columns += [_cells([each[key] for each in values], schema.field(key).type) for key in varied_keys(plan)]
+    columns += [[each[key] for each in values] for key in varied_keys(plan)]
     columns += map(list, zip(*(outcome.metrics for outcome in outcomes), strict=True))
-    arrays = [pa.array(column, type=field.type) for column, field in zip(columns, schema, strict=True)]
+    arrays = [_store(column, field.type) for column, field in zip(columns, schema, strict=True)]
     return pa.Table.from_arrays(arrays, schema=schema)
 
 
@@ -146,9 +149,12 @@ def _type_of(plan: Plan, key: str) -> pa.DataType:
     return pa.bool_() if kinds == {bool} else pa.string()
 
 
-def _cells(values: Sequence[object], kind: pa.DataType) -> Sequence[object]:
-    """Return the values of a key as cells: in a column of texts, JSON of what is none."""
-    return [as_text(value) for value in values] if str(kind) == "string" else values
+def _store(values: Sequence[object], kind: pa.DataType) -> pa.Array:
+    """Return the values of a column: in one of texts, JSON of what is none."""
+    if str(kind) == "string":
+        return store_texts([as_text(value) for value in values])
+    present = np.array([value is not None for value in values])
+    return store_numbers(np.array([value if value is not None else 0 for value in values]), kind, present)
 
 
 def as_text(value: object) -> str:

@@ -1,12 +1,13 @@
 """What is timed computes the same on both sides, and the command says what it leaves out."""
 
+import importlib
 import json
 import shutil
 
 import numpy as np
 import pytest
 
-from seatsim.benchmark import ivp, native, parts, peers
+from seatsim.benchmark import native, parts, peers
 from seatsim.benchmark.measurement import Cost
 from seatsim.benchmark.seat_run import make_floor, make_setup, prepare_run
 from seatsim.kernel.channels import CHANNELS
@@ -28,14 +29,15 @@ def test_c_agrees_with_seatsim(source, tmp_path):
         assert values == pytest.approx(ours, abs=peers.AGREEMENT[source] * np.nanmax(np.abs(ours)), nan_ok=True)
 
 
-@pytest.mark.parametrize("name", ["LSODA", "DOP853"])
-def test_numbalsoda_agrees_with_scipy(name):
-    pytest.importorskip("numbalsoda", reason="needs numbalsoda")
-    from seatsim.benchmark.numbalsoda_run import make_solver
-
-    acceleration, method = make_floor(0.2), ivp.IntegrationMethod(name, 1e-8)
-    exact = ivp.simulate(ivp.compiled_model(), peers.REFERENCE, acceleration, 5)
-    for channel, values in make_solver(name)(method, acceleration, 5).items():
+@pytest.mark.parametrize(
+    ("package", "what"), [("numbalsoda", "LSODA"), ("numbalsoda", "DOP853"), ("heyoka", 1), ("heyoka", 4)]
+)
+def test_general_solvers_agree_with_scipy(package, what):
+    pytest.importorskip(package, reason=f"needs {package}")
+    solver = importlib.import_module(f"seatsim.benchmark.{package}_run").make_solver(what)
+    acceleration = make_floor(0.2)
+    exact = peers.solve_tightly(acceleration)
+    for channel, values in solver(1e-8, acceleration, peers.SAMPLE_EVERY).items():
         assert values == pytest.approx(exact[channel], abs=1e-4 * np.max(np.abs(exact[channel])))
 
 

@@ -11,7 +11,6 @@ from pydantic import TypeAdapter
 
 import seatsim
 from seatsim.cli.outputs.answers import ANSWERS
-from seatsim.sweeps import parts
 
 from .conftest import MASSES, bytes_of
 
@@ -80,23 +79,6 @@ def test_the_tasks_of_a_script_make_the_sweep(write_sweep, tmp_path, seatsim_com
     assert bytes_of(tmp_path / "array") == bytes_of(tmp_path / "alone")
     assert json.loads((tmp_path / "array" / "manifest.json").read_text())["counts"]["done"] == 203
     assert len(seatsim.read_sweep(tmp_path / "array")) == 203
-
-
-@pytest.mark.parametrize("where", ["embedded", "address"])
-def test_a_cluster_gives_the_same_bytes(where, write_sweep, tmp_path, seatsim_command, monkeypatch):
-    distributed = pytest.importorskip("distributed")
-    # More tasks than are sent at once.
-    monkeypatch.setattr(parts, "RUNS_OF_PART", 10)
-    path = write_sweep(runs=203)
-    assert seatsim_command("sweep", path, "--out", tmp_path / "local")[0] == 0
-    options = ["--engine", "dask", "--jobs", "2"]
-    if where == "embedded":
-        assert seatsim_command("sweep", path, "--out", tmp_path / "dask", *options)[0] == 0
-    else:
-        with distributed.LocalCluster(2, processes=False, protocol="tcp", dashboard_address=":0") as cluster:
-            options += ["--address", cluster.scheduler_address]
-            assert seatsim_command("sweep", path, "--out", tmp_path / "dask", *options)[0] == 0
-    assert bytes_of(tmp_path / "dask") == bytes_of(tmp_path / "local")
 
 
 def test_an_engine_that_cannot_be_reached_leaves_nothing(write_sweep, tmp_path, seatsim_command, monkeypatch):

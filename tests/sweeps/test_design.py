@@ -33,7 +33,7 @@ def test_a_design_of_more_runs_begins_with_the_points_of_one_of_fewer(design, ru
     lists = ([1000.0, 2000.0], [1000.0, 2000.0, 3000.0])
     found = []
     for count, values in zip(runs, lists, strict=True):
-        stated = vary if design != "zip" else {**vary, "plant.cushion_damping": values}
+        stated = vary if design != "zip" else {**vary, "plant.cushion_damping": values, CLASS: ["EM1"]}
         found.append(plan_of(write_sweep(design=design, runs=count, vary=stated)))
     few, many = found
     assert [few.values(run) for run in range(few.runs)] == [many.values(run) for run in range(few.runs)]
@@ -112,7 +112,7 @@ def test_a_run_is_the_scenario_with_its_values_and_a_replicate_the_next_seed(wri
         ({"vary": {MASS: {"choice": {50: 0.5, 80: 0.6}}}}, ["sum to 1.1"]),
         ({"vary": {MASS: {"from": 1, "to": 2, "steps": 1.5}}}, ["steps", "whole number"]),
         ({"vary": {"effects.0.parameters.high": [0.1]}}, ["line", "effects", "not a list"]),
-        ({"design": "zip", "vary": {MASS: [60.0, 70.0], STIFFNESS: [4600.0]}}, ["plant.driver_mass 2"]),
+        ({"design": "zip", "vary": {MASS: [60.0, 70.0], STIFFNESS: [4.0] * 3}}, ["plant.driver_mass 2"]),
         ({"limits": {"driver_vdw": 9.0}}, ["did you mean 'driver_vdv'"]),
         ({"vary": {CLASS: ["EM1", "EM99"]}}, ["line", "'EM99' is not permitted"]),
         ({"design": "table", "vary": None}, ["CSV file"]),

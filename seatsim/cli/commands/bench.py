@@ -14,7 +14,9 @@ from seatsim.schema.errors import InputError, nearest
 def bench(
     parts: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[PART]...", help="dampers, length, lanes, cores, dask, c, scipy, numbalsoda; or all."),
+        typer.Argument(
+            metavar="[PART]...", help="dampers, length, lanes, cores, dask, c, scipy, numbalsoda, heyoka; or all."
+        ),
     ] = None,
     models: Annotated[
         list[str] | None, typer.Option("--model", metavar="NAME", help="Damper of the part 'dampers'; or all.")

@@ -69,6 +69,8 @@ def sweep(
         raise
     counts = ", ".join(f"{number} {state}" for state, number in result.counts.items() if number or state == "done")
     say(f"{folder}: {counts}")
+    if not result.counts["pending"]:
+        say(f"next: seatsim sweep-report {folder}")
     for text in result.failures[:FAILURES_SHOWN]:
         complain(f"failed: {text}")
     if len(result.failures) > FAILURES_SHOWN:
@@ -96,7 +98,8 @@ def sweep_report(
     say(report.sentence)
     for row in report.exceeded[:EXCEEDED_SHOWN]:
         who = "".join(f"{value}: " for value in row.group.values())
-        say(f"{who}{row.metric} above {row.limit:g} {row.unit}: {row.exceeding} of {row.runs} runs,"
+        unit = f" {row.unit}".removesuffix(" -")
+        say(f"{who}{row.metric} above {row.limit:g}{unit}: {row.exceeding} of {row.runs} runs,"
             f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)")  # fmt: skip
     wrote(out_folder or folder, report.paths)
     answer(encode_report(report), report.paths)

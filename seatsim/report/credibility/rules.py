@@ -122,7 +122,8 @@ def _say_robustness(known: Evidence) -> str:
         return "not studied" if known.runs < 2 else f"{known.runs} runs side by side; no tolerance was varied"
     keys = join_names(known.varied) if len(known.varied) <= 3 else f"{len(known.varied)} keys"
     share = "" if known.explained is None else f"; they explain {format_percent(max(0.0, known.explained))} of comfort"
-    return f"{keys} {'drawn from distributions' if known.drawn else 'varied'} over {known.runs} runs{share}"
+    drawn = f", {len(known.drawn)} of them drawn from distributions," if known.drawn else ""
+    return f"{keys} varied{drawn} over {known.runs} runs{share}"
 
 
 def _say_history(known: Evidence) -> str:

@@ -9,15 +9,18 @@ from __future__ import annotations
 import logging
 import os
 import signal
-from collections.abc import Generator, Iterator, Sequence
+import socket
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from seatsim.provenance.versions import list_versions
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.modules import started_elsewhere, use_all, used_files
 from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY, Work, simulate_one
+from seatsim.sweeps.identity import LIBRARIES, list_differences
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Selection
 
@@ -65,7 +68,9 @@ class ClusterEngine(NamedTuple):
         waiting = iter(work.tasks)
 
         def submit(count: int) -> list[Any]:
-            return [self.client.submit(_simulate, *_pack(work, task), pure=False) for task in islice(waiting, count)]
+            return [
+                self.client.submit(_simulate, _make_task(work, task), pure=False) for task in islice(waiting, count)
+            ]
 
         running = as_completed(submit(AHEAD * len(self.client.scheduler_info()["workers"])))
         for future in running:
@@ -124,7 +129,7 @@ def _await_outcomes(future: Any) -> list[Outcome]:
     """Return the outcomes of a task.
 
     Raises:
-        RunError: the scheduler was lost, or the task ended one worker after the other.
+        RunError: the scheduler was lost, the task ended one worker after the other, or its worker has other versions.
     """
     from asyncio import CancelledError as CancelledTaskError
     from concurrent.futures import CancelledError
@@ -138,12 +143,33 @@ def _await_outcomes(future: Any) -> list[Outcome]:
     return outcomes
 
 
-def _pack(work: Work, runs: Sequence[int]) -> tuple[Selection, Path | None, tuple[Path, ...]]:
-    folder = work.histories.resolve() if work.histories else None
-    return work.plan.select(runs), folder, used_files()
+class _Task(NamedTuple):
+    """What a worker is given: some runs, where histories go, the user's own code, and the versions it must have."""
+
+    selection: Selection
+    histories: Path | None
+    own_code: tuple[Path, ...]
+    versions: Mapping[str, str]
 
 
-def _simulate(selection: Selection, histories: Path | None, own_code: Sequence[Path]) -> list[Outcome]:
-    """Simulate the runs of a task; called on a worker."""
-    use_all(own_code)
+def _make_task(work: Work, runs: Sequence[int]) -> _Task:
+    folder, own_code = work.histories.resolve() if work.histories else None, used_files()
+    return _Task(work.plan.select(runs), folder, own_code, list_versions(LIBRARIES, own_code))
+
+
+def _simulate(task: _Task) -> list[Outcome]:
+    """Simulate the runs of a task; called on a worker.
+
+    Raises:
+        RunError: the worker has other versions than the command, so that its figures may be others.
+    """
+    use_all(task.own_code)
+    here = list_versions(LIBRARIES, task.own_code)
+    if here != task.versions:
+        differences = "; ".join(list_differences(task.versions, here))
+        raise RunError(
+            f"the worker on {socket.gethostname()} is not like this machine: {differences}; install the same there, and"
+            " go on with --resume"
+        )
+    selection, histories = task.selection, task.histories
     return [simulate_one(selection.plan, inner, number, histories) for number, inner in selection.runs]

@@ -93,9 +93,11 @@ def analyse_sensitivity(rows: SweepRows) -> Sensitivities:
     drawn = [key for key in keys if key in rows.drawn]
     # In a cross every draw stands in many rows, which then tell of that one draw.
     draw = np.asarray(usable.groupby(drawn).ngroup() if drawn else range(len(usable)), dtype=np.intp)
-    found = _expand(columns, usable[complete].to_numpy(), int(draw.max()) + 1, len(drawn))
+    draws = int(draw.max()) + 1
+    found = _expand(columns, usable[complete].to_numpy(), draws, len(drawn))
     if found is None:
-        return Sensitivities([], f"{len(usable)} runs that can be used are too few for {len(keys)} keys")
+        what, over = ("draws", drawn) if draws < len(usable) else ("runs", keys)
+        return Sensitivities([], f"{draws} {what} that can be used are too few for {len(over)} keys")
     basis, expansion = found
     resampled = list(_resample(basis, usable[complete].to_numpy(), draw))
     made: list[Sensitivity] = []
