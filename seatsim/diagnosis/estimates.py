@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 
 QUOTED = ("driver_acceleration", "frame_acceleration", "suspension_displacement")
 """Channels whose RMS the report states."""
+STATED_DIGITS = 2
+"""Significant digits to which a probability is known."""
 SMOOTHED_ROWS = 5
 """Rows over which a displacement is averaged before its slope is drawn."""
 
@@ -64,7 +66,9 @@ def estimate_causes(
             shrink = 1.0 - measure_gap(with_it, problem.recording, [run]).overall / base
             if effect not in chosen:
                 estimates = _estimate_parameters(objective, single, about_calibrated)[effect]
-        causes.append(Cause(effect, probability, shrink, chosen.get(effect, estimates)))
+        # Effects of one set differ in probability by what no evidence can tell; the larger shrink then comes first.
+        stated = float(f"{probability:.{STATED_DIGITS}g}")
+        causes.append(Cause(effect, stated, shrink, chosen.get(effect, estimates)))
     return sorted(causes, key=lambda cause: (-cause.probability, -cause.shrink))
 
 
