@@ -14,7 +14,7 @@ from seatsim.exchange.blocks.base import Block
 from seatsim.exchange.printing.declarations import is_row
 from seatsim.exchange.printing.functions import new_program
 from seatsim.exchange.printing.program import Program
-from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, number
+from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, is_tuple, number
 from seatsim.exchange.variables import Variable
 
 KINDS = {bool: "BOOLEAN_VARIABLE", int: "INTEGER_VARIABLE", float: "REAL_VARIABLE"}
@@ -35,9 +35,9 @@ def print_model(block: Block) -> str:
     p, u, s = (Signature(numba.typeof(value)) for value in (block.parameters, block.inputs, block.rest))
     number_ = Signature(REAL)
     start = _call(program, block.start, (p, u, s), ("m->parameters", "m->inputs", "rest_state"))
-    observe = _call(program, block.observe, (p, u, s, number_), ("m->parameters", "m->inputs", "m->state", "m->age"))
-    codes = ("m->parameters", "m->inputs", "m->state", "k * part", "part")
-    advance = _call(program, block.advance, (p, u, s, number_, number_), codes)
+    given = ("m->parameters", "m->inputs", "m->state")
+    observe = _call(program, block.observe, (p, u, s, number_), (*given, "m->age"))
+    advance = _call(program, block.advance, (p, u, s, number_, number_), (*given, "(real)k * part", "part"))
     result = numba.typeof((block.initial, True))
     names = {
         "Parameters": program.types.name(p.type),
@@ -76,7 +76,9 @@ def _call(
     printed = program.function(function, kinds)
     if printed.passed is not None:
         return codes[printed.passed]
-    return f"{printed.name}({', '.join(code for code, k in zip(codes, kinds, strict=True) if not is_empty(k.type))})"
+    pairs = zip(codes, kinds, strict=True)
+    listed = [f"&{code}" if is_tuple(kind.type) else code for code, kind in pairs if not is_empty(kind.type)]
+    return f"{printed.name}({', '.join(listed)})"
 
 
 def _initialiser(value: object, kind: types.Type) -> str:

@@ -48,11 +48,14 @@ typedef double real;
 #define R_NAN ((real)NAN)
 #define R_INFINITY ((real)INFINITY)
 
-/* Most functions are small, and records go into them by value: inlined, nothing is copied. */
+/* Most functions are small and are put where they are called; what is seldom called stays apart, so that the rest keeps
+   to the registers. */
 #if defined(__GNUC__)
 #define INLINED static inline __attribute__((always_inline))
+#define CALLED static __attribute__((noinline))
 #else
 #define INLINED static inline
+#define CALLED static
 #endif
 
 static inline real least(real a, real b) { return b < a ? b : a; }

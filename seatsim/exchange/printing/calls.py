@@ -15,7 +15,7 @@ from numba import types
 from seatsim.compilation.jit import GENERIC
 from seatsim.exchange.printing.scope import Scope
 from seatsim.exchange.printing.source import lambda_of
-from seatsim.exchange.printing.tuples import build_tuple, element
+from seatsim.exchange.printing.tuples import address, build_tuple, element
 from seatsim.exchange.printing.values import (
     BOOLEAN,
     INTEGER,
@@ -112,7 +112,11 @@ def _print_own(function: FunctionType, values: list[Value], scope: Scope, evalua
         return values[printed.passed]
     if is_empty(printed.result):
         return Value("", printed.result)
-    listed = ", ".join(value.code for value in values if not is_empty(value.type))
+    listed = ", ".join(
+        address(scope, value) if scope.program.takes_address(function, value.type) else value.code
+        for value in values
+        if not is_empty(value.type)
+    )
     return Value(f"{printed.name}({listed})", printed.result, plain=False)
 
 

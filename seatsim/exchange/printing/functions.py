@@ -17,6 +17,7 @@ from seatsim.exchange.printing.source import definition_of
 from seatsim.exchange.printing.statements import print_body
 from seatsim.exchange.printing.values import (
     REAL,
+    UNARY,
     UNKNOWN,
     NotPrintableError,
     Signature,
@@ -43,11 +44,8 @@ def print_function(
     definition = definition_of(cast(FunctionType, function))
     names = [argument.arg for argument in definition.args.args]
     scope = Scope(program, function, _count_assignments(definition, names))
-    parameters = []
-    for parameter, argument in zip(names, arguments, strict=True):
-        code = "" if is_empty(argument.type) else scope.name(parameter)
-        parameters.append(Value(code, whole_as_int64(argument.type), shape=argument.shape))
-        scope.variables[parameter] = parameters[-1]
+    parameters = [_parameter(scope, *pair) for pair in zip(names, arguments, strict=True)]
+    given = list(map(scope.variables.__getitem__, names))
     ends = print_body(definition.body, scope)
     if not ends:
         raise NotPrintableError(f"{origin(function)}: not every path returns a value, so that it cannot be exported")
@@ -55,7 +53,7 @@ def print_function(
     if len(scope.results) == 1 and _is_straight(definition):
         (only,) = scope.results
         kept = [scope.assigned[parameter] == 1 for parameter in names]
-        passed = [k for k, parameter in enumerate(parameters) if parameter is only and kept[k]]
+        passed = [k for k, value in enumerate(given) if value is only and kept[k]]
         if passed:
             return Printed(name, result, passed=passed[0])
         if only.known is not UNKNOWN and not is_tuple(only.type):
@@ -65,18 +63,37 @@ def print_function(
     return Printed(name, result)
 
 
+def _parameter(scope: Scope, name: str, argument: Signature) -> str:
+    """Enter a parameter among the variables, and return how C declares it; of an empty one there is nothing."""
+    kind = whole_as_int64(argument.type)
+    if is_empty(kind):
+        scope.variables[name] = Value("", kind)
+        return ""
+    code, written = scope.name(name), scope.program.types.name(kind)
+    if not scope.program.takes_address(scope.function, kind):
+        scope.variables[name] = Value(code, kind, shape=argument.shape)
+        return f"{written} {code}".replace("* ", "*")
+    if scope.assigned[name] == 1:
+        scope.variables[name] = Value(f"*{code}", kind, rank=UNARY)
+        return f"const {written} *{code}"
+    given = scope.name(f"{name}_given")
+    scope.write(f"{written} {code} = *{given};")
+    scope.variables[name] = Value(code, kind)
+    return f"const {written} *{given}"
+
+
 def _definition(
     program: Program,
     function: Callable[..., object],
     name: str,
     result: types.Type,
-    parameters: list[Value],
+    parameters: list[str],
     scope: Scope,
 ) -> str:
     """Return the text of a function."""
-    listed = ", ".join(f"{program.types.name(p.type)} {p.code}".replace("* ", "*") for p in parameters if p.code)
+    listed = ", ".join(filter(None, parameters))
     # What is compiled apart for Python is so here: it is seldom called.
-    kind = "static" if program.is_apart(function) else "INLINED"
+    kind = "CALLED" if program.is_apart(function) else "INLINED"
     head = f"{kind} {program.types.name(result)} {name}({listed or 'void'})"
     return "\n".join([f"/* {origin(function)} */", head, "{", *scope.declared, *_used(scope.lines), "}", ""])
 

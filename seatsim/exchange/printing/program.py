@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from seatsim.compilation.jit import GENERIC
 from seatsim.exchange.printing.declarations import Declarations, free_name
-from seatsim.exchange.printing.values import REAL, Signature, Value, number
+from seatsim.exchange.printing.values import REAL, Signature, Value, is_empty, is_tuple, number
 
 Array = NDArray[np.float64]
 
@@ -60,6 +60,14 @@ class Program:
     def is_apart(self, function: Callable[..., object]) -> bool:
         """Return whether a function is to be called."""
         return function in self._apart
+
+    def takes_address(self, function: Callable[..., object], kind: types.Type) -> bool:
+        """Return whether a function takes the address of an argument of this type.
+
+        What is inlined takes addresses of records, and nothing is copied. What is called takes copies: a caller whose
+        records a function might see has to keep them in memory.
+        """
+        return is_tuple(kind) and not is_empty(kind) and not self.is_apart(function)
 
     def form(self, generic: Callable[..., object], arguments: tuple[types.Type, ...]) -> Callable[..., object] | None:
         """Return the form of a generic function for arguments of these types, the same one every time."""

@@ -38,7 +38,7 @@ def element(scope: Scope, owner: Value, index: int | Value, node: ast.AST | None
     if isinstance(index, Value):
         if not is_row(owner.type):
             raise scope.refuse(node or ast.Pass(), "the position in a tuple of several types must be a constant")
-        return Value(f"{scope.keep(owner).code}.at[{index.code}]", owner.type.dtype)
+        return Value(f"{_member(scope.keep(owner))}at[{index.code}]", owner.type.dtype)
     index %= len(owner.type)
     if isinstance(owner.known, tuple):
         return _known_element(scope, owner, index)
@@ -47,8 +47,22 @@ def element(scope: Scope, owner: Value, index: int | Value, node: ast.AST | None
         return Value("", kind)
     held = scope.keep(owner)
     if is_row(owner.type):
-        return Value(f"{held.code}.at[{index}]", kind)
-    return Value(f"{held.code}.{field_names(owner.type)[index]}", kind)
+        return Value(f"{_member(held)}at[{index}]", kind)
+    return Value(f"{_member(held)}{field_names(owner.type)[index]}", kind)
+
+
+def address(scope: Scope, record: Value) -> str:
+    """Return the address of a record, which is put into memory of its own where it is in none."""
+    if record.code.startswith("*"):
+        return record.code[1:]
+    if record.plain:
+        return f"&{record.code}"
+    return f"(const {scope.program.types.name(record.type)}[1]){{{record.code}}}"
+
+
+def _member(owner: Value) -> str:
+    """Return what stands before the name of a member of a record or of what a pointer points to."""
+    return f"{owner.code[1:]}->" if owner.code.startswith("*") else f"{owner.code}."
 
 
 def _known_element(scope: Scope, owner: Value, index: int) -> Value:
