@@ -62,6 +62,23 @@ def call_unknown(settings: DecisionSettings, decision: Decision) -> Decision:
     return dataclasses.replace(decision, verdict="unknown", unknown=max(decision.unknown, settings.unknown_if_unknown))
 
 
+def explain_after_all(
+    problem: DiagnosisProblem, calibrated: Evaluation, chosen: Evaluation, decision: Decision
+) -> Decision:
+    """Return the decision beside an unknown cause, or `known` or `ambiguous` where its set explains the gap after all.
+
+    Args:
+        problem: the recording beside its nominal scenario.
+        calibrated: the rig without effects.
+        chosen: the set, found by another search and weighed as the calibrated rig is.
+        decision: the decision beside an unknown cause, with that set.
+    """
+    if not chosen.parameters.terms or not _explains(problem, calibrated, chosen, decision.groups):
+        return decision
+    verdict: Verdict = "ambiguous" if decision.groups else "known"
+    return dataclasses.replace(decision, verdict=verdict, unknown=problem.settings.decision.unknown_if_known[0])
+
+
 def decide_beside_unknown(
     settings: DecisionSettings, decision: Decision, chosen: Evaluation, equivalent: Sequence[Evaluation] = (),
     tried: Sequence[tuple[Evaluation, float]] = (),

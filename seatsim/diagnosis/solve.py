@@ -12,7 +12,13 @@ from numpy.typing import NDArray
 from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
 from seatsim.diagnosis.deadline import OutOfTimeError
-from seatsim.diagnosis.decide import Decision, call_unknown, decide_beside_unknown, decide_verdict
+from seatsim.diagnosis.decide import (
+    Decision,
+    call_unknown,
+    decide_beside_unknown,
+    decide_verdict,
+    explain_after_all,
+)
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy
@@ -161,6 +167,9 @@ def _search_by_gap(task: SearchTask, first: Solution) -> Solution:
     if evident is None:
         refitted = refit(first.objective, chosen.parameters)
         decision = decide_beside_unknown(settings.decision, first.decision, refitted, equivalent, tried)
+        # Where weak signals weigh most a fit may end far from the set that takes all of the gap.
+        if _takes_enough(first.objective, first._replace(decision=decision)):
+            decision = explain_after_all(problem, first.selection.calibrated, refitted, decision)
     else:
         chosen, decision = evident, call_unknown(settings.decision, first.decision)
     localised = _localise(task, first._replace(decision=decision))

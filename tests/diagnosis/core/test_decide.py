@@ -6,7 +6,13 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown, decide_verdict, doubt_single
+from seatsim.diagnosis.decide import (
+    call_unknown,
+    decide_beside_unknown,
+    decide_verdict,
+    doubt_single,
+    explain_after_all,
+)
 from seatsim.diagnosis.result import Cause
 from seatsim.diagnosis.select import Selection
 
@@ -290,3 +296,19 @@ def test_a_held_out_run_that_speaks_for_another_effect_makes_a_known_one_ambiguo
 def test_no_set_of_two_is_doubted(rig):
     pair = decide(rig, 10.0, [({"b.two": 0.5}, 5.0)], [(both(), 0.1)])
     assert doubt_single(rig.settings.decision, pair, [Cause("c.three", 0.9, 0.9, {})]) is pair
+
+
+@pytest.mark.parametrize(("left", "verdict"), [(0.5, "known"), (8.0, "unknown")])
+def test_a_set_of_another_search_that_explains_the_gap_is_no_longer_beside_an_unknown_cause(rig, left, verdict):
+    calibrated, chosen = state(rig, {}, 10.0), state(rig, {"b.two": 0.5}, left)
+    missed = decide(rig, 10.0, [({"b.two": 0.5}, 8.0)])
+    beside = decide_beside_unknown(rig.settings.decision, missed, chosen)
+    found = explain_after_all(rig.problem, calibrated, chosen, beside)
+    assert (beside.verdict, found.verdict) == ("unknown", verdict) and found.chosen is chosen
+    assert found.unknown == (0.02 if verdict == "known" else beside.unknown)
+
+
+def test_without_effects_nothing_is_explained_after_all(faint):
+    calibrated = state(faint, {}, 0.2)
+    beside = decide_beside_unknown(faint.settings.decision, decide(faint, 0.2, [({"c.three": 2.5}, 0.19)]), calibrated)
+    assert explain_after_all(faint.problem, calibrated, calibrated, beside) is beside
