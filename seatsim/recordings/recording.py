@@ -131,7 +131,7 @@ def _nominal_numbers(path: Path, stamp: Stamp) -> Mapping[str, float]:
 @lru_cache(maxsize=KEPT)
 def _load(folder: Path, stamp: Stamp) -> tuple[Recording, Source]:
     if not is_there(folder / HEADER):
-        lacks = "holds no recording.yaml" if folder.is_dir() else "no such folder"
+        lacks = "holds no recording.yaml" if folder.is_dir() else "no such folder with a recording.yaml"
         raise InputError(f"{folder}: {lacks}; give the folder of a recording, which seatsim import makes of your files")
     source = Source(folder / HEADER)
     data = source.data

@@ -3,6 +3,11 @@
 import pytest
 
 MUTANTS = 40
+# Libraries that write and read tables leave files open.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::ResourceWarning",
+    "ignore::pytest.PytestUnraisableExceptionWarning",
+)
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ from seatsim.blind.make.make import make
 from seatsim.blind.sealed import unseal
 from seatsim.cli.app import app
 from seatsim.cli.outputs.diagnosis import write_diagnosis
+from seatsim.report.formatting import format_sentence
 
 KINDS = ["none", "one", "outside"]
 
@@ -48,7 +49,7 @@ def test_a_hidden_effect_is_named_and_written(made, tmp_path):
     after = seatsim.gap(tmp_path / "augmented.yaml", folder / name, written["held_out"])
     assert after.overall == pytest.approx(written["gap"]["after"]["overall"], rel=1e-3)
     assert written["gap"]["after"]["overall"] < 0.8 * written["gap"]["calibrated"]["overall"]
-    assert diagnosis.sentence in (tmp_path / "report.html").read_text()
+    assert format_sentence(diagnosis.sentence) in (tmp_path / "report.html").read_text()
 
 
 def test_what_no_effect_explains_is_unknown(made):

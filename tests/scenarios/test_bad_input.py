@@ -90,7 +90,7 @@ CASES = [
     ("kind: sine, amplitude: 0.01, frequency: 2.0", "kind: road, road_class: Z, speed: 10.0", ["'Z'", "permitted: A"]),
     ("kind: sine, amplitude: 0.01, frequency: 2.0, duration: 1.0", "kind: recording", ["'path'", "seatsim gap"]),
     ("kind: sine, amplitude: 0.01, frequency: 2.0, duration: 1.0", "kind: recording, path: nowhere, run: a",
-     ["recording.yaml", "cannot be read"]),
+     ["nowhere: no such folder with a recording.yaml"]),
     ("kind: sine, amplitude: 0.01, frequency: 2.0, duration: 1.0",
      "kind: table, path: nowhere.csv, column: a, time_column: t", ["nowhere.csv"]),
     ("effects: []", "effects: suspension.friction", ["line 18", "not a list"]),

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+from contextlib import suppress
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
@@ -14,12 +16,22 @@ from seatsim.importing.signals import Array, DataFile, Group, Signal
 TIME = "time"
 
 
+class Closing(Protocol):
+    """What can be closed."""
+
+    def close(self) -> None:
+        """Close it."""
+
+
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the channel groups; groups of the same time are one."""
     asammdf = need("asammdf", "MDF")
     # A conversion that numexpr refuses would be handed to sympy, which runs its text as Python.
     for blocks in (need("asammdf.blocks.v4_blocks", "MDF"), need("asammdf.blocks.v2_v3_blocks", "MDF")):
         vars(blocks)["lambdify"] = None
+    # A file of which only a part could be read lacks what asammdf deletes as it closes it, which would print an error.
+    for version in ("3", "4"):
+        vars(need(f"asammdf.blocks.mdf_v{version}", "MDF"))[f"MDF{version}"].__del__ = _close
     groups: list[Group] = []
     with asammdf.MDF(io.BytesIO(content)) as file:
         for index, group in enumerate(file.groups):
@@ -31,6 +43,12 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
                 signals = [Signal(each.name, each.unit or "", each.samples.astype(np.float64)) for each in found]
                 _add(groups, f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
     return DataFile(path, "", tuple(groups))
+
+
+def _close(file: Closing) -> None:
+    """Close what there is of a file."""
+    with suppress(AttributeError):
+        file.close()
 
 
 def _add(groups: list[Group], name: str, time: Array, signals: list[Signal]) -> None:

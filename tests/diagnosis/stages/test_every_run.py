@@ -48,8 +48,8 @@ def test_the_model_error_is_that_of_the_last_scenario(posed):
 def test_refitted_parameters_stand_by_dotted_key_beside_their_bounds(posed):
     problem, _ = posed
     mass, stiffness = list_calibrated(problem.parameters, np.array([0.25, -1.0]), 0.98)
-    assert mass == ("plant.driver_mass", 80.0, 82.0, (72.0, 88.0), False)
-    assert stiffness == ("plant.suspension_stiffness", 4600.0, 4140.0, (4140.0, 5060.0), True)
+    assert mass == ("plant.driver_mass", 80.0, 82.0, (72.0, 88.0), False, "-")
+    assert stiffness == ("plant.suspension_stiffness", 4600.0, 4140.0, (4140.0, 5060.0), True, "-")
 
 
 def test_an_error_is_divided_into_what_noise_makes_and_the_form(posed):

@@ -306,7 +306,7 @@ def test_an_effect_that_runs_left_out_support_stands_beside_the_unknown(folder):
 def test_an_effect_that_stands_out_of_the_noise_is_stated_though_the_gap_does_not_ask_for_it(folder):
     script, problem = Script("unknown", "unknown", effects={"one": 1.0}), make_problem(folder, (Added("one", 1.0),))
     # The prior of an effect is so low that runs left out support none.
-    settings = problem.settings._replace(decision=problem.settings.decision._replace(prior=1e-30))
+    settings = problem.settings._replace(decision=problem.settings.decision._replace(prior=1e-80))
     found = script.solve(dataclasses.replace(problem, settings=settings))
     assert [term.effect for term in found.decision.chosen.parameters.terms] == ["toy.one"]
     assert found.decision.verdict == "unknown" and "weighing the gap alone" in script.said
