@@ -45,7 +45,7 @@ def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Seq
     chosen = _choose_set(problem, selection)
     groups = group_equivalent(chosen, _list_equivalent(settings, selection, chosen))
     share = chosen.excess / before
-    explained = bool(chosen.parameters.terms) and _explains(problem, selection.calibrated, chosen, groups)
+    explained = _explains(problem, selection.calibrated, chosen, groups)
     unknown = _logistic(
         (math.log(max(share, settings.least_share)) - math.log(settings.explained)) / settings.unknown_width
     )
@@ -73,7 +73,7 @@ def explain_after_all(
         chosen: the set, found by another search and weighed as the calibrated rig is.
         decision: the decision beside an unknown cause, with that set.
     """
-    if not chosen.parameters.terms or not _explains(problem, calibrated, chosen, decision.groups):
+    if not _explains(problem, calibrated, chosen, decision.groups):
         return decision
     verdict: Verdict = "ambiguous" if decision.groups else "known"
     return dataclasses.replace(decision, verdict=verdict, unknown=problem.settings.decision.unknown_if_known[0])
@@ -141,10 +141,12 @@ def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
 def _explains(
     problem: DiagnosisProblem, calibrated: Evaluation, chosen: Evaluation, groups: Sequence[Sequence[str]]
 ) -> bool:
-    """Whether a set explains the gap: little of its excess is left everywhere, or nothing material at all.
+    """Whether a set of effects explains the gap: little of its excess is left everywhere, or nothing material at all.
 
     A long group of equivalent effects under a small remainder means that the data hardly show which effect it is.
     """
+    if not chosen.parameters.terms:
+        return False
     settings = problem.settings.decision
     is_short = all(len(group) <= settings.equivalent_members for group in groups)
     if _largest_remainder(problem, chosen) < settings.material and is_short:
