@@ -116,8 +116,8 @@ def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRow
                      f" runs are above the limit of {limit}.")  # fmt: skip
     chosen = choose_key(found.of(choose_metric(found)), rows) if found.rows else None
     if chosen is not None:
-        verb = "Tighten the tolerance of" if rows.drawn else "Settle"
-        texts.append(f"{verb} {chosen.key} before any other key: none of the others changes as much.")
+        verb, what = ("Tighten the tolerance of", "tolerance") if rows.drawn else ("Settle", "key")
+        texts.append(f"{verb} {chosen.key} first: no other {what} changes as much.")
     if len(rows.every) < rows.manifest["counts"]["runs"]:
         texts.append("Go on with the sweep: seatsim sweep with --resume.")
     return texts
