@@ -25,7 +25,7 @@ STREAM = 1
 
 # Order of the instruments' state: input and output of each anti-alias filter, then values at the law's last sample.
 X_TRUE, X_FILTERED, FRAME_TRUE, FRAME_FILTERED, DRIVER_TRUE, DRIVER_FILTERED, FLOOR_TRUE, FLOOR_FILTERED = range(8)
-X_READ, X_SLOW, FRAME_READ, FRAME_VELOCITY, DRIVER_READ, DRIVER_VELOCITY = range(8, 14)
+X_READ, X_VELOCITY, FRAME_READ, FRAME_VELOCITY, DRIVER_READ, DRIVER_VELOCITY = range(8, 14)
 FILTERS, INSTRUMENTS = 8, 14
 """Length of the anti-alias filters' part of the state, and of all of it."""
 
@@ -58,8 +58,8 @@ class Direct(NamedTuple):
 class Instruments(NamedTuple):
     """Compiled form of `Sensors`: the steps of its filters, and an offset of the floor's reading (0, or NaN: absent).
 
-    The state holds last input and output of the four anti-alias filters, then last reading and lag of the displacement
-    and last reading and velocity of frame and driver.
+    The state holds last input and output of the four anti-alias filters, then last reading and velocity of suspension,
+    frame and driver.
     """
 
     alias: LagStep
@@ -105,14 +105,15 @@ def derive_velocities(
     With it comes the state of the instruments after it.
     """
     x, f, d, z = readings
-    slow = advance_lag(derivative, s[X_SLOW], s[X_READ], x)
+    # The difference of a reading and its lag, times the rate. The readings' difference is taken first: the lag would be
+    # nearly the reading itself, and their difference would magnify its rounding error.
+    v = derivative.keep * s[X_VELOCITY] + derivative.rate * (1.0 - derivative.new) * (x - s[X_READ])
     frame = leak.keep * s[FRAME_VELOCITY] + (leak.old * s[FRAME_READ] + leak.new * f) / leak.rate
     driver = leak.keep * s[DRIVER_VELOCITY] + (leak.old * s[DRIVER_READ] + leak.new * d) / leak.rate
-    v = derivative.rate * (x - slow)
     y = Measurement(
         true.time, x, v, frame, driver, z, f, d, true.damper_force, true.current, true.temperature, true.replayed
     )
-    return y, s[:FILTERS] + (x, slow, f, frame, d, driver)  # noqa: RUF005 - numba has no starred tuples
+    return y, s[:FILTERS] + (x, v, f, frame, d, driver)  # noqa: RUF005 - numba has no starred tuples
 
 
 Sensing = Direct | Instruments
@@ -159,6 +160,6 @@ class Sensors(NamedTuple):
 def at_rest(displacement: float) -> State:
     """Return the instruments' state of a seat at rest at a suspension displacement in m."""
     state = [0.0] * INSTRUMENTS
-    for index in (X_TRUE, X_FILTERED, X_READ, X_SLOW):
+    for index in (X_TRUE, X_FILTERED, X_READ):
         state[index] = displacement
     return tuple(state)
