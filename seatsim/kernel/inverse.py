@@ -23,13 +23,15 @@ A turn towards the force and back within one cell, of which no point of the grid
 """
 INSIDE = 1e-4
 """Distance in cells from an end of the grid at which is seen whether the force turns within the last cell."""
+BESIDE = 1e-2
+"""Distance from a turn, over the width of its interval, of the currents whose forces fix the parabola through it."""
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 SERVED = 1e-6
 """Difference of given and wanted force, over the wanted force plus 1 N, up to which it counts as reached."""
 STRAIGHT = 1e-10
 """Curvature of a force-current map, over the size of its forces, below which it is rounding error of a line."""
 CLOSE = 1e-6
-"""N; difference from the wanted force at which a search ends."""
+"""N; difference from the wanted force up to which an end or a turn meets it."""
 TRIALS = 60
 """Most iterations of a search; the Illinois method needs about ten, bisection alone reaches rounding error by 60."""
 
@@ -69,7 +71,7 @@ def invert(
     if wanted * v <= 0.0:
         current = 0.0
     elif order > 0 and not _friction_vanishes(damper, v, scaling, z, max_current):
-        current = _closed_form(damper, wanted, x, v, scaling, z, max_current)
+        current = _closed_form(damper, order, wanted, x, v, scaling, z, max_current)
     else:
         current = _search(damper, wanted, x, v, scaling, z, max_current, grid)
     got = total_force(damper, x, v, current, scaling, z)
@@ -94,19 +96,28 @@ def _friction_vanishes(damper: DamperModel, v: float, scaling: TemperatureScalin
 
 @jit
 def _closed_form(
-    damper: DamperModel, target: float, x: float, v: float, scaling: TemperatureScaling, z: State, top: float
+    damper: DamperModel,
+    order: int,
+    target: float,
+    x: float,
+    v: float,
+    scaling: TemperatureScaling,
+    z: State,
+    top: float,
 ) -> float:
-    """Return the current in `[0, top]` whose force is closest to the target, of a force of degree 2 at most.
+    """Return the current in `[0, top]` whose force is closest to the target, of a force of degree 1 or 2.
 
-    With s = i / top the force is `f0 + b s + a s^2`, through its values at s = 0, 1/2 and 1.
+    With s = i / top the force is `f0 + b s + a s^2`, through its values at s = 0 and 1, and at 1/2 for a degree of 2.
     """
     f0 = total_force(damper, x, v, 0.0, scaling, z)
-    f1 = total_force(damper, x, v, 0.5 * top, scaling, z)
     f2 = total_force(damper, x, v, top, scaling, z)
-    a, b, c = 2.0 * (f0 - 2.0 * f1 + f2), 4.0 * f1 - 3.0 * f0 - f2, f0 - target
-    size = abs(f0) + abs(f1) + abs(f2)
-    # A degree of 1 leaves a rounding error in a, whose second root would be far away or, by chance, near.
-    if abs(a) <= STRAIGHT * size:
+    # Differences of forces come first: what does not depend on the current falls out of them without rounding.
+    rise, a, c = f2 - f0, 0.0, f0 - target
+    if order > 1:
+        a = 2.0 * (rise - 2.0 * (total_force(damper, x, v, 0.5 * top, scaling, z) - f0))
+    b = rise - a
+    # A square term of zero leaves a rounding error in a, whose second root would be far away or, by chance, near.
+    if abs(a) <= STRAIGHT * (abs(f0) + abs(f2)):
         a = 0.0
     # Where no root lies within 0 to 1, the closest force is that of an end or of the turning point.
     best = 0.0 if abs(c) <= abs(f2 - target) else 1.0
@@ -215,6 +226,7 @@ def _closest(
 
     By golden section search, which ends as soon as the target is passed: `side` is the sign of the difference before.
     """
+    first, last, beside = left, right, BESIDE * (right - left)
     low, high = right - GOLDEN * (right - left), left + GOLDEN * (right - left)
     f_low = total_force(damper, x, v, low, scaling, z) - target
     f_high = total_force(damper, x, v, high, scaling, z) - target
@@ -230,7 +242,28 @@ def _closest(
             left, low, f_low = low, high, f_high
             high = left + GOLDEN * (right - left)
             f_high = total_force(damper, x, v, high, scaling, z) - target
-    return high, f_high
+    # A corner is not where the parabola has its vertex: the force there is another one.
+    turn = _turn(damper, x, v, scaling, z, high, min(beside, high - first, last - high))
+    f_turn = total_force(damper, x, v, turn, scaling, z) - target
+    return (turn, f_turn) if side * (f_turn - f_high) <= CLOSE else (high, f_high)
+
+
+@jit
+def _turn(
+    damper: DamperModel, x: float, v: float, scaling: TemperatureScaling, z: State, i: float, beside: float
+) -> float:
+    """Return the current at the vertex of the parabola through the forces at `i` and `beside` it on either side.
+
+    About a smooth turn the forces are equal but for rounding over the square root of it, so that comparing them places
+    the turn no better. The forces some way off place it to rounding.
+    """
+    before = total_force(damper, x, v, i - beside, scaling, z)
+    here = total_force(damper, x, v, i, scaling, z)
+    after = total_force(damper, x, v, i + beside, scaling, z)
+    bend = (after - here) - (here - before)
+    if abs(after - before) >= abs(bend):
+        return i
+    return i - 0.5 * beside * (after - before) / bend
 
 
 @jit
@@ -246,13 +279,19 @@ def _bracket(
     right: float,
     f_right: float,
 ) -> float:
-    """Return the root in `[left, right]` by the Illinois method, which halves the value of an end that stays put."""
+    """Return the root in `[left, right]` by the Illinois method, which halves the value of an end that stays put.
+
+    It goes on until no number is left between the ends, in whatever precision: a tolerance would let rounding decide how
+    many iterations there are, and the current would depend on that to the tolerance.
+    """
     side = 0
     middle = right
     for _ in range(TRIALS):
         middle = (left * f_right - right * f_left) / (f_right - f_left)
+        if not left < middle < right:
+            break
         f_middle = total_force(damper, x, v, middle, scaling, z) - target
-        if abs(f_middle) <= CLOSE:
+        if f_middle == 0.0:
             break
         if f_middle * f_left > 0.0:
             left, f_left = middle, f_middle

@@ -2,6 +2,11 @@
 #include "model.h"
 #include "instance.h"
 
+#if defined(__GNUC__)
+/* The standard says which parameters its functions have; a unit does not use all of them. */
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+
 #include <stdbool.h>
 
 #ifndef FMI3_FUNCTION_PREFIX
@@ -42,7 +47,7 @@ FMI3(void *, fmi3InstantiateCoSimulation)(Text name, Text token, Text resources,
     if (i) {
         i->tell = tell_fmi3;
         i->environment = environment;
-        i->logger = (void *)log;
+        i->logger = (void (*)(void))log;
     }
     return i;
 }

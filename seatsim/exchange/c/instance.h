@@ -29,7 +29,7 @@ typedef struct {
     void (*tell)(void *instance, const char *text);
     char *name;
     void *environment;
-    void *logger;
+    void (*logger)(void); /* of a type that the version of the interface knows */
 } Instance;
 
 static char *place_of(Content *c, unsigned int reference) { return (char *)&c->model + variables[reference].offset; }
@@ -51,7 +51,7 @@ INLINED double read_number(Content *c, unsigned int reference, int kind)
         model_observe(&c->model);
         c->observed = 1;
     }
-    return kind == REAL_VARIABLE ? *(real *)place_of(c, reference) : *(int *)place_of(c, reference);
+    return kind == REAL_VARIABLE ? (double)*(real *)place_of(c, reference) : (double)*(int *)place_of(c, reference);
 }
 
 /* Set a parameter or an input; returns 0 where it is an output or the value is not permitted. */

@@ -23,6 +23,7 @@ from seatsim.exchange.printing.values import (
     UNARY,
     Signature,
     Value,
+    as_real,
     is_empty,
     is_known,
     is_tuple,
@@ -139,14 +140,14 @@ def _print_library(  # noqa: PLR0911 - one return per function
         compute: Any = {"abs": abs, "min": min, "max": max, "float": float}.get(name) or getattr(math, name)
         return number(compute(*[value.known for value in values]))
     if name in ("min", "max"):
-        first, *rest = values
+        first, *rest = values if whole else map(as_real, values)
         for value in rest:
             word = {"min": "least", "max": "greatest"}[name] + ("_int" if whole else "")
             first = Value(f"{word}({first.code}, {value.code})", INTEGER if whole else REAL, plain=False)
         return first
     listed = ", ".join(value.code for value in values)
     if name == "float":
-        return Value(f"(real){within(values[0], UNARY)}", REAL, plain=False, rank=UNARY) if whole else values[0]
+        return as_real(values[0])
     if name == "abs":
         return Value(f"{'abs' if whole else 'r_fabs'}({listed})", INTEGER if whole else REAL, plain=False)
     if name in ("isnan", "isinf", "isfinite"):

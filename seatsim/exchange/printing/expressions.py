@@ -26,6 +26,7 @@ from seatsim.exchange.printing.values import (
     SUM,
     UNARY,
     Value,
+    as_real,
     is_empty,
     is_known,
     is_tuple,
@@ -140,8 +141,10 @@ def arithmetic(op: ast.operator, left: Value, right: Value, node: ast.AST, scope
     if sign in "/%" and isinstance(op, ast.FloorDiv | ast.Mod) and not whole:
         raise scope.refuse(node, "// and % are for whole numbers only")
     rank = SUM if sign in "+-" else PRODUCT
-    first = f"(real){within(left, UNARY)}" if isinstance(op, ast.Div) and left.type != REAL else within(left, rank)
-    return Value(f"{first} {sign} {within(right, rank - 1)}", INTEGER if whole else REAL, plain=False, rank=rank)
+    if not whole:
+        left, right = as_real(left), as_real(right)
+    code = f"{within(left, rank)} {sign} {within(right, rank - 1)}"
+    return Value(code, INTEGER if whole else REAL, plain=False, rank=rank)
 
 
 def _is_number(value: Value) -> bool:
@@ -213,9 +216,10 @@ def _print_choice(node: ast.IfExp, scope: Scope) -> Value:
         raise scope.refuse(node, f"both branches must have one type, not {yes.type} and {no.type}")
     if is_empty(yes.type):
         return yes
-    kind = REAL if REAL in (yes.type, no.type) else yes.type
+    if REAL in (yes.type, no.type) and yes.type != no.type:
+        yes, no = as_real(yes), as_real(no)
     code = f"{within(condition, LOGIC)} ? {within(yes, LOGIC)} : {within(no, CHOICE)}"
-    return Value(code, kind, plain=False, rank=CHOICE)
+    return Value(code, yes.type, plain=False, rank=CHOICE)
 
 
 def _print_subscript(node: ast.Subscript, scope: Scope) -> Value:

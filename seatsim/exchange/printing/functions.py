@@ -95,7 +95,14 @@ def _definition(
     # What is compiled apart for Python is so here: it is seldom called.
     kind = "CALLED" if program.is_apart(function) else "INLINED"
     head = f"{kind} {program.types.name(result)} {name}({listed or 'void'})"
-    return "\n".join([f"/* {origin(function)} */", head, "{", *scope.declared, *_used(scope.lines), "}", ""])
+    lines = [*scope.declared, *_used(scope.lines)]
+    return "\n".join([f"/* {origin(function)} */", head, "{", *_unused(parameters, lines), *lines, "}", ""])
+
+
+def _unused(parameters: list[str], lines: list[str]) -> list[str]:
+    """Return statements that name the parameters without a use, such as the state of a damper that has none."""
+    names = [re.split(r"\W+", parameter)[-1] for parameter in parameters if parameter]
+    return [f"    (void){name};" for name in names if not any(re.search(rf"\b{name}\b", line) for line in lines)]
 
 
 def _used(lines: list[str]) -> list[str]:

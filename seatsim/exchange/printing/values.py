@@ -73,6 +73,15 @@ def within(value: Value, most: int) -> str:
     return f"({value.code})" if value.rank > most else value.code
 
 
+def as_real(value: Value) -> Value:
+    """Return a number as a real one, by a cast where it is a whole one that is known only when the code runs."""
+    if value.type == REAL:
+        return value
+    if is_known(value):
+        return number(float(value.known))  # type: ignore[arg-type]  # a number
+    return Value(f"(real){within(value, UNARY)}", REAL, plain=False, rank=UNARY)
+
+
 def tuple_type(items: tuple[types.Type, ...], cls: type | None = None) -> types.Type:
     """Return the type of a tuple, or of a record of a class."""
     return types.BaseTuple.from_types(items, cls)
