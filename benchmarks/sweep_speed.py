@@ -28,10 +28,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from loop_alone import loop_of
 from numpy.typing import NDArray
 
 from seatsim.cli.outputs.sweeps import report_sweep
-from seatsim.kernel.loop import run_loop
 from seatsim.metrics import summarise
 from seatsim.scenario.scenario import Scenario
 from seatsim.simulation import simulate as simulation
@@ -171,22 +171,7 @@ def plot(sweeps: Sequence[Cost], reports: Sequence[Cost], fitted: NDArray[np.flo
 
 def prepare_loops(scenarios: list[Scenario]) -> Callable[[], object]:
     """Return what calls the compiled loop alone, with all of its arguments at hand."""
-    calls: list[Callable[[], object]] = []
-    compiled = simulation.__dict__["compiled"]
-
-    def record(function: object, parts: object) -> Callable[..., object]:
-        loop = compiled(run_loop, parts)
-
-        def call(*arguments: object) -> object:
-            calls.append(lambda: loop(*arguments))
-            return loop(*arguments)
-
-        return call
-
-    simulation.__dict__["compiled"] = record
-    for scenario in scenarios[:LOOPS]:
-        simulation.simulate(scenario)
-    simulation.__dict__["compiled"] = compiled
+    calls = [loop_of(scenario) for scenario in scenarios[:LOOPS]]
     return lambda: [calls[number % LOOPS]() for number in range(len(scenarios))]
 
 

@@ -281,8 +281,8 @@ def _bracket(
 ) -> float:
     """Return the root in `[left, right]` by the Illinois method, which halves the value of an end that stays put.
 
-    It goes on until no number is left between the ends, in whatever precision: a tolerance would let rounding decide how
-    many iterations there are, and the current would depend on that to the tolerance.
+    It goes on until no number is left between the ends, in whatever precision: with a tolerance, rounding would decide
+    how many iterations there are, and the current would depend on that.
     """
     side = 0
     middle = right

@@ -103,19 +103,20 @@ def derivative(
     linear = plant.cushion_stiffness * xc + plant.cushion_damping * vc
     cushion = cushion_force(effects, ze, linear, plant, xc, vc)
     push = disturbance.frame_force
-    free = (cushion - spring - resistance - ratio * smooth + push) / plant.frame_mass - disturbance.floor
+    # Times the reciprocal of a mass: compilers find that it is the same in every stage of a step, and divide once.
+    free = (cushion - spring - resistance - ratio * smooth + push) * (1.0 / plant.frame_mass) - disturbance.floor
 
-    damper_limit = ratio * friction_limit(rig.damper, ratio * v, current, scaling, z)
+    coulomb = friction_limit(rig.damper, ratio * v, current, scaling, z)
     linkage = linkage_friction(effects, ze)
-    limit = damper_limit + linkage
+    limit = ratio * coulomb + linkage
     friction, acceleration = _friction(free, v, slip, limit, plant.frame_mass)
     # While sticking, the friction is below its limit, and the load cell's part of it is not determined: damper and
     # linkage bear it in proportion to their limits.
     share = friction / limit if limit > 0.0 else 0.0
-    damper_force = smooth + share * damper_limit / ratio
+    damper_force = smooth + share * coulomb
     frame = acceleration + disturbance.floor
     body = plant.driver_mass - inner_mass(effects, ze, plant)
-    driver = (inner_force(effects, ze, plant) - cushion + disturbance.driver_force) / body
+    driver = (inner_force(effects, ze, plant) - cushion + disturbance.driver_force) * (1.0 / body)
 
     works = (
         disturbance.frame_force * v

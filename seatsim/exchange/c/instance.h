@@ -1,4 +1,5 @@
 /* One instance of the model behind either version of the interface. */
+#include <limits.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -98,11 +99,12 @@ static void begin(Content *c, double time)
 static int go_on(Instance *i, double from, double length)
 {
     Content *c = &i->content;
+    const double steps = length / STEP;
     if (!(length > 0.0)) {
         tell(i, "%s: a step of %g s is none; it must be above 0", i->name, length, 0.0, 0.0);
         return 0;
     }
-    if (FIXED_STEP && fabs(length / STEP - floor(length / STEP + 0.5)) > ROUNDING * (1.0 + length / STEP)) {
+    if (FIXED_STEP && !(steps < INT_MAX && fabs(steps - (int)(steps + 0.5)) <= ROUNDING * (1.0 + steps))) {
         tell(i, "%s: a step of %g s is not a whole number of steps of %g s", i->name, length, STEP, 0.0);
         return 0;
     }

@@ -30,7 +30,7 @@ static inline void model_start(Model *m)
    then stays at the last step that was reached. */
 static inline int model_advance(Model *m, real length)
 {
-    const int steps = FIXED_STEP ? greatest_int(1, (int)r_floor(length / STEP + R(0.5))) : 1;
+    const int steps = FIXED_STEP ? greatest_int(1, (int)(length / STEP + R(0.5))) : 1;
     const real part = FIXED_STEP ? STEP : length;
     for (int k = 0; k < steps; k++) {
         const @Advanced@ next = @ADVANCE@;

@@ -28,7 +28,6 @@ from seatsim.exchange.printing.values import (
     is_known,
     is_tuple,
     number,
-    within,
 )
 
 Evaluate = Callable[[ast.expr, Scope], Value]
