@@ -34,5 +34,15 @@ def test_of_several_runs_the_first_is_exported(seatsim_command, tmp_path):
     out = tmp_path / "here" / "damper.mat"
     status, said, err = seatsim_command("export", "quickstart", "--to", "mat", "--what", "damper", "--out", out)
     assert status == 0 and out.is_file()
-    assert "holds 4 runs; the first is exported: quickstart (hybrid skyhook)" in err
+    assert "holds 4 runs; the first is exported: quickstart (hybrid skyhook); --variant takes another one:" in err
     assert f"written: {out}" in said
+
+
+def test_a_variant_is_chosen_by_its_name(seatsim_command, tmp_path):
+    out = tmp_path / "controller.c"
+    words = ("export", "laws", "--to", "c", "--what", "controller", "--out", out)
+    status, _, err = seatsim_command(*words, "--variant", "LQR")
+    assert status == 0 and "runs" not in err
+    assert "control law Lqr" in out.read_text()
+    status, _, err = seatsim_command(*words, "--variant", "skyhok")
+    assert status == 2 and "(did you mean 'skyhook'?); its variants: passive, 0 A; passive, 1 A;" in err

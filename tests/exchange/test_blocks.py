@@ -2,6 +2,7 @@
 
 import dataclasses
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from seatsim.exchange.blocks.held import nothing_held
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.exchange.c_file import print_c, write_c
 from seatsim.exchange.compiler import find_compiler
+from seatsim.exchange.fmu import make_files
 from seatsim.exchange.matlab import write_mat
 from seatsim.exchange.model_source import print_model
 from seatsim.exchange.printing.values import NotPrintableError
@@ -24,11 +26,14 @@ from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import DamperChoice
 from seatsim.schema.errors import InputError
 
+STRICT = ("-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Werror")
+"""Warnings that the rules for control units ask for; none is left."""
+
 
 def run_vector(path, *flags):
     """Compile a file with its test vector, run it, and return what it prints."""
     program = path.with_suffix(".out")
-    command = [find_compiler(), "-std=c99", "-Wall", "-Werror", "-O1", "-ffp-contract=off", "-DSEATSIM_TEST", *flags]
+    command = [find_compiler(), "-std=c99", *STRICT, "-O1", "-ffp-contract=off", "-DSEATSIM_TEST", *flags]
     subprocess.run([*command, "-o", str(program), str(path), "-lm"], check=True, timeout=60)
     return subprocess.run([str(program)], capture_output=True, text=True, timeout=60, check=False)
 
@@ -82,6 +87,21 @@ def test_a_controller_passes_its_test_vector_in_double_and_float(name, settings,
     assert done.returncode == 0 and "greatest error is 0 of" in done.stdout
     assert "malloc" not in (tmp_path / "controller.c").read_text()
     assert run_vector(tmp_path / "controller.c", "-DSEATSIM_FLOAT").returncode == 0
+
+
+@pytest.mark.parametrize("make", [controller_block, damper_block, rig_block])
+@pytest.mark.parametrize("name", ["quickstart", "hot-damper-cold-inverse"])
+def test_sources_compile_without_a_warning(make, name, tmp_path):
+    block = make(load(name)[0])
+    for version in (2, 3):
+        for file, content in make_files(block, version).items():
+            (tmp_path / Path(file).name).write_bytes(content)
+    (tmp_path / "alone.c").write_text(print_c(block))
+    files = [str(tmp_path / file) for file in ("alone.c", "fmi2.c", "fmi3.c")]
+    command = [find_compiler(), "-std=c99", *STRICT, "-fsyntax-only", "-DSEATSIM_TEST", *files]
+    for precision in ((), ("-DSEATSIM_FLOAT",)):
+        done = subprocess.run([*command, *precision], capture_output=True, text=True, timeout=60, check=False)
+        assert done.returncode == 0, done.stderr
 
 
 def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path, monkeypatch):

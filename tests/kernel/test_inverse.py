@@ -84,7 +84,7 @@ def test_the_least_current_that_serves(name):
 def test_a_force_within_reach_twice_takes_the_lesser_current():
     answer = ask(Wavy(), 0.1 * 700.0, 0.0, 0.1, ())
     assert answer.served == 1.0
-    assert answer.current == pytest.approx(1.0 / 18.0, abs=1e-8)
+    assert answer.current == pytest.approx(1.0 / 18.0, abs=1e-15)
     answer = ask(Parabola(), 0.1 * 400.0, 0.0, 0.1, ())
     assert answer.current == pytest.approx(0.2, abs=1e-9)
 
@@ -94,6 +94,24 @@ def test_a_force_out_of_reach_is_flagged_and_approached(wanted, force):
     answer = ask(Wavy(), wanted, 0.0, 0.1, ())
     assert answer.served == 0.0
     assert answer.force == pytest.approx(force, rel=0.02)
+
+
+@pytest.mark.parametrize(("wanted", "turn"), [(0.1 * 950.0, 1.0 / 6.0), (0.1 * 50.0, 0.5)])
+def test_a_turn_is_found_to_more_than_the_root_of_rounding(wanted, turn):
+    # The forces are equal to rounding within 1e-8 A of the turn; what is left is the third power of the distance that
+    # a parabola does not follow, and a force that differs by less than `CLOSE`.
+    damper = Wavy()
+    near = ask(damper, wanted, 0.0, 0.1, ()).current
+    again = ask(damper, wanted * (1.0 + 1e-15), 0.0, 0.1 * (1.0 - 1e-15), ()).current
+    assert near == pytest.approx(turn, abs=1e-6)
+    assert again == pytest.approx(near, abs=1e-12)
+
+
+def test_a_line_is_solved_to_rounding_where_most_of_the_force_does_not_depend_on_the_current():
+    damper = BoucWen(f0=1e6)
+    for current in (0.1, 0.5, 0.9):
+        wanted = total_force(damper, 0.0, 0.1, current, HEAT, (0.5,))
+        assert ask(damper, wanted, 0.0, 0.1, (0.5,)).current == pytest.approx(current, abs=1e-11)
 
 
 @pytest.mark.parametrize(("wanted", "v"), [(-50.0, 0.1), (50.0, -0.1), (50.0, 0.0), (0.0, 0.1), (-0.0, 0.0)])

@@ -63,6 +63,14 @@ def test_velocities_are_made_of_readings(motion):
         np.testing.assert_allclose(velocity, filtered([1.0], [1, WC], reading, PERIOD), rtol=1e-9, atol=1e-9)
 
 
+def test_rounding_of_the_filter_does_not_grow_in_the_velocity():
+    # A reading that stays far from zero: a lag beside it would agree with it in nearly every digit.
+    made, s = Sensors().instruments(STEP, PERIOD), at_rest(1e6)
+    for _ in range(50):
+        y, s = made.take(NOTHING._replace(displacement=1e6), s)
+        assert y.velocity == 0.0
+
+
 def test_no_floor_accelerometer_unless_stated(motion):
     x, *_, floor, _ = motion
     assert np.all(np.isnan(readings(Sensors(), x, np.zeros((len(x), 4)), floor).floor_acceleration))
