@@ -17,7 +17,7 @@
 #include <stdio.h>
 
 #ifdef SEATSIM_FLOAT
-#define TOLERANCE 1e-3 /* near rest the inverse divides by a force that hardly depends on the current */
+#define TOLERANCE 1e-4 /* rounding decides how steps are divided, and what a force asks for that hardly depends on the current */
 #else
 #define TOLERANCE 1e-12
 #endif
