@@ -33,6 +33,7 @@ from seatsim.exchange.blocks.damper import DamperInputs, advance, damper_block, 
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.exchange.blocks.rig_records import RigOutputs
 from seatsim.exchange.compiler import undefined_symbols
+from seatsim.exchange.model_source import print_model
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import DamperChoice, Scenario
 from seatsim.schema.errors import InputError
@@ -132,6 +133,7 @@ def compare_rig(name: str, scenario: Scenario, versions: list[int]) -> None:
     """Compare a rig with the history of its simulation."""
     try:
         block = rig_block(scenario)
+        print_model(block)  # refuses what has no counterpart, before anything is simulated
         inputs = floor_of(scenario)
         history = simulate(scenario, carry_all_effects=False)
         spent = least_time(loop_of(scenario, carry_all_effects=False))

@@ -12,8 +12,7 @@ from seatsim.schema.errors import InputError, RunError
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-ffp-contract=off")
 """Without `-ffp-contract=off` a compiler may fuse products and sums, and results would differ between machines."""
 QUICK = ("-fno-math-errno", "-fno-trapping-math", "-fschedule-insns", "-fsched-pressure")
-"""Nothing reads `errno` or the flags of floating-point exceptions, and instructions may stand in any order: results stay
-the same."""
+"""Nothing reads `errno` or the flags of floating-point exceptions, instructions may be moved: results stay the same."""
 PERMITTED = """
 exp expm1 log pow sqrt sin cos tan atan atan2 tanh sinh cosh hypot fabs floor ceil fmod copysign
 memcpy memset memmove malloc calloc free strcmp strcpy strlen snprintf __stack_chk_fail __snprintf_chk
@@ -26,12 +25,17 @@ def find_compiler() -> str:
     """Return the path of the C compiler: that of the variable CC, or cc, gcc or clang.
 
     Raises:
-        InputError: there is none.
+        InputError: there is none, or not the one that CC names.
     """
-    for name in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
-        found = shutil.which(name.split()[0]) if name.strip() else None
+    chosen = os.environ.get("CC", "").split()[:1]
+    for name in chosen or ("cc", "gcc", "clang"):
+        found = shutil.which(name)
         if found:
             return found
+    if chosen:
+        raise InputError(
+            f"the variable CC names '{chosen[0]}', and there is no such program; name a C compiler, or none"
+        )
     raise InputError(
         "an FMU is compiled, and this machine has no C compiler: install gcc or clang (Debian: apt install gcc),"
         " or name one by CC; '--to c' needs none"

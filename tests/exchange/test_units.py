@@ -204,6 +204,13 @@ def test_without_a_compiler_one_sentence_says_so(monkeypatch, seat_file, tmp_pat
     assert list(tmp_path.glob("*.fmu*")) == []
 
 
+def test_a_compiler_that_is_named_but_not_there_is_one_sentence(monkeypatch, seat_file, tmp_path):
+    monkeypatch.setenv("CC", "nonexistent -O2")
+    with pytest.raises(InputError, match="CC names 'nonexistent', and there is no such program"):
+        write_fmu(damper_block(load(seat_file)[0]), 2, tmp_path / "unit.fmu")
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("name", sorted({"bingham", "ellis", "yu2019", "li_viscoelastic_plastic"}))
 def test_dampers_are_described_in_both_versions(name, seat_file):
     block = block_of(name, seat_file)
