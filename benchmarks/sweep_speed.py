@@ -3,8 +3,8 @@
     python benchmarks/sweep_speed.py [RUNS] [--growth FILE]
 
 Runs of 10 s at 1 kHz of the H-infinity seat of `road-d` and its two passive variants, with drawn masses and
-stiffnesses. Measured are the compiled loop alone; in one process, three times, runs with their set-up and metrics on a
-floor that is at hand, a sweep of RUNS runs (10 000 by default), one at once, and the runs again; the sweep two at once.
+stiffnesses. Measured are the compiled loop alone; in one process, three times, runs without an engine, from their drawn
+values to their metrics, a sweep of RUNS runs (10 000 by default), one at once, and the runs again; then two at once.
 Given are the time of processors and on the clock for each run, and the largest memory of all processes together. What a
 sweep adds is the median of the three, since a machine that others use is now faster, now slower.
 
@@ -33,13 +33,11 @@ from numpy.typing import NDArray
 
 from seatsim.cli.outputs.sweeps import report_sweep
 from seatsim.kernel.loop import run_loop
-from seatsim.metrics import summarise
-from seatsim.scenario.scenario import Scenario
 from seatsim.simulation import simulate as simulation
-from seatsim.simulation.validity import list_ranges_left
-from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY
+from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY, simulate_one
 from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.execute import execute, prepare
+from seatsim.sweeps.plan import Plan
 
 SWEEP = """\
 scenario: road-d
@@ -141,16 +139,15 @@ def measure(what: str, runs: int, folder: Path | None) -> dict[str, Cost]:
         if what == "report":
             return {what: cost_of(runs, partial(report_sweep, out, out))}
         # What loads what is compiled is left out, as it is the same for any number of runs.
-        scenarios = [prepared.plan.scenario(number) for number in range(few)]
-        run_all(scenarios[:VARIANTS])
+        run_all(prepared.plan, VARIANTS)
         if what == "loop":
-            return {what: cost_of(few, prepare_loops(scenarios))}
+            return {what: cost_of(few, prepare_loops(prepared.plan, few))}
         if what == "sweep-2":
             return {what: cost_of(runs, partial(execute, prepared, out, LocalEngine(2)))}
         return {
-            "runs": cost_of(few, partial(run_all, scenarios)),
+            "runs": cost_of(few, partial(run_all, prepared.plan, few)),
             "sweep-1": cost_of(runs, partial(execute, prepared, out, LocalEngine(1))),
-            "runs again": cost_of(few, partial(run_all, scenarios)),
+            "runs again": cost_of(few, partial(run_all, prepared.plan, few)),
         }
 
 
@@ -189,8 +186,8 @@ def plot(sweeps: Sequence[Cost], reports: Sequence[Cost], fitted: NDArray[np.flo
     figure.savefig(file)
 
 
-def prepare_loops(scenarios: list[Scenario]) -> Callable[[], object]:
-    """Return what calls the compiled loop alone, with all of its arguments at hand."""
+def prepare_loops(plan: Plan, runs: int) -> Callable[[], object]:
+    """Return what calls the compiled loop alone so many times, with all of its arguments at hand."""
     calls: list[Callable[[], object]] = []
     compiled = simulation.__dict__["compiled"]
 
@@ -204,21 +201,16 @@ def prepare_loops(scenarios: list[Scenario]) -> Callable[[], object]:
         return call
 
     simulation.__dict__["compiled"] = record
-    for scenario in scenarios[:LOOPS]:
-        simulation.simulate(scenario)
+    for number in range(LOOPS):
+        simulation.simulate(plan.scenario(number))
     simulation.__dict__["compiled"] = compiled
-    return lambda: [calls[number % LOOPS]() for number in range(len(scenarios))]
+    return lambda: [calls[number % LOOPS]() for number in range(runs)]
 
 
-def run_all(scenarios: list[Scenario]) -> None:
-    """Simulate scenarios on the floor of the first, which all share, and work out their metrics."""
-    first = scenarios[0]
-    floor = first.excitation.floor(first.solver.step, first.seed)
-    for scenario in scenarios:
-        history = simulation.simulate(scenario, floor)
-        travel = scenario.plant.travel if scenario.plant else None
-        summarise(history.channels, history.step, travel=travel, coil_resistance=scenario.coil.resistance)
-        list_ranges_left(scenario, history)
+def run_all(plan: Plan, runs: int) -> None:
+    """Carry out the first runs of a plan one after the other, from their values to their outcomes."""
+    for number in range(runs):
+        simulate_one(plan, number, number, None)
 
 
 if __name__ == "__main__":
