@@ -50,7 +50,9 @@ def compile_library(source: Path, library: Path) -> None:
         RunError: it refused the source, or the library would need more than C's own library.
     """
     command = [find_compiler(), *FLAGS, *QUICK, "-o", str(library), str(source), "-lm", "-s"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    # Its own temporary files stand beside the library, whose folder is removed also where the export is interrupted.
+    own = os.environ | dict.fromkeys(("TMPDIR", "TMP", "TEMP"), str(library.parent))
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=own)
     if done.returncode:
         raise RunError(f"{command[0]} could not compile {source.name}: {done.stderr.strip()[:500]}")
     foreign = undefined_symbols(library) - set(PERMITTED.split())

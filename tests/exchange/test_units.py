@@ -17,7 +17,7 @@ from seatsim.exchange.fmu import make_files, write_fmu
 from seatsim.exchange.variables import list_variables
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import DamperChoice
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, RunError
 from seatsim.simulation.simulate import simulate
 
 STEP, SAMPLES = 1e-3, 300
@@ -204,11 +204,21 @@ def test_without_a_compiler_one_sentence_says_so(monkeypatch, seat_file, tmp_pat
     assert list(tmp_path.glob("*.fmu*")) == []
 
 
+def test_the_compiler_writes_only_beside_the_library(tmp_path, monkeypatch):
+    # A compiler that is ended with the export, or outlives it, leaves its temporary files where it was told to.
+    compiler_of_ours = tmp_path / "cc"
+    compiler_of_ours.write_text('#!/bin/sh\necho "$TMPDIR" >&2\nexit 1\n')
+    compiler_of_ours.chmod(0o755)
+    monkeypatch.setenv("CC", str(compiler_of_ours))
+    with pytest.raises(RunError, match=f"{tmp_path}/here$"):
+        compiler.compile_library(tmp_path / "a.c", tmp_path / "here" / "a.so")
+
+
 def test_a_compiler_that_is_named_but_not_there_is_one_sentence(monkeypatch, seat_file, tmp_path):
     monkeypatch.setenv("CC", "nonexistent -O2")
     with pytest.raises(InputError, match="CC names 'nonexistent', and there is no such program"):
         write_fmu(damper_block(load(seat_file)[0]), 2, tmp_path / "unit.fmu")
-    assert list(tmp_path.iterdir()) == []
+    assert list(tmp_path.glob("*.fmu*")) == []
 
 
 @pytest.mark.parametrize("name", sorted({"bingham", "ellis", "yu2019", "li_viscoelastic_plastic"}))
