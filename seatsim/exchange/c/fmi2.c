@@ -92,13 +92,7 @@ FMI2(fmi2Status, fmi2EnterInitializationMode)(fmi2Component c)
 
 FMI2(fmi2Status, fmi2ExitInitializationMode)(fmi2Component c)
 {
-    Content *content = &((Instance *)c)->content;
-    if (content->phase != INITIALISING) {
-        return fmi2Error;
-    }
-    begin(content, content->time);
-    content->phase = STEPPING;
-    return fmi2OK;
+    return status_of(enter_steps(c));
 }
 
 FMI2(fmi2Status, fmi2Terminate)(fmi2Component c)
@@ -151,28 +145,17 @@ FMI2(fmi2Status, fmi2SetString)(fmi2Component c, const fmi2ValueReference vr[], 
     return status_of(n == 0);
 }
 
-FMI2(fmi2Status, fmi2GetFMUstate)(fmi2Component c, fmi2FMUstate *state)
-{
-    if (!*state) {
-        *state = malloc(sizeof(Content));
-    }
-    if (!*state) {
-        return fmi2Error;
-    }
-    memcpy(*state, &((Instance *)c)->content, sizeof(Content));
-    return fmi2OK;
-}
+FMI2(fmi2Status, fmi2GetFMUstate)(fmi2Component c, fmi2FMUstate *state) { return status_of(save_state(c, state)); }
 
 FMI2(fmi2Status, fmi2SetFMUstate)(fmi2Component c, fmi2FMUstate state)
 {
-    memcpy(&((Instance *)c)->content, state, sizeof(Content));
+    restore_state(c, state);
     return fmi2OK;
 }
 
 FMI2(fmi2Status, fmi2FreeFMUstate)(fmi2Component c, fmi2FMUstate *state)
 {
-    free(*state);
-    *state = NULL;
+    drop_state(state);
     return fmi2OK;
 }
 
@@ -184,20 +167,12 @@ FMI2(fmi2Status, fmi2SerializedFMUstateSize)(fmi2Component c, fmi2FMUstate state
 
 FMI2(fmi2Status, fmi2SerializeFMUstate)(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
 {
-    if (size < sizeof(Content)) {
-        return fmi2Error;
-    }
-    memcpy(bytes, state, sizeof(Content));
-    return fmi2OK;
+    return status_of(write_state(state, bytes, size));
 }
 
 FMI2(fmi2Status, fmi2DeSerializeFMUstate)(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state)
 {
-    if (size != sizeof(Content) || fmi2Error == FMI2_NAME(fmi2GetFMUstate)(c, state)) {
-        return fmi2Error;
-    }
-    memcpy(*state, bytes, size);
-    return fmi2OK;
+    return status_of(read_state(c, bytes, size, state));
 }
 
 FMI2(fmi2Status, fmi2GetDirectionalDerivative)(fmi2Component c, const fmi2ValueReference unknown[], size_t n,

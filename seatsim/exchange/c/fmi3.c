@@ -31,6 +31,8 @@ static void tell_fmi3(void *instance, const char *text)
     }
 }
 
+static fmi3Status status_of(int good) { return good ? fmi3OK : fmi3Error; }
+
 FMI3(Text, fmi3GetVersion)(void) { return "3.0"; }
 
 FMI3(fmi3Status, fmi3SetDebugLogging)(void *c, bool on, size_t n, const Text categories[]) { return fmi3OK; }
@@ -79,13 +81,7 @@ FMI3(fmi3Status, fmi3EnterInitializationMode)(void *c, bool toleranceDefined, do
 
 FMI3(fmi3Status, fmi3ExitInitializationMode)(void *c)
 {
-    Content *content = &((Instance *)c)->content;
-    if (content->phase != INITIALISING) {
-        return fmi3Error;
-    }
-    begin(content, content->time);
-    content->phase = STEPPING;
-    return fmi3OK;
+    return status_of(enter_steps(c));
 }
 
 FMI3(fmi3Status, fmi3Terminate)(void *c)
@@ -131,28 +127,17 @@ GET_AND_SET(Float64, double, REAL_VARIABLE)
 GET_AND_SET(Int32, int32_t, INTEGER_VARIABLE)
 GET_AND_SET(Boolean, bool, BOOLEAN_VARIABLE)
 
-FMI3(fmi3Status, fmi3GetFMUState)(void *c, void **state)
-{
-    if (!*state) {
-        *state = malloc(sizeof(Content));
-    }
-    if (!*state) {
-        return fmi3Error;
-    }
-    memcpy(*state, &((Instance *)c)->content, sizeof(Content));
-    return fmi3OK;
-}
+FMI3(fmi3Status, fmi3GetFMUState)(void *c, void **state) { return status_of(save_state(c, state)); }
 
 FMI3(fmi3Status, fmi3SetFMUState)(void *c, void *state)
 {
-    memcpy(&((Instance *)c)->content, state, sizeof(Content));
+    restore_state(c, state);
     return fmi3OK;
 }
 
 FMI3(fmi3Status, fmi3FreeFMUState)(void *c, void **state)
 {
-    free(*state);
-    *state = NULL;
+    drop_state(state);
     return fmi3OK;
 }
 
@@ -164,20 +149,12 @@ FMI3(fmi3Status, fmi3SerializedFMUStateSize)(void *c, void *state, size_t *size)
 
 FMI3(fmi3Status, fmi3SerializeFMUState)(void *c, void *state, uint8_t bytes[], size_t size)
 {
-    if (size < sizeof(Content)) {
-        return fmi3Error;
-    }
-    memcpy(bytes, state, sizeof(Content));
-    return fmi3OK;
+    return status_of(write_state(state, bytes, size));
 }
 
 FMI3(fmi3Status, fmi3DeserializeFMUState)(void *c, const uint8_t bytes[], size_t size, void **state)
 {
-    if (size != sizeof(Content) || FMI3_NAME(fmi3GetFMUState)(c, state) != fmi3OK) {
-        return fmi3Error;
-    }
-    memcpy(*state, bytes, size);
-    return fmi3OK;
+    return status_of(read_state(c, bytes, size, state));
 }
 
 FMI3(fmi3Status, fmi3EnterStepMode)(void *c) { return fmi3OK; }
@@ -191,7 +168,7 @@ FMI3(fmi3Status, fmi3DoStep)(void *c, double from, double length, bool final, bo
     *end = false;
     *early = false;
     *reached = content->time;
-    return good ? fmi3OK : fmi3Error;
+    return status_of(good);
 }
 
 FMI3(fmi3Status, fmi3GetNumberOfContinuousStates)(void *c, size_t *n)

@@ -95,6 +95,17 @@ static void begin(Content *c, double time)
     c->phase = INITIALISING;
 }
 
+/* End the initialisation; returns 0 where there was none. */
+static int enter_steps(Instance *i)
+{
+    const int good = i->content.phase == INITIALISING;
+    if (good) {
+        begin(&i->content, i->content.time);
+        i->content.phase = STEPPING;
+    }
+    return good;
+}
+
 /* Go on from one communication point to the next; returns 0 and says why where that is impossible. */
 static int go_on(Instance *i, double from, double length)
 {
@@ -139,4 +150,41 @@ static void drop_instance(Instance *i)
         free(i->name);
         free(i);
     }
+}
+
+/* Copy what an instance holds to a state, which is made where there is none; returns 0 where there is no memory. */
+static int save_state(Instance *i, void **state)
+{
+    if (!*state) {
+        *state = malloc(sizeof(Content));
+    }
+    if (*state) {
+        memcpy(*state, &i->content, sizeof(Content));
+    }
+    return *state != NULL;
+}
+
+static void restore_state(Instance *i, const void *state) { memcpy(&i->content, state, sizeof(Content)); }
+
+static void drop_state(void **state)
+{
+    free(*state);
+    *state = NULL;
+}
+
+static int write_state(const void *state, void *bytes, size_t size)
+{
+    if (size >= sizeof(Content)) {
+        memcpy(bytes, state, sizeof(Content));
+    }
+    return size >= sizeof(Content);
+}
+
+static int read_state(Instance *i, const void *bytes, size_t size, void **state)
+{
+    const int good = size == sizeof(Content) && save_state(i, state);
+    if (good) {
+        memcpy(*state, bytes, size);
+    }
+    return good;
 }
