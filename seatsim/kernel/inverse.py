@@ -301,4 +301,4 @@ def _bracket(
             right, f_right = middle, f_middle
             f_left *= 0.5 if side == 1 else 1.0
             side = 1
-    return middle
+    return min(max(middle, left), right)

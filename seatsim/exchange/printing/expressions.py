@@ -216,7 +216,7 @@ def _print_choice(node: ast.IfExp, scope: Scope) -> Value:
         raise scope.refuse(node, f"both branches must have one type, not {yes.type} and {no.type}")
     if is_empty(yes.type):
         return yes
-    if REAL in (yes.type, no.type) and yes.type != no.type:
+    if REAL in (yes.type, no.type):
         yes, no = as_real(yes), as_real(no)
     code = f"{within(condition, LOGIC)} ? {within(yes, LOGIC)} : {within(no, CHOICE)}"
     return Value(code, yes.type, plain=False, rank=CHOICE)
