@@ -95,7 +95,8 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
     if forces is not None:
         objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
     first = _search(task, objective)
-    first = _in_time(_search_at_lower_noise, task, first) or first
+    if first.decision.verdict == "none":
+        first = _in_time(_search_at_lower_noise, task, first) or first
     if first.decision.verdict == "unknown":
         first = _in_time(_search_beyond_broadband, task, first) or first
     weights = first.objective.weights
