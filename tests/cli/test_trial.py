@@ -1,4 +1,4 @@
-"""Own classes are tried for an instant by `seatsim check`: each mistake is said by its place, and a sound one passes."""
+"""Own classes are tried for an instant by `seatsim check`: each mistake is said by its place, a sound one passes."""
 
 import numba
 import pytest
@@ -77,7 +77,7 @@ def test_sound_code_is_called_so(text, check):
         (EFFECT, "(self, force, plant, x, v, z)", "(self, plant, x, v, z)",
          "Tried.cushion_force(self, plant, x, v, z) is called with other arguments: too many positional arguments"),
         (EFFECT, "plant.cushion_stiffness", "plant.kc", "line 10: cannot be compiled: unknown attribute 'kc'"),
-        (EFFECT, "return force - plant", "return 5.0 + force - plant", "cushion.tried: changes the rig where it is off"),
+        (EFFECT, "return force - plant", "return 5.0 + force - plant", "tried: changes the rig where it is off"),
         (EFFECT, '{"gap": 2e-4}', '{"gab": 2e-4}', "gab"),
         (EFFECT, '{"gap": 2e-4}', '{"gap": 2.0}', "0.01"),
         (LAW, "y.velocity", "y.speed", "law tried: tried.py, line 9: cannot be compiled: unknown attribute 'speed'"),
