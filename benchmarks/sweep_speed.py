@@ -3,10 +3,10 @@
     python benchmarks/sweep_speed.py [RUNS] [--growth FILE]
 
 Runs of 10 s at 1 kHz of the H-infinity seat of `road-d` and its two passive variants, with drawn masses and
-stiffnesses. Each line is of a process of its own: the compiled loop alone; every run with its set-up and metrics on a
-floor that is at hand, before and after what it is compared with; a sweep of RUNS runs (10 000 by default), one at once;
-the same, two at once. Given are the time of processors and on the clock for each run, and the largest memory of all
-processes together. On a machine that others use the times of processors are what can be compared.
+stiffnesses. Measured are the compiled loop alone; in one process, three times, runs without an engine, from their drawn
+values to their metrics, a sweep of RUNS runs (10 000 by default), one at once, and the runs again; then two at once.
+Given are the time of processors and on the clock for each run, and the largest memory of all processes together. What a
+sweep adds is the median of the three, since a machine that others use is now faster, now slower.
 
 With `--growth` are measured instead sweeps of 100, 300, 1000, ... up to RUNS runs, two at once, and their reports. The
 times of the sweeps are fitted by `start + runs * each`, and all is drawn over the runs in FILE.
@@ -25,6 +25,7 @@ import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
+from statistics import median
 from typing import NamedTuple
 
 import numpy as np
@@ -32,13 +33,11 @@ from numpy.typing import NDArray
 
 from seatsim.cli.outputs.sweeps import report_sweep
 from seatsim.kernel.loop import run_loop
-from seatsim.metrics import summarise
-from seatsim.scenario.scenario import Scenario
 from seatsim.simulation import simulate as simulation
-from seatsim.simulation.validity import list_ranges_left
-from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY
+from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY, simulate_one
 from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.execute import execute, prepare
+from seatsim.sweeps.plan import Plan
 
 SWEEP = """\
 scenario: road-d
@@ -51,8 +50,9 @@ vary:
 """
 VARIANTS = 3
 SIZES = (100, 300, 1000, 3000, 10_000, 30_000, 100_000)
-SAMPLE, LOOPS = 2400, 90
-"""Runs over which the cost of one is averaged, and runs whose arguments are kept for calls of the loop alone."""
+SAMPLE, LOOPS, ROUNDS = 2400, 90, 3
+"""Runs over which the cost of one is averaged, runs whose arguments are kept for calls of the loop alone, and how often
+a sweep is compared with its runs."""
 
 LIMIT = 1536.0
 """Memory in MiB that a sweep of 100 000 runs may take; drawn in the picture."""
@@ -78,7 +78,8 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.measure:
-        print(json.dumps(measure(options.measure, options.runs, options.folder)._asdict()))
+        costs = measure(options.measure, options.runs, options.folder)
+        print(json.dumps({name: cost._asdict() for name, cost in costs.items()}))
         return
     print(f"{'':28}{'processors':>12}{'clock':>12}{'memory':>12}")
     if options.growth:
@@ -89,9 +90,14 @@ def main() -> None:
 
 def compare_parts(runs: int) -> None:
     """Print what a sweep adds to its runs, and what a second processor gives."""
-    _, before, one, after, two = (show(what, runs) for what in ("loop", "run", "sweep-1", "run", "sweep-2"))
-    alone = 0.5 * (before.processors / before.runs + after.processors / after.runs)
-    print(f"a sweep adds {100 * (one.processors / one.runs / alone - 1):.1f} % to its runs;"
+    show("loop", runs)
+    added = []
+    for _ in range(ROUNDS):
+        before, one, after = show("runs-and-sweep", runs)
+        alone = 0.5 * (before.processors / before.runs + after.processors / after.runs)
+        added.append(100 * (one.processors / one.runs / alone - 1))
+    (two,) = show("sweep-2", runs)
+    print(f"a sweep adds {median(added):.1f} % to its runs ({', '.join(f'{share:.1f}' for share in added)});"
           f" two at once do {one.clock / two.clock:.2f} times as many as one")  # fmt: skip
 
 
@@ -100,8 +106,8 @@ def draw_growth(runs: int, file: Path) -> None:
     sweeps, reports = [], []
     for size in [size for size in SIZES if size < runs] + [runs]:
         with tempfile.TemporaryDirectory() as folder:
-            sweeps.append(show("sweep-2", size, folder))
-            reports.append(show("report", size, folder))
+            sweeps += show("sweep-2", size, folder)
+            reports += show("report", size, folder)
     sizes, clocks = np.array([cost.runs for cost in sweeps]), np.array([cost.clock for cost in sweeps])
     each, start = np.polyfit(sizes, clocks, 1, w=1 / clocks)
     worst = np.max(np.abs(start + each * sizes - clocks) / clocks)
@@ -110,35 +116,46 @@ def draw_growth(runs: int, file: Path) -> None:
     plot(sweeps, reports, start + each * sizes, line, file)
 
 
-def show(what: str, runs: int, folder: str | None = None) -> Cost:
-    """Measure one thing in a process of its own, print a line, and return its cost."""
+def show(what: str, runs: int, folder: str | None = None) -> list[Cost]:
+    """Measure in a process of its own, print a line for each part, and return their costs."""
     command = [sys.executable, __file__, str(runs), "--measure", what, *(["--folder", folder] if folder else [])]
     # What the runs alone would cost without this is another matter than what a sweep adds.
     environment = os.environ | KEEP_FREED_MEMORY
     done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, env=environment)
-    cost = Cost(**json.loads(done.stdout))
-    times = f"{1e3 * cost.processors / cost.runs:9.3f} ms{1e3 * cost.clock / cost.runs:9.3f} ms"
-    print(f"{what + f', {cost.runs} runs':28}{times}{cost.memory:8.0f} MiB", flush=True)
-    return cost
+    costs = {name: Cost(**cost) for name, cost in json.loads(done.stdout).items()}
+    for name, cost in costs.items():
+        times = f"{1e3 * cost.processors / cost.runs:9.3f} ms{1e3 * cost.clock / cost.runs:9.3f} ms"
+        print(f"{name + f', {cost.runs} runs':28}{times}{cost.memory:8.0f} MiB", flush=True)
+    return list(costs.values())
 
 
-def measure(what: str, runs: int, folder: Path | None) -> Cost:
-    """Measure one thing in this process and those that it starts; a folder keeps the sweep for its report."""
+def measure(what: str, runs: int, folder: Path | None) -> dict[str, Cost]:
+    """Measure parts in this process and those that it starts; a folder keeps the sweep for its report."""
     with tempfile.TemporaryDirectory() as name:
         file, out = Path(name) / "sweep.yaml", (folder or Path(name)) / "out"
         file.write_text(SWEEP.format(runs=-(-runs // VARIANTS)), encoding="utf-8")
         prepared = prepare(file)
-        if what in ("loop", "run"):
-            runs = min(prepared.plan.runs, SAMPLE)
-            scenarios = [prepared.plan.scenario(number) for number in range(runs)]
-            work = prepare_loops(scenarios) if what == "loop" else lambda: run_all(scenarios)
-            run_all(scenarios[:VARIANTS])
-        else:
-            runs, jobs = prepared.plan.runs, what.partition("-")[2]
-            work = partial(execute, prepared, out, LocalEngine(int(jobs))) if jobs else partial(report_sweep, out, out)
-        clock, processors = time.perf_counter(), time_of_processors()
-        work()
-        clock, processors = time.perf_counter() - clock, time_of_processors() - processors
+        runs, few = prepared.plan.runs, min(prepared.plan.runs, SAMPLE)
+        if what == "report":
+            return {what: cost_of(runs, partial(report_sweep, out, out))}
+        # What loads what is compiled is left out, as it is the same for any number of runs.
+        run_all(prepared.plan, VARIANTS)
+        if what == "loop":
+            return {what: cost_of(few, prepare_loops(prepared.plan, few))}
+        if what == "sweep-2":
+            return {what: cost_of(runs, partial(execute, prepared, out, LocalEngine(2)))}
+        return {
+            "runs": cost_of(few, partial(run_all, prepared.plan, few)),
+            "sweep-1": cost_of(runs, partial(execute, prepared, out, LocalEngine(1))),
+            "runs again": cost_of(few, partial(run_all, prepared.plan, few)),
+        }
+
+
+def cost_of(runs: int, work: Callable[[], object]) -> Cost:
+    """Carry out work and return what it costs."""
+    clock, processors = time.perf_counter(), time_of_processors()
+    work()
+    clock, processors = time.perf_counter() - clock, time_of_processors() - processors
     usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return Cost(runs, processors, clock, sum(usage.ru_maxrss for usage in usages) / 1024)
 
@@ -169,8 +186,8 @@ def plot(sweeps: Sequence[Cost], reports: Sequence[Cost], fitted: NDArray[np.flo
     figure.savefig(file)
 
 
-def prepare_loops(scenarios: list[Scenario]) -> Callable[[], object]:
-    """Return what calls the compiled loop alone, with all of its arguments at hand."""
+def prepare_loops(plan: Plan, runs: int) -> Callable[[], object]:
+    """Return what calls the compiled loop alone so many times, with all of its arguments at hand."""
     calls: list[Callable[[], object]] = []
     compiled = simulation.__dict__["compiled"]
 
@@ -184,21 +201,16 @@ def prepare_loops(scenarios: list[Scenario]) -> Callable[[], object]:
         return call
 
     simulation.__dict__["compiled"] = record
-    for scenario in scenarios[:LOOPS]:
-        simulation.simulate(scenario)
+    for number in range(LOOPS):
+        simulation.simulate(plan.scenario(number))
     simulation.__dict__["compiled"] = compiled
-    return lambda: [calls[number % LOOPS]() for number in range(len(scenarios))]
+    return lambda: [calls[number % LOOPS]() for number in range(runs)]
 
 
-def run_all(scenarios: list[Scenario]) -> None:
-    """Simulate scenarios on the floor of the first, which all share, and work out their metrics."""
-    first = scenarios[0]
-    floor = first.excitation.floor(first.solver.step, first.seed)
-    for scenario in scenarios:
-        history = simulation.simulate(scenario, floor)
-        travel = scenario.plant.travel if scenario.plant else None
-        summarise(history.channels, history.step, travel=travel, coil_resistance=scenario.coil.resistance)
-        list_ranges_left(scenario, history)
+def run_all(plan: Plan, runs: int) -> None:
+    """Carry out the first runs of a plan one after the other, from their values to their outcomes."""
+    for number in range(runs):
+        simulate_one(plan, number, number, None)
 
 
 if __name__ == "__main__":
