@@ -24,7 +24,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -96,7 +96,7 @@ def keep_pictures() -> None:
     """Have each picture of a command drawn once: the k-th of a later run takes what the k-th of the first drew."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    plain = FigureCanvasAgg.draw
+    plain: Callable[[Any], None] = FigureCanvasAgg.draw
 
     def draw(canvas: Any) -> None:
         place, size = PICTURES.number, (*canvas.figure.bbox.size, canvas.figure.dpi)
