@@ -58,7 +58,10 @@ def diagnose(
     if after is not None:
         recording, said = join_recordings(recording, _load(after))
     if recording.header.parameter_tolerance is None:
-        said = [*said, f"{NOT_STATED}: every parameter of the nominal scenario is taken to be known to {USUAL:.0%}"]
+        said = [
+            *said,
+            f"{NOT_STATED}: every parameter of the nominal scenario is taken to be known to {100 * USUAL:g} %",
+        ]
     progress("looking at the data")
     examination = examine(recording)
     refuse(examination)

@@ -176,7 +176,7 @@ def test_a_value_that_a_variant_puts_in_is_said_with_its_name(seat_file):
         seat_file.read_text() + "variants:\n  soft: {plant.suspension_damping: 80.0}\n"
         "  passive, best: {damper.parameters: {c_a: 1.0}}\n"
     )
-    with pytest.raises(InputError, match=r"line 14, variant 'passive, best', damper.parameters: .*missing"):
+    with pytest.raises(InputError, match=r"line 13, variant 'passive, best', damper.parameters: .*missing"):
         load(seat_file)
     # What all variants have in common is said by its own place.
     with pytest.raises(InputError, match=r"--set plant.driver_mass=-5, plant.driver_mass: -5"):
