@@ -28,7 +28,7 @@ STATE, RATE, OFF = NAMES.index("z"), NAMES.index("z_rate"), len(NAMES)
 K, TAU, C = 20000.0, 0.02, 500.0
 
 
-def describe(version, events, saves):
+def describe(version, events, saves, longest):
     """Return the description of the unit."""
 
     def row(k):
@@ -44,18 +44,19 @@ def describe(version, events, saves):
         )
 
     rows = "\n".join(map(row, range(len(NAMES))))
+    experiment = f'<DefaultExperiment stepSize="{longest}"/>' if longest else ""
     if version == 2:
         return (
             f'<fmiModelDescription fmiVersion="2.0" modelName="d" guid="{{me}}" numberOfEventIndicators="{events}">'
             f'<ModelExchange modelIdentifier="d" canGetAndSetFMUstate="{saves}"'
-            f' completedIntegratorStepNotNeeded="true"/><ModelVariables>{rows}</ModelVariables><ModelStructure>'
-            f'<Outputs><Unknown index="4"/></Outputs><Derivatives><Unknown index="{RATE + 1}"/></Derivatives>'
+            f' completedIntegratorStepNotNeeded="true"/>{experiment}<ModelVariables>{rows}</ModelVariables>'
+            f'<ModelStructure><Outputs><Unknown index="4"/></Outputs><Derivatives><Unknown index="{RATE + 1}"/></Derivatives>'
             "</ModelStructure>"
             "</fmiModelDescription>"
         )
     return (
         '<fmiModelDescription fmiVersion="3.0" modelName="d" instantiationToken="{me}">'
-        f'<ModelExchange modelIdentifier="d" canGetAndSetFMUState="{saves}"/><ModelVariables>{rows}'
+        f'<ModelExchange modelIdentifier="d" canGetAndSetFMUState="{saves}"/>{experiment}<ModelVariables>{rows}'
         f'<Float64 name="off" valueReference="{OFF}" causality="local"/></ModelVariables><ModelStructure>'
         f'<Output valueReference="3"/><ContinuousStateDerivative valueReference="{RATE}"/>'
         + f'<EventIndicator valueReference="{OFF}"/>' * events
@@ -77,11 +78,11 @@ def libraries(tmp_path_factory):
 def unit(libraries, tmp_path, forget_own_code):
     """Make the unit, with so many event indicators, that saves its state or not, and give the damper that it is."""
 
-    def make(version, events=0, saves="true", folder=tmp_path, **parameters):
+    def make(version, events=0, saves="true", folder=tmp_path, longest=None, **parameters):
         path = folder / "damper.fmu"
         place = "linux64" if version == 2 else f"{platform.machine()}-linux"
         with zipfile.ZipFile(path, "w") as archive:
-            archive.writestr("modelDescription.xml", describe(version, events, saves))
+            archive.writestr("modelDescription.xml", describe(version, events, saves, longest))
             archive.writestr(f"binaries/{place}/d.so", libraries[version])
         use(path)
         inputs = (("displacement", "x"), ("velocity", "v"), ("current", "i"))
@@ -90,13 +91,18 @@ def unit(libraries, tmp_path, forget_own_code):
     return make
 
 
-def run(damper, step, end=0.2, speed=0.3):
-    """Return the force at the end of a motion of constant speed from zero, and whether steps can be repeated."""
+def run(damper, step, end=0.2, speed=0.3, rise=0.0):
+    """Return the force at the end of a motion of constant speed from zero, and whether steps can be repeated.
+
+    The current rises by `rise` in A/s.
+    """
     given = {"displacement": 0.0, "velocity": speed, "acceleration": 0.0, "current": 0.0, "temperature": 20.0}
     with run_unit(damper) as running:
         force = running.start(damper, given)
         for k in range(round(end / step)):
-            force = running.step(k * step, step, given | {"displacement": speed * k * step})
+            force = running.step(
+                k * step, step, given | {"displacement": speed * k * step, "current": rise * (k + 1) * step}
+            )
         return force, running.repeats
 
 
@@ -107,13 +113,20 @@ def relaxed(z, speed, time, k=K):
 
 
 @pytest.mark.parametrize("version", [2, 3])
-@pytest.mark.parametrize("ramp", [0.0, 1e5])
-def test_the_states_are_integrated_to_the_fourth_order(version, ramp, unit):
-    # With a ramp the rate depends on the time as well: its own part is the response of a lag to r t.
+@pytest.mark.parametrize(("ramp", "rise"), [(0.0, 0.0), (1e5, 0.0), (0.0, 20.0)])
+def test_the_states_are_integrated_to_the_fourth_order(version, ramp, rise, unit):
+    # With a ramp, or a current that rises within the steps, the rate depends on the time: the response of a lag to r t.
     time = 0.04
-    exact = C * 0.3 + relaxed(0.0, 0.3, time) + ramp * TAU * (time - TAU * (1.0 - math.exp(-time / TAU)))
-    coarse, fine = (abs(run(unit(version, ramp=ramp), step, time)[0] - exact) for step in (4e-3, 2e-3))
+    risen = (ramp + rise * K * 0.3) * TAU * (time - TAU * (1.0 - math.exp(-time / TAU)))
+    exact = C * (1.0 + rise * time) * 0.3 + relaxed(0.0, 0.3, time) + risen
+    coarse, fine = (abs(run(unit(version, ramp=ramp), step, time, rise=rise)[0] - exact) for step in (4e-3, 2e-3))
     assert fine < coarse / 14.0 and fine < 1e-3
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_no_part_of_a_step_is_longer_than_the_unit_recommends(version, unit):
+    divided, fine = run(unit(version, longest=1e-3), 4e-3, 0.04)[0], run(unit(version), 1e-3, 0.04)[0]
+    assert divided == pytest.approx(fine, rel=1e-12) != run(unit(version), 4e-3, 0.04)[0]
 
 
 @pytest.mark.parametrize("version", [2, 3])
