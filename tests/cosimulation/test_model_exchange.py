@@ -50,9 +50,8 @@ def describe(version, events, saves, longest):
             f'<fmiModelDescription fmiVersion="2.0" modelName="d" guid="{{me}}" numberOfEventIndicators="{events}">'
             f'<ModelExchange modelIdentifier="d" canGetAndSetFMUstate="{saves}"'
             f' completedIntegratorStepNotNeeded="true"/>{experiment}<ModelVariables>{rows}</ModelVariables>'
-            f'<ModelStructure><Outputs><Unknown index="4"/></Outputs><Derivatives><Unknown index="{RATE + 1}"/></Derivatives>'
-            "</ModelStructure>"
-            "</fmiModelDescription>"
+            '<ModelStructure><Outputs><Unknown index="4"/></Outputs>'
+            f'<Derivatives><Unknown index="{RATE + 1}"/></Derivatives></ModelStructure></fmiModelDescription>'
         )
     return (
         '<fmiModelDescription fmiVersion="3.0" modelName="d" instantiationToken="{me}">'
