@@ -60,6 +60,10 @@ class NoiseWeights:
         summed = {run: power + disturbance[run][:, : power.shape[1]] for run, power in self.power.items()}
         return dataclasses.replace(self, power=summed)
 
+    def scale(self, factor: float) -> NoiseWeights:
+        """Return the weights with this factor on all power."""
+        return dataclasses.replace(self, power={run: factor * power for run, power in self.power.items()})
+
 
 def weigh_noise(problem: DiagnosisProblem) -> NoiseWeights:
     """Return the weights for a recording: by all noise that is stated, and the disturbance that repeated runs show."""

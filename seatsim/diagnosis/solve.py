@@ -95,6 +95,8 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
     if forces is not None:
         objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
     first = _search(task, objective)
+    if first.decision.verdict == "none":
+        first = _in_time(_search_at_lower_noise, task, first) or first
     if first.decision.verdict == "unknown":
         first = _in_time(_search_beyond_broadband, task, first) or first
     weights = first.objective.weights
@@ -123,10 +125,25 @@ def _estimate_nonrepeatable(objective: Objective) -> Mapping[str, Array] | None:
     return estimate_nonrepeatable_force(objective, nominal)
 
 
-def _search(task: SearchTask, objective: Objective) -> Solution:
-    selection = task.method.select_effects(objective, task.candidates, task.progress, None, None)
+def _search(task: SearchTask, objective: Objective, rig: LinearisedRig | None = None) -> Solution:
+    selection = task.method.select_effects(objective, task.candidates, task.progress, None, rig)
     decision = task.method.decide_verdict(objective.problem, selection, task.effects)
     return Solution(objective, selection, decision)
+
+
+def _search_at_lower_noise(task: SearchTask, first: Solution) -> Solution:
+    """Search again with the noise at the level that the best set leaves, where the weights expect more than there is.
+
+    Noise that is expected too large, mostly of a disturbance estimated from one repeat, would hide a gap as large.
+    """
+    selection, old = first.selection, first.objective
+    least = min(each.cost / each.rows for sets in selection.sets for each in sets)
+    calibrated = selection.calibrated
+    if least >= 1.0 or calibrated.cost < least * calibrated.rows * (1.0 + old.settings.selection.nothing_left):
+        return first
+    task.progress("lowering the noise to what is left")
+    new = Objective(old.problem, old.weights.scale(least))
+    return _search(task, new, selection.weigh_again(old, new))
 
 
 def _takes_enough(objective: Objective, solution: Solution) -> bool:

@@ -59,6 +59,7 @@ class ModelError:
         error: by channel, shape (runs, bands); of all runs together in `pooled`.
         ratio: by channel, of all runs together, shape (bands,).
         pooled: by channel, shape (bands,).
+        missed: mean square `max(E - N, 0)` of all bands together by channel, in its unit squared, shape (runs,).
         runs: names, in the order of the rows of `error`.
     """
 
@@ -67,6 +68,7 @@ class ModelError:
     error: dict[str, Array]
     ratio: dict[str, Array]
     pooled: dict[str, Array]
+    missed: dict[str, Array]
     runs: tuple[str, ...]
 
     def as_dict(self) -> dict[str, object]:
@@ -76,7 +78,11 @@ class ModelError:
             "channels": {name: values.tolist() for name, values in self.pooled.items()},
             "measured_over_simulated": {name: values.tolist() for name, values in self.ratio.items()},
             "by_run": [
-                {"run": run, "channels": {name: values[k].tolist() for name, values in self.error.items()}}
+                {
+                    "run": run,
+                    "channels": {name: values[k].tolist() for name, values in self.error.items()},
+                    "missed_rms": {name: float(np.sqrt(values[k])) for name, values in self.missed.items()},
+                }
                 for k, run in enumerate(self.runs)
             ],
             "noise_rms": self.noise,
@@ -88,9 +94,13 @@ class ModelError:
         return _with_whole(powers)
 
     def predict_remainder(self, channel: str, simulated: Array, rate: float) -> Array:
-        """Return the mean square that is to stay of a channel beside noise, by each diagnosed run, shape (runs,)."""
+        """Return the mean square that is to stay of a channel beside noise, by each diagnosed run, shape (2, runs).
+
+        A form that is wrong misses the same share of any amplitude; a disturbance is the same at any amplitude. Few
+        runs do not tell one from the other: the first row has the shares of the runs, the second what they missed.
+        """
         limited = np.minimum(self.error[channel], LARGEST_ERROR)
-        return np.asarray(limited**2 @ self.predict_amplitude(channel, simulated, rate))
+        return np.array([limited**2 @ self.predict_amplitude(channel, simulated, rate), self.missed[channel]])
 
 
 def measure_model_error(
@@ -118,6 +128,7 @@ def measure_model_error(
         {name: np.array(list(map(_root_ratio, left[name], value[:, 1]))) for name, value in powers.items()},
         {name: np.clip(_root_ratio(s[1], s[2]), 1.0 / LARGEST_RATIO, LARGEST_RATIO) for name, s in sums.items()},
         {name: _root_ratio(np.sum(left[name], axis=0), s[1]) for name, s in sums.items()},
+        {name: np.sum(value, axis=1) for name, value in left.items()},
         tuple(name for name, _, _ in pairs),
     )
 
@@ -158,6 +169,7 @@ def read_model_error(content: Mapping[str, object], place: str) -> ModelError:
             {name: np.array([_arrays(run["channels"])[name] for run in by_run]) for name in pooled},
             _arrays(stated["measured_over_simulated"]),
             pooled,
+            {name: np.array([_arrays(run["missed_rms"])[name] for run in by_run]) ** 2 for name in pooled},
             tuple(str(run["run"]) for run in by_run),
         )
     except (AssertionError, KeyError, TypeError, ValueError, AttributeError) as error:

@@ -6,14 +6,12 @@ the standard deviation s to be expected of the measured channel,
 
     after^2 = mean((m + n^2) / s^2),    before^2 = mean((d^2 + m + n^2) / s^2),    shrink = 1 - after / before.
 
-What is missed is taken for uncorrelated with what the effects change, as the residual of a fit is. Where the effects
-change more here than they explained of a diagnosed run, they are extrapolated, and m grows in proportion.
+What is missed is taken for uncorrelated with what the effects change, as the residual of a fit is.
 """
 
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,11 +34,9 @@ from seatsim.schema.registry import Record
 
 Array = NDArray[np.float64]
 
-EXCITATION_STD = 0.1
+EXCITATION_STD = 0.15
 """Standard deviation of the logarithm of what is missed, between excitations of one kind; on sealed rigs."""
-LARGEST_GROWTH = 3.0
-"""Most by which what is missed grows where the effects change more than they explained of a diagnosed run."""
-RATIO_STD = 0.03
+RATIO_STD = 0.05
 """Standard deviation of the logarithm of the share of the gap that is left, whatever is missed; on sealed rigs."""
 ONE_RUN_STD = 0.3
 """The same where a single run was diagnosed, so that its spread from run to run is not known."""
@@ -103,34 +99,34 @@ def predict_gap(
     augmented = scenario if isinstance(scenario, Scenario) else single(scenario)
     stated, names = _read_diagnosis(Path(diagnosis)), list(runs) or list(recording.runs)
     with expect(diagnosis, "diagnosis"):
-        error = read_model_error(stated, str(diagnosis))
-        causes, explained = _read_causes(stated), _read_explained(stated, error.runs, str(diagnosis))
+        error, causes = read_model_error(stated, str(diagnosis)), _read_causes(stated)
     after = _simulate(augmented, recording, names)
     before = _simulate(single(recording.nominal), recording, names)
     shifted = [_simulate(other, recording, names) for other in _move_parameters(augmented, causes)]
     simulated = SimulatedRigs(recording.header.sample_rate, before, after, shifted)
-    return _combine(error, explained, simulated, str(recording.folder))
+    return _combine(error, simulated, str(recording.folder))
 
 
-def _combine(error: ModelError, explained: Array, rigs: SimulatedRigs, place: str) -> Prediction:
-    """Return the prediction from what each diagnosed run had `explained` of its gap, shape (runs,), and simulations."""
+def _combine(error: ModelError, rigs: SimulatedRigs, place: str) -> Prediction:
+    """Return the prediction from what the diagnosed runs missed and from simulations."""
     parts = {name: part for name in error.noise if (part := _measure_channel(error, name, rigs)) is not None}
     if not parts:
         raise InputError(f"{place}: no channel of the diagnosis is to stand above its noise with these inputs")
-    changes, floor, doubt = (float(value) for value in np.mean([part[:3] for part in parts.values()], axis=0))
-    growth = np.clip(np.sqrt(changes) / np.maximum(explained, 1e-9), 1.0, LARGEST_GROWTH) ** 2
-    missed = {name: growth * part[3:] for name, part in parts.items()}
-    by_run = np.mean(list(missed.values()), axis=0)
-    rest, width = _mean_square(by_run), QUANTILE * _spread(by_run / growth)
+    mean = np.mean(list(parts.values()), axis=0)
+    changes, floor, doubt = (float(value) for value in mean[:3])
+    rest, width = _mean_square(mean[3:]), QUANTILE * _spread(mean[3:])
     gaps, share = _roots(changes, floor, rest), np.exp(QUANTILE * RATIO_STD * (changes > 0.0))
     least = share * _left(_roots(changes, floor, rest * np.exp(2.0 * width) + QUANTILE**2 * doubt))
     most = _left(_roots(changes, floor, rest * np.exp(-2.0 * width))) / share
-    channels = {name: _roots(part[0], part[1], _mean_square(missed[name])) for name, part in parts.items()}
+    channels = {name: _roots(part[0], part[1], _mean_square(part[3:])) for name, part in parts.items()}
     return Prediction(*gaps, 1.0 - _left(gaps), (1.0 - least, 1.0 - most), channels)
 
 
 def _measure_channel(error: ModelError, name: str, rigs: SimulatedRigs) -> Array | None:
-    """Return mean squares of a channel in variances: changed, noise, doubtful, missed by run; None if not compared."""
+    """Return mean squares of a channel in variances; None if it is not compared.
+
+    What effects change, noise, what doubtful parameters change, then what is missed: two figures by each diagnosed run.
+    """
     after, noise = rigs.after[name], error.noise[name]
     variance = float(error.predict_amplitude(name, after, rigs.rate)[0])
     if variance < max((NOISE_FACTOR * noise) ** 2, 1e-300):
@@ -138,7 +134,7 @@ def _measure_channel(error: ModelError, name: str, rigs: SimulatedRigs) -> Array
     changed = np.mean((after - rigs.before[name]) ** 2)
     doubtful = sum(float(np.mean((other[name] - after) ** 2)) for other in rigs.shifted)
     missed = error.predict_remainder(name, after, rigs.rate)
-    return np.array([changed, noise**2, doubtful, *missed]) / variance
+    return np.array([changed, noise**2, doubtful, *missed.ravel()]) / variance
 
 
 def _roots(changed: float, floor: float, missed: float) -> tuple[float, float]:
@@ -151,15 +147,15 @@ def _left(gaps: tuple[float, float]) -> float:
     return gaps[1] / gaps[0] if gaps[0] > 0.0 else 1.0
 
 
-def _mean_square(by_run: Array) -> float:
+def _mean_square(missed: Array) -> float:
     """Return the mean square that runs let expect: of their root mean squares, so that no single run rules."""
-    return float(np.mean(np.sqrt(by_run))) ** 2
+    return float(np.mean(np.sqrt(missed))) ** 2
 
 
-def _spread(by_run: Array) -> float:
-    """Return the standard deviation of the logarithm of what is missed, from run to run and between excitations."""
-    between = float(np.std(0.5 * np.log(np.maximum(by_run, 1e-300)), ddof=1)) if len(by_run) > 1 else ONE_RUN_STD
-    return float(np.hypot(EXCITATION_STD, between))
+def _spread(missed: Array) -> float:
+    """Return the standard deviation of the logarithm of what is missed, from two figures by run and beyond these."""
+    beyond = EXCITATION_STD if len(missed) > 2 else ONE_RUN_STD
+    return float(np.hypot(beyond, np.std(0.5 * np.log(np.maximum(missed, 1e-300)), ddof=1)))
 
 
 def _simulate(scenario: Scenario, recording: Recording, runs: Sequence[str]) -> dict[str, Array]:
@@ -196,17 +192,6 @@ def _read_causes(content: Mapping[str, object]) -> list[StatedCause]:
         stds = {name: float(value["std"]) for name, value in stated.items() if isinstance(value, dict) and value["std"]}
         found.append(StatedCause(cause["effect"], stated.get("channel"), stds))
     return found
-
-
-def _read_explained(content: Mapping[str, object], runs: Sequence[str], place: str) -> Array:
-    """Return by run the root of what the squared gap was reduced by; infinite for a run with nothing compared."""
-    gap = content.get("gap")
-    stated = gap.get("by_run") if isinstance(gap, Mapping) else None
-    if not isinstance(stated, list):
-        raise InputError(f"{place}: states no gap.by_run; diagnose the recording again")
-    gaps = {each["run"]: (each["before"]["overall"], each["after"]["overall"]) for each in stated}
-    pairs = [gaps.get(run, (math.inf, 0.0)) for run in runs]
-    return np.sqrt([max(before**2 - after**2, 0.0) for before, after in pairs])
 
 
 def _read_diagnosis(path: Path) -> Mapping[str, object]:

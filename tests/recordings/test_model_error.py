@@ -41,18 +41,18 @@ def test_the_error_is_what_is_left_over_what_was_measured_band_by_band():
     assert found.pooled["x"][[3, 5]] == pytest.approx([0.1, 0.5])
     assert found.ratio["x"][[3, 5]] == pytest.approx([2.0 / 1.8, 2.0])
     assert found.predict_amplitude("x", simulated, RATE)[[3, 5]] == pytest.approx([4.0, 1.0])
-    assert found.predict_remainder("x", simulated, RATE) == pytest.approx([0.04 + 0.25], rel=1e-6)
+    assert found.predict_remainder("x", simulated, RATE) == pytest.approx(np.full((2, 1), 0.04 + 0.25), rel=1e-6)
     # A band without a signal is taken to be as all are.
     assert found.error["x"][0, 7] == pytest.approx(np.sqrt((0.04 + 0.25) / 5.0))
-    # Another excitation, twice as strong at 3 Hz and without 10 Hz, is missed in proportion.
-    assert found.predict_remainder("x", tone(2.5, 3.6), RATE) == pytest.approx([0.16])
+    # Another excitation, twice as strong at 3 Hz and without 10 Hz, is missed in proportion, or by as much as before.
+    assert found.predict_remainder("x", tone(2.5, 3.6), RATE)[:, 0] == pytest.approx([0.16, 0.04 + 0.25])
 
 
 def test_a_missed_mean_counts_relative_to_the_whole_channel():
     measured, simulated = tone(3.0, 2.0) + 1.0, tone(3.0, 2.0)
     found = measure_model_error([("a", {"x": measured}, {"x": simulated})], {"x": 0.0}, RATE, 64.0)
     assert found.pooled["x"] == pytest.approx([0.5, *[0.0] * 7], abs=1e-6)
-    assert found.predict_remainder("x", tone(0.5, 4.0), RATE) == pytest.approx([4.0])
+    assert found.predict_remainder("x", tone(0.5, 4.0), RATE)[:, 0] == pytest.approx([4.0, 1.0])
     assert found.predict_amplitude("x", tone(0.5, 4.0), RATE)[:2] == pytest.approx([16.0, 16.0])
 
 

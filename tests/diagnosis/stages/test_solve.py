@@ -127,6 +127,35 @@ def test_repeated_runs_show_a_force_that_counts_as_noise(folder):
     assert all(np.array_equal(found.objective.weights.power[run], expected.power[run]) for run in problem.runs)
 
 
+class Doubtful(Script):
+    """Stages that expect a hundred times the power of the noise."""
+
+    def weigh_noise(self, problem):
+        return super().weigh_noise(problem).scale(100.0)
+
+
+def test_noise_that_is_expected_too_large_is_lowered_to_what_the_best_set_leaves(folder):
+    problem = make_problem(folder, (Added("one", 0.5),))
+    script = Doubtful("none", "known", effects={"one": 0.5})
+    found = script.solve(problem)
+    assert script.calls == ["weigh", "select", "decide", "select", "decide", "share"]
+    assert script.said[1] == "lowering the noise to what is left"
+    (before, *_, first), (after, *_) = script.selected
+    best = first.sets[1][0]
+    least = best.cost / best.rows
+    assert least == pytest.approx(0.01, rel=0.2) and first.calibrated.excess < 1.0
+    assert found.objective is after
+    for run in problem.runs:
+        assert after.weights.power[run] == pytest.approx(least * before.weights.power[run])
+    assert found.decision.chosen.cost == pytest.approx(found.decision.chosen.rows)
+
+
+def test_noise_that_is_expected_too_large_stays_where_no_set_leaves_less(folder):
+    script, problem = Doubtful("none", effects={"one": 0.5}), make_problem(folder)
+    script.solve(problem)
+    assert script.calls == ["weigh", "select", "decide"]
+
+
 def push(problem, newtons, port="suspension"):
     """Return the problem with a random force at a port in each run, another one each time."""
     measured = {}
