@@ -4,8 +4,9 @@
 
 Valid files are changed at random, by the seed: bytes are flipped, cut out, doubled or put in; words are replaced by
 others that are awkward (numbers of 5000 digits, tags, aliases, deep lists, paths, null bytes); lines are dropped,
-doubled and exchanged; packed files are cut. Counted are tracebacks (any error that is not one of seatsim's), mutants
-that took longer than the limit in seconds, and files that a reader left behind. The first of each kind is printed.
+doubled and exchanged; packed files are cut. Counted are tracebacks (any error that is not one of seatsim's), deaths of
+the process, mutants that took longer than the limit in seconds, and files that a reader left behind. The first of each
+kind is printed.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ import warnings
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import NamedTuple
 
@@ -61,44 +64,73 @@ def main() -> None:
 
 
 def fuzz(reader: Reader, mutants: int, seed: int = 0, limit: float = 5.0) -> Found:
-    """Read so many mutants of a reader's files, each in a folder of its own."""
-    from seatsim.schema.errors import SeatsimError
-
+    """Read so many mutants of a reader's files, each in a folder of its own; go on after one that ends the process."""
     found = Found(Counter(), {})
+    number = 0
+    while number < mutants:
+        for kind, example in _read_apart(reader, range(number, mutants), seed, limit):
+            found.counts[kind] += 1
+            found.examples.setdefault(kind, example)
+            number += 1
+    return found
+
+
+def _read_apart(reader: Reader, numbers: range, seed: int, limit: float) -> Iterator[tuple[str, str]]:
+    """Yield what became of each mutant, read in a child process; the last is the one that it died of."""
+    context = get_context("fork")
+    receiving, sending = context.Pipe(duplex=False)
+    child = context.Process(target=_read_mutants, args=(reader, numbers, seed, limit, sending))
+    child.start()
+    sending.close()
+    number = numbers.start
+    while number < numbers.stop:
+        try:
+            yield receiving.recv()
+        except EOFError:
+            child.join()
+            yield f"death of the process, status {child.exitcode}", f"mutant {number}"
+            return
+        number += 1
+    child.join()
+
+
+def _read_mutants(reader: Reader, numbers: range, seed: int, limit: float, sending: Connection) -> None:
     with tempfile.TemporaryDirectory() as place:
-        for number in range(mutants):
+        for number in numbers:
             folder = Path(place) / "mutant"
             generator = random.Random(f"{seed} {number}")
             files = dict(reader.files)
             name = generator.choice(reader.changed)
             for _ in range(generator.choice((1, 1, 1, 2, 3))):
                 files[name] = mutate(files[name], generator)
-            folder.mkdir()
             for each, content in files.items():
                 (folder / each).parent.mkdir(parents=True, exist_ok=True)
                 (folder / each).write_bytes(content)
-            before = sorted(folder.rglob("*"))
-            kind, said = "read", ""
-            try:
-                with warnings.catch_warnings(), time_limit(limit):
-                    warnings.simplefilter("ignore")
-                    reader.read(folder)
-            except SeatsimError as error:
-                kind = "refused"
-                said = str(error)
-                if "\n" in said or len(said) > 3000:
-                    kind = "a message that is no sentence"
-            except TooLongError:
-                kind, said = "longer than the limit", f"mutant {number}"
-            except Exception as error:
-                kind = f"traceback {type(error).__name__} in {_place_of(error)}"
-                said = "".join(traceback.format_exception(error)[-6:])
-            if kind == "refused" and sorted(folder.rglob("*")) != before:
-                kind = "files left"
-            found.counts[kind] += 1
-            found.examples.setdefault(kind, f"mutant {number} of {name}\n{said[-3000:]}")
+            kind, said = _read_mutant(reader, folder, limit)
+            sending.send((kind, f"mutant {number} of {name}\n{said[-3000:]}"))
             shutil.rmtree(folder)
-    return found
+
+
+def _read_mutant(reader: Reader, folder: Path, limit: float) -> tuple[str, str]:
+    """Return the kind of what became of a mutant, and what was said."""
+    from seatsim.schema.errors import SeatsimError
+
+    before = sorted(folder.rglob("*"))
+    try:
+        with warnings.catch_warnings(), time_limit(limit):
+            warnings.simplefilter("ignore")
+            reader.read(folder)
+    except SeatsimError as error:
+        said = str(error)
+        if "\n" in said or len(said) > 3000:
+            return "a message that is no sentence", said
+        return "refused" if sorted(folder.rglob("*")) == before else "files left", said
+    except TooLongError:
+        return "longer than the limit", ""
+    except Exception as error:
+        said = "".join(traceback.format_exception(error)[-6:])
+        return f"traceback {type(error).__name__} in {_place_of(error)}", said
+    return "read", ""
 
 
 @contextmanager

@@ -9,7 +9,8 @@ have succeeded, and the folder must hold all of its new files or all that it hel
 that keeps its finished parts goes on, and must then hold all of its files.
 
 A shared library, compiled with `cc` and preloaded, fails the calls, since Python, pyarrow and matplotlib write in
-different ways. Linux alone.
+different ways. Linux alone. The pictures of a command are drawn once, which takes most of its time, and written each
+time.
 """
 
 from __future__ import annotations
@@ -23,8 +24,10 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "scenarios"
@@ -75,6 +78,7 @@ def main() -> None:
             raise SystemExit(start_again(Path(place), sys.argv[1:]))
     faults = ctypes.CDLL(os.environ[LIBRARY])
     faults.fault_arm.argtypes, faults.fault_count.restype = [ctypes.c_long], ctypes.c_long
+    keep_pictures()
     broken = [f"{name}: {problem}" for name in asked.only for problem in try_command(name, faults, asked.every)]
     print("\n".join(broken) or "nothing was half-written", flush=True)
     raise SystemExit(bool(broken))
@@ -88,10 +92,40 @@ def start_again(place: Path, arguments: Sequence[str]) -> int:
     return subprocess.run([sys.executable, __file__, *arguments], env=environment, check=False).returncode
 
 
+def keep_pictures() -> None:
+    """Have each picture of a command drawn once: the k-th of a later run takes what the k-th of the first drew."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    plain: Callable[[Any], None] = FigureCanvasAgg.draw
+
+    def draw(canvas: Any) -> None:
+        place, size = PICTURES.number, (*canvas.figure.bbox.size, canvas.figure.dpi)
+        PICTURES.number += 1
+        if place < len(PICTURES.drawn) and PICTURES.drawn[place][0] == size:
+            canvas.renderer = PICTURES.drawn[place][1]
+            return
+        plain(canvas)
+        PICTURES.drawn[place:] = [(size, canvas.renderer)]
+
+    FigureCanvasAgg.draw = draw  # type: ignore[method-assign]
+
+
+@dataclass
+class Pictures:
+    """The pictures of the command that is tried, by their order, and how many of them a run has drawn so far."""
+
+    drawn: list[tuple[Any, Any]]
+    number: int = 0
+
+
+PICTURES = Pictures([])
+
+
 def try_command(name: str, faults: ctypes.CDLL, every: int = 1) -> list[str]:
     """Return what is wrong after each call of a command has failed once."""
     root = Path(os.environ[ROOT])
     problems = []
+    PICTURES.drawn.clear()
     for is_replaced in (False, True):
         reset(root, {})
         if (said := run(name, root, faults, 0)) is not None:
@@ -123,6 +157,7 @@ REPLACING = (
     "gap",
     "comfort",
     "run",
+    "compare",
     "sweep-report",
     "reproduce",
     "synthesise",
@@ -166,6 +201,7 @@ def call(words: Sequence[str], root: Path, made: Path, faults: ctypes.CDLL, fail
     sweep.write_text(SWEEP, encoding="utf-8")
     arguments = [word.format(out=root / "out", sweep=sweep, made=made) for word in words]
     said = io.StringIO()
+    PICTURES.number = 0
     faults.fault_arm(failing)
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):

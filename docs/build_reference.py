@@ -137,7 +137,9 @@ def write_parameters(cls: type, keys: list[FieldSpecification]) -> Iterator[str]
     """Yield the lines of the table of parameters."""
     yield "| parameter | unit | default | range | meaning |\n|---|---|---|---|---|"
     for key in keys:
-        default = "required" if key.required else show(key.default)
+        default = show(key.default)
+        if key.required:
+            default = "required" if key.default is None else f"required, fit from {default}"
         yield f"| {' | '.join([f'`{key.name}`', key.unit, default, show_range(cls, key.name), cell(key.meaning)])} |"
     yield ""
 

@@ -11,27 +11,33 @@ from rich.markup import escape
 from rich.table import Table
 
 from seatsim.metrics.arrays import ratio
+from seatsim.metrics.table import SHORT
 from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Run
 
 
 class Column(NamedTuple):
-    """A metric in the table: its heading, the factor to the unit shown, its decimals."""
+    """A metric in the table: the unit shown, the factor to it, its decimals."""
 
     metric: str
-    heading: str
+    unit: str
     scale: float
     decimals: int
 
+    @property
+    def heading(self) -> str:
+        """What the metric is called, on two lines, and the unit."""
+        return SHORT[self.metric].replace(" ", "\n", 1) + f"\n\\[{self.unit}]"
+
 
 COLUMNS = (
-    Column("driver_acceleration_rms", "driver\nRMS\n\\[m/s²]", 1.0, 3),
-    Column("driver_acceleration_weighted", "driver\nWk RMS\n\\[m/s²]", 1.0, 3),
-    Column("driver_vdv", "driver\nVDV\n\\[m/s¹·⁷⁵]", 1.0, 2),
-    Column("seat_factor", "SEAT\nfactor\n\\[-]", 1.0, 2),
-    Column("suspension_displacement_rms", "travel\nRMS\n\\[mm]", 1e3, 2),
-    Column("suspension_displacement_peak", "travel\npeak\n\\[mm]", 1e3, 1),
-    Column("current_rms", "current\nRMS\n\\[A]", 1.0, 2),
+    Column("driver_acceleration_rms", "m/s²", 1.0, 3),
+    Column("driver_acceleration_weighted", "m/s²", 1.0, 3),
+    Column("driver_vdv", "m/s¹·⁷⁵", 1.0, 2),
+    Column("seat_factor", "-", 1.0, 2),
+    Column("suspension_displacement_rms", "mm", 1e3, 2),
+    Column("suspension_displacement_peak", "mm", 1e3, 1),
+    Column("current_rms", "A", 1.0, 2),
 )
 COMPARED = COLUMNS[:-1]
 """Columns of which the smallest value is the best."""

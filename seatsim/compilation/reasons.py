@@ -1,11 +1,20 @@
-"""Why numba cannot compile a method, in one sentence: its own message quotes every function on the way there."""
+"""Why a method of the user's own fails, in one sentence: numba's message quotes every function on the way there."""
 
 from __future__ import annotations
 
 import re
+import traceback
 from pathlib import Path
 
+from seatsim.schema.modules import used_files
+
 FAILED = "Failed in nopython mode pipeline (step: nopython frontend)"
+CALL = re.compile(
+    r"No implementation of function Function\(<.*?function ([\w.]+).*\) found for signature:\s+>>> \w+(.*)"
+)
+"""A call that fits no function: its name, and the types that it is given."""
+REFUSED = re.compile(r"to signature '(\(.*\))' due to \"TypeError: (.*)\"")
+"""The arguments of a method that is called with others, and what is wrong with these."""
 
 
 def is_compilation(error: Exception) -> bool:
@@ -14,13 +23,35 @@ def is_compilation(error: Exception) -> bool:
 
 
 def explain(error: Exception) -> str:
-    """Return what is wrong and where; of any other error, its kind and its first line."""
+    """Return what is wrong and where; of any other error, its kind, its first line and its line of own code."""
     text = str(error).strip()
-    reason = next((line for line in text.rpartition(FAILED)[2].splitlines() if line.strip()), "").strip()
-    if not is_compilation(error) or not reason:
-        return f"{type(error).__name__}: {text.partition(chr(10))[0]}"
-    # The types of all fields follow the name of a record.
-    reason = re.sub(r"(of type \w+)\(.*", r"\1", reason)
-    place = re.search(r'File "([^"]+)", line (\d+)', text.rpartition(FAILED)[2])
+    inner = text.rpartition(FAILED)[2].strip()
+    if not is_compilation(error) or not inner:
+        return f"{_place_in_own_code(error)}{type(error).__name__}: {text.partition(chr(10))[0]}"
+    place = re.search(r'File "([^"<]+)", line (\d+)', inner)  # what is generated has no file
     where = f"{Path(place[1]).name}, line {place[2]}: " if place else ""
-    return f"{where}cannot be compiled: {reason[:1].lower()}{reason[1:]}"
+    return f"{where}cannot be compiled: {_state_reason(inner)}"
+
+
+def _state_reason(inner: str) -> str:
+    called, refused = CALL.match(inner), REFUSED.search(inner)
+    name = called[1] if called else ""
+    if refused:
+        return f"{name}{refused[1]} is called with other arguments: {refused[2]}"
+    if called:
+        return f"{name} takes no {_shorten(called[2])}"
+    reason = inner.partition("\n")[0]
+    return _shorten(reason[:1].lower() + reason[1:])
+
+
+def _shorten(text: str) -> str:
+    """Return a text without the types of all fields, which follow the name of a record."""
+    while (shorter := re.sub(r"(?<=\w)\([^()]*\)", "", text)) != text:
+        text = shorter
+    return text
+
+
+def _place_in_own_code(error: Exception) -> str:
+    own = set(map(str, used_files()))
+    lines = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in own]
+    return f"{Path(lines[-1].filename).name}, line {lines[-1].lineno}: " if lines else ""

@@ -17,6 +17,7 @@ from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solve import Method, solve
 from seatsim.diagnosis.state import state_diagnosis
 from seatsim.diagnosis.widen import search_wider
+from seatsim.recordings.header import NOT_STATED, USUAL
 from seatsim.recordings.joined import join_recordings
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
@@ -56,6 +57,11 @@ def diagnose(
     recording, said = _load(recording), list[str]()
     if after is not None:
         recording, said = join_recordings(recording, _load(after))
+    if recording.header.parameter_tolerance is None:
+        said = [
+            *said,
+            f"{NOT_STATED}: every parameter of the nominal scenario is taken to be known to {100 * USUAL:g} %",
+        ]
     progress("looking at the data")
     examination = examine(recording)
     refuse(examination)

@@ -7,11 +7,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from seatsim.metrics.table import SHORT
 from seatsim.page.controls import Choice, Slider, read_choice, read_number
 from seatsim.report.blocks import Block, Table
 from seatsim.report.formatting import format_quantity
 from seatsim.report.run_pictures import show_signals
-from seatsim.report.runs import TABLE as METRICS_SHOWN
 from seatsim.report.runs import describe_run
 from seatsim.scenario.loading import load, read_scenario
 from seatsim.scenario.scenario import Scenario
@@ -132,7 +132,7 @@ class ScenarioView:
 
 def _compare(own: Run, run: Run) -> Table:
     rows = []
-    for name, words in METRICS_SHOWN.items():
+    for name, words in SHORT.items():
         known = [each.metrics[name] for each in (own, run) if name in each.metrics]
         if len(known) == 2:
             rows.append([words, *(format_quantity(metric.value, metric.unit) for metric in known)])

@@ -14,7 +14,9 @@ from seatsim.schema.validation import build, check_value
 from seatsim.schema.yaml_source import Source
 
 USUAL = 0.02
-"""Fraction to which parameters are known where a recording does not say."""
+"""Fraction to which parameters are taken to be known where a recording does not say."""
+NOT_STATED = "parameter_tolerance is not stated"
+"""How the note begins that says so."""
 DEFAULT = "default"
 """Key of the tolerance of all parameters that a mapping of tolerances does not name."""
 Tolerance = float | Literal["fitted"]
@@ -31,21 +33,24 @@ class _Fraction(NamedTuple):
 class Header(NamedTuple):
     """What stands at the top of a recording.
 
-    `parameter_tolerance` is one tolerance, or a mapping of them by dotted key with one under `default`. `model_error`
-    is the share of each channel's local amplitude that the nominal's form is known to miss, None where none is stated.
+    `parameter_tolerance` is one tolerance, or a mapping of them by dotted key with one under `default`, None where none
+    is stated. `model_error` is the share of each channel's local amplitude that the nominal's form is known to miss,
+    None where none is stated.
     """
 
     rig: Literal["seat", "damper_bench"]
     sample_rate: Annotated[float, param("Hz", "rows per second", above=0, high=1e6)]
     nominal: str
-    parameter_tolerance: Tolerances = USUAL
+    parameter_tolerance: Tolerances | None = None
     model_error: Annotated[float | None, param("-", "share of the local amplitude missed", low=0, high=1)] = None
 
     @property
     def default_tolerance(self) -> Tolerance:
         """Tolerance of the parameters that have none of their own."""
         stated = self.parameter_tolerance
-        return stated.get(DEFAULT, USUAL) if isinstance(stated, Mapping) else stated
+        if isinstance(stated, Mapping):
+            return stated.get(DEFAULT, USUAL)
+        return USUAL if stated is None else stated
 
     @property
     def own_tolerances(self) -> dict[str, Tolerance]:

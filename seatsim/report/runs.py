@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.metrics.table import SHORT
 from seatsim.plots.labels import format_unit
 from seatsim.plots.runs.naming import find_unit, label_runs
 from seatsim.report.blocks import Block, Items, Report, Section, Table
@@ -30,14 +31,8 @@ from seatsim.simulation.result import Run
 Array = NDArray[np.float64]
 
 COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_peak"
-TABLE = {
-    COMFORT: "driver, weighted RMS", "driver_acceleration_rms": "driver, RMS", "driver_vdv": "driver, VDV",
-    "seat_factor": "SEAT factor", "suspension_displacement_rms": "travel, RMS", TRAVEL: "travel, peak",
-    "end_stop_hits": "end-stop hits", "current_rms": "current, RMS",
-}  # fmt: skip
-"""Metrics of the table of several runs, and their headings; `summary.csv` has all of them."""
 METHOD = (
-    "Accelerations are of the whole run after the settling time that the scenario states; 'weighted' is by Wk of ISO"
+    "Accelerations are of the whole run after the settling time that the scenario states, weighted by Wk of ISO"
     " 2631-1; the SEAT factor is the driver's weighted acceleration over the floor's.",
     SPECTRA,
 )
@@ -91,8 +86,8 @@ def read_metric(run: Run, name: str) -> float:
 def _make_table(runs: Sequence[Run]) -> Table:
     if len(runs) == 1:
         return list_metrics(runs[0])
-    chosen = [name for name in TABLE if any(name in run.metrics for run in runs)]
-    shown = {name: describe_channel(TABLE[name], _unit_of(runs, name)) for name in chosen}
+    chosen = [name for name in SHORT if any(name in run.metrics for run in runs)]
+    shown = {name: describe_channel(SHORT[name], _unit_of(runs, name)) for name in chosen}
     head = ["run", *(each.words if each.unit == "-" else each.axis for each in shown.values())]
     rows = [
         [

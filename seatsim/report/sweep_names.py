@@ -4,21 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from seatsim.metrics.table import METRICS
+from seatsim.metrics.table import METRICS, SHORT
 from seatsim.plots.quantities import Quantity
 from seatsim.report.formatting import describe_channel, format_number
 
 COMFORT, TRAVEL = "driver_acceleration_weighted", "suspension_displacement_rms"
-WORDS = {
-    COMFORT: "weighted driver acceleration", TRAVEL: "RMS suspension travel", "driver_vdv": "driver VDV",
-    "suspension_displacement_peak": "peak suspension travel", "seat_factor": "SEAT factor",
-    "end_stop_hits": "end-stop hits", "current_rms": "RMS current",
-}  # fmt: skip
 
 
 def describe_column(name: str, units: Mapping[str, str]) -> Quantity:
     """Return how a key, by its name, or a metric, in words, is shown."""
-    shown = describe_channel(WORDS.get(name, name), units.get(name, ""))
+    shown = describe_channel(SHORT.get(name, name), units.get(name, ""))
     return shown if name in METRICS else shown._replace(words=name)
 
 

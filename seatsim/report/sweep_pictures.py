@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.metrics.table import SHORT
 from seatsim.report.blocks import Block, Matrix, Plane
 from seatsim.report.formatting import format_number
 from seatsim.report.planes import Curve, draw_curves, join_planes
@@ -69,7 +70,7 @@ def _draw_plane(shown: pd.DataFrame, most: int, title: str, colour: str | None, 
     travel, comfort = shown[TRAVEL].to_numpy(float), shown[COMFORT].to_numpy(float)
     front = find_front(travel, comfort)
     curves.append(Curve("Pareto front", 1e3 * travel[front], comfort[front], 0))
-    return draw_curves(title, "", ("RMS suspension travel [mm]", "weighted driver acceleration [m/s²]"), curves)
+    return draw_curves(title, "", (f"{SHORT[TRAVEL]} [mm]", f"{SHORT[COMFORT]} [m/s²]"), curves)
 
 
 def find_front(travel: Array, comfort: Array) -> NDArray[np.intp]:

@@ -79,7 +79,10 @@ def _make_page(name: str, kind: str) -> Page:
     facts = list(_state_facts(cls, specification)) if isinstance(specification, DamperSpecification) else []
     source = specification.source if specification else ""
     title = " ".join(text.partition("\n\n")[0].partition(": `")[0].split()).rstrip(".")
-    return Page(name, kind, title, text, source, registry.is_own(cls), facts, fields_of(cls))
+    # What the fields of such a damper have as default is where its fit starts.
+    is_stated = isinstance(specification, DamperSpecification) and specification.complete
+    keys = [field._replace(required=field.required or is_stated) for field in fields_of(cls)]
+    return Page(name, kind, title, text, source, registry.is_own(cls), facts, keys)
 
 
 def _state_facts(cls: type, specification: DamperSpecification) -> Iterable[str]:
@@ -113,8 +116,11 @@ def _format_page(page: Page) -> str:
 
 def _line(field: FieldSpecification) -> str:
     unit = f" [{field.unit}]" if field.unit else ""
-    default = "required" if field.required else f"default {_shown(field.default)}"
-    return f"  {field.name}{unit}: {field.meaning} ({default})"
+    if not field.required:
+        stated = f"default {_shown(field.default)}"
+    else:
+        stated = "required" if field.default is None else f"required; a fit starts from {_shown(field.default)}"
+    return f"  {field.name}{unit}: {field.meaning} ({stated})"
 
 
 def _shown(value: object) -> str:

@@ -54,9 +54,10 @@ def _place_of_setting(dotted: str, value: object) -> str:
 
 
 def _replace(source: Source, dotted: str, value: object, origin: KeyPath) -> None:
-    """Put a value under a dotted key; its place is then that of the variant or sweep it comes from."""
+    """Put a value under a dotted key; its place is then that of the variant, by name, or sweep it comes from."""
     stated = (*origin, dotted)
-    inner = [(known[len(stated) :], at) for known, at in source.places.items() if known[: len(stated)] == stated]
-    source.put(str(dotted), value, source.nearest_place(stated))
+    name = f", variant '{origin[1]}'" if origin[:1] == ("variants",) else ""
+    inner = [(known[len(stated) :], at + name) for known, at in source.places.items() if known[: len(stated)] == stated]
+    source.put(str(dotted), value, source.nearest_place(stated) + name)
     keys = tuple(str(dotted).split("."))
     source.places.update({(*keys, *rest): at for rest, at in inner})

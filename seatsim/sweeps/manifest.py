@@ -60,6 +60,15 @@ def count_states(states: Iterable[str], runs: int) -> dict[str, int]:
     return {"runs": runs, **counts, "pending": runs - sum(counts.values())}
 
 
+def say_ended(folder: Path) -> str:
+    """Return how many runs of a sweep have ended by the last count, `no run` where none was begun."""
+    try:
+        counts = read_manifest(folder)["counts"]
+    except InputError:
+        return "no run"
+    return f"{counts['runs'] - counts['pending']} of {counts['runs']} runs"
+
+
 def check_resumable(folder: Path, identity: Identity, plan: Plan, resume: bool) -> None:
     """Refuse to go on in a folder that holds another sweep; one that has fewer runs of the same is extended.
 
@@ -74,8 +83,8 @@ def check_resumable(folder: Path, identity: Identity, plan: Plan, resume: bool) 
     counts = old["counts"]
     if not resume:
         raise InputError(
-            f"{folder}: holds a sweep already, {counts['runs'] - counts['pending']} of {counts['runs']} runs by its"
-            " last count; go on with it with --resume, or choose another --out"
+            f"{folder}: holds a sweep already, {say_ended(folder)} by its last count; go on with it with --resume,"
+            " or choose another --out"
         )
     if old["identity"] == identity.digest:
         return

@@ -95,6 +95,7 @@ def read_part(path: Path, names: Sequence[str] | None = None) -> pa.Table:
     try:
         table = pq.ParquetFile(path).read(columns=names if names is None else list(names))
         table.select(names or [*LEADING, *METRICS])
+        table.validate(full=True)
     except (pa.ArrowException, OSError, KeyError, ValueError) as error:
         raise InputError(f"{path}: is no part of a sweep: {error}; remove it, and its runs run again") from error
     return table

@@ -1,11 +1,11 @@
 /* A damper as a unit for model exchange, of FMI 2.0, or 3.0 with -DFMI3: only what a host calls.
 
-   z' = k v - z / tau,  k doubled where `far`;   F = c (1 + i) v + z + `late` force
+   z' = k (1 + i) v - z / tau + ramp t,  k doubled where `far`;   F = c (1 + i) v + z + `late` force
    `far` changes where the displacement passes `edge`, an event indicator; at `moment` z is set to 0 and `late` to 50. */
 #include <stdlib.h>
 #include <string.h>
 
-enum { DISPLACEMENT, VELOCITY, CURRENT, FORCE, C, K, TAU, EDGE, MOMENT, Z, Z_RATE, NUMBERS };
+enum { DISPLACEMENT, VELOCITY, CURRENT, FORCE, C, K, TAU, EDGE, MOMENT, RAMP, Z, Z_RATE, NUMBERS };
 
 typedef struct {
     double number[NUMBERS], time, late;
@@ -25,7 +25,7 @@ static Unit *make(void)
 static void compute(Unit *u)
 {
     double *n = u->number;
-    n[Z_RATE] = n[K] * (u->is_far ? 2.0 : 1.0) * n[VELOCITY] - n[Z] / n[TAU];
+    n[Z_RATE] = n[K] * (u->is_far ? 2.0 : 1.0) * (1.0 + n[CURRENT]) * n[VELOCITY] - n[Z] / n[TAU] + n[RAMP] * u->time;
     n[FORCE] = n[C] * (1.0 + n[CURRENT]) * n[VELOCITY] + n[Z] + u->late;
 }
 

@@ -22,18 +22,20 @@ COMPILER = shutil.which("gcc") or shutil.which("cc")
 pytestmark = pytest.mark.skipif(
     COMPILER is None or sys.platform != "linux", reason="needs a C compiler (gcc) and the libraries of Linux"
 )
-NAMES = ("x", "v", "i", "F", "c", "k", "tau", "edge", "moment", "z", "z_rate")
-CAUSALITY = ("input",) * 3 + ("output",) + ("parameter",) * 5 + ("local",) * 2
+NAMES = ("x", "v", "i", "F", "c", "k", "tau", "edge", "moment", "ramp", "z", "z_rate")
+CAUSALITY = ("input",) * 3 + ("output",) + ("parameter",) * 6 + ("local",) * 2
+STATE, RATE, OFF = NAMES.index("z"), NAMES.index("z_rate"), len(NAMES)
 K, TAU, C = 20000.0, 0.02, 500.0
 
 
-def describe(version, events, saves):
+def describe(version, events, saves, longest):
     """Return the description of the unit."""
 
     def row(k):
         kind = f'variability="tunable" name="{NAMES[k]}"' if CAUSALITY[k] == "parameter" else f'name="{NAMES[k]}"'
         start = ' start="0"' if CAUSALITY[k] in ("input", "parameter") else ""
-        rate = {2: ' derivative="10"', 3: ' derivative="9"'}[version] if NAMES[k] == "z_rate" else ""
+        # FMI 2 counts the variables from 1, FMI 3 names them by their reference.
+        rate = f' derivative="{STATE + 1 if version == 2 else STATE}"' if k == RATE else ""
         head = f'{kind} valueReference="{k}" causality="{CAUSALITY[k]}"'
         return (
             f"<ScalarVariable {head}><Real{start}{rate}/></ScalarVariable>"
@@ -42,20 +44,21 @@ def describe(version, events, saves):
         )
 
     rows = "\n".join(map(row, range(len(NAMES))))
+    experiment = f'<DefaultExperiment stepSize="{longest}"/>' if longest else ""
     if version == 2:
         return (
             f'<fmiModelDescription fmiVersion="2.0" modelName="d" guid="{{me}}" numberOfEventIndicators="{events}">'
             f'<ModelExchange modelIdentifier="d" canGetAndSetFMUstate="{saves}"'
-            f' completedIntegratorStepNotNeeded="true"/><ModelVariables>{rows}</ModelVariables><ModelStructure>'
-            '<Outputs><Unknown index="4"/></Outputs><Derivatives><Unknown index="11"/></Derivatives></ModelStructure>'
-            "</fmiModelDescription>"
+            f' completedIntegratorStepNotNeeded="true"/>{experiment}<ModelVariables>{rows}</ModelVariables>'
+            '<ModelStructure><Outputs><Unknown index="4"/></Outputs>'
+            f'<Derivatives><Unknown index="{RATE + 1}"/></Derivatives></ModelStructure></fmiModelDescription>'
         )
     return (
         '<fmiModelDescription fmiVersion="3.0" modelName="d" instantiationToken="{me}">'
-        f'<ModelExchange modelIdentifier="d" canGetAndSetFMUState="{saves}"/><ModelVariables>{rows}'
-        '<Float64 name="off" valueReference="11" causality="local"/></ModelVariables><ModelStructure>'
-        '<Output valueReference="3"/><ContinuousStateDerivative valueReference="10"/>'
-        + '<EventIndicator valueReference="11"/>' * events
+        f'<ModelExchange modelIdentifier="d" canGetAndSetFMUState="{saves}"/>{experiment}<ModelVariables>{rows}'
+        f'<Float64 name="off" valueReference="{OFF}" causality="local"/></ModelVariables><ModelStructure>'
+        f'<Output valueReference="3"/><ContinuousStateDerivative valueReference="{RATE}"/>'
+        + f'<EventIndicator valueReference="{OFF}"/>' * events
         + "</ModelStructure></fmiModelDescription>"
     )
 
@@ -74,11 +77,11 @@ def libraries(tmp_path_factory):
 def unit(libraries, tmp_path, forget_own_code):
     """Make the unit, with so many event indicators, that saves its state or not, and give the damper that it is."""
 
-    def make(version, events=0, saves="true", folder=tmp_path, **parameters):
+    def make(version, events=0, saves="true", folder=tmp_path, longest=None, **parameters):
         path = folder / "damper.fmu"
         place = "linux64" if version == 2 else f"{platform.machine()}-linux"
         with zipfile.ZipFile(path, "w") as archive:
-            archive.writestr("modelDescription.xml", describe(version, events, saves))
+            archive.writestr("modelDescription.xml", describe(version, events, saves, longest))
             archive.writestr(f"binaries/{place}/d.so", libraries[version])
         use(path)
         inputs = (("displacement", "x"), ("velocity", "v"), ("current", "i"))
@@ -87,13 +90,18 @@ def unit(libraries, tmp_path, forget_own_code):
     return make
 
 
-def run(damper, step, end=0.2, speed=0.3):
-    """Return the force at the end of a motion of constant speed from zero, and whether steps can be repeated."""
+def run(damper, step, end=0.2, speed=0.3, rise=0.0):
+    """Return the force at the end of a motion of constant speed from zero, and whether steps can be repeated.
+
+    The current rises by `rise` in A/s.
+    """
     given = {"displacement": 0.0, "velocity": speed, "acceleration": 0.0, "current": 0.0, "temperature": 20.0}
     with run_unit(damper) as running:
         force = running.start(damper, given)
         for k in range(round(end / step)):
-            force = running.step(k * step, step, given | {"displacement": speed * k * step})
+            force = running.step(
+                k * step, step, given | {"displacement": speed * k * step, "current": rise * (k + 1) * step}
+            )
         return force, running.repeats
 
 
@@ -104,10 +112,20 @@ def relaxed(z, speed, time, k=K):
 
 
 @pytest.mark.parametrize("version", [2, 3])
-def test_the_states_are_integrated_to_the_fourth_order(version, unit):
-    exact = C * 0.3 + relaxed(0.0, 0.3, 0.04)
-    coarse, fine = (abs(run(unit(version), step, 0.04)[0] - exact) for step in (4e-3, 2e-3))
+@pytest.mark.parametrize(("ramp", "rise"), [(0.0, 0.0), (1e5, 0.0), (0.0, 20.0)])
+def test_the_states_are_integrated_to_the_fourth_order(version, ramp, rise, unit):
+    # With a ramp, or a current that rises within the steps, the rate depends on the time: the response of a lag to r t.
+    time = 0.04
+    risen = (ramp + rise * K * 0.3) * TAU * (time - TAU * (1.0 - math.exp(-time / TAU)))
+    exact = C * (1.0 + rise * time) * 0.3 + relaxed(0.0, 0.3, time) + risen
+    coarse, fine = (abs(run(unit(version, ramp=ramp), step, time, rise=rise)[0] - exact) for step in (4e-3, 2e-3))
     assert fine < coarse / 14.0 and fine < 1e-3
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_no_part_of_a_step_is_longer_than_the_unit_recommends(version, unit):
+    divided, fine = run(unit(version, longest=1e-3), 4e-3, 0.04)[0], run(unit(version), 1e-3, 0.04)[0]
+    assert divided == pytest.approx(fine, rel=1e-12) != run(unit(version), 4e-3, 0.04)[0]
 
 
 @pytest.mark.parametrize("version", [2, 3])

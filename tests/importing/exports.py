@@ -98,7 +98,7 @@ def mdf(path, table):
         for name, values in table.items()
         if name != "time"
     ]
-    with asammdf.MDF(version="4.10") as file:
+    with asammdf.MDF(version="3.30" if path.suffix == ".mdf" else "4.10") as file:
         file.append(signals, common_timebase=True)
         file.save(path, overwrite=True)
 
@@ -191,6 +191,7 @@ FORMATS = {
     "a.h5": hdf5,
     "a.mat": mat5,
     "v73.mat": mat73,
+    "a.mdf": mdf,
     "a.mf4": mdf,
     "a.tdms": tdms,
     "a.uff": uff,

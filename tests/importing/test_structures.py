@@ -1,5 +1,7 @@
 """Files whose channels stand in groups, structures or matrices, with units and rates beside them."""
 
+import struct
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -8,6 +10,7 @@ from scipy.io import loadmat, savemat
 from seatsim.importing.importing import import_files
 from seatsim.importing.readers.mat_elements import read_variables
 from seatsim.importing.readers.reading import read_file
+from seatsim.schema.errors import InputError
 
 from .helpers import read_run
 from .test_alignment import band_limited
@@ -123,3 +126,26 @@ def test_variables_of_mat_files_are_those_that_scipy_reads(tmp_path, packed):
     assert found["text"] == "hällo" and found["inner"]["unit"] == "m/s²"
     assert np.array_equal(found["inner"]["x"], np.eye(2)) and found["inner"]["deeper"]["y"].tolist() == [[0, 1, 2]]
     assert found["cells"] is None and found["complex"] is None
+
+
+@pytest.mark.parametrize("name", ["a.mf4", "a.mdf"])
+def test_a_channel_beyond_its_rows_and_rows_beyond_the_file_are_refused(name, tmp_path):
+    asammdf = pytest.importorskip("asammdf")
+    signals = [asammdf.Signal(band_limited(k, FAST), FAST, name=f"channel {k}") for k in range(3)]
+    with asammdf.MDF(version="3.30" if name == "a.mdf" else "4.10") as file:
+        file.append(signals, common_timebase=True)
+        file.save(tmp_path / name)
+    content = (tmp_path / name).read_bytes()
+    # Rows of four numbers of 64 bits: where the last one begins, in bits or bytes, and how many rows there are.
+    begins, far, rows, many = (
+        (struct.pack("<HH", 192, 64), struct.pack("<HH", 60_000, 64), struct.pack("<HI", 32, len(FAST)),
+         struct.pack("<HI", 32, 2**31))
+        if name == "a.mdf"
+        else (struct.pack("<II", 24, 64), struct.pack("<II", 2**31, 64), struct.pack("<Q", len(FAST)),
+              struct.pack("<Q", 2**40))
+    )  # fmt: skip
+    for old, new, said in ((begins, far, "lies beyond the end of its rows"), (rows, many, "which it cannot hold")):
+        assert old in content
+        (tmp_path / name).write_bytes(content.replace(old, new))
+        with pytest.raises(InputError, match=said):
+            read_file(tmp_path / name)

@@ -16,6 +16,20 @@ class Wavy(NamedTuple):
         return v * (self.mean + self.swing * math.sin(3.0 * math.pi * i))
 
 
+class Bump(NamedTuple):
+    """`F = v (500 + slope i + height exp(-((i - centre) / width)^2))`: a turn at a current, up or down."""
+
+    order = 0
+
+    centre: float = 0.5
+    width: float = 0.1
+    height: float = 300.0
+    slope: float = 0.0
+
+    def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
+        return v * (500.0 + self.slope * i + self.height * math.exp(-(((i - self.centre) / self.width) ** 2)))
+
+
 class Parabola(NamedTuple):
     """`F = v (a + b i + c i^2)`."""
 

@@ -65,3 +65,11 @@ def test_compiled_it_is_the_same():
     command = np.random.default_rng(2).uniform(0.0, 1.0, 50)
     found = simulate_current(COIL, command, STEP, 0.4)
     assert found == pytest.approx(follow_command(COIL, command, STEP, 0.4), rel=1e-13)
+
+
+@pytest.mark.parametrize("quarters", [1, 3, 5, 10])
+def test_a_delay_within_a_step_is_that_of_finer_steps(quarters):
+    command = np.random.default_rng(4).uniform(0.0, 1.0, 30)
+    coarse = follow_command(COIL._replace(delay=quarters * STEP / 4), command, STEP, 0.4)
+    fine = follow_command(COIL._replace(delay=quarters * STEP / 4), np.repeat(command, 4), STEP / 4, 0.4)
+    np.testing.assert_allclose(coarse, fine[::4], rtol=1e-10)

@@ -11,7 +11,7 @@ from seatsim.kernel.inverse import CELLS, invert, total_force
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.registry import specification_of
 
-from .dampers import Parabola, Wavy
+from .dampers import Bump, Parabola, Wavy
 from .rigs import rms, rough, run
 
 HEAT = TemperatureScaling(0.9, 1.0, 0.8)
@@ -142,3 +142,23 @@ def test_beyond_the_current_from_which_the_force_stays_the_same_the_least_is_tak
         answer = ask(damper, wanted, 0.0, 0.2, z)
         assert answer.served == served
         assert answer.current == pytest.approx(0.93, abs=1e-6)
+
+
+CELL = TOP / CELLS
+
+
+@pytest.mark.parametrize("height", [300.0, -300.0])
+@pytest.mark.parametrize("slope", [0.0, 20.0, -20.0])
+@pytest.mark.parametrize("centre", [0.3 * CELL, 0.9 * CELL, 3.4 * CELL, 8.0 * CELL, TOP - 0.7 * CELL, TOP - 0.3 * CELL])
+def test_a_turn_is_found_wherever_it_lies(centre, slope, height):
+    damper = Bump(centre, 1.5 * CELL, height, slope)
+    forces = on_grid(damper, 0.0, 0.2, ())
+    turn = np.argmax(np.sign(height) * forces)
+    # Just short of the turn, at it, and beyond it.
+    for wanted in (forces[turn] - 0.01 * height * 0.2, forces[turn], forces[turn] + 0.05 * height * 0.2):
+        answer = ask(damper, wanted, 0.0, 0.2, ())
+        met = np.flatnonzero((forces[1:] - wanted) * (forces[:-1] - wanted) <= 0.0)
+        if len(met) and abs(forces[turn] - wanted) > 1e-9:
+            assert answer.served == 1.0 and GRID[met[0]] - 1e-6 <= answer.current <= GRID[met[0] + 1] + 1e-6
+        else:
+            assert abs(answer.force - wanted) <= np.min(np.abs(forces - wanted)) + 2e-3

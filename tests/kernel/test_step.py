@@ -156,26 +156,29 @@ def test_a_solution_beyond_all_bounds_is_given_up():
     assert not good and stuck is now and current == 0.3
 
 
-def test_a_block_that_slides_comes_to_rest():
-    # 20 kg under 100 N: 5 m/s^2 from 0.01 m/s, at rest after 2 ms and 10 um.
-    damper = Linear(c=0.0, b=0.0, k=0.0, friction=100.0)
+@pytest.mark.parametrize("friction", [100.0, 0.5])
+def test_a_block_that_slides_comes_to_rest(friction):
+    # A block that is slowed by 5 m/s^2 from 0.01 m/s is at rest after 2 ms and 10 um.
+    damper, block = Linear(c=0.0, b=0.0, k=0.0, friction=friction), BLOCK._replace(frame_mass=friction / 5.0)
     for sign in (1.0, -1.0):
         state = (0.0, sign * 0.01, *REST[2:])
-        trace = moved(damper, state, STILL, 5, plant=BLOCK)
+        trace = moved(damper, state, STILL, 5, plant=block)
         assert trace[1].slip == sign and trace[1].state[1] == pytest.approx(sign * 0.005, rel=1e-9)
         assert trace[-1].slip == STICKING and trace[-1].state[1] == 0.0
         assert trace[-1].state[0] == pytest.approx(sign * 1e-5, rel=1e-9)
-        assert trace[1].forces.damper_force == pytest.approx(sign * 100.0)
+        assert trace[1].forces.damper_force == pytest.approx(sign * friction)
 
 
-def test_a_block_breaks_loose_where_the_reaction_exceeds_the_friction():
-    # The floor's acceleration grows by 1 m/s^2 per ms: beyond 5 m/s^2, at 5 ms, the block slides backwards.
-    damper = Linear(c=0.0, b=0.0, k=0.0, friction=100.0)
+@pytest.mark.parametrize("friction", [100.0, 90.0])
+def test_a_block_breaks_loose_where_the_reaction_exceeds_the_friction(friction):
+    # The floor's acceleration grows by 1 m/s^2 per ms: the block of 20 kg slides backwards from 5 ms on, or from 4.5 ms
+    # on, in the middle of a step.
+    damper = Linear(c=0.0, b=0.0, k=0.0, friction=friction)
     trace = moved(damper, REST, STILL._replace(floor_rise=1.0), 9, plant=BLOCK)
     assert [now.slip for now in trace[:5]] == [STICKING] * 5
-    assert [now.state[1] for now in trace[:6]] == pytest.approx([0.0] * 6, abs=1e-12)
-    late = 0.004
-    assert trace[-1].slip == -1.0
+    assert [now.state[1] for now in trace[:5]] == pytest.approx([0.0] * 5, abs=1e-12)
+    late = 0.009 - friction / 20.0 / 1000.0
+    assert trace[-1].slip == -1.0 and trace[-1].forces.friction == pytest.approx(-friction)
     assert trace[-1].state[1] == pytest.approx(-0.5 * 1000.0 * late**2, rel=1e-7)
     assert trace[-1].state[0] == pytest.approx(-1000.0 * late**3 / 6.0, rel=1e-7)
     assert trace[3].forces.friction == pytest.approx(-20.0 * 3.0)

@@ -1,13 +1,16 @@
 """The credibility card: evidence is of the result itself, and a level is the number of conditions that hold."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+import seatsim
 from seatsim.provenance.invocation import at_work
+from seatsim.recordings.header import NOT_STATED
 from seatsim.report.credibility.card import show_card
-from seatsim.report.credibility.evidence import Evidence, collect_diagnosis, collect_runs
+from seatsim.report.credibility.evidence import Evidence, collect_diagnosis, collect_gap, collect_runs
 from seatsim.report.credibility.rules import FACTORS, find_level
 from seatsim.scenario.loading import load
 from seatsim.simulation.runs import run_one
@@ -82,6 +85,23 @@ def test_half_the_step_changes_less_with_a_finer_one():
 def test_evidence_of_a_diagnosis_is_of_its_held_out_run():
     found = collect_diagnosis(with_every_run())
     assert found.held_out == 1 and found.error == with_every_run().gap.after.overall and found.answer_interval
+
+
+@pytest.mark.parametrize(("stated", "reached"), [("0.02", 4), ("", 3), ("fitted", 3)])
+def test_a_tolerance_that_nobody_stated_is_no_pedigree(stated, reached, sound, tmp_path):
+    folder = shutil.copytree(sound, tmp_path / "recorded")
+    lines = [each for each in (folder / "recording.yaml").read_text().splitlines() if "parameter_tolerance" not in each]
+    (folder / "recording.yaml").write_text("\n".join([*lines, *([f"parameter_tolerance: {stated}"] * bool(stated))]))
+    found = collect_gap(str(folder / "nominal.yaml"), folder, seatsim.gap(folder / "nominal.yaml", folder))
+    assert level("input pedigree", found._replace(inputs=1, doubts=())) == reached
+    # What was not fitted to such data is validated by all runs, with whatever tolerance.
+    assert found.held_out == (0 if stated == "fitted" else found.compared)
+
+
+def test_a_diagnosis_within_a_tolerance_that_nobody_stated_has_less_of_a_pedigree():
+    diagnosis = with_every_run()
+    assumed = replace(diagnosis, notes=[*diagnosis.notes, f"{NOT_STATED}: 2 %"])
+    assert [collect_diagnosis(each).parameters_known for each in (diagnosis, assumed)] == [True, False]
 
 
 def test_the_documentation_has_every_condition_word_for_word():

@@ -5,6 +5,9 @@ from pathlib import Path
 import pytest
 
 from seatsim.cli.app import main
+from seatsim.scenario.describe import describe
+from seatsim.scenario.loading import load
+from seatsim.schema.errors import InputError
 
 GOOD = """\
 name: good
@@ -105,7 +108,7 @@ CASES = [
     ("seed: 7", "seed: lucky", ["line 2", "'lucky'", "whole number"]),
     ("solver: {step: 0.001}", "sweep: {plant.driver_mass: 55.0}", ["line 19", "list"]),
     ("solver: {step: 0.001}", "sweep: {plant.driver_mas: [55.0, 75.0]}", ["driver_mas", "did you mean 'driver_mass'"]),
-    ("solver: {step: 0.001}", "variants: {hot: {temperature: boiling}}", ["line 19", "'boiling'"]),
+    ("solver: {step: 0.001}", "variants: {hot: {temperature: boiling}}", ["line 19, variant 'hot'", "'boiling'"]),
     ("name: good", "name: good: bad", ["line 1", "mapping values"]),
     ("name: good", "\tname: good", ["line 1"]),
     (GOOD, "", ["holds no mapping"]),
@@ -166,3 +169,27 @@ def test_an_output_folder_that_is_a_file(tmp_path, monkeypatch, capsys):
     Path("taken").write_text("")
     status, printed = run_main(monkeypatch, capsys, "run", "good.yaml", "--out", "taken")
     assert (status, "--out" in printed.err) == (2, True)
+
+
+def test_a_value_that_a_variant_puts_in_is_said_with_its_name(seat_file):
+    seat_file.write_text(
+        seat_file.read_text() + "variants:\n  soft: {plant.suspension_damping: 80.0}\n"
+        "  passive, best: {damper.parameters: {c_a: 1.0}}\n"
+    )
+    with pytest.raises(InputError, match=r"line 13, variant 'passive, best', damper.parameters: .*missing"):
+        load(seat_file)
+    # What all variants have in common is said by its own place.
+    with pytest.raises(InputError, match=r"--set plant.driver_mass=-5, plant.driver_mass: -5"):
+        load(seat_file, {"plant.driver_mass": -5})
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("bingham", "c_a [N s/m]: viscous damping at zero current (required; a fit starts from 250)"),
+        ("yu2019", "f0 [N]: offset, of the gas accumulator (default 0)"),
+        ("plant", "driver_mass [kg]: mass m of the driver on the cushion (required)"),
+    ],
+)
+def test_a_key_that_must_be_stated_is_described_so(name, said):
+    assert said in describe(name)

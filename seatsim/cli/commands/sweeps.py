@@ -47,6 +47,7 @@ def sweep(
     """Simulate a scenario with many values of its keys, and keep the metrics of every run."""
     from seatsim.sweeps.engines.choice import open_engine
     from seatsim.sweeps.execute import execute, prepare, read_share
+    from seatsim.sweeps.manifest import say_ended
     from seatsim.sweeps.slurm import write_slurm
 
     folder = out_folder or Path("out") / file.stem
@@ -65,7 +66,7 @@ def sweep(
         ):
             result = execute(prepared, folder, carry_out, resume, keep == "histories", part, count)
     except KeyboardInterrupt:
-        complain(f"interrupted: {folder} keeps what has ended; go on with --resume")
+        complain(f"interrupted: {folder} keeps {say_ended(folder)}; go on with --resume")
         raise
     counts = ", ".join(f"{number} {state}" for state, number in result.counts.items() if number or state == "done")
     say(f"{folder}: {counts}")
@@ -92,6 +93,7 @@ def sweep_report(
 ) -> None:
     """Say what the runs of a sweep have in common: quantiles, sensitivities, probabilities, pictures."""
     from seatsim.cli.outputs.sweeps import encode_report, report_sweep
+    from seatsim.metrics.table import SHORT
 
     with show_progress():
         report = report_sweep(folder, out_folder or folder)
@@ -99,7 +101,7 @@ def sweep_report(
     for row in report.exceeded[:EXCEEDED_SHOWN]:
         who = "".join(f"{value}: " for value in row.group.values())
         unit = f" {row.unit}".removesuffix(" -")
-        say(f"{who}{row.metric} above {row.limit:g}{unit}: {row.exceeding} of {row.runs} runs,"
+        say(f"{who}{SHORT.get(row.metric, row.metric)} above {row.limit:g}{unit}: {row.exceeding} of {row.runs} runs,"
             f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)")  # fmt: skip
     wrote(out_folder or folder, report.paths)
     answer(encode_report(report), report.paths)

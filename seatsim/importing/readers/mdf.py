@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import io
+import logging
 from contextlib import suppress
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import Array, DataFile, Group, Signal
 
 TIME = "time"
+MOST_PACKED = 1032
+"""How many bytes a byte unpacks to at most (deflate)."""
 
 
 class Closing(Protocol):
@@ -26,6 +29,8 @@ class Closing(Protocol):
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the channel groups; groups of the same time are one."""
     asammdf = need("asammdf", "MDF")
+    # What it says of damaged blocks would stand beside the one error.
+    logging.getLogger("asammdf").setLevel(logging.CRITICAL + 1)
     # A conversion that numexpr refuses would be handed to sympy, which runs its text as Python.
     for blocks in (need("asammdf.blocks.v4_blocks", "MDF"), need("asammdf.blocks.v2_v3_blocks", "MDF")):
         vars(blocks)["lambdify"] = None
@@ -35,6 +40,8 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     groups: list[Group] = []
     with asammdf.MDF(io.BytesIO(content)) as file:
         for index, group in enumerate(file.groups):
+            _check_size(group, len(content))
+            _check_places(group)
             master = file.masters_db.get(index)
             wanted = [(None, index, number) for number in range(len(group.channels)) if number != master]
             chosen = file.select(wanted, ignore_value2text_conversions=True) if wanted else []
@@ -43,6 +50,28 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
                 signals = [Signal(each.name, each.unit or "", each.samples.astype(np.float64)) for each in found]
                 _add(groups, f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
     return DataFile(path, "", tuple(groups))
+
+
+def _check_size(group: Any, size: int) -> None:
+    """Raise ValueError where the rows that are stated cannot be in a file of so many bytes."""
+    stated = group.channel_group
+    if stated.cycles_nr * stated.samples_byte_nr > MOST_PACKED * size:
+        raise ValueError(f"{stated.cycles_nr} rows of {stated.samples_byte_nr} bytes are stated, which it cannot hold")
+
+
+def _check_places(group: Any) -> None:
+    """Raise ValueError where a channel lies beyond its rows: asammdf would read the memory behind them."""
+    stated = group.channel_group
+    marks = getattr(stated, "invalidation_bytes_nr", 0)
+    for channel in group.channels:
+        if hasattr(channel, "byte_offset"):  # of version 4
+            start = 8 * channel.byte_offset + channel.bit_offset
+        else:
+            start = 8 * getattr(channel, "additional_byte_offset", 0) + channel.start_offset
+        if start + channel.bit_count > 8 * stated.samples_byte_nr:
+            raise ValueError(f"channel {channel.name} lies beyond the end of its rows")
+        if marks and channel.pos_invalidation_bit >= 8 * marks:
+            raise ValueError(f"channel {channel.name} has its marks of invalid values beyond the end of its rows")
 
 
 def _close(file: Closing) -> None:

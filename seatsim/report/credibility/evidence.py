@@ -11,6 +11,7 @@ import numpy as np
 
 from seatsim.dampers.base import DAMPERS, find_confidence
 from seatsim.provenance.invocation import current_invocation
+from seatsim.recordings.header import NOT_STATED
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.plausible import UNUSUAL
 from seatsim.schema.registry import name_of
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from seatsim.diagnosis.result import Diagnosis
     from seatsim.identification.identify import Identification
     from seatsim.recordings.gap import Gap
-    from seatsim.recordings.header import Tolerances
     from seatsim.standards.seat_rows import SeatTest
     from seatsim.sweeps.statistics.exceedance import Exceedance
     from seatsim.sweeps.statistics.inputs import SweepRows
@@ -41,12 +41,12 @@ class Evidence(NamedTuple):
     for. step: largest change of an output by halving the step. compared, held_out: recorded runs that were compared,
     and those of them that took no part in a fit. error, noise: gap on the latter, where there are some, and that of the
     sensors' noise. inputs: files whose hashes the manifest keeps. doubts: ranges left, values that no seat has.
-    dampers: models with the word on their source. parameters_known: the recording states how well, or records of this
-    damper determine them. loose: parameters that no data determine. intervals: what has one. parameter_intervals,
-    answer_interval: whether parameters and the answer do. budget: the error is divided into its parts. runs: that were
-    simulated or recorded. varied: keys that were varied or refitted. drawn: those from a distribution. explained: share
-    of the variance that the keys explain. limits: shares of runs beyond limits are known. versions: a manifest states
-    them.
+    dampers: models with the word on their source. parameters_known: the recording states how well, which is no default,
+    or records of this damper determine them. loose: parameters that no data determine. intervals: what has one.
+    parameter_intervals, answer_interval: whether parameters and the answer do. budget: the error is divided into its
+    parts. runs: that were simulated or recorded. varied: keys that were varied or refitted. drawn: those from a
+    distribution. explained: share of the variance that the keys explain. limits: shares of runs beyond limits are
+    known. versions: a manifest states them.
     """
 
     is_simulated: bool = True
@@ -126,7 +126,8 @@ def collect_gap(scenario: str, folder: Path, found: Gap) -> Evidence:
         _, simulated = replay(chosen, recording, run)
         spreads = {name: float(np.std(values)) for name, values in simulated.items()}
         steps += [change / spreads[name] for name, change in changes.items() if spreads.get(name, 0.0) > 0]
-    is_known = _is_known(recording.header.parameter_tolerance)
+    tolerance = recording.header.parameter_tolerance
+    is_fitted = "fitted" in (tolerance.values() if isinstance(tolerance, Mapping) else [tolerance])
     is_nominal = Path(scenario).is_file() and Path(scenario).samefile(folder / recording.header.nominal)
     return _record(
         Evidence(
@@ -136,8 +137,8 @@ def collect_gap(scenario: str, folder: Path, found: Gap) -> Evidence:
             noise=found.floor["overall"],
             doubts=found.notes,
             dampers=_judge_dampers([type(chosen.damper.record)]),
-            held_out=len(recording.runs) if is_known and is_nominal else 0,
-            parameters_known=is_known,
+            held_out=len(recording.runs) if is_nominal and not is_fitted else 0,
+            parameters_known=tolerance is not None and not is_fitted,
             intervals=["the gap, as the noise of the sensors"],
             runs=len(recording.runs),
         )
@@ -162,7 +163,7 @@ def collect_diagnosis(diagnosis: Diagnosis) -> Evidence:
             noise=gap.floor.overall,
             doubts=[note for note in diagnosis.notes if UNUSUAL in note],
             dampers=_judge_dampers([DAMPERS.find(name)]) if name in DAMPERS.names() else {},
-            parameters_known=bool(diagnosis.parameters),
+            parameters_known=bool(diagnosis.parameters) and not any(NOT_STATED in note for note in diagnosis.notes),
             loose=[each.name for each in diagnosis.parameters if each.at_bound],
             intervals=[*(["the parameters of the effects"] if fitted else []), *uncertain],
             parameter_intervals=bool(fitted),
@@ -250,8 +251,3 @@ def _judge_dampers(classes: Iterable[type]) -> dict[str, str]:
 
 def _registered() -> set[type]:
     return {DAMPERS.find(name) for name in DAMPERS.names()}
-
-
-def _is_known(tolerances: Tolerances) -> bool:
-    """Whether a recording states how well the parameters are known, and not that they were fitted to such data."""
-    return "fitted" not in (tolerances.values() if isinstance(tolerances, Mapping) else [tolerances])

@@ -104,7 +104,7 @@ def _say_pedigree(known: Evidence) -> str:
     parts.append(f"doubts: {len(known.doubts)}, in the notes" if known.doubts else "no doubt about ranges or values")
     parts += [f"{name}: {word} ({CONFIDENCE[word]})" for name, word in known.dampers.items()]
     if known.parameters_known:
-        parts.append("parameters are known within a tolerance, or fitted to records")
+        parts.append("parameters are known within a stated tolerance, or fitted to records")
     elif known.is_simulated:
         parts.append("no file says how well the parameters are known")
     return "; ".join([*parts, *([f"not determined: {join_names(known.loose)}"] if known.loose else [])])
@@ -157,7 +157,8 @@ PEDIGREE = (
     Condition("no model leaves its range, and no value is doubtful", lambda e: not e.doubts),
     Condition("the equation of every damper was seen at its source", _is_published),
     Condition(
-        "parameters are known within a tolerance or fitted to records, and the data determine all that were fitted",
+        "parameters are known within a stated tolerance or fitted to records, and the data determine all that were"
+        " fitted",
         lambda e: e.parameters_known and not e.loose,
     ),
 )

@@ -107,3 +107,33 @@ def test_the_line_search_meets_the_weak_wolfe_conditions(length):
     assert found.value <= here.value + 1e-4 * step * slope
     assert found.gradient @ direction >= 0.5 * slope
     assert _line_search(function, here, -direction) is None
+
+
+def search(value, gradient):
+    """Search from 0 along a line of slope -1; return the point and its slope."""
+    function = Counted(lambda x: value(x[0]), lambda x: [gradient(x[0])])
+    found = _line_search(function, Iterate(np.zeros(1), 0.0, np.array([-1.0])), np.ones(1))
+    return found.x[0], found.gradient[0]
+
+
+def test_the_line_search_bisects_between_a_point_too_near_and_one_too_far():
+    # A slope of -1 up to a steep wall: 1 and 2 are too near, 4 and 3.5 too far, 3 too near, 3.25 is right.
+    wall = search(lambda x: 100 * max(0.0, x - 3.2) ** 2 - x, lambda x: 200 * max(0.0, x - 3.2) - 1.0)
+    assert wall == pytest.approx((3.25, 9.0))
+
+
+def test_a_step_that_lowers_nothing_is_not_taken():
+    # At 1 the value is higher by half of what a sufficient decrease would be.
+    assert search(lambda x: (1.0 + 5e-5) * x**2 - x, lambda x: 2 * (1.0 + 5e-5) * x - 1.0)[0] == 0.5
+
+
+def test_a_search_that_gains_too_little_ends_whatever_its_level():
+    far = np.array([-1.2, 1.0])
+    calls = []
+    for level in (0.0, 1e4):
+        function = rosenbrock()
+        plain = function.value
+        function.value = lambda x, plain=plain, level=level: plain(x) + level
+        minimise(function, far, np.ones(2), later(), patience=2, progress=0.5)
+        calls.append(function.calls)
+    assert calls[0] == calls[1]

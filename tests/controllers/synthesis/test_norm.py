@@ -66,3 +66,12 @@ def test_does_not_depend_on_units(seed):
     units = 10.0 ** np.random.default_rng(seed).uniform(-4, 4, 5)
     moved = Loop(some.A * units / units[:, None], some.B / units[:, None], some.C * units, some.D)
     assert hinf_norm(moved).value == pytest.approx(hinf_norm(some).value, rel=1e-9)
+
+
+@pytest.mark.parametrize("rate", [1e-5, 1e5])
+@pytest.mark.parametrize("seed", range(6))
+def test_does_not_depend_on_the_unit_of_time(seed, rate):
+    some = random_loop(seed, n=6, nw=2, nz=2)
+    peak, moved = hinf_norm(some), hinf_norm(Loop(rate * some.A, rate * some.B, some.C, some.D))
+    assert moved.value == pytest.approx(peak.value, rel=1e-9)
+    assert moved.frequency == pytest.approx(rate * peak.frequency, rel=1e-4)

@@ -80,6 +80,8 @@ def test_sizes_of_changes_are_the_entries_own(random_plant):
     objective = NormObjective([random_plant(0, structure=[[1, 1], [0, 0]])], -limits, limits, unit)
     np.testing.assert_allclose(objective.sizes(np.array([4.0, 0.0])), [4.0, 2.0])
     np.testing.assert_allclose(objective.sizes(np.zeros(2)), [1.0, 50.0])
+    # 100 is twice the unit of 50: the other is at least a hundredth of twice its own.
+    np.testing.assert_allclose(objective.sizes(np.array([0.0, 100.0])), [0.02, 100.0])
     np.testing.assert_array_equal(objective.gain(np.array([4.0, 5.0])), [[4.0, 5.0], [0.0, 0.0]])
 
 
@@ -110,6 +112,7 @@ def test_unstable_and_silent_loops(random_plant):
     assert unstable.norm(np.zeros(4)) == np.inf
     value, slope = unstable.log_norm(np.zeros(4))
     assert value == np.inf and not slope.any()
+    assert unstable.log_norm(np.zeros(4), 0.0)[0] == np.inf
     barely = objective_of(stable(random_plant(0), margin=1e-8))
     assert barely.norm(np.zeros(4)) == np.inf
     p = stable(random_plant(0))

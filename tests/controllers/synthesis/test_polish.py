@@ -43,6 +43,10 @@ def test_limits_hold(seat):
     assert np.abs(entries).max() <= 2000.0
     assert entries[1] > 1900.0
     assert problem.norm(entries) < problem.norm(np.array([1500.0, 1500.0]))
+    # A lower limit that the optimum at -1937 lies beyond.
+    problem = objective(seat(10.0), 1500.0)
+    entries = polish(problem, np.array([-1000.0, 1400.0]), later())
+    assert -1500.0 <= entries[0] < -1400.0 and entries[1] <= 1500.0
 
 
 def test_what_is_not_stable_or_has_no_time_comes_back(seat):

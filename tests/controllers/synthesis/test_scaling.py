@@ -80,3 +80,15 @@ def test_an_input_without_effect_keeps_its_unit(random_plant):
     B2 = plant.B2 * [1.0, 0.0]
     idle = type(plant)(plant.A, plant.B1, B2, plant.C1, plant.C2, plant.D11, plant.D12, plant.D21)
     assert scale(idle).controls[1] == 1.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_coordinates_do_not_depend_on_the_units_of_disturbance_performance_and_time(random_plant, seed):
+    p, far = random_plant(seed), 2.0**20
+    made = scale(p)
+    louder = scale(type(p)(p.A, p.B1, p.B2, far * p.C1, p.C2, p.D11, p.D12, p.D21))
+    faster = scale(type(p)(far * p.A, far * p.B1, far * p.B2, p.C1, p.C2, p.D11, p.D12, p.D21))
+    np.testing.assert_array_equal(louder.plant.A, made.plant.A)
+    np.testing.assert_array_equal(faster.plant.A, made.plant.A)
+    np.testing.assert_array_equal(faster.plant.C2, made.plant.C2)
+    assert faster.rate == far * made.rate

@@ -1,5 +1,6 @@
 """The search on one or several plants, its time, and what it says where it fails."""
 
+import re
 import time
 
 import numpy as np
@@ -83,3 +84,14 @@ def test_where_starts_disagree_the_best_is_looked_about(random_plant):
     assert lines[0] == "searching" and "starts" in lines[1] and "stabilised" in lines[1]
     assert float(lines[-1].split()[1]) == pytest.approx(few, rel=1e-5)
     assert np.isfinite(few)
+
+
+@pytest.mark.parametrize("rate", [1.0, 1000.0])
+def test_the_abscissa_of_a_failure_is_in_the_users_time(rate):
+    # A gain without a direct path cannot change the sum of the poles, 3 rate, so that one lies right of rate.
+    A, B, C = rate * np.array([[0.0, 1, 0], [0, 0, 1], [-3, 1, 3]]), rate * np.eye(3)[:, 2:], np.eye(3)[:1]
+    plant = GeneralisedPlant(A, B, B, C, C, [[0]], [[0]], [[0]])
+    with pytest.raises(SynthesisError) as error:
+        ask([plant], 100.0, 0.5)
+    reached = float(re.search(r"reached is (\S+) 1/s", str(error.value))[1])
+    assert rate * (1.0 - 1e-3) <= reached < 3.0 * rate

@@ -51,7 +51,9 @@ def test_the_larger_of_two_norms_counts(monkeypatch):
     found, agree = compute_verified_norm(loop)
     assert found == right and agree
     assert asked[0] == [] and asked[1] == pytest.approx([right.frequency], rel=1e-4)
-    monkeypatch.setattr(module, "hinf_norm", lambda loop, guesses=(): right)
-    for factor, verdict in ((1 - 1e-7, True), (1 - 1e-5, False)):
-        monkeypatch.setattr(module, "grid_norm", lambda loop, f=factor: Peak(f * right.value, right.frequency))
-        assert compute_verified_norm(loop) == (right, verdict)
+    for size in (1e-3, 1.0, 1e3):
+        norm = Peak(size * right.value, right.frequency)
+        monkeypatch.setattr(module, "hinf_norm", lambda loop, guesses=(), norm=norm: norm)
+        for factor, verdict in ((1 - 1e-7, True), (1 - 1e-5, False)):
+            monkeypatch.setattr(module, "grid_norm", lambda loop, value=factor * norm.value: Peak(value, 1.0))
+            assert compute_verified_norm(loop) == (norm, verdict)

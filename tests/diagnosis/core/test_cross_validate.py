@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from seatsim.diagnosis.cross_validate import _charge, _foresee, cross_validate, select_by_cross_validation
+from seatsim.diagnosis.cross_validate import (
+    _charge,
+    _foresee,
+    _list_equals,
+    cross_validate,
+    select_by_cross_validation,
+)
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.noise import weigh_gap
 from seatsim.diagnosis.objective import Evaluation, Objective
@@ -86,6 +92,15 @@ def test_a_step_that_makes_all_runs_worse_is_shortened():
     found = _foresee(objective, evaluation, nuisances, ["first"], far)
     left = found["first"] / objective.problem.spread[:, None]
     assert np.sqrt(np.mean(left**2)) == pytest.approx(leave_out(objective, evaluation)[0], rel=1e-3)
+
+
+def test_a_step_that_makes_the_runs_left_out_no_worse_is_not_fitted_again():
+    objective = pose()
+    evaluation = fitted(objective, "rig.one")
+    nuisances = objective.linearise_nuisances(evaluation)
+    objective.problem.calls.clear()
+    _foresee(objective, evaluation, nuisances, ["first"], evaluation.parameters)
+    assert [run for run, *_ in objective.problem.calls] == ["first"]
 
 
 def test_several_runs_are_left_out_together_where_there_are_more_than_folds():
@@ -193,6 +208,20 @@ def test_what_a_structure_is_charged_raises_what_it_leaves():
     rig = Parameters(np.zeros(1))
     assert _charge(pose(), Evaluation(rig, {}, {}, 0.0), 0.5) == 0.5
     assert _charge(pose(), Evaluation(rig, {}, {}, 0.0, charge=1.1), 0.5) == pytest.approx(0.55)
+    # The prior of a deviation, exp(-d^2 / (2 std^2)), is one of the evidence, left^-20.
+    off = Evaluation(Parameters(np.array([0.3])), {}, {}, 0.0)
+    assert (_charge(pose(), off, 0.5) / 0.5) ** -20 == pytest.approx(np.exp(-0.5 * (0.3 / 0.58) ** 2))
+
+
+def test_a_set_whose_prior_makes_up_for_what_it_leaves_is_equal():
+    objective = pose()
+    none, one = fitted(objective), fitted(objective, "rig.one")
+    # 0.05 left^-20 = 1
+    level = 0.05 ** (1.0 / 20.0)
+    assert [each for each, _ in _list_equals(objective, [(none, 1.0), (one, level)])] == [none, one]
+    assert [each for each, _ in _list_equals(objective, [(none, 1.0), (one, 0.9 * level)])] == [one]
+    # Beside a set of a better prior, one that leaves hardly more than the least is equal, too.
+    assert [each for each, _ in _list_equals(objective, [(none, 1.0), (one, 0.99)])] == [none, one]
 
 
 def test_only_the_first_sets_of_a_size_are_cross_validated():

@@ -266,6 +266,16 @@ def test_beside_an_unknown_cause_effects_are_weighed_by_what_runs_left_out_suppo
     assert beside.probabilities == pytest.approx(dict.fromkeys(EFFECTS, 0.006) | expected)
 
 
+def test_beside_an_unknown_cause_sets_up_to_the_size_of_the_chosen_one_are_weighed(rig):
+    found = decide(rig, 10.0, [({"b.two": 0.5}, 4.0)])
+    none, single, pair = (state(rig, effects, 4.0) for effects in ({}, {"a.one": 1.0}, {"a.one": 1.0, "d.four": 1.0}))
+    tried = [(none, 0.0), (single, 1.0), (pair, 2.0)]
+    beside = decide_beside_unknown(rig.settings.decision, found, pair, (), tried)
+    total = 1.0 + math.exp(1.0) + math.exp(2.0)
+    assert beside.probabilities["d.four"] == pytest.approx(math.exp(2.0) / total)
+    assert beside.probabilities["a.one"] == pytest.approx((math.exp(1.0) + math.exp(2.0)) / total)
+
+
 def test_without_an_effect_beside_it_no_effect_is_likely(rig):
     found = decide(rig, 10.0, [({"b.two": 0.5}, 1.21)])
     assert found.unknown == 0.55

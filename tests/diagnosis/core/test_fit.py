@@ -199,3 +199,10 @@ def test_a_refit_linearises_where_it_starts():
     np.testing.assert_allclose(values, best, rtol=1e-4, atol=1e-6)
     tried = {(deviations, effects[0].amount) for _, deviations, effects in objective.problem.calls}
     assert {((0.2, 0.3), 0.5), ((0.22, 0.3), 0.5), ((0.2, 0.32), 0.5), ((0.2, 0.3), 0.51)} <= tried
+
+
+def test_a_component_beyond_its_bound_by_rounding_stays_where_it_is():
+    matrix, right = np.eye(2), np.array([-3.0, 3.0])
+    beyond = np.array([-1.0 - 1e-10, 1.0 + 1e-10])
+    step = solve_step(matrix, right, 0, beyond, -np.ones(2), np.ones(2), 1.0)
+    np.testing.assert_array_equal(step, 0.0)

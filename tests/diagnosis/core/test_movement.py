@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.movement import (
+    _expect_power,
     group_equivalent,
     is_material,
     measure_channel_excess,
@@ -203,3 +204,15 @@ def test_where_noise_alone_makes_the_gap_all_of_it_counts_as_taken():
     loud = Objective(objective.problem, weigh_uniformly(objective.problem, {run: np.full((2, 1), 0.1) for run in RUNS}))
     none = evaluated(loud)
     assert measure_gap_taken(loud, none, none) == 1.0
+
+
+@pytest.mark.parametrize("compared", [101, 60, 5])
+def test_above_the_frequencies_that_are_compared_noise_goes_on_as_it_ends(compared):
+    objective = pose(noise=(0.1, 0.02))
+    samples = RUNS["first"]
+    # White noise of a variance has a mean square of this, whatever part of its spectrum is looked at.
+    power = np.tile(np.array([[0.1], [0.02]]) ** 2 * samples, (1, compared))
+    power[:, 0] /= 2.0  # the mean counts once
+    weights = dataclasses.replace(objective.weights, power={"first": power})
+    found = _expect_power(dataclasses.replace(objective, weights=weights), "first")
+    np.testing.assert_allclose(found, [0.01, 0.0004], rtol=0.01)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.diagnosis.noise import weigh_gap
-from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.objective import Evaluation, scale
 from seatsim.diagnosis.parameters import Parameters
 
 from .toy import Cubed, Edge, Wild, add_up, draw_signals, make_problem, offer, offer_two, place, weigh_stated, whiten
@@ -205,3 +205,17 @@ def test_weights_by_the_gap_charge_every_further_parameter_by_schwarz(objective,
     found = by_gap.evaluate([rig])[0]
     # exp(-n / 2 log cost) falls by n^(1/2) for n = 40 independent numbers.
     assert (found.charged / found.cost) ** -20 == pytest.approx(40.0**-0.5)
+    # A rig with two more is charged twice as much, in logarithms.
+    twice = by_gap.evaluate([rig.add(offer_two("b.two", (1.0, 1.0), (0.0, 0.0), (2.0, 2.0)), np.zeros(2))])[0]
+    assert (twice.charged / twice.cost) ** -20 == pytest.approx(40.0**-1.0)
+
+
+def test_numbers_weighed_by_one_objective_are_scaled_to_another(objective, evaluation):
+    by_gap = dataclasses.replace(objective, weights=weigh_gap(objective.problem, evaluation.residuals))
+    expected = by_gap.evaluate([evaluation.parameters])[0].whitened
+    found = scale(evaluation.whitened, objective, by_gap)
+    jacobian = scale(objective.linearise(evaluation, range(3)).jacobian, objective, by_gap)
+    assert not np.allclose(expected["first"], evaluation.whitened["first"])
+    for run, own in by_gap.linearise(by_gap.evaluate([evaluation.parameters])[0], range(3)).jacobian.items():
+        np.testing.assert_allclose(found[run], expected[run], rtol=1e-9)
+        np.testing.assert_allclose(jacobian[run], own, rtol=1e-4, atol=1e-6)

@@ -95,3 +95,15 @@ def test_a_value_at_its_bound_is_not_beyond_it_by_rounding():
         rig = Parameters(np.zeros(0)).add(offer("coil.two", start=start, low=-high, high=high), np.array([start]))
         assert rig.move_to(np.array([1e3])).values[0][0] <= high
         assert rig.move_to(np.array([-1e3])).values[0][0] >= -high
+
+
+def test_parameters_beyond_the_sizes_of_the_effects_are_counted(rig):
+    assert rig.further == 1
+    assert rig.add(offer_two("coil.three", (1.0, 1.0), (0.0, 0.0), (2.0, 2.0)), np.ones(2)).further == 2
+    assert Parameters(np.zeros(3)).further == 0
+
+
+@pytest.mark.parametrize("start, size", [(1.2, 1.2), (0.2, 0.8), (-0.2, 1.2)])
+def test_the_size_of_an_effect_is_at_least_its_distance_from_where_it_is_off(start, size):
+    gain = FIRST._replace(start=(start, -0.5), nominal=1.0)
+    np.testing.assert_allclose(gain.scale, [size, 0.5])

@@ -74,6 +74,19 @@ def test_a_step_divides_a_row_and_is_at_most_two_milliseconds(posed):
     assert len(floor.acceleration) == 410 * 3 + 1
 
 
+@pytest.mark.parametrize("rate, parts", [(500.0, 1), (250.0, 2), (100.0, 5), (499.0, 2)])
+def test_a_row_of_whole_steps_is_not_divided_further(rate, parts, folder):
+    (folder / "recording.yaml").write_text(
+        HEADER.replace("200.0", str(rate)).replace("short.csv, repeat", "long.csv, repeat")
+    )
+    assert pose_problem(load_recording(folder), SerialExecutor()).parts == parts
+
+
+def test_what_the_channels_reach_is_the_largest_of_any_run(posed):
+    # Of 520 and 411 rows of 1 + 0.001 row in m, and of sin(row) in m/s^2.
+    assert posed.reached["m"] == pytest.approx(1.0 + 0.001 * 519)
+
+
 def test_the_tolerance_is_the_recordings(posed):
     found = {each.name: each.tolerance for each in posed.parameters}
     assert found["frame_mass"] == pytest.approx(0.05 * 20.0)

@@ -10,6 +10,7 @@ from seatsim.diagnosis.screen import measure_sensitivities, name_unstable, scree
 
 from .toy import (
     Limited,
+    Stated,
     Wild,
     add_up,
     draw_signals,
@@ -167,3 +168,15 @@ def test_a_limit_is_tried_a_little_to_the_side_that_the_prediction_points_to(tru
 def test_nothing_offered_finds_nothing():
     assert screened(pose({"b.two": 1.0}), []) == []
     assert screened(pose({"b.two": 1.0}), [offer("b.two")], bound=0.0) == []
+
+
+@pytest.mark.parametrize(
+    ("start", "low", "high", "amount", "expected"),
+    [(0.8, 0.0, 5.0, 0.5, 1.1), (0.4, 0.0, 5.0, -0.3, 0.3), (0.4, 0.2, 0.6, 0.5, 0.4)],
+)
+def test_an_effect_that_the_scenario_states_is_screened_from_what_it_states(start, low, high, amount, expected):
+    # It is stated as 0.6, and what is measured asks for so much more; where it may only fall, it keeps its start.
+    objective = pose({"b.two": amount})
+    stated = offer("b.two", start=start, low=low, high=high, cls=Stated)._replace(nominal=0.6)
+    (found,) = screened(objective, [stated])
+    assert found.parameters.values[0][0] == pytest.approx(expected, abs=0.02)

@@ -207,6 +207,28 @@ def test_sets_are_not_eliminated_where_the_largest_is_not_reached_or_gains_too_l
             assert {"true.one", "true.two"} not in names_of(found.sets[2])
 
 
+def test_sets_are_eliminated_where_the_last_enlargement_left_little_enough():
+    # The last decoy is at work and not offered, so that every set leaves something.
+    amounts, offered = {"true.one": 1.0, "true.two": 0.9, "decoy.4": 0.3}, ("decoy.mix", "true.one", "true.two")
+    settings = {"beam": 1, "most_swaps": 0}
+    excess = [sets[0].excess for sets in search(pose(amounts, MIXED, enlarge=1e-9, **settings), offered)[0].sets]
+    share = excess[3] / excess[2]
+    assert excess[2] > 3.0 and 0.0 < share < 1.0
+    for enlarge, is_eliminated in ((0.99 * share, False), (1.01 * share, True)):
+        found, told = search(pose(amounts, MIXED, enlarge=enlarge, **settings), offered)
+        assert ("eliminating backwards" in told) == is_eliminated
+        assert ({"true.one", "true.two"} in names_of(found.sets[2])) == is_eliminated
+
+
+def test_a_swap_that_does_nearly_as_well_is_carried_to_its_end():
+    amounts, offered = {"true.one": 1.0, "true.two": 0.9}, ("decoy.mix", "true.one", "true.two", "decoy.1")
+    objective = pose(amounts, MIXED, beam=1, begun_steps=0, finalists=9, swap_within=1e4)
+    found, _ = search(objective, offered, largest=2)
+    for each in found.sets[2]:
+        assert each.cost == pytest.approx(best_cost(objective, each.parameters.names), rel=1e-6)
+    assert names_of(found.sets[2])[0] == {"true.one", "true.two"}
+
+
 def test_an_effect_is_in_a_set_once_and_the_best_structure_of_it_is_kept():
     objective = pose({"true.one": 1.4, "true.two": -0.6}, promising=9.0)
     candidates = [offer("true.one", "decoy.0", 0.3), offer("true.one", "true.one", 0.3), offer("true.two", start=0.3)]

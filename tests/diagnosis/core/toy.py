@@ -52,6 +52,17 @@ class Added(NamedTuple):
         return self.amount * signals[self.signal] + beside
 
 
+@toy_effect("toy.stated")
+class Stated(NamedTuple):
+    """Adds a signal by as much as its amount exceeds 0.6, which the nominal rig has."""
+
+    signal: str
+    amount: float = 0.0
+
+    def outputs(self, signals):
+        return (self.amount - 0.6) * signals[self.signal]
+
+
 @toy_effect("toy.cubed")
 class Cubed(NamedTuple):
     """Adds a signal with the cube of its amount, on which a whole Gauss-Newton step goes too far."""

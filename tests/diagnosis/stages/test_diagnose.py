@@ -37,6 +37,12 @@ class Solved(NamedTuple):
     objective: SimpleNamespace
 
 
+def loaded(tolerance=0.02, **more):
+    """Return what stands for a recording that states this tolerance."""
+    return SimpleNamespace(header=SimpleNamespace(parameter_tolerance=tolerance), **more)
+
+
+LOADED = loaded()
 SOLUTION, STATED = Solved(SimpleNamespace(unhurried="unhurried")), Solved("unhurried")
 
 
@@ -52,7 +58,7 @@ def stages(monkeypatch):
 
         monkeypatch.setattr(module, name, call)
 
-    stage("load_recording", "loaded")
+    stage("load_recording", LOADED)
     stage("examine", Examination([Issue("warning", "kind", "mind the clock")]))
     stage("pose_problem", Posed())
     stage("check_nominal", None)
@@ -81,20 +87,28 @@ def test_a_recording_is_examined_posed_solved_and_stated(folder, stages):
 
 
 def test_a_second_recording_is_joined_to_the_first(folder, stages, monkeypatch):
-    monkeypatch.setattr(module, "join_recordings", lambda *both: (both, ["one channel is left out"]))
+    monkeypatch.setattr(module, "join_recordings", lambda *both: (loaded(both=both), ["one channel is left out"]))
     first = record(folder)
     assert diagnose(first, after="elsewhere") == "diagnosis"
     assert stages["load_recording"] == ("elsewhere",)
-    assert stages["examine"] == ((first, "loaded"),) and stages["pose_problem"][0] == (first, "loaded")
+    assert stages["examine"][0].both == stages["pose_problem"][0].both == (first, LOADED)
     assert stages["state_diagnosis"][1] == ["one channel is left out", "mind the clock", "at the bound"]
 
 
 @pytest.mark.parametrize("given", ["somewhere", Path("somewhere")])
 def test_a_recording_may_be_named_by_its_folder(stages, given):
     assert diagnose(given) == "diagnosis"
-    assert stages["load_recording"] == (given,) and stages["examine"] == ("loaded",)
-    assert stages["pose_problem"][0] == "loaded" and stages["pose_problem"][2] is None
+    assert stages["load_recording"] == (given,) and stages["examine"] == (LOADED,)
+    assert stages["pose_problem"][0] is LOADED and stages["pose_problem"][2] is None
     assert stages["solve"][1] == () and stages["solve"][2]("any word") is None
+
+
+def test_a_tolerance_that_is_assumed_is_said(stages, monkeypatch):
+    monkeypatch.setattr(module, "load_recording", lambda _: loaded(None))
+    diagnose("somewhere")
+    assumed, *rest = stages["state_diagnosis"][1]
+    assert assumed.startswith("parameter_tolerance is not stated") and "2 %" in assumed
+    assert rest == ["mind the clock", "at the bound"]
 
 
 @pytest.mark.parametrize("budget", [0.0, -1.0, float("nan")])
