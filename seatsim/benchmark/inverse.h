@@ -6,18 +6,20 @@
 #include <math.h>
 
 enum { CELLS = 16, TRIALS = 60 };
-static const double INSIDE = 1e-4, CLOSE = 1e-6; /* in cells from an end of the grid; in N */
+/* In cells from an end of the grid; in N; from a turn, over the width of its interval. */
+static const double INSIDE = 1e-4, CLOSE = 1e-6, BESIDE = 1e-2;
 
 typedef double (*Miss)(const void *question, double current);
 
-/* Root in [left, right] by the Illinois method. */
+/* Root in [left, right] by the Illinois method, until no number is left between the ends. */
 static double bracket(Miss miss, const void *question, double left, double f_left, double right, double f_right) {
     int side = 0;
     double middle = right;
     for (int trial = 0; trial < TRIALS; trial++) {
         middle = (left * f_right - right * f_left) / (f_right - f_left);
+        if (!(left < middle && middle < right)) break;
         double f = miss(question, middle);
-        if (fabs(f) <= CLOSE) break;
+        if (f == 0.0) break;
         if (f * f_left > 0.0) {
             left = middle, f_left = f;
             if (side == -1) f_right *= 0.5;
@@ -28,7 +30,7 @@ static double bracket(Miss miss, const void *question, double left, double f_lef
             side = 1;
         }
     }
-    return middle;
+    return fmin(fmax(middle, left), right);
 }
 
 /* Whether the force comes closest to the wanted one, or passes it, about point `j` of the grid. */
@@ -41,9 +43,17 @@ static int turns_near(Miss miss, const void *question, double top, const double 
     return j == 0 ? near < here : near <= here;
 }
 
+/* Current at the vertex of the parabola through the forces at `i` and `beside` it on either side. */
+static double turn_at(Miss miss, const void *question, double i, double beside) {
+    double before = miss(question, i - beside), here = miss(question, i), after = miss(question, i + beside);
+    double bend = (after - here) - (here - before);
+    return fabs(after - before) >= fabs(bend) ? i : i - 0.5 * beside * (after - before) / bend;
+}
+
 /* Least current in [left, right] whose force is closest to the wanted one, by golden section. */
 static double closest_in(Miss miss, const void *question, double side, double left, double right, double *missed) {
     const double golden = 0.5 * (sqrt(5.0) - 1.0);
+    double first = left, last = right, beside = BESIDE * (right - left);
     double low = right - golden * (right - left), high = left + golden * (right - left);
     double f_low = miss(question, low), f_high = miss(question, high);
     for (int trial = 0; trial < TRIALS; trial++) {
@@ -56,6 +66,9 @@ static double closest_in(Miss miss, const void *question, double side, double le
             high = left + golden * (right - left), f_high = miss(question, high);
         }
     }
+    double turn = turn_at(miss, question, high, fmin(beside, fmin(high - first, last - high)));
+    double f_turn = miss(question, turn);
+    if (side * (f_turn - f_high) <= CLOSE) return *missed = f_turn, turn;
     return *missed = f_high, high;
 }
 

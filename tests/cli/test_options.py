@@ -29,7 +29,7 @@ def test_nothing_heavy_is_imported_at_the_start():
         ("excitation.kind=raod", "excitation.kind: no excitation is called 'raod' (did you mean 'road'?)"),
         ("excitation={kind: raod}", '--set excitation={"kind": "raod"}, excitation.kind: no excitation'),
         ("seed.x=3", "--set seed.x=3: 'seed.x' leads into 'seed', which has no keys"),
-        ("variants={a: {plant.driver_mass: -5}}", 'driver_mass": -5}}, plant.driver_mass: -5 is not permitted'),
+        ("variants={a: {plant.driver_mass: -5}}", "driver_mass\": -5}}, variant 'a', plant.driver_mass: -5 is not"),
     ],
 )
 def test_an_error_of_set_names_the_option_and_not_the_file(text, problem, seatsim_command, seat_file):
