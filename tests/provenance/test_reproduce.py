@@ -9,9 +9,10 @@ import pytest
 
 from seatsim.cli.app import main
 from seatsim.provenance import reproduce as reproduction
-from seatsim.provenance.differences import _is_same
+from seatsim.provenance.differences import _is_same, compare_outputs
+from seatsim.provenance.invocation import at_work, state_command
 from seatsim.provenance.reproduce import reproduce
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, RunError
 
 RECORDING = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "recording"
 
@@ -184,3 +185,46 @@ def test_the_crate_describes_every_file_and_refers_to_what_is_there(made):
 
     named = {name for name in references(crate["@graph"]) if not name.startswith("http")}
     assert named <= set(entities)
+
+
+def test_inputs_are_numbered_from_one_in_the_crate(made):
+    crate = json.loads((made / "out" / "c" / "ro-crate-metadata.json").read_text())
+    inputs = [each for each in crate["@graph"] if each["@id"].startswith("#input-")]
+    assert [each["@id"] for each in inputs] == ["#input-1", "#input-2", "#input-3"]
+    assert inputs[0]["name"] == "../../rec/recording.yaml"
+
+
+@pytest.mark.parametrize("name", ["/etc/passwd", "../comfort.json", "a/../../b"])
+def test_outputs_outside_the_folder_are_not_read(project, name):
+    folder = project / "out" / "c"
+    manifest = json.loads((folder / "manifest.json").read_text())
+    manifest["outputs"] = [{"path": name, "sha256": "0"}]
+    with pytest.raises(InputError, match=r"manifest\.json: output .* lies outside its folder"):
+        list(compare_outputs(manifest, folder, manifest, folder))
+
+
+def test_a_command_at_work_is_stated_as_it_can_be_typed_again():
+    assert state_command("in Python") == "in Python"
+    with at_work("run", [("--set", "seed=1"), ("--out", "o")], ["a b.yaml", "c.yaml"]):
+        assert state_command("") == "seatsim run 'a b.yaml' c.yaml --set=seed=1"
+
+
+@pytest.mark.parametrize("place", [0, -1])
+def test_an_example_is_found_wherever_examples_are_and_nothing_beside_them(tmp_path, monkeypatch, place):
+    folders = [tmp_path / "a", tmp_path / "b"]
+    monkeypatch.setattr(reproduction, "EXAMPLES", tuple(folders))
+    (folders[place] / "in").mkdir(parents=True)
+    file = folders[place] / "in" / "seat.yaml"
+    file.write_text("")
+    (tmp_path / "secret.yaml").write_text("")
+    assert reproduction._resolve("example:in/seat.yaml", tmp_path) == file
+    for name in ("in/other.yaml", "../secret.yaml", "in/../../secret.yaml"):
+        assert not reproduction._resolve(f"example:{name}", tmp_path).exists()
+
+
+def test_a_command_that_fails_says_why_with_its_last_line(project, monkeypatch):
+    for said, reason in ((b"warning: one\nwarning: two\nerror: no room\n", "no room"), (b"", "no reason")):
+        failed = reproduction.subprocess.CompletedProcess([], 1, b"", said)
+        monkeypatch.setattr(reproduction.subprocess, "run", lambda *_, failed=failed, **__: failed)
+        with pytest.raises(RunError, match=f"comfort cannot be run again: {reason}$"):
+            reproduce(project / "out" / "c")
