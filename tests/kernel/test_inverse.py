@@ -215,3 +215,12 @@ def test_a_dip_within_the_first_cell_is_met_there_although_the_last_current_meet
     assert len(met) == 3 and GRID[met[1]] < CELL and GRID[met[2]] > 0.5 * TOP
     answer = ask(damper, wanted, 0.0, 0.2, ())
     assert GRID[met[0]] <= answer.current <= GRID[met[0] + 1]
+
+
+@pytest.mark.parametrize("size", [1.0, 0.01])
+def test_a_corner_where_friction_vanishes_is_kept_to_however_small_the_friction_is(size):
+    damper = Bingham(c_a=250.0 * size, c_b=100.0 * size, fc_a=60.0 * size, fc_b=-90.0 * size, v_ref=0.0)
+    for current in np.linspace(0.0, 0.6, 7):
+        wanted = total_force(damper, 0.0, 0.1, current, HEAT, ())
+        answer = ask(damper, wanted, 0.0, 0.1, ())
+        assert answer.served == 1.0 and answer.current == pytest.approx(current, abs=1e-5)

@@ -61,11 +61,11 @@ def turn(some, seed=0):
 
 
 def test_a_fast_mode_out_of_reach_is_found_in_any_states():
-    slow = [-1e-6, -2e-6, -1e-6]
+    slow = [-1e-3, -2e-3, -3e-3]
     with pytest.raises(SynthesisError, match=r"1/s is not reached"):
-        require_stabilisable(scale(turn(plant([*slow, 1e6], [[1], [1], [1], [0]], [[1, 1, 1, 1]]))))
+        require_stabilisable(scale(turn(plant([*slow, 1e3], [[1], [1], [1], [0]], [[1, 1, 1, 1]]))))
     with pytest.raises(SynthesisError, match=r"1/s is not seen"):
-        require_stabilisable(scale(turn(plant([*slow, 1e6], [[1], [1], [1], [1]], [[1, 1, 1, 0]]))))
+        require_stabilisable(scale(turn(plant([*slow, 1e3], [[1], [1], [1], [1]], [[1, 1, 1, 0]]))))
 
 
 @pytest.mark.parametrize("rate", [1e-3, 1.0, 1e3])
