@@ -11,6 +11,7 @@ from seatsim.cli.app import main
 from seatsim.provenance import reproduce as reproduction
 from seatsim.provenance.differences import _is_same, compare_outputs
 from seatsim.provenance.invocation import at_work, state_command
+from seatsim.provenance.manifest import describe_outputs
 from seatsim.provenance.reproduce import reproduce
 from seatsim.schema.errors import InputError, RunError
 
@@ -205,8 +206,8 @@ def test_outputs_outside_the_folder_are_not_read(project, name):
 
 def test_a_command_at_work_is_stated_as_it_can_be_typed_again():
     assert state_command("in Python") == "in Python"
-    with at_work("run", [("--set", "seed=1"), ("--out", "o")], ["a b.yaml", "c.yaml"]):
-        assert state_command("") == "seatsim run 'a b.yaml' c.yaml --set=seed=1"
+    with at_work("run", [("--set", "seed=1"), ("--out", "o")], ["a b.yaml", "/nowhere/c.yaml"]):
+        assert state_command("") == "seatsim run 'a b.yaml' /nowhere/c.yaml --set=seed=1"
 
 
 @pytest.mark.parametrize("place", [0, -1])
@@ -228,3 +229,12 @@ def test_a_command_that_fails_says_why_with_its_last_line(project, monkeypatch):
         monkeypatch.setattr(reproduction.subprocess, "run", lambda *_, failed=failed, **__: failed)
         with pytest.raises(RunError, match=f"comfort cannot be run again: {reason}$"):
             reproduce(project / "out" / "c")
+
+
+def test_measured_fields_are_stated_of_the_files_that_were_written(tmp_path):
+    (tmp_path / "fit.json").write_text("{}")
+    stated = describe_outputs(
+        {"fit.json": tmp_path / "fit.json"}, {"fit.json": ("seconds",), "league.csv": ("seconds",)}
+    )
+    assert stated["measured"] == {"fit.json": ["seconds"]}
+    assert [(each["path"], each["bytes"]) for each in stated["outputs"]] == [("fit.json", 2)]

@@ -29,6 +29,13 @@ def test_a_run_that_fails_after_it_was_made_keeps_its_seed(seat_file):
     assert (found.run, found.state, found.seed, found.metrics) == (2, "failed", 9, NONE)
 
 
+def test_a_run_that_ends_has_figures_and_its_channels_are_kept_where_asked(seat_file, tmp_path):
+    made = single(seat_file, {"seed": 9, "excitation.duration": 0.2})
+    alone, kept = (simulate_run(4, lambda: made, folder) for folder in (None, tmp_path))
+    assert alone == kept and (alone.run, alone.state, alone.reason, alone.seed) == (4, "done", "", 9)
+    assert [path.name for path in tmp_path.glob("*.parquet")] == ["run-0000004.parquet"]
+
+
 def test_figures_stand_in_the_order_of_the_metrics_and_a_missing_one_is_none():
     names = list(METRICS)
     given = {name: Metric(float(k), "m", "") for k, name in enumerate(names) if k != 1}
