@@ -188,11 +188,12 @@ def test_the_crate_describes_every_file_and_refers_to_what_is_there(made):
     assert named <= set(entities)
 
 
-def test_inputs_are_numbered_from_one_in_the_crate(made):
+def test_the_crate_numbers_inputs_from_one_and_states_the_command(made):
     crate = json.loads((made / "out" / "c" / "ro-crate-metadata.json").read_text())
     inputs = [each for each in crate["@graph"] if each["@id"].startswith("#input-")]
     assert [each["@id"] for each in inputs] == ["#input-1", "#input-2", "#input-3"]
     assert inputs[0]["name"] == "../../rec/recording.yaml"
+    assert [each["name"] for each in crate["@graph"] if each["@id"] == "#run"] == ["seatsim comfort --hours=6.0 rec"]
 
 
 @pytest.mark.parametrize("name", ["/etc/passwd", "../comfort.json", "a/../../b"])
