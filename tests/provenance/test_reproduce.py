@@ -13,6 +13,7 @@ from seatsim.provenance.differences import _is_same, compare_outputs
 from seatsim.provenance.invocation import at_work, state_command
 from seatsim.provenance.manifest import describe_outputs
 from seatsim.provenance.reproduce import reproduce
+from seatsim.provenance.versions import _list_sources
 from seatsim.schema.errors import InputError, RunError
 
 RECORDING = Path(__file__).resolve().parents[2] / "scenarios" / "data" / "recording"
@@ -95,6 +96,8 @@ def test_a_missing_input_is_an_error(project, never):
         ({"own_code": [{"path": "../../evil.py", "sha256": "0"}]}, "not run unless you name it"),
         ({"directory": "../nowhere"}, "is not there"),
         ({"outputs": 3}, "outputs is 3"),
+        ({"inputs": [{"path": "rec", "sha256": 3}]}, "is no path with its sha256"),
+        ({"outputs": [{"path": 3, "sha256": "0"}]}, "is no path with its sha256"),
         ({"arguments": [3]}, "an argument is no text"),
     ],
 )
@@ -154,6 +157,19 @@ def test_code_beside_a_strangers_manifest_is_not_run(project):
 )
 def test_measured_times_may_differ_and_nothing_else(name, old, new, same):
     assert _is_same(old, new, name, ["seconds"]) is same
+    assert not _is_same(old, new, name, [])
+
+
+def test_without_measured_times_bytes_count_and_not_what_they_say():
+    assert _is_same(b"\xff", b"\xff", "part.parquet", ["seconds"])
+    assert not _is_same(b"a\n1\n", b"a\r\n1\r\n", "table.csv", [])
+
+
+def test_the_sources_that_a_version_stands_for_are_the_modules_in_order(tmp_path):
+    for name in ("b.py", "a.py", "a.pyc", "notes.txt", "part/c.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).touch()
+    assert [Path(path).name for path in _list_sources(str(tmp_path))] == ["a.py", "b.py", "c.py"]
 
 
 def test_a_file_that_was_changed_is_said(project, monkeypatch):
