@@ -130,3 +130,14 @@ def test_bound_is_reached_where_the_whole_state_is_measured():
     assert design.gamma == pytest.approx(np.sqrt(0.5), rel=1e-6)
     np.testing.assert_allclose(design.gain, [[-1.0]], rtol=1e-3)
     assert design.lower_bound == pytest.approx(design.gamma, rel=1e-5)
+
+
+@pytest.mark.parametrize("order", [1, 4])
+def test_the_eigenvalue_is_raised_by_more_than_its_rounding(order):
+    # Here M is diagonal, with -2 for the states and -1 for w and z: eigenvalues without any rounding.
+    n, one, none = np.eye(order), np.eye(1), np.zeros((1, 1))
+    quiet = GeneralisedPlant(-n, 0 * n[:, :1], n[:, :1], 0 * n[:1], n[:1], none, none, none)
+    raised = largest_lmi_eigenvalue(quiet, none, n, 1.0) + 1.0
+    rounding = (order + 2) * np.finfo(float).eps * 2.0
+    assert 2.0 * rounding <= raised <= 20.0 * rounding
+    assert largest_lmi_eigenvalue(quiet, none, n * one, 1.0) < 0

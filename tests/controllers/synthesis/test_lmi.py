@@ -143,3 +143,12 @@ def test_what_has_no_single_step_gain(seat, random_plant):
     p = random_plant(0)
     twice = GeneralisedPlant(p.A, p.B1, p.B2, p.C1, p.C2[[0, 0]], p.D11, p.D12, 0 * p.D21)
     assert find_single_step_gain(twice, 1.0, later()) is None
+
+
+@pytest.mark.parametrize("size", [1 / 30, 1.0, 30.0])
+def test_the_single_step_gain_of_a_measured_state_is_near_the_best_in_any_unit_of_the_state(size):
+    # Where y is the state, the structured Lyapunov matrix is no restriction.
+    one, column = np.eye(1), np.zeros((2, 1))
+    plant = GeneralisedPlant(-one, size * one, size * one, [[1 / size], [0]], one / size, column, [[0], [1]], 0 * one)
+    gain = find_single_step_gain(plant, 1.0, later())
+    assert hinf_norm(plant.close(gain)).value == pytest.approx(np.sqrt(0.5), rel=0.1)

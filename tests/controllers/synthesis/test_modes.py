@@ -1,5 +1,7 @@
 """Modes that no gain moves, by the tests of Popov, Belevitch and Hautus."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -50,3 +52,28 @@ def test_the_mode_is_named_in_the_users_time():
     # Rates of 1e3 scale time; the sentence speaks of 1/s all the same.
     with pytest.raises(SynthesisError, match="mode 2500 1/s is not reached"):
         require_stabilisable(scale(plant([-1000, 2500, -3000], [[1], [0], [1]], SEEN)))
+
+
+def turn(some, seed=0):
+    """The same plant in other states, in which nothing is exact."""
+    T = np.linalg.qr(np.random.default_rng(seed).standard_normal(some.A.shape))[0]
+    return replace(some, A=T @ some.A @ T.T, B1=T @ some.B1, B2=T @ some.B2, C1=some.C1 @ T.T, C2=some.C2 @ T.T)
+
+
+def test_a_fast_mode_out_of_reach_is_found_in_any_states():
+    slow = [-1e-3, -2e-3, -3e-3]
+    with pytest.raises(SynthesisError, match=r"1/s is not reached"):
+        require_stabilisable(scale(turn(plant([*slow, 1e3], [[1], [1], [1], [0]], [[1, 1, 1, 1]]))))
+    with pytest.raises(SynthesisError, match=r"1/s is not seen"):
+        require_stabilisable(scale(turn(plant([*slow, 1e3], [[1], [1], [1], [1]], [[1, 1, 1, 0]]))))
+
+
+@pytest.mark.parametrize("rate", [1e-3, 1.0, 1e3])
+def test_a_double_fixed_mode_is_fixed_although_rounding_splits_it(rate):
+    # The first control reaches the last state of a chain of two, the second measurement alone sees its first; the
+    # structure uses the first measurement only.
+    chain = plant([-1e-3, 1e3, 1e3, -2e-3], [[0, 1], [0, 0], [1, 0], [0, 1]], [[1, 0, 0, 1], [0, 1, 0, 0]])
+    chain = replace(chain, A=rate * (chain.A + np.outer([0, 1, 0, 0], [0, 0, 1, 0])))
+    require_stabilisable(scale(turn(chain)))
+    with pytest.raises(SynthesisError, match=r"is moved by no gain of this structure"):
+        require_stabilisable(scale(turn(replace(chain, structure=np.array([[1, 0], [1, 0]])))))

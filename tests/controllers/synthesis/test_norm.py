@@ -2,8 +2,16 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import block_diag
 
-from controllers.synthesis.norm import grid_norm, hinf_norm, largest_singular_values
+from controllers.synthesis import norm as module
+from controllers.synthesis.norm import (
+    build_frequency_grid,
+    find_local_peaks,
+    grid_norm,
+    hinf_norm,
+    largest_singular_values,
+)
 from controllers.synthesis.plant import Loop
 
 METHODS = [hinf_norm, grid_norm]
@@ -75,3 +83,52 @@ def test_does_not_depend_on_the_unit_of_time(seed, rate):
     peak, moved = hinf_norm(some), hinf_norm(Loop(rate * some.A, rate * some.B, some.C, some.D))
     assert moved.value == pytest.approx(peak.value, rel=1e-9)
     assert moved.frequency == pytest.approx(rate * peak.frequency, rel=1e-4)
+
+
+def resonance(omega, damping, height):
+    """A lag of the second order whose gain has its peak, of this height, where omega and damping put it."""
+    gain = height * 2 * damping * np.sqrt(1 - damping**2)
+    return loop([[0, omega], [-omega, -2 * damping * omega]], [[0], [omega * gain]], [[1, 0]], 0)
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+@pytest.mark.parametrize("low", [0.5, 0.97, 0.99])
+def test_the_higher_of_two_resonances_counts_where_the_poles_tell_of_the_lower(low, order):
+    # At its pole the well damped one is 4 % below its peak, the sharp one nearly at it.
+    both = [resonance(1.0, 0.01, low), resonance(1000.0, 0.5, 1.0)]
+    joint = Loop(*(block_diag(*(both[k][part] for k in order)) for part in range(4)))
+    peak = hinf_norm(joint)
+    assert peak.value == pytest.approx(1.0, rel=1e-9)
+    assert peak.frequency == pytest.approx(1000.0 * np.sqrt(0.5), rel=1e-4)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_bisection_settles_in_a_few_rounds(seed, monkeypatch):
+    rounds, find = [], module._find_crossings
+    monkeypatch.setattr(module, "_find_crossings", lambda some, gamma: rounds.append(gamma) or find(some, gamma))
+    hinf_norm(random_loop(seed, n=6, nw=2, nz=2))
+    assert 1 <= len(rounds) <= 10
+
+
+@pytest.mark.parametrize("rate", [1e-5, 1.0, 1e5])
+def test_a_peak_that_is_barely_crossed_is_found_at_any_rate(rate):
+    # The crossings of such a level are a double eigenvalue, which rounding moves off the axis.
+    some = resonance(rate, 0.3, 1.0)
+    for level in (1 - 1e-13, 1 + 1e-13):
+        found = module._find_crossings(some, level)
+        assert np.abs(found / (rate * np.sqrt(1 - 2 * 0.3**2)) - 1).min() < 1e-3
+
+
+def test_rounding_makes_no_peaks_of_a_plateau():
+    assert len(find_local_peaks(loop(-2, 1, -4, 1), 0.5)) <= 10
+
+
+def test_the_grid_reaches_beyond_the_slowest_and_the_fastest_pole_and_is_dense_about_all():
+    poles = np.array([-1e-3, -1.0, -1e4])
+    omega = build_frequency_grid(Loop(np.diag(poles), np.ones((3, 1)), np.ones((1, 3)), np.zeros((1, 1))))
+    assert omega[0] == 0.0 and omega[-1] == np.inf and np.all(np.diff(omega) > 0)
+    assert omega[1] <= 1e-6 * (1 + 1e-9) and omega[-2] >= 1e7 * (1 - 1e-9)
+    assert np.max(omega[2:-1] / omega[1:-2]) < 1.1
+    sharp = np.array([[-0.01, 5.0], [-5.0, -0.01]])
+    omega = build_frequency_grid(Loop(sharp, np.ones((2, 1)), np.ones((1, 2)), np.zeros((1, 1))))
+    assert np.sum(np.abs(omega - 5.0) <= 0.01) >= 10

@@ -5,6 +5,7 @@ import time
 import numpy as np
 import pytest
 
+from controllers.synthesis import polish as module
 from controllers.synthesis.objective import NormObjective
 from controllers.synthesis.polish import _peaks, _renewed, _solve, _values, polish
 
@@ -88,3 +89,26 @@ def test_peaks_are_those_that_hold_the_norm_up(seat):
     # An old frequency stays while it is nearly as high and apart from the new ones.
     (kept,) = _renewed(problem, entries, [np.array([omega[-1], omega[-1] * 1.01, 1e4])], level)
     np.testing.assert_allclose(sorted(kept), sorted([*omega, omega[-1] * 1.01]), rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("kept", "wanted"),
+    [
+        (1.0, [0.3, 0.6, 1.2, 2.4, 4.8, 9.6, 10.0, 10.0]),  # what is promised is reached
+        (0.5, [0.3] * 8),
+        (0.0, [0.3 / 4**k for k in range(8)]),
+    ],
+)
+def test_the_trust_follows_what_the_last_step_kept_of_its_promise(monkeypatch, seat, kept, wanted):
+    problem, used = objective(seat(30.0)), []
+
+    def solve(problem, entries, frequencies, level, trust):
+        used.append(trust)
+        return entries * (1 - 0.1 * kept), 0.9 * level
+
+    monkeypatch.setattr(module, "_solve", solve)
+    monkeypatch.setattr(module, "_peaks", lambda *_: [])
+    monkeypatch.setattr(module, "_renewed", lambda *_: [])
+    monkeypatch.setattr(problem, "norm", lambda entries: float(entries[0]))
+    polish(problem, np.array([1.0, 1.0]), later())
+    np.testing.assert_allclose(used[:8], wanted)

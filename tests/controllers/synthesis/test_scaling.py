@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from controllers.synthesis.norm import frequency_response, hinf_norm
-from controllers.synthesis.scaling import scale
+from controllers.synthesis.scaling import _balancing_step, scale
 
 GAIN = np.array([[967.0, 2339.0]])
 
@@ -92,3 +92,19 @@ def test_the_coordinates_do_not_depend_on_the_units_of_disturbance_performance_a
     np.testing.assert_array_equal(faster.plant.A, made.plant.A)
     np.testing.assert_array_equal(faster.plant.C2, made.plant.C2)
     assert faster.rate == far * made.rate
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_every_step_of_balancing_is_the_same_in_other_units_of_disturbance_performance_and_time(random_plant, seed):
+    p, random, far = random_plant(seed), np.random.default_rng(seed), 2.0**20
+    grades, rate = np.exp2(random.integers(-20, 20, (2, 4))), 3.0
+    p = type(p)(p.A, p.B1 * grades[0][:, None], p.B2, p.C1 * grades[1], p.C2, p.D11, p.D12, p.D21)
+    p = type(p)(np.diag(grades[1]) @ p.A, p.B1, p.B2, p.C1, p.C2, p.D11, p.D12, p.D21)
+    made = _balancing_step(p, np.ones(4), rate)
+    for size in (far, 1 / far):
+        seen = type(p)(p.A, p.B1, p.B2, size * p.C1, p.C2, p.D11, p.D12, p.D21)
+        np.testing.assert_array_equal(_balancing_step(seen, np.ones(4), rate), made)
+        driven = type(p)(p.A, size * p.B1, p.B2, p.C1, p.C2, p.D11, p.D12, p.D21)
+        np.testing.assert_array_equal(_balancing_step(driven, np.ones(4), rate), made)
+        fast = type(p)(size * p.A, size * p.B1, size * p.B2, p.C1, p.C2, p.D11, p.D12, p.D21)
+        np.testing.assert_array_equal(_balancing_step(fast, np.ones(4), size * rate), made)

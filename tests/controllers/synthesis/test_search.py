@@ -6,9 +6,11 @@ import time
 import numpy as np
 import pytest
 
+from controllers.synthesis import search as module
+from controllers.synthesis.descent import Descent, StabilisingGain
 from controllers.synthesis.norm import hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
-from controllers.synthesis.search import TimeBudget, search
+from controllers.synthesis.search import TimeBudget, _lowest, search
 from seatsim.schema.errors import SynthesisError
 
 ONE, COLUMN = np.eye(1), np.zeros((2, 1))
@@ -95,3 +97,33 @@ def test_the_abscissa_of_a_failure_is_in_the_users_time(rate):
         ask([plant], 100.0, 0.5)
     reached = float(re.search(r"reached is (\S+) 1/s", str(error.value))[1])
     assert rate * (1.0 - 1e-3) <= reached < 3.0 * rate
+
+
+def test_of_plants_that_are_equally_bad_one_is_enough():
+    lines = []
+    ask([state_feedback(-1.2), state_feedback(-1.0), state_feedback(-1.0)], lines=lines)
+    assert not any("0, 2, 1 of 3" in line for line in lines)
+
+
+def test_a_search_of_all_plants_has_the_time_that_is_left_and_one_of_some_a_part(monkeypatch):
+    clocks, explore = [], module._explore
+
+    def note(objective, starts, clock):
+        clocks.append((len(objective.plants), clock.begin + clock.budget))
+        return explore(objective, starts, clock)
+
+    monkeypatch.setattr(module, "_explore", note)
+    begin = time.monotonic()
+    ask([state_feedback(-1.0), state_feedback(-1.0, 6.0), state_feedback(-1.2)])
+    ends = {count: end - begin for count, end in clocks}
+    assert 3.0 < ends[2] < 6.0 and 9.0 < ends[3] < 11.0
+
+
+def test_further_starts_go_on_while_they_gain(monkeypatch):
+    steps = iter([1.0, 0.9, 0.8, 0.79999, 0.1])
+    monkeypatch.setattr(module, "refine", lambda *_: StabilisingGain(next(steps), np.zeros(1)))
+    monkeypatch.setattr(module, "improve", lambda objective, best, seed, deadline: best)
+    monkeypatch.setattr(module, "explore", lambda *_: Descent([], 0.0, 0))
+    two = Descent([StabilisingGain(1.0, np.zeros(1)), StabilisingGain(2.0, np.zeros(1))], -1.0, 2)
+    best = _lowest(None, two, iter(()), 0, TimeBudget(time.monotonic(), 30.0), lambda text: None)
+    assert best.gamma == 0.79999

@@ -57,3 +57,12 @@ def test_the_larger_of_two_norms_counts(monkeypatch):
         for factor, verdict in ((1 - 1e-7, True), (1 - 1e-5, False)):
             monkeypatch.setattr(module, "grid_norm", lambda loop, value=factor * norm.value: Peak(value, 1.0))
             assert compute_verified_norm(loop) == (norm, verdict)
+
+
+@pytest.mark.parametrize(("excess", "searches"), [(-1e-8, 1), (0.0, 1), (1e-13, 1), (1e-8, 2)])
+def test_a_grid_that_is_higher_by_rounding_alone_sends_no_second_search(monkeypatch, excess, searches):
+    norm, asked = Peak(3.0, 1.0), []
+    monkeypatch.setattr(module, "hinf_norm", lambda loop, guesses=(): asked.append(guesses) or norm)
+    monkeypatch.setattr(module, "grid_norm", lambda loop: Peak(3.0 * (1.0 + excess), 1.0))
+    assert compute_verified_norm(LAGS.close(NONE)) == (norm, True)
+    assert len(asked) == searches
