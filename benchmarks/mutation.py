@@ -28,7 +28,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-COPIED = ("seatsim", "controllers", "tests", "benchmarks", "pyproject.toml")
+COPIED = ("seatsim", "controllers", "scenarios", "tests", "benchmarks", "pyproject.toml")
 LONGEST, MANY = 300, 10
 """Seconds that the tests may take; a mutant with which they take so many times as long hangs, and counts as found."""
 OPERATORS: dict[type, type] = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult}

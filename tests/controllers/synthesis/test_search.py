@@ -116,7 +116,7 @@ def test_a_search_of_all_plants_has_the_time_that_is_left_and_one_of_some_a_part
     begin = time.monotonic()
     ask([state_feedback(-1.0), state_feedback(-1.0, 6.0), state_feedback(-1.2)])
     ends = {count: end - begin for count, end in clocks}
-    assert 3.0 < ends[2] < 6.0 and 9.0 < ends[3] < 11.0
+    assert 0.3 < ends[2] / ends[3] < 0.6
 
 
 def test_further_starts_go_on_while_they_gain(monkeypatch):
