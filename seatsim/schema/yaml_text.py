@@ -21,6 +21,7 @@ DEEPEST = 32
 MOST_VALUES = 300_000
 LONGEST_NUMBER = 40
 """Digits of a whole number: twice what any seed has."""
+_TOO_DEEP = f"lists and mappings nest more than {DEEPEST} deep"
 
 Scalar: TypeAlias = str | int | float | bool | None
 KeyPath = tuple[str | int, ...]
@@ -136,7 +137,7 @@ class _Composer:
             _check_signs(event.value, line)
             node = _Node(line, _read_scalar(event.value, line) if event.implicit[0] else event.value)
         elif depth >= DEEPEST:
-            raise YamlError(f"lists and mappings nest more than {DEEPEST} deep", line)
+            raise YamlError(_TOO_DEEP, line)
         elif isinstance(event, yaml.SequenceStartEvent):
             node = _Node(line, list(self._entries(depth)))
         else:
@@ -181,8 +182,12 @@ def _events(text: str) -> Iterator[yaml.Event]:
         yield from yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
+        line = mark.line + 1 if mark else 1
         problem = (error.problem or "not YAML").split("\n")[0]
-        raise YamlError(f"{problem}; write each key once, as 'key: value'", mark.line + 1 if mark else 1) from error
+        # The library reads ahead, so at brackets by the thousand its own limit stands before the one stated here.
+        if "maximum nesting depth" in problem:
+            raise YamlError(_TOO_DEEP, line) from error
+        raise YamlError(f"{problem}; write each key once, as 'key: value'", line) from error
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
         raise YamlError(f"character {error.character!r} is not permitted in YAML", line) from error
