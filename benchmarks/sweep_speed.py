@@ -33,8 +33,9 @@ from loop_alone import loop_of
 from numpy.typing import NDArray
 
 from seatsim.cli.outputs.sweeps import report_sweep
-from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY, simulate_one
+from seatsim.sweeps.engines.base import simulate_one
 from seatsim.sweeps.engines.local import LocalEngine
+from seatsim.sweeps.engines.memory import keep_freed_memory
 from seatsim.sweeps.execute import execute, prepare
 from seatsim.sweeps.plan import Plan
 
@@ -118,9 +119,7 @@ def draw_growth(runs: int, file: Path) -> None:
 def show(what: str, runs: int, folder: str | None = None) -> list[Cost]:
     """Measure in a process of its own, print a line for each part, and return their costs."""
     command = [sys.executable, __file__, str(runs), "--measure", what, *(["--folder", folder] if folder else [])]
-    # What the runs alone would cost without this is another matter than what a sweep adds.
-    environment = os.environ | KEEP_FREED_MEMORY
-    done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, env=environment)
+    done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
     costs = {name: Cost(**cost) for name, cost in json.loads(done.stdout).items()}
     for name, cost in costs.items():
         times = f"{1e3 * cost.processors / cost.runs:9.3f} ms{1e3 * cost.clock / cost.runs:9.3f} ms"
@@ -130,6 +129,8 @@ def show(what: str, runs: int, folder: str | None = None) -> list[Cost]:
 
 def measure(what: str, runs: int, folder: Path | None) -> dict[str, Cost]:
     """Measure parts in this process and those that it starts; a folder keeps the sweep for its report."""
+    # What the runs alone would cost without this is another matter than what a sweep adds.
+    keep_freed_memory()
     with tempfile.TemporaryDirectory() as name:
         file, out = Path(name) / "sweep.yaml", (folder or Path(name)) / "out"
         file.write_text(SWEEP.format(runs=-(-runs // VARIANTS)), encoding="utf-8")

@@ -9,10 +9,6 @@ from typing import NamedTuple, Protocol
 from seatsim.sweeps.outcome import Outcome, simulate_run
 from seatsim.sweeps.plan import Plan
 
-KEEP_FREED_MEMORY = {"MALLOC_TRIM_THRESHOLD_": str(1 << 28), "MALLOC_MMAP_THRESHOLD_": str(1 << 25)}
-"""Environment of a process that simulates: bytes that glibc keeps of what a run has freed, and the largest array that
-it keeps. Otherwise it returns arrays to the system, which clears their pages again: a third of a run's time."""
-
 
 class Work(NamedTuple):
     """The runs of a sweep that are to be simulated: tasks of run numbers, each from one part of the sweep.

@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from seatsim.provenance.versions import list_versions
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.modules import started_elsewhere, use_all, used_files
-from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY, Work, simulate_one
+from seatsim.sweeps.engines.base import Work, simulate_one
+from seatsim.sweeps.engines.memory import keep_freed_memory
 from seatsim.sweeps.identity import LIBRARIES, list_differences
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Selection
@@ -81,14 +82,11 @@ class ClusterEngine(NamedTuple):
 
 @contextmanager
 def _embed(jobs: int) -> Iterator[Client]:
-    import dask
     from distributed import Client, LocalCluster
 
-    environment = {f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in KEEP_FREED_MEMORY.items()}
     options = {"dashboard_address": ":0", "silence_logs": logging.CRITICAL}
     with (
         started_elsewhere(),
-        dask.config.set(environment),
         LocalCluster(n_workers=jobs, threads_per_worker=1, **options) as cluster,
         Client(cluster) as client,
     ):
@@ -172,4 +170,5 @@ def _simulate(task: _Task) -> list[Outcome]:
             " go on with --resume"
         )
     selection, histories = task.selection, task.histories
+    keep_freed_memory()
     return [simulate_one(selection.plan, inner, number, histories) for number, inner in selection.runs]

@@ -5,7 +5,6 @@ Most of a short run is Python between compiled calls. Threads of one process tak
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import threading
@@ -20,7 +19,7 @@ from typing import NamedTuple, cast
 
 from seatsim.schema.errors import RunError
 from seatsim.schema.modules import used_files
-from seatsim.sweeps.engines.base import KEEP_FREED_MEMORY, Work
+from seatsim.sweeps.engines.base import Work
 from seatsim.sweeps.engines.worker import simulate_batches
 from seatsim.sweeps.outcome import Outcome
 
@@ -105,7 +104,6 @@ class _Crew:
             process = subprocess.Popen(
                 [sys.executable, "-P", "-m", "seatsim.sweeps.engines.worker", str(theirs.fileno())],
                 stdin=subprocess.PIPE, pass_fds=[theirs.fileno()], process_group=0,
-                env=KEEP_FREED_MEMORY | os.environ,
             )  # fmt: skip
         self._workers[ours] = _Worker(ours, process, ready=False)
         ours.send(used_files())

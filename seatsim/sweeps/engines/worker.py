@@ -16,6 +16,7 @@ from threadpoolctl import threadpool_limits
 
 from seatsim.schema.modules import use_all
 from seatsim.sweeps.engines.base import simulate_one
+from seatsim.sweeps.engines.memory import keep_freed_memory
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Plan
 
@@ -29,6 +30,7 @@ def simulate_batches(connection: Connection, plan: Plan, histories: Path | None)
     Raises:
         EOFError: the other end was closed. OSError: the same, while outcomes were sent.
     """
+    keep_freed_memory()
     # Libraries of linear algebra get one thread: the other processors simulate other runs.
     with threadpool_limits(1):
         while True:
