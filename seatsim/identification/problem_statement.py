@@ -23,6 +23,8 @@ LEAST_SEARCH_ROWS = 300
 """Rows of a record that it takes at least."""
 LEAST_WARMING = 5.0
 """K that the temperature must vary by for its influence to be fitted."""
+LEAST_CURRENT = 1e-3
+"""A; records that hold less hold none: a law stretched to the rounding of a current has no meaning."""
 OFF_CENTRE = 0.25
 """Middle of all motion, over half its range, from which on it counts as the origin of the displacement."""
 
@@ -94,7 +96,8 @@ def _measure_scales(records: Sequence[BenchRecord]) -> Scales:
     speed = max(float(np.std(record.velocity)) for record in records)
     if min(force, stroke, speed) == 0.0:
         raise InputError("the records hold no motion or no force; identify a damper from records in which it moves")
-    return Scales(force, stroke, speed, max(float(np.max(record.current)) for record in records))
+    current = max(float(np.max(record.current)) for record in records)
+    return Scales(force, stroke, speed, current if current >= LEAST_CURRENT else 0.0)
 
 
 def _count_levels(records: Sequence[BenchRecord]) -> int | None:

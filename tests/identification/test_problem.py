@@ -158,3 +158,11 @@ def test_laws_are_counted_up_to_the_largest_current_of_the_data():
     problem, _ = stated([made(current=2.0)])
     assert problem.coordinates.end == 2.0 and not problem.fits_coil
     assert problem.coordinates.start == Bingham()._replace(v_ref=BINGHAM.v_ref), "numbers start from their defaults"
+
+
+@pytest.mark.parametrize("model", ["bingham", "maxwell_nonlinear_slider"])
+def test_a_current_that_is_but_rounding_counts_as_none(model):
+    problem, _ = state_problem([made(current=3e-7)], find_model(model), 0.0, Settings())
+    low, high = problem.bounds
+    assert np.all(low < high)
+    assert problem.coordinates.end == 1.0 and not any("_b" in label for label in problem.labels)
