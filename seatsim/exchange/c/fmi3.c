@@ -2,11 +2,6 @@
 #include "model.h"
 #include "instance.h"
 
-#if defined(__GNUC__)
-/* The standard says which parameters its functions have; a unit does not use all of them. */
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#endif
-
 #include <stdbool.h>
 
 #ifndef FMI3_FUNCTION_PREFIX

@@ -188,3 +188,8 @@ static int read_state(Instance *i, const void *bytes, size_t size, void **state)
     }
     return good;
 }
+
+#if defined(__GNUC__)
+/* For what follows, the interface: the standard says which parameters its functions have; not all are used. */
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
