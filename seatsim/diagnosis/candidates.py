@@ -68,6 +68,10 @@ class Candidate(NamedTuple):
         """The key that is equal for candidates that differ only in where their fit starts."""
         return self.effect, self.free, tuple(self.fixed.items())
 
+    def replaces(self, other: Candidate) -> bool:
+        """Whether this is the same effect in any form, on the same channel if it acts on one."""
+        return self.effect == other.effect and self.fixed.get("channel") == other.fixed.get("channel")
+
     @property
     def block(self) -> str:
         """Block of the rig that the effect lives in."""
@@ -86,7 +90,8 @@ def list_candidates(problem: DiagnosisProblem, without: Sequence[str] = ()) -> l
             for place in _places(cls, problem):
                 candidate = _candidate(name, cls, form, place, settings.shape_reach)
                 own = next((each for each in present if same_place(each, candidate.record(candidate.start))), None)
-                candidate = _suit_spring(candidate, problem) if own is None else _change(candidate, own)
+                suited = _suit_log(_suit_spring(candidate, problem), problem)
+                candidate = suited if own is None else _change(candidate, own)
                 found += _starts(candidate, settings.limit_starts, _share_reached(candidate, problem))
     return found
 
@@ -122,6 +127,13 @@ def _suit_spring(candidate: Candidate, problem: DiagnosisProblem) -> Candidate:
         for values in (candidate.start, candidate.low, candidate.high)
     )
     return candidate._replace(start=start, low=low, high=high)
+
+
+def _suit_log(candidate: Candidate, problem: DiagnosisProblem) -> Candidate:
+    """Return the candidate with commands that, where it holds them, are held as long as those of the recording."""
+    if not candidate.fixed.get("hold"):
+        return candidate
+    return candidate._replace(fixed={**candidate.fixed, "hold": problem.command_interval})
 
 
 def _share_reached(candidate: Candidate, problem: DiagnosisProblem) -> float:

@@ -43,7 +43,9 @@ def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Seq
         probabilities = dict.fromkeys(effects, settings.effect_if_none)
         return Decision("none", selection.calibrated, [], probabilities, sure, settings.unknown_if_none)
     chosen = _choose_set(problem, selection)
-    groups = group_equivalent(chosen, _list_equivalent(settings, selection, chosen))
+    # Of a gap that hardly shows in the excess of all frequencies, sets differ by as little.
+    scale = min(1.0, before / problem.settings.selection.nothing_left)
+    groups = group_equivalent(chosen, _list_equivalent(settings, selection, chosen, scale))
     share = chosen.excess / before
     explained = _explains(problem, selection.calibrated, chosen, groups)
     unknown = _logistic(
@@ -53,7 +55,7 @@ def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Seq
     unknown = min(max(unknown, least), most) if explained else max(unknown, settings.unknown_if_unknown)
     groups = groups if explained else []
     verdict: Verdict = ("ambiguous" if groups else "known") if explained else "unknown"
-    probabilities = weigh_effects(_weigh_compared(settings, selection, chosen), effects, settings.effect_bounds)
+    probabilities = weigh_effects(_weigh_compared(settings, selection, chosen, scale), effects, settings.effect_bounds)
     return Decision(verdict, chosen, groups, probabilities, settings.none_if_gap, unknown)
 
 
@@ -127,11 +129,22 @@ def doubt_single(settings: DecisionSettings, decision: Decision, causes: Sequenc
     return dataclasses.replace(decision, verdict=verdict, groups=groups)
 
 
+def shows_effect(problem: DiagnosisProblem, selection: Selection) -> bool:
+    """Whether a single material effect lowers the cost by more than chance does, however little the noise leaves.
+
+    An effect at a few frequencies, such as a preload that shifts the travel, hardly changes the excess of all.
+    """
+    settings, before = problem.settings.decision, selection.calibrated
+    singles = selection.sets[1][: settings.sets_compared] if len(selection.sets) > 1 else ()
+    needed = settings.least_lowered * before.rows
+    return any(before.cost - each.cost > needed and is_material(problem, each) for each in singles)
+
+
 def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
     """Whether the calibrated rig leaves no gap, or no single effect that reduces the gap is material."""
     calibrated = selection.calibrated
     if calibrated.excess < problem.settings.selection.nothing_left:
-        return True
+        return calibrated.excess == 0.0 or not shows_effect(problem, selection)
     if _largest_remainder(problem, calibrated) >= problem.settings.decision.material:
         return False
     # Where every candidate is withheld there is no set of one effect.
@@ -191,15 +204,17 @@ def _largest_remainder(problem: DiagnosisProblem, evaluation: Evaluation) -> flo
     return float(measure_remainders(problem, evaluation).max())
 
 
-def _list_equivalent(settings: DecisionSettings, selection: Selection, chosen: Evaluation) -> list[Evaluation]:
+def _list_equivalent(
+    settings: DecisionSettings, selection: Selection, chosen: Evaluation, scale: float
+) -> list[Evaluation]:
     """Return the sets of as many effects that fit as well, the chosen one among them."""
-    limit = settings.equivalent * chosen.excess + settings.equivalent_floor
+    limit = settings.equivalent * chosen.excess + settings.equivalent_floor * scale
     others = selection.sets[len(chosen.parameters.terms)]
     return [evaluation for evaluation in others if evaluation.excess <= limit]
 
 
 def _weigh_compared(
-    settings: DecisionSettings, selection: Selection, chosen: Evaluation
+    settings: DecisionSettings, selection: Selection, chosen: Evaluation, scale: float
 ) -> list[tuple[frozenset[str], float]]:
     """Return the chosen set and all that are no larger and leave no less, by names, with the logarithm of each weight.
 
@@ -211,7 +226,7 @@ def _weigh_compared(
     others = [
         each for sets in selection.sets[: size + 1] for each in sets if each.excess >= chosen.excess or each is chosen
     ]
-    left = {each.parameters.names: each.excess + settings.excess_margin for each in others}
+    left = {each.parameters.names: each.excess + settings.excess_margin * scale for each in others}
     return [(names, evidence.weigh(names, square)) for names, square in left.items()]
 
 

@@ -28,6 +28,7 @@ from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import Record
+from seatsim.simulation.bench_response import FINER
 from seatsim.simulation.inputs import RigInputs
 from seatsim.simulation.respond import respond
 
@@ -75,6 +76,11 @@ class DiagnosisProblem:
     def skip(self) -> int:
         """Rows at the start of a run that are not compared."""
         return round(LEFT_OUT * self.rate)
+
+    @property
+    def command_interval(self) -> float:
+        """Interval in s at which a held command may change: a row; on a bench the part by which a log is shifted."""
+        return 1.0 / self.rate / (FINER if self.bench else 1)
 
     @property
     def parts(self) -> int:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import NamedTuple
+
+import numpy as np
 
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.deadline import OutOfTimeError
@@ -98,6 +100,9 @@ def select_effects(
             sets.append(larger)
             if size > 1:
                 larger[:] = _best_of_each_set([*larger, *_swap_effects(objective, larger[0], sets[1], nuisances)])
+            if larger[0].excess > settings.nothing_left:
+                again = _restart_effects(objective, larger[0], sensitivities.candidates, nuisances)
+                larger[:] = _best_of_each_set([*larger, *again])
             # Sets are ranked with the sensitivities of a smaller set; the best is then fitted to the end with its own.
             nuisances = objective.linearise_nuisances(larger[0])
             linearisations.append(nuisances)
@@ -172,6 +177,26 @@ def _swap_effects(
         fit(objective, evaluation, nuisances) if evaluation.cost < settings.swap_within * best.cost else evaluation
         for evaluation in begun
     ]
+
+
+def _restart_effects(
+    objective: Objective, best: Evaluation, candidates: Sequence[Candidate], nuisances: Linearisation
+) -> list[Evaluation]:
+    """Return fits of the best set with one effect begun again, from all starts of all its forms.
+
+    A start that falls steeply only after some steps, or only beside the other effects, was left behind before.
+    """
+    finished = []
+    for term in best.parameters.terms:
+        kept = best.parameters.remove(term.effect)
+        others = [each for each in candidates if each.replaces(term)]
+        first: dict[Hashable, Evaluation] = {}
+        for start in objective.evaluate([kept.add(each, np.array(each.start)) for each in others]):
+            begun = fit(objective, start, nuisances, objective.settings.selection.begun_steps)
+            structure = begun.parameters.terms[-1].structure
+            first[structure] = min(first.get(structure, begun), begun, key=lambda each: each.cost)
+        finished += [fit(objective, begun, nuisances) for begun in first.values()]
+    return finished
 
 
 def _eliminate_backwards(objective: Objective, best: Evaluation, nuisances: Linearisation) -> list[Evaluation]:

@@ -18,6 +18,7 @@ from seatsim.diagnosis.decide import (
     decide_beside_unknown,
     decide_verdict,
     explain_after_all,
+    shows_effect,
 )
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.input_noise import carry_force
@@ -95,8 +96,7 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
     if forces is not None:
         objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
     first = _search(task, objective)
-    if first.decision.verdict == "none":
-        first = _in_time(_search_at_lower_noise, task, first) or first
+    first = _in_time(_search_at_lower_noise, task, first) or first
     if first.decision.verdict == "unknown":
         first = _in_time(_search_beyond_broadband, task, first) or first
     weights = first.objective.weights
@@ -138,8 +138,7 @@ def _search_at_lower_noise(task: SearchTask, first: Solution) -> Solution:
     """
     selection, old = first.selection, first.objective
     least = min(each.cost / each.rows for sets in selection.sets for each in sets)
-    calibrated = selection.calibrated
-    if least >= 1.0 or calibrated.cost < least * calibrated.rows * (1.0 + old.settings.selection.nothing_left):
+    if first.decision.verdict != "none" or least >= 1.0 or not shows_effect(old.problem, selection):
         return first
     task.progress("lowering the noise to what is left")
     new = Objective(old.problem, old.weights.scale(least))
@@ -252,7 +251,7 @@ def _search_beside_stochastic(
     task.progress(f"counting {effect} as noise")
     noisy = Objective(problem, add_to_noise(problem, weights, effect, found))
     others = task._replace(candidates=[each for each in task.candidates if each.effect != effect])
-    second = _search(others, noisy)
+    second = _search_at_lower_noise(others, _search(others, noisy))
     if second.decision.verdict == "unknown":
         return first
     localised = _localise(others, second)

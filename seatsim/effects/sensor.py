@@ -106,22 +106,21 @@ class SensorLag(NamedTuple):
     source="two clocks",
     forms=(
         *({"shift": shift} for shift in (*LATE[1::2], *EARLY[1::2])),
-        *(Form({"shift": shift}, {"hold": 1.0}) for shift in (*LATE, *EARLY)),
-        *(Form({"shift": shift, "drift": 1e-5}, {"hold": 1.0}) for shift in (*LATE[1::2], *EARLY[1::2])),
-        Form({"shift": 0.003, "drift": -5e-5}, {"hold": 1.0}), Form({"shift": -0.003, "drift": 5e-5}, {"hold": 1.0}),
+        *(Form({"shift": shift}, {"hold": 0.002}) for shift in (*LATE, *EARLY)),
+        *(Form({"shift": shift, "drift": 1e-5}, {"hold": 0.002}) for shift in (*LATE[1::2], *EARLY[1::2])),
+        *(Form({"shift": shift, "drift": -shift / 60.0}, {"hold": 0.002}) for shift in (0.003, -0.003)),
     ),
 )  # fmt: skip
 class ClockSkew(NamedTuple):
     """The controller's log is late by `shift + drift t` against the other channels: it says at t what was at t - shift.
 
     The coil current, a continuous signal, is delayed by exactly that. So is the command where `hold` is 0. A command
-    that the controller changes at the log's own rate, `hold` 1, is delayed by whole steps only, those of the simulation
-    on a seat, sixteenths of a row on a bench.
+    that the controller changes every `hold` seconds, at rows of the log, is delayed by whole multiples of `hold`.
     """
 
     shift: Annotated[float, param("s", "delay of the log; negative: it runs ahead", low=-0.5, high=0.5)]
     drift: Annotated[float, param("-", "growth of the delay per second", low=-1e-3, high=1e-3)] = 0.0
-    hold: Annotated[float, param("-", "1: commands change at the log's rows, 0: at any time", low=0, high=1)] = 0.0
+    hold: Annotated[float, param("s", "interval of the commands; 0: any time", low=0, high=0.1)] = 0.0
 
     def reading(self, channel: str, step: float, values: Array) -> Array:
         """Return the logged values, shape (N,)."""
@@ -137,7 +136,8 @@ class ClockSkew(NamedTuple):
         rows = np.arange(len(values)) * step
         late = self.shift + self.drift * rows
         if channel in COMMANDS and self.hold > 0.0:
-            index = np.arange(len(values)) + np.ceil(late / step - ROUNDING).astype(int)
+            late = self.hold * np.ceil(late / self.hold - ROUNDING)
+            index = np.arange(len(values)) + np.rint(late / step).astype(int)
             held: Array = values[np.clip(index, 0, len(values) - 1)]
             return held
         return np.interp(rows + late, rows, values)

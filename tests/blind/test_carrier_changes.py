@@ -21,7 +21,7 @@ from .carriers import RATE, bench_carrier, seat_carrier
 
 SIZE = 0.1
 LEFT = 0.4
-FIXED = {"sensor.clock_skew": {"hold": 1.0}}
+FIXED = {"sensor.clock_skew": {"hold": 1.0 / RATE}}
 
 
 def put_in(carrier: Carrier, effect: str, form: str = "", channel: str = "", seed: int = 0) -> DrawnCase:

@@ -48,9 +48,9 @@ def test_regressors_at_rest_predict_nothing():
 
 def test_a_zero_wanders_slowly():
     slow, fast = coloured(12000, 0.02, 0.2, 2), coloured(12000, 2.0, 20.0, 3)
-    assert is_bias_drift(SETTINGS, left([slow, slow + 0.1 * fast], "sensor"), RATE)
-    assert not is_bias_drift(SETTINGS, left([fast], "sensor"), RATE)
-    assert not is_bias_drift(SETTINGS, left([slow]), RATE)
+    assert is_bias_drift(SETTINGS, left([slow, slow + 0.1 * fast], "sensor"), RATE, 0.0)
+    assert not is_bias_drift(SETTINGS, left([fast], "sensor"), RATE, 0.0)
+    assert not is_bias_drift(SETTINGS, left([slow]), RATE, 0.0)
 
 
 @pytest.fixture(scope="module")

@@ -115,7 +115,7 @@ def test_a_skewed_log_says_late_what_was(shift):
 @pytest.mark.parametrize("channel", ["current_command", "command_voltage"])
 def test_a_held_command_moves_by_whole_rows(channel):
     command = np.repeat([0.0, 1.0, 0.3, 0.8], 50)
-    skew = record("sensor.clock_skew", shift=0.003, hold=1.0)
+    skew = record("sensor.clock_skew", shift=0.003, hold=STEP)
     progress = skew.truth(channel, STEP, command)
     assert progress[:-3] == pytest.approx(command[3:])
     assert set(progress) <= set(command)

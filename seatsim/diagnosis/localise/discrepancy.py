@@ -54,13 +54,16 @@ def is_from_outside(settings: LocalisationSettings, found: Discrepancy) -> bool:
     return found.shares["everything"] <= settings.predicted and max(strengths) <= settings.steady * min(strengths)
 
 
-def is_bias_drift(settings: LocalisationSettings, found: Discrepancy, rate: float) -> bool:
-    """Whether the discrepancy is the bias drift of a sensor; `rate` is the sample rate of the signals in Hz."""
+def is_bias_drift(settings: LocalisationSettings, found: Discrepancy, rate: float, noise: float) -> bool:
+    """Whether the discrepancy is the bias drift of a sensor: it is slow, but for noise.
+
+    `rate` is the sample rate of the signals in Hz, `noise` the RMS of the sensor's own noise in their unit.
+    """
     slow = power = 0.0
     for signal in found.signals.values():
         spectrum = np.abs(np.fft.rfft(signal)) ** 2
         slow += float(np.sum(spectrum[: int(settings.slow_frequency * len(signal) / rate) + 1]))
-        power += float(np.sum(spectrum))
+        power += float(np.sum(spectrum)) - noise**2 * len(signal) * len(spectrum)
     return found.block == "sensor" and slow > settings.slow_share * power
 
 

@@ -54,7 +54,9 @@ def name_stochastic_effect(problem: DiagnosisProblem, found: Discrepancy) -> str
     merged = () if "damper_force" in problem.channels else ("damper",)
     if found.block in ("suspension", *merged) and is_from_outside(settings, found):
         return FORCE_FROM_OUTSIDE
-    return BIAS_DRIFT if is_bias_drift(settings, found, problem.rate) else ""
+    sensor = problem.recording.channels.get(found.channel)
+    noise = sensor.noise_rms if sensor else 0.0
+    return BIAS_DRIFT if is_bias_drift(settings, found, problem.rate, noise) else ""
 
 
 def add_to_noise(problem: DiagnosisProblem, weights: NoiseWeights, effect: str, found: Discrepancy) -> NoiseWeights:

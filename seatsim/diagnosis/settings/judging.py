@@ -101,6 +101,15 @@ class DecisionSettings(NamedTuple):
             SIMULATED_RIGS,
         ),
     ] = 2
+    least_lowered: Annotated[
+        float,
+        Threshold(
+            "-",
+            "cost by which a material effect lowers it, per number compared, for a gap within the expected noise",
+            "lower: false alarms; higher: effects at a few frequencies stay hidden in the noise of all",
+            "without an effect at most 0.035 on simulated rigs, and then never material",
+        ),
+    ] = 0.02
     none_width: Annotated[
         float,
         Threshold("-", "excess over which the probability of `none` falls from sure to unsure", "-", SIMULATED_RIGS),

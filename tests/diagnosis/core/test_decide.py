@@ -74,11 +74,22 @@ def share_of(name, *sets):
 
 @pytest.mark.parametrize("excess, sure", [(0.0, logistic(5.0)), (0.1, logistic(3.0)), (0.149, logistic(2.02))])
 def test_where_noise_explains_all_there_is_no_gap(rig, excess, sure):
-    found = decide(rig, excess, [(both(), 0.0)])
+    found = decide(rig, excess, [({"a.one": 1.0}, max(excess - 0.019, 0.0))])
     assert (found.verdict, found.groups, found.chosen.parameters.terms) == ("none", [], ())
     assert found.none == pytest.approx(sure)
     assert found.unknown == 0.02
     assert found.probabilities == dict.fromkeys(EFFECTS, 0.004) and list(found.probabilities) == EFFECTS
+
+
+def test_a_material_effect_at_few_frequencies_is_a_gap_however_little_the_noise_leaves(rig, faint):
+    found = decide(rig, 0.03, [({"a.one": 1.0}, 0.002), ({"b.two": 1.0}, 0.009)])
+    assert (found.verdict, found.groups, set(found.chosen.parameters.names)) == ("known", [], {"a.one"})
+    assert decide(faint, 0.03, [({"c.three": 1.0}, 0.0)]).verdict == "none"
+
+
+def test_sets_of_a_small_gap_are_equivalent_only_where_they_leave_nearly_the_same(rig):
+    found = decide(rig, 0.03, [({"a.one": 1.0}, 0.002), ({"b.two": 1.0}, 0.006)])
+    assert found.groups == [["a.one", "b.two"]]
 
 
 def test_a_little_more_than_noise_is_a_gap(rig):

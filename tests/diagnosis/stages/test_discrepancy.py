@@ -67,12 +67,12 @@ def tone(frequency, rms=1.0, samples=2000):
     ],
 )  # fmt: skip
 def test_what_is_slow_and_a_sensors_is_the_drift_of_its_zero(signals, block, drifts):
-    assert is_bias_drift(SETTINGS, found(signals, block=block), RATE) is drifts
+    assert is_bias_drift(SETTINGS, found(signals, block=block), RATE, 0.0) is drifts
 
 
 def test_what_is_slow_at_one_rate_is_fast_at_another():
-    assert is_bias_drift(SETTINGS, found([tone(0.4)], block="sensor"), RATE)
-    assert not is_bias_drift(SETTINGS, found([tone(0.4)], block="sensor"), 2.0 * RATE)
+    assert is_bias_drift(SETTINGS, found([tone(0.4)], block="sensor"), RATE, 0.0)
+    assert not is_bias_drift(SETTINGS, found([tone(0.4)], block="sensor"), 2.0 * RATE, 0.0)
 
 
 def test_words_name_what_predicts_it_best_and_the_next_two():
