@@ -11,6 +11,8 @@ import math
 from collections.abc import Sequence
 from typing import Literal
 
+import numpy as np
+
 from seatsim.diagnosis.movement import group_equivalent, is_material, measure_remainders, measure_shares_left
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.probability import Evidence, weigh_effects
@@ -164,8 +166,11 @@ def _explains(
     is_short = all(len(group) <= settings.equivalent_members for group in groups)
     if _largest_remainder(problem, chosen) < settings.material and is_short:
         return True
-    shares = measure_shares_left(problem, calibrated, chosen)
-    return chosen.excess / calibrated.excess < settings.explained and all(s < settings.left_in_channel for s in shares)
+    shares, left = measure_shares_left(problem, calibrated, chosen), chosen.excess / calibrated.excess
+    before, after = (np.linalg.norm(measure_remainders(problem, each)) for each in (calibrated, chosen))
+    takes_most = is_short and after < (1.0 - settings.most_taken) * before
+    little = settings.left_if_taken if takes_most else settings.explained
+    return left < little and all(share < settings.left_in_channel for share in shares)
 
 
 def _choose_set(problem: DiagnosisProblem, selection: Selection) -> Evaluation:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective, scale
 from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.pattern_search import search_pattern
 from seatsim.diagnosis.screen import Sensitivities, measure_sensitivities, name_unstable, screen_candidates
 
 
@@ -100,8 +102,8 @@ def select_effects(
             sets.append(larger)
             if size > 1:
                 larger[:] = _best_of_each_set([*larger, *_swap_effects(objective, larger[0], sets[1], nuisances)])
-            if larger[0].excess > settings.nothing_left:
-                again = _restart_effects(objective, larger[0], sensitivities.candidates, nuisances)
+            elif larger[0].excess > settings.nothing_left:
+                again = _restart_effect(objective, larger[0], sensitivities.candidates, nuisances)
                 larger[:] = _best_of_each_set([*larger, *again])
             # Sets are ranked with the sensitivities of a smaller set; the best is then fitted to the end with its own.
             nuisances = objective.linearise_nuisances(larger[0])
@@ -179,24 +181,31 @@ def _swap_effects(
     ]
 
 
-def _restart_effects(
+def _restart_effect(
     objective: Objective, best: Evaluation, candidates: Sequence[Candidate], nuisances: Linearisation
 ) -> list[Evaluation]:
-    """Return fits of the best set with one effect begun again, from all starts of all its forms.
+    """Return fits of the best single effect in each of its forms, begun again from all their starts.
 
-    A start that falls steeply only after some steps, or only beside the other effects, was left behind before.
+    A start that falls steeply only after some steps was left behind before. Forms with the same free parameters also
+    start where the others ended: where the cost of one jumps, that of another may lead there.
     """
-    finished = []
-    for term in best.parameters.terms:
-        kept = best.parameters.remove(term.effect)
-        others = [each for each in candidates if each.replaces(term)]
-        first: dict[Hashable, Evaluation] = {}
-        for start in objective.evaluate([kept.add(each, np.array(each.start)) for each in others]):
-            begun = fit(objective, start, nuisances, objective.settings.selection.begun_steps)
-            structure = begun.parameters.terms[-1].structure
-            first[structure] = min(first.get(structure, begun), begun, key=lambda each: each.cost)
-        finished += [fit(objective, begun, nuisances) for begun in first.values()]
-    return finished
+    (term,) = best.parameters.terms
+    rig = best.parameters.remove(term.effect)
+    starts = [rig.add(each, np.array(each.start)) for each in candidates if each.replaces(term)]
+    forms: dict[Hashable, list[Evaluation]] = {}
+    for start in sorted(objective.evaluate(starts), key=lambda each: each.cost):
+        forms.setdefault(start.parameters.terms[0].structure, []).append(start)
+    fitted = [_fit_from_best(objective, several, nuisances) for several in forms.values()]
+    pairs = permutations((each.parameters for each in fitted), 2)
+    moved = [b.remove(term.effect).add(a.terms[0], *b.values) for a, b in pairs if a.terms[0].free == b.terms[0].free]
+    return fitted + [fit(objective, search_pattern(objective, each), nuisances) for each in objective.evaluate(moved)]
+
+
+def _fit_from_best(objective: Objective, starts: Sequence[Evaluation], nuisances: Linearisation) -> Evaluation:
+    """Return the fit that fell lowest in its first steps from some starts, the best first, carried to its end."""
+    settings = objective.settings.selection
+    begun = [fit(objective, each, nuisances, settings.begun_steps) for each in starts[: settings.further_shortlist]]
+    return fit(objective, min(begun, key=lambda each: each.cost), nuisances)
 
 
 def _eliminate_backwards(objective: Objective, best: Evaluation, nuisances: Linearisation) -> list[Evaluation]:

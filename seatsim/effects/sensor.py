@@ -106,6 +106,7 @@ class SensorLag(NamedTuple):
     source="two clocks",
     forms=(
         *({"shift": shift} for shift in (*LATE[1::2], *EARLY[1::2])),
+        {"shift": 0.003, "drift": 5e-5}, {"shift": -0.003, "drift": 5e-5},
         *(Form({"shift": shift}, {"hold": 0.002}) for shift in (*LATE, *EARLY)),
         *(Form({"shift": shift, "drift": 1e-5}, {"hold": 0.002}) for shift in (*LATE[1::2], *EARLY[1::2])),
         *(Form({"shift": shift, "drift": -shift / 60.0}, {"hold": 0.002}) for shift in (0.003, -0.003)),

@@ -50,6 +50,15 @@ class FitSettings(NamedTuple):
         tuple[float, ...],
         Threshold("-", "fractions of a step that are tried in turn", "more of them: slower, safer descents", NUMERICAL),
     ] = (1.0, 0.4, 0.12)
+    pattern_steps: Annotated[
+        tuple[float, ...],
+        Threshold(
+            "-",
+            "steps of a pattern search, in natural sizes of a parameter",
+            "the first larger: other minima are reached; the last smaller: a nearer minimum, more time",
+            NUMERICAL,
+        ),
+    ] = (0.3, 0.15, 0.08, 0.04, 0.02)
     search_share: Annotated[
         float,
         Threshold(

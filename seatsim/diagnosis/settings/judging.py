@@ -37,6 +37,24 @@ class DecisionSettings(NamedTuple):
             "right explanations leave up to 0.06 (one 0.14), wrong ones 0.15 to 1, on simulated and sealed rigs",
         ),
     ] = 0.12
+    most_taken: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the gap beyond noise from which a set that takes it is known though it leaves more of the excess",
+            "as `explained`, upside down",
+            "right sets take 0.7 and more, wrong ones up to 0.56, on sealed rigs",
+        ),
+    ] = 0.65
+    left_if_taken: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the calibrated excess that such a set leaves at most",
+            "as `explained`",
+            SIMULATED_RIGS,
+        ),
+    ] = 0.35
     left_in_channel: Annotated[
         float,
         Threshold(

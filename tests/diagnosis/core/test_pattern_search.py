@@ -1,0 +1,27 @@
+"""A pattern search, against the known minimum of a cost that has no slope."""
+
+import numpy as np
+import pytest
+
+from seatsim.diagnosis.pattern_search import list_directions, search_pattern
+
+from .toy import offer, place, pose_tones
+
+
+@pytest.mark.parametrize(("count", "directions"), [(1, 2), (2, 8), (3, 18)])
+def test_neighbours_lie_along_one_parameter_or_two(count, directions):
+    found = list_directions(count)
+    assert found.shape == (directions, count)
+    assert np.all(np.isin(np.count_nonzero(found, axis=1), (1, 2)))
+    assert len({tuple(each) for each in found}) == directions
+
+
+def test_the_search_ends_within_its_smallest_step_of_the_minimum():
+    objective = pose_tones({"a.one": (0.3, 0.1)}, (0.01, 0.01), {"run": 200}, ["a.one"])
+    # The true amount is 1; a search in steps feels no difference between neighbouring values.
+    start = objective.evaluate([place(objective.problem, (offer("a.one"), 0.3))])[0]
+    found = search_pattern(objective, start)
+    smallest = objective.settings.fit.pattern_steps[-1] * float(offer("a.one").scale[0])
+    assert found.parameters.values[-1][0] == pytest.approx(1.0, abs=smallest)
+    assert found.cost < start.cost and np.array_equal(found.parameters.deviations, start.parameters.deviations)
+    assert search_pattern(objective, found) is found
