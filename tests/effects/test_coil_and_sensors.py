@@ -121,6 +121,13 @@ def test_a_held_command_moves_by_whole_rows(channel):
     assert set(progress) <= set(command)
 
 
+def test_a_held_command_moves_by_the_same_time_at_any_step():
+    command = np.repeat([0.0, 1.0, 0.3, 0.8], 50)
+    skew = record("sensor.clock_skew", shift=-0.0026, drift=2e-5, hold=STEP)
+    fine = skew.truth("current_command", STEP / 4, np.repeat(command, 4))
+    assert np.array_equal(fine[::4], skew.truth("current_command", STEP, command))
+
+
 def test_a_sensor_changes_no_motion(bingham):
     scenario = replace(bingham)
     effect = starts("sensor.gain")[0]._replace(channel="driver_acceleration")

@@ -22,7 +22,7 @@ from seatsim.scenario.scenario import DamperChoice
 from seatsim.schema.fields import bounds
 from seatsim.schema.registry import names
 
-from .toy import add_up, draw_signals, make_problem
+from .toy import RATE, add_up, draw_signals, make_problem
 
 COIL = {"coil.lag", "coil.asymmetric_lag", "coil.delay", "coil.current_limit"}
 OF_THE_SEAT = {
@@ -112,6 +112,12 @@ def test_an_effect_of_a_sensor_is_tried_on_every_compared_channel_and_the_floor(
     assert listed["sensor.gain"][1].record([0.1]) == Gain("driver_acceleration", 0.1)
     # Two forms on three channels.
     assert len(listed["sensor.bias"]) == 6
+
+
+@pytest.mark.parametrize(("rig", "parts"), [("seat", 1), ("damper_bench", 16)])
+def test_a_held_command_changes_at_the_rows_of_the_recording(rig, parts):
+    found = by_effect(list_candidates(posed(rig)))["sensor.clock_skew"]
+    assert {each.fixed["hold"] for each in found} == {0.0, 1.0 / RATE / parts}
 
 
 def test_a_form_frees_fixes_and_switches_off(listed):
