@@ -242,7 +242,7 @@ def test_an_effect_is_in_a_set_once_and_the_best_structure_of_it_is_kept():
 def test_the_best_effect_is_begun_again_in_its_other_forms():
     # The cube gains little in its first steps, so that the form that only imitates the effect is ahead of it.
     objective = pose({"true.one": 1.4}, {"decoy.x": {"true.one": 0.8, "decoy.0": 0.6}}, begun_steps=0, finalists=1)
-    forms = [offer("true.one", "decoy.x", 0.3), offer("true.one", "true.one", 0.1, cls=Cubed)]
+    forms = [offer("true.one", "decoy.x", 0.3), offer("true.one", "true.one", 0.03, cls=Cubed)]
     found = select_effects(objective, forms, lambda _: None, 1)
     (amount,) = found.sets[1][0].parameters.values[0]
     assert found.sets[1][0].parameters.terms[0].cls is Cubed and amount**3 == pytest.approx(1.4, rel=0.01)
