@@ -147,7 +147,7 @@ def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
     calibrated = selection.calibrated
     if calibrated.excess < problem.settings.selection.nothing_left:
         return calibrated.excess == 0.0 or not shows_effect(problem, selection)
-    if _largest_remainder(problem, calibrated) >= problem.settings.decision.material:
+    if np.any(measure_remainders(problem, calibrated) >= problem.settings.decision.material):
         return False
     # Where every candidate is withheld there is no set of one effect.
     return len(selection.sets) == 1 or not is_material(problem, selection.sets[1][0])
@@ -158,17 +158,20 @@ def _explains(
 ) -> bool:
     """Whether a set of effects explains the gap: little of its excess is left everywhere, or nothing material at all.
 
+    A set that takes most of the gap may leave more of the excess, which weighs weak signals as much as strong ones.
+
     A long group of equivalent effects under a small remainder means that the data hardly show which effect it is.
     """
     if not chosen.parameters.terms:
         return False
     settings = problem.settings.decision
     is_short = all(len(group) <= settings.equivalent_members for group in groups)
-    if _largest_remainder(problem, chosen) < settings.material and is_short:
+    after = measure_remainders(problem, chosen)
+    if np.all(after < settings.material) and is_short:
         return True
     shares, left = measure_shares_left(problem, calibrated, chosen), chosen.excess / calibrated.excess
-    before, after = (np.linalg.norm(measure_remainders(problem, each)) for each in (calibrated, chosen))
-    takes_most = is_short and after < (1.0 - settings.most_taken) * before
+    before = measure_remainders(problem, calibrated)
+    takes_most = is_short and np.linalg.norm(after) < (1.0 - settings.most_taken) * np.linalg.norm(before)
     little = settings.left_if_taken if takes_most else settings.explained
     return left < little and all(share < settings.left_in_channel for share in shares)
 
@@ -204,15 +207,13 @@ def _enlarges(problem: DiagnosisProblem, chosen: Evaluation, better: Evaluation)
     )
 
 
-def _largest_remainder(problem: DiagnosisProblem, evaluation: Evaluation) -> float:
-    """Return the largest gap of a channel beyond its noise, in the channel's standard deviations."""
-    return float(measure_remainders(problem, evaluation).max())
-
-
 def _list_equivalent(
     settings: DecisionSettings, selection: Selection, chosen: Evaluation, scale: float
 ) -> list[Evaluation]:
-    """Return the sets of as many effects that fit as well, the chosen one among them."""
+    """Return the sets of as many effects that fit as well, the chosen one among them.
+
+    `scale` is the factor on the margin of the excess, below 1 for a gap that hardly shows in it.
+    """
     limit = settings.equivalent * chosen.excess + settings.equivalent_floor * scale
     others = selection.sets[len(chosen.parameters.terms)]
     return [evaluation for evaluation in others if evaluation.excess <= limit]

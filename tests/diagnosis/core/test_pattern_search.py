@@ -1,4 +1,4 @@
-"""A pattern search, against the known minimum of a cost that has no slope."""
+"""A pattern search, against a known minimum."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def test_neighbours_lie_along_one_parameter_or_two(count, directions):
 
 def test_the_search_ends_within_its_smallest_step_of_the_minimum():
     objective = pose_tones({"a.one": (0.3, 0.1)}, (0.01, 0.01), {"run": 200}, ["a.one"])
-    # The true amount is 1; a search in steps feels no difference between neighbouring values.
+    # The true amount is 1.
     start = objective.evaluate([place(objective.problem, (offer("a.one"), 0.3))])[0]
     found = search_pattern(objective, start)
     smallest = objective.settings.fit.pattern_steps[-1] * float(offer("a.one").scale[0])
