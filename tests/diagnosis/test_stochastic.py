@@ -50,6 +50,9 @@ def test_a_zero_wanders_slowly():
     slow, fast = coloured(12000, 0.02, 0.2, 2), coloured(12000, 2.0, 20.0, 3)
     assert is_bias_drift(SETTINGS, left([slow, slow + 0.1 * fast], "sensor"), RATE, 0.0)
     assert not is_bias_drift(SETTINGS, left([fast], "sensor"), RATE, 0.0)
+    # What the sensor's own noise accounts for does not speak against a drift.
+    assert not is_bias_drift(SETTINGS, left([slow + fast], "sensor"), RATE, 0.0)
+    assert is_bias_drift(SETTINGS, left([slow + fast], "sensor"), RATE, float(np.sqrt(np.mean(fast**2))))
     assert not is_bias_drift(SETTINGS, left([slow]), RATE, 0.0)
 
 

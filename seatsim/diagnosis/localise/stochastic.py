@@ -54,8 +54,8 @@ def name_stochastic_effect(problem: DiagnosisProblem, found: Discrepancy) -> str
     merged = () if "damper_force" in problem.channels else ("damper",)
     if found.block in ("suspension", *merged) and is_from_outside(settings, found):
         return FORCE_FROM_OUTSIDE
-    sensor = problem.recording.channels.get(found.channel)
-    noise = sensor.noise_rms if sensor else 0.0
+    # An input that was reconstructed, as the floor's motion, does not hold the noise of its sensor.
+    noise = float(problem.noise[problem.channels.index(found.channel)]) if found.channel in problem.channels else 0.0
     return BIAS_DRIFT if is_bias_drift(settings, found, problem.rate, noise) else ""
 
 
