@@ -116,7 +116,7 @@ class SealFriction(NamedTuple):
     forms=(
         *({"gap": gap} for gap in (1e-4, 3e-4, 1e-3, 2e-3)), {"gap": 3e-4, "softness": 0.9},
         *(Form({"gap": gap, "stiffness": 3e6}, within={"stiffness": (1e6, 1e9)}) for gap in (3e-5, 1e-4, 3e-4, 8e-4)),
-        *(Form({"gap": 1e-4 * 1.32**k}, {"softness": 0.05, "turning": 1e-4}) for k in range(12)),
+        *(Form({"gap": 1e-4 * 1.32**k}, {"softness": 0.05, "turning": 3e-4}) for k in range(12)),
     ),
 )  # fmt: skip
 class FreePlay(NamedTuple):

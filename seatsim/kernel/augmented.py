@@ -56,23 +56,23 @@ class AugmentedDamper(NamedTuple):
     def force(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return the smooth force in N."""
         effects, inner, outer = self.effects, leading_state(self.effects, z), effect_state(self.effects, z)
-        transmitted = mount_force(effects, outer, math.nan)
-        if math.isnan(transmitted):
-            demanded = _demanded_force(self.damper, effects, x, v, i, scaling, inner, outer)
-            transmitted = transmitted_share(effects, outer, 1.0, v, demanded) * demanded
-        return transmitted + added_force(effects, outer, x, v)
+        demanded = _demanded_force(self.damper, effects, x, v, i, scaling, inner, outer)
+        return _end_force(effects, x, v, outer, demanded)
 
     def rates(self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State) -> State:
         """Return the rates of the damper's state, then of the effects'."""
         effects, inner, outer = self.effects, leading_state(self.effects, z), effect_state(self.effects, z)
         demanded = _demanded_force(self.damper, effects, x, v, i, scaling, inner, outer)
-        u = _piston_speed(self.damper, effects, x, v, i, scaling, inner, outer, demanded)
-        target = 0.0
-        if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
-            felt = part_scaling(effects, outer, scaling, v)
-            target = _split(self.damper, x, v, yield_current(effects, outer, i), felt, inner).shape
-        theirs = effect_rates(effects, outer, x, v, u, i, demanded, target)
-        return rates(self.damper, x, u, i, scaling, inner) + theirs
+        return _all_rates(self.damper, effects, x, v, i, scaling, inner, outer, demanded)
+
+    def force_and_rates(
+        self, x: float, v: float, i: float, scaling: TemperatureScaling, z: State
+    ) -> tuple[float, State]:
+        """Return both; what they share, the demanded force, is most of their work."""
+        effects, inner, outer = self.effects, leading_state(self.effects, z), effect_state(self.effects, z)
+        demanded = _demanded_force(self.damper, effects, x, v, i, scaling, inner, outer)
+        changes = _all_rates(self.damper, effects, x, v, i, scaling, inner, outer, demanded)
+        return _end_force(effects, x, v, outer, demanded), changes
 
     def friction_limit(self, v: float, i: float, scaling: TemperatureScaling, z: State) -> float:
         """Return the limit of the set-valued friction in N: that of the yield force plus those of the effects."""
@@ -84,6 +84,36 @@ class AugmentedDamper(NamedTuple):
             felt = part_scaling(effects, outer, scaling, v)
             limit += h * coulomb(self.damper, yield_current(effects, outer, i), felt)
         return limit
+
+
+@jit
+def _end_force(effects: Effects, x: float, v: float, outer: State, demanded: float) -> float:
+    """Return the smooth force in N at the damper's end, where the damper itself would bear `demanded`."""
+    transmitted = mount_force(effects, outer, math.nan)
+    if math.isnan(transmitted):
+        transmitted = transmitted_share(effects, outer, 1.0, v, demanded) * demanded
+    return transmitted + added_force(effects, outer, x, v)
+
+
+@jit
+def _all_rates(
+    damper: DamperModel,
+    effects: Effects,
+    x: float,
+    v: float,
+    i: float,
+    scaling: TemperatureScaling,
+    inner: State,
+    outer: State,
+    demanded: float,
+) -> State:
+    """Return the rates of the damper's state, then of the effects', where the force is `demanded` in N."""
+    u = _piston_speed(damper, effects, x, v, i, scaling, inner, outer, demanded)
+    target = 0.0
+    if not math.isnan(yield_shape(effects, outer, math.nan, 0.0, 0.0)):
+        felt = part_scaling(effects, outer, scaling, v)
+        target = _split(damper, x, v, yield_current(effects, outer, i), felt, inner).shape
+    return rates(damper, x, u, i, scaling, inner) + effect_rates(effects, outer, x, v, u, i, demanded, target)
 
 
 @jit

@@ -30,6 +30,14 @@ def rates(damper: DamperModel, x: float, v: float, i: float, scaling: Temperatur
 
 
 @hook
+def force_and_rates(
+    damper: DamperModel, x: float, v: float, i: float, scaling: TemperatureScaling, z: State
+) -> tuple[float, State]:
+    """Damper force in N and time derivative of the damper's state, for a damper in which they share work."""
+    return force(damper, x, v, i, scaling, z), rates(damper, x, v, i, scaling, z)
+
+
+@hook
 def coulomb(damper: DamperModel, i: float, scaling: TemperatureScaling) -> float:
     """Magnitude in N of the damper's set-valued friction."""
     return 0.0

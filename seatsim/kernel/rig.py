@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.kernel.chain import Effects, effect_state, fold_hook, join_hook, leading_state, sum_hook
-from seatsim.kernel.generic import force, friction_limit, rates
+from seatsim.kernel.generic import force_and_rates, friction_limit
 from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.plant import Plant
 from seatsim.rig.state import (
@@ -97,7 +97,7 @@ def derivative(
     x, v, xc, vc = s[DISPLACEMENT], s[VELOCITY], s[CUSHION_DISPLACEMENT], s[CUSHION_VELOCITY]
     z, ze = leading_state(effects, s[MECHANICAL:]), effect_state(effects, s[MECHANICAL:])
     ratio = plant.damper_ratio
-    smooth = force(rig.damper, ratio * x, ratio * v, current, scaling, z)
+    smooth, dz = force_and_rates(rig.damper, ratio * x, ratio * v, current, scaling, z)
     spring = plant.suspension_stiffness * x
     resistance = plant.suspension_damping * v + suspension_force(effects, ze, plant, x, v)
     linear = plant.cushion_stiffness * xc + plant.cushion_damping * vc
@@ -126,7 +126,6 @@ def derivative(
         (resistance + share * linkage) * v,
         (cushion - plant.cushion_stiffness * xc) * vc,
     )
-    dz = rates(rig.damper, ratio * x, ratio * v, current, scaling, z)
     de = effect_rates(effects, ze, plant, SeatMotion(x, v, xc, vc, frame, driver))
     return (v, acceleration, vc, driver - frame) + works + dz + de, RigForces(damper_force, friction, limit)
 

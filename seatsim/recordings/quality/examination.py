@@ -8,7 +8,9 @@ a fault of the data.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import chain
 
 from seatsim.recordings.quality.channels import check_damage, check_ranges, check_shapes, check_sizes
 from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
@@ -56,7 +58,9 @@ def examine(recording: Recording) -> Examination:
     if not select_errors(issues):
         issues += check_all_runs(runs)
     if not select_errors(issues):
-        issues += merge_issues([issue for run in runs for issue in _each(run)], len(runs))
+        # Most of their time goes into simulations, which leave the interpreter free.
+        with ThreadPoolExecutor() as pool:
+            issues += merge_issues(list(chain.from_iterable(pool.map(_each, runs))), len(runs))
     return Examination(sorted(issues, key=lambda issue: ORDER.index(issue.severity)))
 
 
