@@ -29,7 +29,7 @@ class Candidate(NamedTuple):
     """An effect with some of its parameters free: where a fit starts, and between which bounds.
 
     `nominal` is the first free parameter in the nominal scenario: 0 unless the effect is one of that scenario's own,
-    which the candidate then replaces.
+    which the candidate then replaces. The first `sizes` free parameters are sizes, the others the effect's shape.
     """
 
     effect: str
@@ -40,6 +40,7 @@ class Candidate(NamedTuple):
     low: tuple[float, ...]
     high: tuple[float, ...]
     nominal: float = 0.0
+    sizes: int = 1
 
     @property
     def scale(self) -> Array:
@@ -51,6 +52,19 @@ class Candidate(NamedTuple):
     def record(self, values: Array | Sequence[float]) -> Record:
         """Return the effect at these values of the free parameters."""
         return self.cls(**self.fixed, **dict(zip(self.free, map(float, values), strict=True)))
+
+    @property
+    def alone(self) -> Array:
+        """The start with each size alone, shape (sizes, len(free)): the other sizes are 0."""
+        starts = np.tile(self.start, (self.sizes, 1))
+        starts[:, : self.sizes] *= np.eye(self.sizes)
+        return starts
+
+    def from_nominal(self, values: Sequence[float]) -> Array:
+        """Return how far the sizes among some values are from those of the nominal scenario, shape (sizes,)."""
+        away = np.array(values[: self.sizes])
+        away[0] -= self.nominal
+        return away
 
     @property
     def is_limit(self) -> bool:
@@ -111,7 +125,7 @@ def _change(candidate: Candidate, own: Record) -> Candidate:
     low, high = np.minimum(candidate.low, at), np.maximum(candidate.high, at)
     return candidate._replace(
         fixed={name: value for name, value in have.items() if name not in candidate.free}, nominal=float(at[0]),
-        start=tuple(start.tolist()), low=tuple(low.tolist()), high=tuple(high.tolist()),
+        start=tuple(start.tolist()), low=tuple(low.tolist()), high=tuple(high.tolist()), sizes=1,
     )  # fmt: skip
 
 
@@ -185,7 +199,8 @@ def _candidate(name: str, cls: type[Record], form: Form, place: Fixed, reach: fl
         for k, (field, value) in enumerate(form.free.items())
     ]
     low, high = zip(*ranges, strict=True)
-    return Candidate(name, cls, fixed, tuple(form.free), tuple(form.free.values()), low, high)
+    start = tuple(form.free.values())
+    return Candidate(name, cls, fixed, tuple(form.free), start, low, high, sizes=form.sizes)
 
 
 def _bound(cls: type[Record], field: str, value: float, reach: float | None) -> tuple[float, float]:

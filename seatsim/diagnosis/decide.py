@@ -182,7 +182,7 @@ def _choose_set(problem: DiagnosisProblem, selection: Selection) -> Evaluation:
     for sets in selection.sets[1:]:
         compared = sets[: settings.decision.sets_compared]
         better = next((evaluation for evaluation in compared if is_material(problem, evaluation)), None)
-        if better is None or not _enlarges(problem, chosen, better):
+        if better is None or not _enlarges(problem, selection.calibrated, chosen, better):
             if chosen.parameters.terms or better is None:
                 break
             # Two effects may explain together what neither does alone, so a first one that helps only a little is kept.
@@ -194,14 +194,19 @@ def _choose_set(problem: DiagnosisProblem, selection: Selection) -> Evaluation:
     return chosen
 
 
-def _enlarges(problem: DiagnosisProblem, chosen: Evaluation, better: Evaluation) -> bool:
+def _enlarges(problem: DiagnosisProblem, calibrated: Evaluation, chosen: Evaluation, better: Evaluation) -> bool:
     """Whether a larger set leaves clearly less, overall or in one channel with a material gap, so that it is accepted.
 
-    A model error of the first effect in one channel must not hide a second effect that acts on the other channels.
+    A model error of the first effect must not hide a second one. So it also suffices that one channel is explained, or,
+    where the smaller set explains the recording already, that both the excess and the gap fall.
     """
-    enlarge = problem.settings.selection.enlarge
+    settings, enlarge = problem.settings.selection, problem.settings.selection.enlarge
     if better.excess <= enlarge * chosen.excess:
         return True
+    explained = chosen.excess < problem.settings.decision.explained * calibrated.excess
+    if explained and better.excess <= settings.enlarge_explained * chosen.excess:
+        before, after = (np.linalg.norm(measure_remainders(problem, each)) for each in (chosen, better))
+        return bool(after <= settings.gap_lowered * before)
     return bool(chosen.parameters.terms) and any(
         left <= enlarge for left in measure_shares_left(problem, chosen, better)
     )

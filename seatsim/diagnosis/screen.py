@@ -21,38 +21,54 @@ Array = NDArray[np.float64]
 
 
 class Sensitivities(NamedTuple):
-    """Candidates and what each changes, at its start, in the whitened outputs: `changes[run]`, (candidates, ...)."""
+    """Candidates and what each size of theirs changes alone, at its start, in the whitened outputs.
+
+    `changes[run]` has one entry for each size, shape (sizes of all candidates, ...); those of a candidate follow each
+    other, in the order of the candidates.
+    """
 
     candidates: Sequence[Candidate]
     changes: dict[str, Array]
 
+    @property
+    def entries(self) -> list[slice]:
+        """Where the entries of each candidate are."""
+        ends = np.cumsum([candidate.sizes for candidate in self.candidates]).tolist()
+        return [slice(end - each.sizes, end) for end, each in zip(ends, self.candidates, strict=True)]
+
 
 class Prediction(NamedTuple):
-    """The cost that a linear model predicts for the best multiple of a candidate's start, and that multiple."""
+    """The cost that a linear model predicts for the best multiples of a candidate's sizes, and those multiples."""
 
     cost: float
-    factor: float
+    factors: Array
 
 
 def measure_sensitivities(
     objective: Objective, calibrated: Evaluation, candidates: Sequence[Candidate]
 ) -> Sensitivities:
-    """Return the change of the calibrated rig by each candidate at its start; unstable ones are dropped.
+    """Return the changes of the calibrated rig by each candidate at its start; unstable ones are dropped.
 
     At the deadline they are those of the candidates so far.
     """
-    kept: list[Candidate] = []
-    changes = {run: np.empty((len(candidates), *base.shape)) for run, base in calibrated.whitened.items()}
+    kept, filled = list[Candidate](), 0
+    count = sum(candidate.sizes for candidate in candidates)
+    changes = {run: np.empty((count, *base.shape)) for run, base in calibrated.whitened.items()}
     with suppress(OutOfTimeError):
         for first in range(0, len(candidates), AT_ONCE):
             part = candidates[first : first + AT_ONCE]
-            starts = objective.evaluate([calibrated.parameters.add(each, np.array(each.start)) for each in part])
-            for candidate, start in zip(part, starts, strict=True):
-                if np.isfinite(start.cost):
+            starts = [calibrated.parameters.add(each, values) for each in part for values in each.alone]
+            evaluations = iter(objective.evaluate(starts))
+            for candidate in part:
+                moved = list(islice(evaluations, candidate.sizes))
+                if not all(np.isfinite(each.cost) for each in moved):
+                    continue
+                for each in moved:
                     for run, base in calibrated.whitened.items():
-                        np.subtract(base, start.whitened[run], out=changes[run][len(kept)])
-                    kept.append(candidate)
-    return Sensitivities(kept, {run: values[: len(kept)] for run, values in changes.items()})
+                        np.subtract(base, each.whitened[run], out=changes[run][filled])
+                    filled += 1
+                kept.append(candidate)
+    return Sensitivities(kept, {run: values[:filled] for run, values in changes.items()})
 
 
 def name_unstable(candidates: Sequence[Candidate], kept: Sequence[Candidate]) -> tuple[str, ...]:
@@ -84,7 +100,9 @@ def screen_candidates(
         if predicted[k].cost < bound:
             first.setdefault(offered.candidates[k].structure, k)
     shortlist = list(first.values())[:count]
-    starts = [_starts_around(objective, base.parameters, offered.candidates[k], predicted[k].factor) for k in shortlist]
+    starts = [
+        _starts_around(objective, base.parameters, offered.candidates[k], predicted[k].factors) for k in shortlist
+    ]
     evaluations = iter(objective.evaluate([parameters for several in starts for parameters in several]))
     return [min(islice(evaluations, len(several)), key=lambda each: each.cost) for several in starts]
 
@@ -97,56 +115,60 @@ def _predict(
     Candidates are known by their place among those offered; those of the effects of the base are left out.
     """
     others = [k for k, each in enumerate(offered.candidates) if each.effect not in base.parameters.names]
-    own = objective.linearise_effects(base)
-    matrix, right, mixed, squares, slopes = (np.sum(parts, axis=0) for parts in zip(*(
+    own, entries = objective.linearise_effects(base), offered.entries
+    matrix, right, mixed, slopes = (np.sum(parts, axis=0) for parts in zip(*(
         _multiply(np.vstack([nuisances.jacobian[run], own.jacobian[run]]), offered.changes[run], residuals.ravel())
         for run, residuals in base.whitened.items()
     ), strict=True))  # fmt: skip
-    return {
-        k: _predict_one(
-            objective, base, offered.candidates[k],
-            np.block([[matrix, mixed[k][:, None]], [mixed[k], squares[k]]]), np.append(right, slopes[k]),
-        )
-        for k in others
-    }  # fmt: skip
+    found = {}
+    for k in others:
+        changes = [each[entries[k]].reshape(offered.candidates[k].sizes, -1) for each in offered.changes.values()]
+        squares = np.sum([each @ each.T for each in changes], axis=0)
+        whole = np.block([[matrix, mixed[entries[k]].T], [mixed[entries[k]], squares]])
+        slope = np.append(right, slopes[entries[k]])
+        found[k] = _predict_one(objective, base, offered.candidates[k], whole, slope)
+    return found
 
 
-def _multiply(jacobian: Array, changes: Array, residuals: Array) -> tuple[Array, Array, Array, Array, Array]:
+def _multiply(jacobian: Array, changes: Array, residuals: Array) -> tuple[Array, Array, Array, Array]:
     """Return the products of a run for the normal equations: of the Jacobian, of all changes at once, with each other.
 
-    They are `J J'`, `J r`, `C J'`, the squares of the rows of C, and `C r`.
+    They are `J J'`, `J r`, `C J'` and `C r`.
     """
     changes = changes.reshape(-1, residuals.size)
-    squares = np.einsum("ij,ij->i", changes, changes)
-    return jacobian @ jacobian.T, jacobian @ residuals, changes @ jacobian.T, squares, changes @ residuals
+    return jacobian @ jacobian.T, jacobian @ residuals, changes @ jacobian.T, changes @ residuals
 
 
 def _predict_one(
     objective: Objective, base: Evaluation, candidate: Candidate, matrix: Array, right: Array
 ) -> Prediction:
-    """Return the prediction for a candidate, the last component of the normal equations."""
+    """Return the prediction for a candidate, whose sizes are the last components of the normal equations."""
     vector, (low, high) = base.parameters.vector, base.parameters.limits
     count, stretch = len(base.parameters.deviations), objective.settings.selection.stretch
-    toward = np.sign(candidate.start[0] - candidate.nominal)
-    ends = toward * (np.array([candidate.low[0], candidate.high[0]]) - candidate.nominal)
-    low = np.append(low, 0.0 if toward and ends.min() >= 0.0 else -stretch)
-    high = np.append(high, stretch)
-    step = solve_step(matrix, right, count, np.append(vector, 0.0), low, high, objective.settings.fit.prior_std)
-    return Prediction(base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step), float(step[-1]))
+    least, most = (candidate.from_nominal(each) for each in (candidate.low, candidate.high))
+    size = candidate.from_nominal(candidate.start)
+    turns = np.where(size > 0.0, least, -most) < 0.0
+    low = np.append(low, np.where(turns, -stretch, 0.0))
+    high = np.append(high, np.full(candidate.sizes, stretch))
+    start = np.append(vector, np.zeros(candidate.sizes))
+    step = solve_step(matrix, right, count, start, low, high, objective.settings.fit.prior_std)
+    cost = base.cost - 2.0 * float(step @ right) + float(step @ matrix @ step)
+    return Prediction(cost, step[-candidate.sizes :])
 
 
 def _starts_around(
-    objective: Objective, parameters: Parameters, candidate: Candidate, factor: float
+    objective: Objective, parameters: Parameters, candidate: Candidate, factors: Array
 ) -> list[Parameters]:
-    """Return the parameters with a candidate at its start, and with its first parameter scaled as predicted."""
-    settings = objective.settings.selection
+    """Return the parameters with a candidate at its start, and with its sizes scaled as predicted."""
+    settings, start = objective.settings.selection, np.array(candidate.start)
     if candidate.is_limit:
         # The action of a limit is not proportional to its size, so only the direction of the prediction is used.
         less = settings.limit_factors
-        factors: tuple[float, ...] = less if factor < 1.0 else tuple(1.0 / each for each in less)
+        scaled = [start[:1] * (each if factors[0] < 1.0 else 1.0 / each) for each in less]
+    elif np.max(np.abs(factors)) > settings.least_factor:
+        size = candidate.from_nominal(candidate.start)
+        scaled = [start[: candidate.sizes] + (each * factors - 1.0) * size for each in settings.start_factors]
     else:
-        factors = tuple(factor * each for each in settings.start_factors if abs(factor) > settings.least_factor)
-    starts = np.tile(candidate.start, (1 + len(factors), 1))
-    nominal = 0.0 if candidate.is_limit else candidate.nominal
-    starts[1:, 0] = np.clip(nominal + (starts[1:, 0] - nominal) * factors, candidate.low[0], candidate.high[0])
-    return [parameters.add(candidate, values) for values in starts]
+        scaled = []
+    starts = [np.concatenate([sizes, start[len(sizes) :]]) for sizes in scaled]
+    return [parameters.add(candidate, np.clip(each, candidate.low, candidate.high)) for each in [start, *starts]]

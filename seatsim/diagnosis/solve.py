@@ -28,6 +28,7 @@ from seatsim.diagnosis.localise.localisation import Remainder, localise_remainde
 from seatsim.diagnosis.localise.stochastic import (
     add_to_noise,
     find_bias_drift,
+    find_disturbance,
     merge_effect,
     name_stochastic_effect,
 )
@@ -99,16 +100,16 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
     first = _in_time(_search_at_lower_noise, task, first) or first
     if first.decision.verdict == "unknown":
         first = _in_time(_search_beyond_broadband, task, first) or first
-    weights = first.objective.weights
+    if not problem.bench:
+        first = _in_time(_search_beside_disturbance, task, first, without) or first
+    # A random signal takes nothing off the gap, however right it is.
+    if first.decision.verdict == "none" or first.stochastic:
+        return first
     if first.decision.verdict != "unknown":
-        localised = _localise(task, first)
-        found = _in_time(_search_beside_stochastic, task, localised, weights, without) or localised
-        # A random signal takes nothing off the gap, however right it is.
-        if found.decision.verdict == "none" or found.stochastic or _takes_enough(objective, found):
-            return found
+        if _takes_enough(objective, first):
+            return _localise(task, first)
         first = first._replace(decision=call_unknown(problem.settings.decision, first.decision))
-    first = _in_time(_search_by_gap, task, first) or _localise(task, first)
-    return _in_time(_search_beside_stochastic, task, first, weights, without) or first
+    return _in_time(_search_by_gap, task, first) or _localise(task, first)
 
 
 def _in_time(stage: Callable[P, Solution], *arguments: P.args, **named: P.kwargs) -> Solution | None:
@@ -238,18 +239,25 @@ def _localise(task: SearchTask, solution: Solution) -> Solution:
     return solution._replace(decision=decision, where=share(objective, rig, remainder), discrepancy=found)
 
 
-def _search_beside_stochastic(
-    task: SearchTask, first: Solution, weights: NoiseWeights, without: Sequence[str]
-) -> Solution:
-    """Search again with the discrepancy added to the noise of the weights, where it may be a stochastic disturbance."""
-    problem, found = first.objective.problem, first.discrepancy
-    if first.decision.verdict in ("known", "ambiguous") and not problem.bench:
+def _search_beside_disturbance(task: SearchTask, first: Solution, without: Sequence[str]) -> Solution:
+    """Search again beside a stochastic disturbance, added to the noise, where one of the best sets leaves one.
+
+    Of a set that explains the gap only a drift of a sensor may be left; of others, whatever such a signal may be.
+    """
+    objective, verdict = first.objective, first.decision.verdict
+    problem = objective.problem
+    if verdict == "none":
+        return first
+    if verdict == "unknown":
+        task.progress("asking whether a disturbance hides the effects")
+        found = find_disturbance(objective, first.selection)
+    else:
         found = find_bias_drift(problem, first.decision.chosen)
     effect = name_stochastic_effect(problem, found) if found else ""
     if found is None or not effect or effect in without:
         return first
     task.progress(f"counting {effect} as noise")
-    noisy = Objective(problem, add_to_noise(problem, weights, effect, found))
+    noisy = Objective(problem, add_to_noise(problem, objective.weights, effect, found))
     others = task._replace(candidates=[each for each in task.candidates if each.effect != effect])
     second = _search_at_lower_noise(others, _search(others, noisy))
     if second.decision.verdict == "unknown":

@@ -73,11 +73,14 @@ class Form(NamedTuple):
     """Start of a fit to a recording: the values of the parameters that it varies, and of those that it fixes.
 
     `within` bounds a free parameter more closely than its field does, where values beyond would mean another effect.
+    The first `sizes` free parameters are sizes: the effect changes about the sum of what each changes alone. The others
+    are its shape, which changes nothing without a size.
     """
 
     free: Values
     fixed: Values = MappingProxyType({})
     within: Mapping[str, tuple[float, float]] = MappingProxyType({})
+    sizes: int = 1
 
 
 class EffectSpecification(NamedTuple):

@@ -24,7 +24,7 @@ SWITCH = 0.01
 @effect(
     "damper.gas_spring",
     source="accumulator of a monotube damper, linearised",
-    forms=({"preload": 20.0}, {"preload": 20.0, "stiffness": 500.0}),
+    forms=({"preload": 20.0}, Form({"preload": 20.0, "stiffness": 500.0}, sizes=2)),
 )
 class GasSpring(NamedTuple):
     """Preload and stiffness of the accumulator: `F + preload + stiffness x`."""
@@ -42,10 +42,10 @@ class GasSpring(NamedTuple):
     source="Yu et al. 2019 (Front. Mater. 6:227): rebound and compression differ",
     off={"speed": SWITCH},
     forms=(
-        {"viscous": 0.1, "yielding": 0.1},
-        {"viscous": 0.1, "yielding": 0.1, "speed": 0.03},
-        {"viscous": 0.1, "yielding": 0.1, "speed": 0.03, "offset": 0.5},
-        {"viscous": 0.1, "pulling": 0.1, "speed": 0.03, "offset": 0.5},
+        Form({"viscous": 0.1, "yielding": 0.1}, sizes=2),
+        Form({"viscous": 0.1, "yielding": 0.1, "speed": 0.03}, sizes=2),
+        Form({"viscous": 0.1, "yielding": 0.1, "speed": 0.03, "offset": 0.5}, sizes=2),
+        Form({"viscous": 0.1, "pulling": 0.1, "speed": 0.03, "offset": 0.5}, sizes=2),
     ),
 )  # fmt: skip
 class Asymmetry(NamedTuple):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
-from seatsim.effects.base import effect
+from seatsim.effects.base import Form, effect
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.fields import param
@@ -104,7 +104,10 @@ def _play(z: float, i: float, width: float) -> float:
 @effect(
     "damper.thermal_fade",
     source="exponential factors of Yu et al. 2019 eqs 9-11; thermocouple as a first-order lag",
-    forms=({"viscous": 0.004, "yielding": 0.004}, {"viscous": 0.004, "yielding": 0.004, "lag": 5.0}),
+    forms=(
+        Form({"viscous": 0.004, "yielding": 0.004}, sizes=2),
+        Form({"viscous": 0.004, "yielding": 0.004, "lag": 5.0}, sizes=2),
+    ),
 )
 class ThermalFade(NamedTuple):
     """Viscous and yield force that fall as the fluid warms.

@@ -49,8 +49,9 @@ class Gain(NamedTuple):
 
 
 @effect(
-    "sensor.bias", source="zero error and drift", by_channel=True, forms=({"share": 0.1}, {"share": 0.1, "drift": 0.01})
-)
+    "sensor.bias", source="zero error and drift", by_channel=True,
+    forms=({"share": 0.1}, Form({"share": 0.1, "drift": 0.01}, sizes=2)),
+)  # fmt: skip
 class Bias(NamedTuple):
     """One channel reads with an offset that may drift: `truth + scale (share + drift t)`.
 

@@ -224,6 +224,17 @@ def test_the_driver_of_the_coil() -> None:
     assert target(0.5, limit=0.5, limit_power=8.0) == pytest.approx(0.5 / 2.0**0.125)
 
 
+def test_dropouts_begin_at_the_same_times_whatever_the_step() -> None:
+    p = parameter_record({"dropout_interval": 0.3, "dropout_duration": 0.05})
+
+    def begins(h: float) -> list[float]:
+        memory = np.zeros(6)
+        off = np.array([coil.drops_out(n * h, h, memory, p) for n in range(round(5.0 / h))])
+        return list(np.round(np.flatnonzero(np.diff(off.astype(int)) > 0) * h, 2))
+
+    assert begins(1e-4) == begins(2.5e-4) != []
+
+
 def test_dropouts_last_their_time_and_come_at_their_rate() -> None:
     p, h, memory = parameter_record({"dropout_interval": 0.05, "dropout_duration": 0.01}), 1e-3, np.zeros(6)
     off = np.array([coil.drops_out(n * h, h, memory, p) for n in range(20000)])

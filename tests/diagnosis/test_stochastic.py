@@ -12,6 +12,7 @@ from seatsim.diagnosis.localise.stochastic import find_bias_drift
 from seatsim.diagnosis.noise import measure_broadband
 from seatsim.diagnosis.objective import Evaluation
 from seatsim.diagnosis.parameters import Parameters
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings
 from seatsim.schema.registry import find
 from seatsim.simulation.inputs import Forces
@@ -31,13 +32,14 @@ def coloured(samples, low, high, seed, rate=RATE):
 
 def left(courses, block="suspension"):
     shares = {"velocity": 0.02, "everything": 0.03}
-    return Discrepancy(block, "force", "N", dict(enumerate(courses)), shares)
+    signals = dict(enumerate(courses))
+    return Discrepancy(block, "force", "N", signals, shares, comparable=signals)
 
 
 def test_a_force_from_outside_is_as_strong_in_every_run():
     course = coloured(5000, 1.0, 20.0, 1)
-    assert is_from_outside(SETTINGS, left([8.0 * course, 9.0 * course]))
-    assert not is_from_outside(SETTINGS, left([8.0 * course, 14.0 * course]))
+    assert is_from_outside(DiagnosisSettings(), left([8.0 * course, 9.0 * course]), RATE)
+    assert not is_from_outside(DiagnosisSettings(), left([8.0 * course, 14.0 * course]), RATE)
 
 
 def test_regressors_at_rest_predict_nothing():

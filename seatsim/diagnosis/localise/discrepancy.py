@@ -6,6 +6,8 @@ rattle is hard to predict too, but its strength follows the motion.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +18,7 @@ from seatsim.diagnosis.localise.regression import explain_signal
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import DiscrepancySignal
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings
 
 Array = NDArray[np.float64]
@@ -24,7 +27,8 @@ Array = NDArray[np.float64]
 class Discrepancy(NamedTuple):
     """An unexplained signal by run, and the shares of its variance that families of regressors predict.
 
-    `channel` is the one whose error it is; empty for a force, an acceleration or a current.
+    `channel` is the one whose error it is; empty for a force, an acceleration or a current. `comparable` is the part of
+    the signal that every run shows.
     """
 
     block: str
@@ -33,6 +37,7 @@ class Discrepancy(NamedTuple):
     signals: dict[str, Array]
     shares: dict[str, float]
     channel: str = ""
+    comparable: Mapping[str, Array] = MappingProxyType({})
 
     @property
     def rms(self) -> float:
@@ -45,13 +50,34 @@ def describe_discrepancy(
 ) -> Discrepancy:
     """Return the unexplained signal in a block of the seat and what predicts it."""
     shares = explain_signal(problem, parameters, hypothesis.signals)
-    return Discrepancy(block, hypothesis.quantity, hypothesis.unit, hypothesis.signals, shares, hypothesis.channel)
+    return Discrepancy(
+        block, hypothesis.quantity, hypothesis.unit, hypothesis.signals, shares, hypothesis.channel,
+        hypothesis.comparable,
+    )  # fmt: skip
 
 
-def is_from_outside(settings: LocalisationSettings, found: Discrepancy) -> bool:
-    """Whether a force comes from outside the rig: it is not predicted, and equally strong in every run."""
-    strengths = [float(np.std(signal)) for signal in found.signals.values()]
-    return found.shares["everything"] <= settings.predicted and max(strengths) <= settings.steady * min(strengths)
+def is_from_outside(settings: DiagnosisSettings, found: Discrepancy, rate: float) -> bool:
+    """Whether a force comes from outside the rig: it is not predicted, and as strong in every run but for chance.
+
+    `rate` is the sample rate of the signals in Hz.
+    """
+    steady = _is_steady(settings.localisation, found, settings.validation.block_length * rate)
+    return steady and found.shares["everything"] <= settings.localisation.predicted
+
+
+def _is_steady(settings: LocalisationSettings, found: Discrepancy, length: float) -> bool:
+    """Whether the RMS of a signal is about the same in every run, or differs by no more than in its blocks of time.
+
+    A few knocks make a force whose RMS differs from run to run by chance. `length` is that of a block in samples.
+    """
+    powers = [
+        [float(np.mean(block**2)) for block in np.array_split(values, max(2, round(len(values) / length)))]
+        for values in (signal - signal.mean() for signal in found.comparable.values())
+    ]
+    means, errors = np.array([(np.mean(each), np.var(each, ddof=1) / len(each)) for each in powers]).T
+    low, high = np.argmin(means), np.argmax(means)
+    chance = settings.steady_by_chance * np.sqrt(errors[low] + errors[high])
+    return bool(means[high] <= max(settings.steady**2 * means[low], means[low] + chance))
 
 
 def is_bias_drift(settings: LocalisationSettings, found: Discrepancy, rate: float, noise: float) -> bool:

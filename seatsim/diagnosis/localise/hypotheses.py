@@ -11,6 +11,8 @@ The logarithm is Occam's factor: it charges a block for every frequency at which
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -39,6 +41,7 @@ class FaultHypothesis(NamedTuple):
 
     `negative_log_evidence` is minus twice the log evidence per number compared, less 1. `signals[run]`, shape
     (samples,), is the input above its noise, a quantity in its unit; `channel` is the one that errs, for a sensor.
+    `comparable` is, for a port, the part of that input at the frequencies at which every run shows it.
     """
 
     negative_log_evidence: float
@@ -46,15 +49,21 @@ class FaultHypothesis(NamedTuple):
     unit: str
     signals: dict[str, Array]
     channel: str = ""
+    comparable: Mapping[str, Array] = MappingProxyType({})
 
 
-def evaluate_hypotheses(objective: Objective, nuisances: Linearisation) -> dict[str, FaultHypothesis]:
-    """Return, by block, how an unknown input would explain what a rig leaves.
+def evaluate_hypotheses(
+    objective: Objective, nuisances: Linearisation, blocks: Collection[str] = tuple(PORTS)
+) -> dict[str, FaultHypothesis]:
+    """Return, by block, how an unknown input would explain what a rig leaves; errors of sensors are always among them.
 
-    `nuisances` is the rig's evaluation with its sensitivities to the nuisance parameters, which are refitted.
+    Args:
+        objective: the problem and its weights.
+        nuisances: the rig's evaluation with its sensitivities to the nuisance parameters, which are refitted.
+        blocks: those with a port that are asked.
     """
     problem, evaluation = objective.problem, nuisances.evaluation
-    by_run = problem.pool.map(lambda run: _estimate_inputs(objective, evaluation, run), problem.runs)
+    by_run = problem.pool.map(lambda run: _estimate_inputs(objective, evaluation, run, blocks), problem.runs)
     runs = dict(zip(problem.runs, by_run, strict=True))
     hypotheses = {}
     for name in runs[problem.runs[0]]:
@@ -62,7 +71,8 @@ def evaluate_hypotheses(objective: Objective, nuisances: Linearisation) -> dict[
         signals = {run: estimate.signal for run, estimate in estimates.items()}
         quantity, unit = QUANTITIES.get(name, ("force", "N"))
         evidence = _negative_log_evidence(objective, nuisances, estimates)
-        hypotheses[name] = FaultHypothesis(evidence, quantity, unit, signals)
+        comparable = _make_comparable(estimates) if name in PORTS else {}
+        hypotheses[name] = FaultHypothesis(evidence, quantity, unit, signals, comparable=comparable)
     errors = [
         hypotheses.pop(name)._replace(
             quantity=f"error of {name}", unit=problem.recording.channels[name].unit, channel=name
@@ -70,9 +80,30 @@ def evaluate_hypotheses(objective: Objective, nuisances: Linearisation) -> dict[
         for name in problem.channels
     ]
     errors.append(_as_sensor_error(hypotheses.pop(FLOOR)))
-    if not follows_floor(problem.recording):
+    if "floor" in hypotheses and not follows_floor(problem.recording):
         errors.append(_as_sensor_error(hypotheses.pop("floor")))
     return hypotheses | {"sensor": min(errors, key=lambda hypothesis: hypothesis.negative_log_evidence)}
+
+
+def _make_comparable(estimates: Mapping[str, InputEstimate]) -> dict[str, Array]:
+    """Return an input by run, of its spectrum only as much as every run shows.
+
+    A run in which more else moves shows less of the same input, which is no sign that the input is weaker there.
+    """
+    longest = max(len(estimate.gain) for estimate in estimates.values())
+    common = np.min([_resample(estimate.gain, longest) for estimate in estimates.values()], axis=0)
+    comparable = {}
+    for run, estimate in estimates.items():
+        gain, spectrum = estimate.gain, np.fft.rfft(estimate.signal)
+        share = np.divide(_resample(common, len(gain)), gain, out=np.zeros_like(gain), where=gain > 0.0)
+        spectrum[: len(gain)] *= share
+        comparable[run] = np.fft.irfft(spectrum, len(estimate.signal))
+    return comparable
+
+
+def _resample(values: Array, count: int) -> Array:
+    """Return values over a range of frequencies at another number of them."""
+    return np.interp(np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, len(values)), values)
 
 
 def _as_sensor_error(motion: FaultHypothesis) -> FaultHypothesis:
@@ -81,15 +112,17 @@ def _as_sensor_error(motion: FaultHypothesis) -> FaultHypothesis:
     return motion._replace(signals=signals, quantity=f"error of {FLOOR}", unit="m/s^2", channel=FLOOR)
 
 
-def _estimate_inputs(objective: Objective, evaluation: Evaluation, run: str) -> dict[str, InputEstimate]:
-    """Return the estimate of an input in each block, and of an error of each channel's sensor."""
+def _estimate_inputs(
+    objective: Objective, evaluation: Evaluation, run: str, blocks: Collection[str]
+) -> dict[str, InputEstimate]:
+    """Return the estimate of an input in some blocks, and of an error of each channel's sensor."""
     channels = objective.problem.channels
     estimates = {name: estimate_error(objective, evaluation, run, k) for k, name in enumerate(channels)}
     # Without a load cell no channel distinguishes a force of the damper from one of the linkage.
-    merged = "damper_force" not in channels
-    for block, port in PORTS.items():
+    merged = "damper_force" not in channels and "damper" in blocks
+    for block in blocks:
         same = merged and block == "suspension"
-        estimates[block] = estimates["damper"] if same else estimate_input(objective, evaluation, run, port)
+        estimates[block] = estimates["damper"] if same else estimate_input(objective, evaluation, run, PORTS[block])
     # Below this frequency floors hardly move: what looks like a motion there is the drift of the accelerometer.
     slow = objective.settings.localisation.slow_frequency
     estimates[FLOOR] = estimate_input(objective, evaluation, run, PORTS["floor"], slow)

@@ -37,6 +37,11 @@ class InputEstimate(NamedTuple):
     power: Array
     signal: Array
 
+    @property
+    def gain(self) -> Array:
+        """Wiener's filter for the input, shape (frequencies,): near 1 where its effect exceeds the noise."""
+        return wiener_share(np.sum(np.abs(self.response) ** 2, axis=0) * self.power)
+
 
 class _Attempt(NamedTuple):
     """A signal with the simulated channels under it and their whitened residuals."""

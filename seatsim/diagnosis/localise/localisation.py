@@ -9,7 +9,7 @@ import numpy as np
 
 from seatsim.diagnosis.localise.hypotheses import FaultHypothesis, evaluate_hypotheses
 from seatsim.diagnosis.movement import measure_movements
-from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.result import Share
 
 ON_FRAME = ("damper", "suspension", "floor")
@@ -59,10 +59,10 @@ def localise_remainder(
     leaves more than one beside them. Where the form of the rig is wrong everywhere no such input explains it, and where
     the gap is less than noise and disturbance nothing shows that there is one.
     """
-    settings, beside = objective.settings, _weigh_blocks(objective, chosen)
+    settings, beside = objective.settings, weigh_blocks(objective, objective.linearise_nuisances(chosen))
     if not chosen.parameters.terms or calibrated.excess < settings.localisation.above_noise:
         return beside, chosen
-    alone = _weigh_blocks(objective, calibrated)
+    alone = weigh_blocks(objective, objective.linearise_nuisances(calibrated))
     # An error of the very sensor that an effect names is that effect in a more general form.
     if alone.likeliest.channel in [term.fixed.get("channel") for term in chosen.parameters.terms]:
         return beside, chosen
@@ -73,13 +73,13 @@ def localise_remainder(
     return beside, chosen
 
 
-def _weigh_blocks(objective: Objective, evaluation: Evaluation) -> Remainder:
-    """Return the blocks that could hold what a rig leaves.
+def weigh_blocks(objective: Objective, nuisances: Linearisation) -> Remainder:
+    """Return the blocks that could hold what a rig leaves, with its sensitivities to the nuisance parameters.
 
     A slow force on the driver acts like one on the frame, since both move together. Where both explain nearly the same,
     the force is assigned to the frame.
     """
-    hypotheses = evaluate_hypotheses(objective, objective.linearise_nuisances(evaluation))
+    hypotheses, evaluation = evaluate_hypotheses(objective, nuisances), nuisances.evaluation
     before = evaluation.cost / evaluation.rows - 1.0
     best = min(hypothesis.negative_log_evidence for hypothesis in hypotheses.values())
     width = objective.settings.localisation.decisive * max(before - best, LEAST_DIFFERENCE)

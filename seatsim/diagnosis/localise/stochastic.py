@@ -14,20 +14,53 @@ from numpy.typing import NDArray
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy, is_bias_drift, is_from_outside
-from seatsim.diagnosis.localise.hypotheses import FaultHypothesis
+from seatsim.diagnosis.localise.hypotheses import FaultHypothesis, evaluate_hypotheses
+from seatsim.diagnosis.localise.localisation import weigh_blocks
 from seatsim.diagnosis.localise.reconstruction import PORTS, reconstruct
 from seatsim.diagnosis.movement import measure_remainders
 from seatsim.diagnosis.noise import NoiseWeights
-from seatsim.diagnosis.objective import Evaluation, Objective
+from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Cause, Estimate, Share
+from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.spectra import measure_power, smooth_spectrum
 
 Array = NDArray[np.float64]
 
 FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
+
+
+def find_disturbance(objective: Objective, selection: Selection) -> Discrepancy | None:
+    """Return the stochastic disturbance that one of the best sets leaves, None where all leave something else.
+
+    A disturbance shows only about a rig with the effects beside it, and they are found only where the disturbance is
+    expected. Sets are therefore judged by what they leave beyond a disturbance, not by all that they leave.
+    """
+    problem, settings, before = objective.problem, objective.settings, selection.calibrated.excess
+    found = list[tuple[float, Linearisation]]()
+    for evaluation in _list_helpful(settings, selection):
+        nuisances = selection.linearise_nuisances(objective, evaluation)
+        hypotheses = evaluate_hypotheses(objective, nuisances, ["suspension"])
+        block = min(hypotheses, key=lambda name: hypotheses[name].negative_log_evidence)
+        left = hypotheses[block].negative_log_evidence
+        remainder = describe_discrepancy(problem, evaluation.parameters, block, hypotheses[block])
+        if left < settings.decision.explained * before and name_stochastic_effect(problem, remainder):
+            slight = settings.localisation.slight * before * len(evaluation.parameters.terms)
+            found.append((left + slight, nuisances))
+    if not found:
+        return None
+    _, nuisances = min(found, key=lambda pair: pair[0])
+    blocks = weigh_blocks(objective, nuisances)
+    return describe_discrepancy(problem, nuisances.evaluation.parameters, blocks.block, blocks.likeliest)
+
+
+def _list_helpful(settings: DiagnosisSettings, selection: Selection) -> list[Evaluation]:
+    """Return the calibrated rig, and the best sets of each size that leave clearly less than it."""
+    most = settings.decision.first_effect_helps * selection.calibrated.excess
+    sets = [each for sets in selection.sets[1:] for each in sets[: settings.selection.beam]]
+    return [selection.calibrated, *(each for each in sets if each.excess < most)]
 
 
 def find_bias_drift(problem: DiagnosisProblem, evaluation: Evaluation) -> Discrepancy | None:
@@ -52,7 +85,7 @@ def name_stochastic_effect(problem: DiagnosisProblem, found: Discrepancy) -> str
     settings = problem.settings.localisation
     # Without a load cell no channel distinguishes a force of the damper from one from outside.
     merged = () if "damper_force" in problem.channels else ("damper",)
-    if found.block in ("suspension", *merged) and is_from_outside(settings, found):
+    if found.block in ("suspension", *merged) and is_from_outside(problem.settings, found, problem.rate):
         return FORCE_FROM_OUTSIDE
     # An input that was reconstructed, as the floor's motion, does not hold the noise of its sensor.
     noise = float(problem.noise[problem.channels.index(found.channel)]) if found.channel in problem.channels else 0.0

@@ -251,9 +251,9 @@ class SelectionSettings(NamedTuple):
             "-",
             "share of what is left so far that a further effect may leave, as predicted, for it to be tried",
             "lower: further effects are missed; higher: time",
-            SIMULATED_RIGS,
+            "effects that are far from linear were predicted to leave up to 0.95, and left 0.05",
         ),
-    ] = 0.9
+    ] = 0.97
     enlarge: Annotated[
         float,
         Threshold(
@@ -263,6 +263,24 @@ class SelectionSettings(NamedTuple):
             SIMULATED_RIGS,
         ),
     ] = 0.45
+    enlarge_explained: Annotated[
+        float,
+        Threshold(
+            "-",
+            "the same of a set that explains the recording already, where the gap falls too",
+            "as `enlarge`",
+            "on simulated rigs true second effects left up to 0.66, false ones 0.77 and more",
+        ),
+    ] = 0.7
+    gap_lowered: Annotated[
+        float,
+        Threshold(
+            "-",
+            "share of the gap beyond noise that it then leaves at most",
+            "as `enlarge`",
+            "on simulated rigs true second effects left up to 0.8, false ones 0.9 and more",
+        ),
+    ] = 0.85
     worthwhile: Annotated[
         float,
         Threshold(

@@ -157,6 +157,15 @@ class LocalisationSettings(NamedTuple):
             SIMULATED_RIGS,
         ),
     ] = 1.4
+    steady_by_chance: Annotated[
+        float,
+        Threshold(
+            "-",
+            "standard deviations by which its power may differ beyond that, as it differs between blocks of time",
+            "higher: rattles are taken for forces from outside; lower: a few knocks are not",
+            "two, as in a test at 5 %",
+        ),
+    ] = 2.0
     slow_slip: Annotated[
         float, Threshold("m/s", "velocity scale of the smooth friction among the regressors", "-", SIMULATED_RIGS)
     ] = 0.03

@@ -223,11 +223,17 @@ def test_a_long_group_under_a_small_remainder_explains_nothing(rig):
     assert decide(rig, 10.0, one, [(both(), 0.3), *clear]).verdict == "ambiguous"
 
 
-@pytest.mark.parametrize("second, size", [(0.89, 2), (0.91, 1)])
-def test_a_set_is_enlarged_where_less_than_a_share_is_left(rig, second, size):
-    # 0.45 of 2.
-    found = decide(rig, 10.0, [({"b.two": 1.0}, 2.0)], [(both(), second)])
+@pytest.mark.parametrize(
+    "further, second, size",
+    # 0.45 of 2, or 0.7 where less than 12 % was left and the gap falls too, as it does with the other true effect.
+    [("d.four", 0.89, 2), ("d.four", 0.91, 1), ("a.one", 1.39, 2), ("a.one", 1.41, 1)],
+)
+def test_a_set_is_enlarged_where_less_than_a_share_is_left(rig, further, second, size):
+    found = decide(rig, 17.0, [({"b.two": 1.0}, 2.0)], [({"b.two": 1.0, further: 1.0}, second)])
     assert len(found.chosen.parameters.terms) == size
+    if second > 0.9:
+        found = decide(rig, 16.0, [({"b.two": 1.0}, 2.0)], [({"b.two": 1.0, further: 1.0}, second)])
+        assert len(found.chosen.parameters.terms) == 1
 
 
 def test_a_set_is_enlarged_where_one_channel_is_explained(rig):

@@ -13,17 +13,18 @@ from seatsim.diagnosis.localise.discrepancy import (
 )
 from seatsim.diagnosis.localise.hypotheses import FaultHypothesis
 from seatsim.diagnosis.localise.regression import explain_signal
+from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings
 
 from .toy import CHANNELS, RATE, SKIP, place, pose, record
 
-SETTINGS = LocalisationSettings()
+SETTINGS, ALL = LocalisationSettings(), DiagnosisSettings()
 WAVE = np.sin(2.0 * np.pi * np.arange(1000) / 100.0)
 
 
 def found(signals, shares=None, block="suspension", channel=""):
     runs = dict(zip("abc", signals, strict=False))
-    return Discrepancy(block, "force", "N", runs, shares or {"velocity": 0.1, "everything": 0.1}, channel)
+    return Discrepancy(block, "force", "N", runs, shares or {"velocity": 0.1, "everything": 0.1}, channel, runs)
 
 
 def test_its_strength_is_that_over_all_runs():
@@ -41,11 +42,28 @@ def test_what_is_not_predicted_and_as_strong_in_every_run_comes_from_outside(pre
     # A constant part is no strength, and one family alone is not all of them.
     signals = [strength * WAVE + 5.0 * k for k, strength in enumerate(strengths)]
     shares = {"velocity": 0.0, "everything": predicted}
-    assert is_from_outside(SETTINGS, found(signals, shares)) is outside
+    assert is_from_outside(ALL, found(signals, shares), RATE) is outside
 
 
 def test_a_share_at_its_limit_is_still_from_outside():
-    assert is_from_outside(SETTINGS, found([WAVE, WAVE], {"everything": 0.12}))
+    assert is_from_outside(ALL, found([WAVE, WAVE], {"everything": 0.12}), RATE)
+
+
+def test_a_few_knocks_may_differ_in_number_by_chance():
+    def knock(*blocks):
+        signal = np.zeros(int(20 * RATE))
+        for k in blocks:
+            signal[int(k * RATE) : int(k * RATE) + 5] = 10.0
+        return signal
+
+    assert is_from_outside(ALL, found([knock(1, 5, 9, 13, 17), knock(3, 12)], {"everything": 0.0}), RATE)
+    assert not is_from_outside(ALL, found([knock(*range(20)), knock(3, 12)], {"everything": 0.0}), RATE)
+
+
+def test_only_what_every_run_shows_is_compared():
+    weak = found([WAVE, 2.0 * WAVE], {"everything": 0.0})
+    assert not is_from_outside(ALL, weak, RATE)
+    assert is_from_outside(ALL, weak._replace(comparable={"a": WAVE, "b": 1.1 * WAVE}), RATE)
 
 
 def tone(frequency, rms=1.0, samples=2000):

@@ -10,7 +10,7 @@ import pytest
 from seatsim.diagnosis.localise import localisation
 from seatsim.diagnosis.localise.hypotheses import FaultHypothesis
 from seatsim.diagnosis.localise.localisation import Remainder, localise_remainder, share_gap
-from seatsim.diagnosis.objective import Evaluation
+from seatsim.diagnosis.objective import Evaluation, Linearisation
 
 from .toy import CHANNELS, Added, offer, place, pose, record, weigh_stated
 
@@ -169,8 +169,9 @@ def test_an_error_of_the_sensor_that_an_effect_names_takes_no_effects_place(obje
     calibrated = Evaluation(calibrated.parameters, calibrated.residuals, calibrated.whitened, cost)
     term = chosen.parameters.terms[0]._replace(fixed={"channel": "frame_acceleration"})
     chosen = dataclasses.replace(chosen, parameters=dataclasses.replace(chosen.parameters, terms=(term,)))
+    monkeypatch.setattr(type(objective), "linearise_nuisances", lambda self, rig: Linearisation(rig, {}))
     error = hypothesis(0.2)._replace(channel=channel)
-    monkeypatch.setattr(localisation, "_weigh_blocks", lambda *_: Remainder({"sensor": error}, {"sensor": 1.0}))
+    monkeypatch.setattr(localisation, "weigh_blocks", lambda *_: Remainder({"sensor": error}, {"sensor": 1.0}))
     assert (localise_remainder(objective, calibrated, chosen)[1] is chosen) is kept
 
 

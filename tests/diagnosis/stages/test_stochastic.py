@@ -75,7 +75,7 @@ def discrepancy(block, frequency=5.0, ratio=1.0, predicted=0.0, channel="", rms=
     for k, (run, samples) in enumerate({"first": 400, "second": 300}.items()):
         wave = np.sqrt(2.0) * np.sin(2.0 * np.pi * frequency * np.arange(samples) / RATE)
         signals[run] = rms * wave * ratio**k
-    return Discrepancy(block, "force", "N", signals, {"velocity": predicted, "everything": predicted}, channel)
+    return Discrepancy(block, "force", "N", signals, {"velocity": predicted, "everything": predicted}, channel, signals)
 
 
 @pytest.mark.parametrize(

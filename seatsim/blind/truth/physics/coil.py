@@ -18,6 +18,8 @@ LOWEST_LIMIT = 0.05
 """A; a supply that sags still delivers this."""
 SAG_TIME = 1.5
 """s, over which the supply averages the current that makes it sag."""
+DROPOUT_GRID = 1e-3
+"""s; a dropout may begin once in each of these intervals, which are longer than any step of a simulation."""
 OFF = 0.02
 """A; below this target the driver is off and no voltage is left for the back EMF to reduce."""
 FALL_AT_LOW_CURRENT = 1.6
@@ -67,11 +69,15 @@ def target_current(command: float, time: float, h: float, y: Array, memory: Arra
 
 @compiled
 def drops_out(time: float, h: float, memory: Array, p: RigParameters) -> bool:
-    """Tell whether the driver is off in this step; dropouts begin at random, `dropout_interval` apart on average."""
+    """Tell whether the driver is off in this step; dropouts begin at random, `dropout_interval` apart on average.
+
+    Where one may begin does not depend on the step, so that a coarse simulation and the recorded one have the same.
+    """
     if memory[state.DROPOUT_LEFT] > 0.0:
         memory[state.DROPOUT_LEFT] -= h
         return True
-    if repeatable_noise(math.floor(time / h + 0.5), p.dropout_seed) < h / p.dropout_interval:
+    chance = repeatable_noise(math.floor(time / DROPOUT_GRID + ROUNDING), p.dropout_seed)
+    if chance < DROPOUT_GRID / p.dropout_interval:
         memory[state.DROPOUT_LEFT] = p.dropout_duration
     return False
 
