@@ -132,6 +132,19 @@ def test_a_random_force_is_named_unless_it_is_withheld(posed):
     assert solved(shaken, ("floor.unmeasured_input",)).decision.verdict == "unknown"
 
 
+def test_a_random_force_is_named_beside_an_effect_that_hides_it(posed):
+    rubbing, measured = find("effect", "suspension.friction")(force=20.0, presliding=2e-4), {}
+    for seed, run in enumerate(posed.runs):
+        floor = posed.inputs[run].floor
+        push = 15.0 * coloured(len(floor.acceleration), 10.0, 14.0, seed, 1.0 / floor.step)
+        true = posed.simulated(run, posed.nominal, [rubbing], posed.inputs[run]._replace(forces=Forces(push)))
+        measured[run] = noisy(posed, true)
+    solution = solved(dataclasses.replace(posed, measured=measured))
+    assert solution.stochastic == "floor.unmeasured_input"
+    assert solution.decision.chosen.parameters.names == {"suspension.friction"}
+    assert {share.block for share in solution.where} == {"floor", "suspension"}
+
+
 def test_broadband_noise_is_seen_above_the_compared_band(posed):
     run, k = posed.runs[0], posed.channels.index("frame_acceleration")
     quiet = posed.noise[:, None] * np.random.default_rng(3).standard_normal(posed.measured[run].shape)

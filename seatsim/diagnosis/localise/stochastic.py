@@ -6,6 +6,7 @@ Their signal is never simulated, since it differs from run to run.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -38,29 +39,33 @@ def find_disturbance(objective: Objective, selection: Selection) -> Discrepancy 
     A disturbance shows only about a rig with the effects beside it, and they are found only where the disturbance is
     expected. Sets are therefore judged by what they leave beyond a disturbance, not by all that they leave.
     """
-    problem, settings, before = objective.problem, objective.settings, selection.calibrated.excess
-    found = list[tuple[float, Linearisation]]()
-    for evaluation in _list_helpful(settings, selection):
-        nuisances = selection.linearise_nuisances(objective, evaluation)
-        hypotheses = evaluate_hypotheses(objective, nuisances, ["suspension"])
-        block = min(hypotheses, key=lambda name: hypotheses[name].negative_log_evidence)
-        left = hypotheses[block].negative_log_evidence
-        remainder = describe_discrepancy(problem, evaluation.parameters, block, hypotheses[block])
-        if left < settings.decision.explained * before and name_stochastic_effect(problem, remainder):
-            slight = settings.localisation.slight * before * len(evaluation.parameters.terms)
-            found.append((left + slight, nuisances))
-    if not found:
+    tried = [
+        selection.calibrated,
+        *(each for sets in selection.sets[1:] for each in sets[: objective.settings.selection.beam]),
+    ]
+    rigs = [selection.linearise_nuisances(objective, each) for each in tried]
+    left = [
+        _measure_left(objective, rig, selection.calibrated.excess)
+        + objective.settings.localisation.slight * len(rig.evaluation.parameters.terms)
+        for rig in rigs
+    ]
+    if min(left) == math.inf:
         return None
-    _, nuisances = min(found, key=lambda pair: pair[0])
+    nuisances = rigs[int(np.argmin(left))]
     blocks = weigh_blocks(objective, nuisances)
-    return describe_discrepancy(problem, nuisances.evaluation.parameters, blocks.block, blocks.likeliest)
+    return describe_discrepancy(objective.problem, nuisances.evaluation.parameters, blocks.block, blocks.likeliest)
 
 
-def _list_helpful(settings: DiagnosisSettings, selection: Selection) -> list[Evaluation]:
-    """Return the calibrated rig, and the best sets of each size that leave clearly less than it."""
-    most = settings.decision.first_effect_helps * selection.calibrated.excess
-    sets = [each for sets in selection.sets[1:] for each in sets[: settings.selection.beam]]
-    return [selection.calibrated, *(each for each in sets if each.excess < most)]
+def _measure_left(objective: Objective, nuisances: Linearisation, before: float) -> float:
+    """Return the share of an excess `before` that a disturbance leaves of a rig, infinite where none explains it."""
+    problem = objective.problem
+    hypotheses = evaluate_hypotheses(objective, nuisances, ["suspension"])
+    block, likeliest = min(hypotheses.items(), key=lambda pair: pair[1].negative_log_evidence)
+    share = likeliest.negative_log_evidence / before
+    if share >= problem.settings.decision.explained:
+        return math.inf
+    remainder = describe_discrepancy(problem, nuisances.evaluation.parameters, block, likeliest)
+    return share if name_stochastic_effect(problem, remainder) else math.inf
 
 
 def find_bias_drift(problem: DiagnosisProblem, evaluation: Evaluation) -> Discrepancy | None:

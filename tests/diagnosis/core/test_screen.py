@@ -156,6 +156,27 @@ def test_starts_keep_the_bounds_and_the_shape():
     np.testing.assert_allclose(found.parameters.values[0], [3.0, 0.25])
 
 
+def test_each_size_is_predicted_by_itself():
+    objective = pose({"a.one": 1.5, "a.one beside": -0.4})
+    candidate = offer_two("a.one", (1.0, 0.25), (-3.0, -3.0), (3.0, 3.0))
+    (together,) = screened(objective, [candidate])
+    (apart,) = screened(objective, [candidate._replace(sizes=2)])
+    np.testing.assert_allclose(apart.parameters.values[0], [1.5, -0.4], atol=0.05)
+    assert apart.cost < 0.1 * together.cost
+
+
+def test_the_changes_of_an_effect_with_two_sizes_stand_beside_those_of_others():
+    objective = pose({"b.two": 1.0})
+    calibrated = refit(objective, Parameters(objective.problem.nominal))
+    both = offer_two("a.one", (1.0, 0.25), (-3.0, -3.0), (3.0, 3.0))._replace(sizes=2)
+    found = measure_sensitivities(objective, calibrated, [both, offer("b.two", start=0.5)])
+    assert found.entries == [slice(0, 2), slice(2, 3)]
+    expected = [whiten(objective, "a.one"), 0.25 * whiten(objective, "a.one beside"), 0.5 * whiten(objective, "b.two")]
+    for k, change in enumerate(expected):
+        changes = np.concatenate([found.changes[run][k].ravel() for run in objective.problem.runs])
+        np.testing.assert_allclose(changes, change, atol=1e-8)
+
+
 @pytest.mark.parametrize("true, expected", [(1.28, 1.27), (1.17, 1.16), (1.07, 1.08), (0.85, 1 / 1.16), (1.0, 1.0)])
 def test_a_limit_is_tried_a_little_to_the_side_that_the_prediction_points_to(true, expected):
     # What a limit adds falls with it: 2 - limit of the signal.
