@@ -40,7 +40,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.select import LinearisedRig, Selection, select_effects
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.solve import Method
+from seatsim.diagnosis.solution import Method
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import load_recording
 

@@ -14,7 +14,8 @@ from seatsim.diagnosis.deadline import Deadline
 from seatsim.diagnosis.problem import DiagnosisProblem, check_nominal, pose_problem
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.solve import Method, solve
+from seatsim.diagnosis.solution import Method
+from seatsim.diagnosis.solve import solve
 from seatsim.diagnosis.state import state_diagnosis
 from seatsim.diagnosis.widen import search_wider
 from seatsim.recordings.header import NOT_STATED, USUAL

@@ -4,27 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple, ParamSpec
+from typing import ParamSpec
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.diagnosis.candidates import Candidate, list_candidates
+from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
 from seatsim.diagnosis.deadline import OutOfTimeError
-from seatsim.diagnosis.decide import (
-    Decision,
-    call_unknown,
-    decide_beside_unknown,
-    decide_verdict,
-    explain_after_all,
-    shows_effect,
-)
+from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown, explain_after_all, shows_effect
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.input_noise import carry_force
-from seatsim.diagnosis.localise.discrepancy import Discrepancy, describe_discrepancy
+from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
 from seatsim.diagnosis.localise.input_estimate import estimate_nonrepeatable_force
-from seatsim.diagnosis.localise.localisation import Remainder, localise_remainder, share_gap
+from seatsim.diagnosis.localise.localisation import localise_remainder
 from seatsim.diagnosis.localise.stochastic import (
     add_to_noise,
     find_bias_drift,
@@ -33,51 +26,17 @@ from seatsim.diagnosis.localise.stochastic import (
     name_stochastic_effect,
 )
 from seatsim.diagnosis.movement import is_material, measure_gap_taken
-from seatsim.diagnosis.noise import NoiseWeights, measure_broadband, weigh_gap, weigh_noise
+from seatsim.diagnosis.noise import measure_broadband, weigh_gap
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Share
-from seatsim.diagnosis.select import LinearisedRig, Selection, select_effects
+from seatsim.diagnosis.select import Selection
+from seatsim.diagnosis.solution import Method, Progress, SearchTask, Solution, search
 from seatsim.effects.base import EFFECTS
 
 Array = NDArray[np.float64]
 P = ParamSpec("P")
-Progress = Callable[[str], object]
-
-
-class Method(NamedTuple):
-    """The stages of a diagnosis; a benchmark replaces one of them to measure its contribution."""
-
-    weigh_noise: Callable[[DiagnosisProblem], NoiseWeights] = weigh_noise
-    select_effects: Callable[
-        [Objective, Sequence[Candidate], Progress, int | None, LinearisedRig | None], Selection
-    ] = select_effects
-    decide_verdict: Callable[[DiagnosisProblem, Selection, Sequence[str]], Decision] = decide_verdict
-    share_gap: Callable[[Objective, Evaluation, Remainder | None], list[Share]] = share_gap
-
-
-class SearchTask(NamedTuple):
-    """Inputs of a search: the candidates, the names of all effects, the progress callback, and the method."""
-
-    candidates: Sequence[Candidate]
-    effects: Sequence[str]
-    progress: Progress
-    method: Method
-
-
-class Solution(NamedTuple):
-    """A selection with its decision, the blocks that the gap lies in, and the discrepancy, if anything is unexplained.
-
-    `stochastic` is the effect, if any, whose signal is that discrepancy.
-    """
-
-    objective: Objective
-    selection: Selection
-    decision: Decision
-    where: Sequence[Share] = ()
-    discrepancy: Discrepancy | None = None
-    stochastic: str = ""
 
 
 def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress, method: Method) -> Solution:
@@ -96,7 +55,7 @@ def solve(problem: DiagnosisProblem, without: Sequence[str], progress: Progress,
     forces = None if problem.bench else _estimate_nonrepeatable(objective)
     if forces is not None:
         objective = Objective(problem, objective.weights.add(carry_force(problem, forces)))
-    first = _search(task, objective)
+    first = search(task, objective)
     first = _in_time(_search_at_lower_noise, task, first) or first
     if first.decision.verdict == "unknown":
         first = _in_time(_search_beyond_broadband, task, first) or first
@@ -126,12 +85,6 @@ def _estimate_nonrepeatable(objective: Objective) -> Mapping[str, Array] | None:
     return estimate_nonrepeatable_force(objective, nominal)
 
 
-def _search(task: SearchTask, objective: Objective, rig: LinearisedRig | None = None) -> Solution:
-    selection = task.method.select_effects(objective, task.candidates, task.progress, None, rig)
-    decision = task.method.decide_verdict(objective.problem, selection, task.effects)
-    return Solution(objective, selection, decision)
-
-
 def _search_at_lower_noise(task: SearchTask, first: Solution) -> Solution:
     """Search again with the noise at the level that the best set leaves, where the weights expect more than there is.
 
@@ -143,7 +96,7 @@ def _search_at_lower_noise(task: SearchTask, first: Solution) -> Solution:
         return first
     task.progress("lowering the noise to what is left")
     new = Objective(old.problem, old.weights.scale(least))
-    return _search(task, new, selection.weigh_again(old, new))
+    return search(task, new, selection.weigh_again(old, new))
 
 
 def _takes_enough(objective: Objective, solution: Solution) -> bool:
@@ -167,7 +120,7 @@ def _search_beyond_broadband(task: SearchTask, first: Solution) -> Solution:
     if broadband < problem.settings.noise.broadband_share * best.excess * best.rows:
         return first
     task.progress("counting a broadband residual as noise")
-    second = _search(task, Objective(problem, first.objective.weights.add(errors)))
+    second = search(task, Objective(problem, first.objective.weights.add(errors)))
     return second if second.decision.verdict in ("known", "ambiguous") else first
 
 
@@ -259,7 +212,7 @@ def _search_beside_disturbance(task: SearchTask, first: Solution, without: Seque
     task.progress(f"counting {effect} as noise")
     noisy = Objective(problem, add_to_noise(problem, objective.weights, effect, found))
     others = task._replace(candidates=[each for each in task.candidates if each.effect != effect])
-    second = _search_at_lower_noise(others, _search(others, noisy))
+    second = _search_at_lower_noise(others, search(others, noisy))
     if second.decision.verdict == "unknown":
         return first
     localised = _localise(others, second)

@@ -24,7 +24,7 @@ from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment, RunGaps
 from seatsim.diagnosis.sentences import write_answer
-from seatsim.diagnosis.solve import Solution
+from seatsim.diagnosis.solution import Solution
 from seatsim.diagnosis.validate import (
     choose_held_out_run,
     choose_typical_run,

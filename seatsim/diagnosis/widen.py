@@ -20,7 +20,8 @@ from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
-from seatsim.diagnosis.solve import Method, Solution, solve
+from seatsim.diagnosis.solution import Method, Solution
+from seatsim.diagnosis.solve import solve
 
 Progress = Callable[[str], object]
 Search = Callable[[], Solution]

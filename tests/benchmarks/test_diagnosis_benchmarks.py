@@ -7,7 +7,7 @@ import pytest
 
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.solve import Method
+from seatsim.diagnosis.solution import Method
 from seatsim.effects.sensor import Gain
 from seatsim.recordings.recording import load_recording
 

@@ -3,7 +3,8 @@
 from concurrent.futures import ThreadPoolExecutor
 
 from seatsim.diagnosis.problem import pose_problem
-from seatsim.diagnosis.solve import Method, solve
+from seatsim.diagnosis.solution import Method
+from seatsim.diagnosis.solve import solve
 from seatsim.recordings.recording import load_recording
 
 POOL = ThreadPoolExecutor(2)

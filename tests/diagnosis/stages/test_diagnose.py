@@ -13,7 +13,7 @@ from threadpoolctl import threadpool_info
 from seatsim.diagnosis import diagnose as module
 from seatsim.diagnosis.diagnose import diagnose, diagnose_problem
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
-from seatsim.diagnosis.solve import Method
+from seatsim.diagnosis.solution import Method
 from seatsim.effects.driver import Mass
 from seatsim.recordings.quality.examination import Examination
 from seatsim.recordings.quality.issue import Issue

@@ -17,7 +17,8 @@ from seatsim.diagnosis.noise import measure_broadband, weigh_gap, weigh_noise
 from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.result import Share
 from seatsim.diagnosis.select import Selection
-from seatsim.diagnosis.solve import Method, solve
+from seatsim.diagnosis.solution import Method
+from seatsim.diagnosis.solve import solve
 from seatsim.schema.registry import names
 
 from .toy import CHANNELS, SKIP, Added, offer, place, pose, record

@@ -14,7 +14,7 @@ from seatsim.diagnosis.localise.discrepancy import Discrepancy, show_discrepancy
 from seatsim.diagnosis.result import GapFigures, Gaps, Share
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.sentences import write_answer
-from seatsim.diagnosis.solve import Solution
+from seatsim.diagnosis.solution import Solution
 from seatsim.diagnosis.state import _name_raised_gap, _propose_experiment, state_diagnosis, validate_on_held_out
 from seatsim.diagnosis.validate import choose_held_out_run, make_scenario, refit_without, shrink_by_run
 from seatsim.recordings.gap import measure_gap

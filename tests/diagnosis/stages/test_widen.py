@@ -8,7 +8,8 @@ import pytest
 
 from seatsim.diagnosis import widen as module
 from seatsim.diagnosis.diagnose import diagnose_problem
-from seatsim.diagnosis.solve import Method, Solution, solve
+from seatsim.diagnosis.solution import Method, Solution
+from seatsim.diagnosis.solve import solve
 from seatsim.diagnosis.widen import find_at_bound, search_wider
 from seatsim.effects.driver import Mass
 
