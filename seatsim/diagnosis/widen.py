@@ -20,10 +20,9 @@ from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
-from seatsim.diagnosis.solution import Method, Solution
+from seatsim.diagnosis.solution import Method, Progress, Solution
 from seatsim.diagnosis.solve import solve
 
-Progress = Callable[[str], object]
 Search = Callable[[], Solution]
 THEIRS = {
     "plant.driver_mass": "driver.mass", "actuator.rate": "coil.lag", "actuator.max_current": "coil.current_limit",
