@@ -6,10 +6,11 @@ from typing import NamedTuple
 
 from seatsim.diagnosis.settings.damper_forms import DamperFormSettings
 from seatsim.diagnosis.settings.designing import DesignSettings
-from seatsim.diagnosis.settings.fitting import FitSettings, SelectionSettings, WideningSettings
+from seatsim.diagnosis.settings.fitting import FitSettings, WideningSettings
 from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings, ReconstructionSettings
 from seatsim.diagnosis.settings.noise_model import NoiseSettings
+from seatsim.diagnosis.settings.selecting import SelectionSettings
 from seatsim.diagnosis.settings.validating import CrossValidationSettings, ValidationSettings
 
 
