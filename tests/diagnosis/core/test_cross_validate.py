@@ -174,6 +174,15 @@ def test_an_effect_is_chosen_whose_evidence_outweighs_its_prior(factor, chosen):
     assert select(pose(independent=factor * least), [("rig.two",)]) == (chosen, [])
 
 
+@pytest.mark.parametrize("ratio, chosen", [(3.2, {"rig.one", "rig.two"}), (2.8, {"rig.one"})])
+def test_two_effects_take_the_place_of_one_only_where_the_evidence_decides(ratio, chosen):
+    amounts = TRUE | {"rig.two": 0.4}
+    # 0.05 (1 - gain)^-n = ratio
+    taken = gain(pose(amounts=amounts), ["rig.one", "rig.two"], ["rig.one"])
+    objective = pose(amounts=amounts, independent=np.log(ratio / 0.05) / -np.log(1.0 - taken))
+    assert select(objective, [("rig.one",)], [("rig.one", "rig.two")]) == (chosen, [])
+
+
 def test_sets_that_help_as_much_are_equivalent():
     objective = pose()
     # Two signals that differ by a tenth help alike; another effect does not.
