@@ -40,8 +40,8 @@ class Supported(NamedTuple):
 def select_by_cross_validation(objective: Objective, selection: Selection) -> Supported:
     """Return the smallest set of effects that no larger one improves on left-out runs, and sets that help as much.
 
-    A larger set is chosen as long as its evidence is higher (see `seatsim.diagnosis.probability`), two effects in place
-    of one only where the evidence decides between them, so that a tie goes to the simpler explanation.
+    A larger set is chosen as long as its evidence is higher (see `seatsim.diagnosis.probability`); one without the
+    effect chosen so far, a rival explanation, only where the evidence decides: a tie goes to the simpler explanation.
     """
     settings, problem = objective.settings.cross_validation, objective.problem
     chosen, equivalent = selection.calibrated, list[Evaluation]()
@@ -56,8 +56,11 @@ def select_by_cross_validation(objective: Objective, selection: Selection) -> Su
             tried.append((each, _charge(objective, each, float(np.mean(after**2) / np.mean(alone**2)))))
         found += tried
         best = sorted(_list_equals(objective, tried), key=lambda each: (_count_sensors(each[0]), each[1]))
-        margin = math.log(settings.equivalent) if chosen.parameters.terms else 0.0
-        if not best or _weigh(objective, *best[0]) < _weigh(objective, chosen, before) + margin:
+        if not best:
+            break
+        is_rival = not chosen.parameters.names <= best[0][0].parameters.names
+        margin = math.log(settings.equivalent) if is_rival else 0.0
+        if _weigh(objective, *best[0]) < _weigh(objective, chosen, before) + margin:
             break
         (chosen, before), equivalent = best[0], [evaluation for evaluation, _ in best[1:]]
     return Supported(chosen, equivalent, [(each, _weigh(objective, each, left)) for each, left in found])

@@ -174,13 +174,22 @@ def test_an_effect_is_chosen_whose_evidence_outweighs_its_prior(factor, chosen):
     assert select(pose(independent=factor * least), [("rig.two",)]) == (chosen, [])
 
 
-@pytest.mark.parametrize("ratio, chosen", [(3.2, {"rig.one", "rig.two"}), (2.8, {"rig.one"})])
-def test_two_effects_take_the_place_of_one_only_where_the_evidence_decides(ratio, chosen):
+@pytest.mark.parametrize(
+    "ratio, pair, is_chosen",
+    [
+        (1.05, ("rig.one", "rig.two"), True),
+        (0.95, ("rig.one", "rig.two"), False),
+        (3.2, ("rig.alike", "rig.two"), True),
+        (2.8, ("rig.alike", "rig.two"), False),
+    ],
+)
+def test_two_other_effects_take_the_place_of_one_only_where_the_evidence_decides(ratio, pair, is_chosen):
     amounts = TRUE | {"rig.two": 0.4}
     # 0.05 (1 - gain)^-n = ratio
-    taken = gain(pose(amounts=amounts), ["rig.one", "rig.two"], ["rig.one"])
+    taken = gain(pose(amounts=amounts), pair, ["rig.one"])
     objective = pose(amounts=amounts, independent=np.log(ratio / 0.05) / -np.log(1.0 - taken))
-    assert select(objective, [("rig.one",)], [("rig.one", "rig.two")]) == (chosen, [])
+    chosen = set(pair) if is_chosen else {"rig.one"}
+    assert select(objective, [("rig.one",)], [pair]) == (chosen, [])
 
 
 def test_sets_that_help_as_much_are_equivalent():
