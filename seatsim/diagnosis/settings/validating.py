@@ -30,7 +30,7 @@ class CrossValidationSettings(NamedTuple):
         Threshold(
             "-",
             "ratio of the evidences of two sets below which they help as much",
-            "higher: larger groups, and more often one effect in place of two",
+            "higher: larger groups, and more often one effect in place of two others",
             "a Bayes factor below 3 is not worth more than a bare mention (Kass and Raftery, 1995)",
         ),
     ] = 3.0
