@@ -10,7 +10,7 @@ from seatsim.benchmark.dampers import measure_dampers
 from seatsim.benchmark.measurement import Cost
 from seatsim.benchmark.native import has_compiler
 from seatsim.benchmark.peers import measure_c, measure_heyoka, measure_numbalsoda, measure_scipy
-from seatsim.benchmark.scaling import measure_cores, measure_dask, measure_lanes, measure_lengths
+from seatsim.benchmark.scaling import measure_cores, measure_dask, measure_lengths
 
 
 class Part(NamedTuple):
@@ -26,7 +26,6 @@ def list_parts(dampers: Sequence[str]) -> dict[str, Part]:
     return {
         "dampers": Part("a step of the loop with each damper", lambda: measure_dampers(dampers)),
         "length": Part("a step of a whole run, by length", measure_lengths),
-        "lanes": Part("a run among others side by side, metrics only", measure_lanes),
         "cores": Part("a run of a sweep, by runs at once", measure_cores),
         "dask": Part("a run of a sweep on an embedded cluster", measure_dask,
                      _need("distributed", 'pip install "seatsim[cluster]"')),

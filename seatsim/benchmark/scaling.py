@@ -1,11 +1,10 @@
-"""How the cost of a run grows with its length, and falls in lanes, with more processors and on a cluster."""
+"""How the cost of a run grows with its length, and falls with more processors and on a cluster."""
 
 from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -13,13 +12,11 @@ from seatsim.benchmark.measurement import Cost, compare_least, time_in_turns
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.leftovers import temporary_folder
-from seatsim.simulation.ensemble import simulate_ensemble
 from seatsim.simulation.runs import run_one
 from seatsim.sweeps.engines.choice import open_engine
 from seatsim.sweeps.execute import execute, prepare
 
-LENGTHS, LANES, REPEATS = (1.0, 10.0, 100.0), (1, 4, 16, 64), 5
-DURATION = 10.0
+LENGTHS, REPEATS = (1.0, 10.0, 100.0), 5
 RUNS = 1000
 """Points of the sweep on several processors: enough that the start of a process does not count."""
 SWEEP = """\
@@ -42,23 +39,6 @@ def measure_lengths() -> Iterator[Cost]:
     first = next(iter(steps))
     for name, series in steps.items():
         yield compare_least(name, series, "ns a step", 1e6, f"a step of a {first}", steps[first])
-
-
-def measure_lanes() -> Iterator[Cost]:
-    """Yield what a run costs among others side by side, beside a run alone; floor and metrics included."""
-    seat = load_seat(DURATION)
-    assert seat.plant is not None
-    masses = [50.0 + 60.0 * number / max(LANES) for number in range(max(LANES))]
-    scenarios = [replace(seat, plant=seat.plant._replace(driver_mass=mass)) for mass in masses]
-    runs: dict[str, Callable[[], object]] = {"alone": partial(run_one, seat)}
-    runs |= {f"{lanes} side by side": partial(simulate_ensemble, scenarios[:lanes]) for lanes in LANES}
-    for run in runs.values():
-        run()
-    times = time_in_turns(runs, REPEATS)
-    alone = times.pop("alone")
-    for (name, series), lanes in zip(times.items(), LANES, strict=True):
-        each = [t / lanes for t in series]
-        yield compare_least(name, each, "ms a run", 1e3, "a run alone", alone)
 
 
 def measure_cores() -> Iterator[Cost]:

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from seatsim.compilation.jit import define, jit
 from seatsim.compilation.watch import report
 from seatsim.kernel.inverse import CELLS
-from seatsim.kernel.lane_records import SHARED, numbers
 from seatsim.kernel.lane_run import NO_STROKES, NO_SUMS, LaneEnd, LaneLimits, LaneSignals, LaneStart, Strokes, run_lane
-from seatsim.kernel.lane_state import Sums
+from seatsim.kernel.numbers import SHARED, numbers
+from seatsim.kernel.sums import Sums
 
 Array = NDArray[np.float64]
 Form = tuple[str, tuple[tuple[str, type], ...]]
@@ -75,7 +75,7 @@ def run_on_device(
 ) -> tuple[list[LaneEnd], Any]:
     """Simulate L lanes and return their ends, and their drivers' accelerations in m/s^2, shape (N, L), on the device.
 
-    `template` gives the form of the lanes (see `lane_records.template_of`); `depth` is above the greatest delay in
+    `template` gives the form of the lanes (see `numbers.template_of`); `depth` is above the greatest delay in
     steps by two.
 
     Raises:

@@ -1,7 +1,7 @@
 """One run from rest to its end, with its whole state in local variables: what one thread of a CUDA device does.
 
-It takes the steps of `seatsim.kernel.loop.run_loop` with the same functions, from the same source, and keeps the sums
-of `seatsim.kernel.lanes` in place of the channels.
+It takes the steps of `seatsim.kernel.loop.run_loop` with the same functions, from the same source, and keeps sums
+in place of the channels.
 """
 
 from __future__ import annotations
@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 from seatsim.compilation.jit import jit
 from seatsim.kernel.assumed_model import follow_state, model_scaling
 from seatsim.kernel.generic import advance_filters, read, scaling_at, update
-from seatsim.kernel.lane_state import Demand, Lane, Sums
-from seatsim.kernel.lanes import add_to_sums
 from seatsim.kernel.loop import decide, delay_of, measure, warm_up
 from seatsim.kernel.loop_inputs import LoopSetup
 from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import StepInputs, advance, start
+from seatsim.kernel.sums import Demand, Sums, add_to_sums
 from seatsim.rig.state import CUSHION_VELOCITY, DAMPER_WORK, DISPLACEMENT, VELOCITY, State
 
 Array = NDArray[np.float64]
@@ -119,7 +118,7 @@ def run_lane(lane: LaneStart, limits: LaneLimits, signals: LaneSignals, grid: Ar
         signals.commands[k % len(signals.commands)] = demand.command
         frame = now.rates[VELOCITY] + floor
         signals.driver[k] = frame + now.rates[CUSHION_VELOCITY]
-        sums = add_to_sums(setup, Lane(now, current, 0.0), demand, frame, sums, k == 0)
+        sums = add_to_sums(rig.plant, now, current, demand, frame, sums, k == 0)
         fast += 1.0 if abs(ratio * now.state[VELOCITY]) > limits.speed else 0.0
         strong += 1.0 if current > limits.current else 0.0
         if k == samples - 1:

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from seatsim.excitations.base import Floor
 from seatsim.kernel.cuda_lanes import DeviceInputs, KernelError, free_memory, is_simulated, run_on_device
-from seatsim.kernel.lane_records import template_of
 from seatsim.kernel.lane_run import LaneEnd, LaneLimits
+from seatsim.kernel.numbers import template_of
 from seatsim.metrics import METRICS, Metric, rms, weight
 from seatsim.metrics.arrays import ratio
 from seatsim.metrics.side_by_side import measure_drivers

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.excitations.base import Floor
-from seatsim.kernel.lane_records import numbers
 from seatsim.kernel.lane_run import LaneStart
 from seatsim.kernel.loop import delay_of
+from seatsim.kernel.numbers import numbers
 from seatsim.rig.sensors import READINGS, Direct, at_rest
 from seatsim.rig.state import MECHANICAL
 from seatsim.rig.temperature import Thermal

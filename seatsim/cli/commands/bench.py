@@ -15,7 +15,7 @@ def bench(
     parts: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[PART]...", help="dampers, length, lanes, cores, dask, c, scipy, numbalsoda, heyoka; or all."
+            metavar="[PART]...", help="dampers, length, cores, dask, c, scipy, numbalsoda, heyoka; or all."
         ),
     ] = None,
     models: Annotated[
@@ -23,7 +23,7 @@ def bench(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Measure what runs cost on this machine, as ratios: dampers, lengths, lanes, processors, C, general solvers."""
+    """Measure what runs cost on this machine, as ratios: dampers, lengths, processors, C, general solvers."""
     from seatsim.benchmark.parts import list_parts
     from seatsim.dampers.base import DAMPERS
 
