@@ -14,9 +14,7 @@ from seatsim.schema.errors import InputError, nearest
 def bench(
     parts: Annotated[
         list[str] | None,
-        typer.Argument(
-            metavar="[PART]...", help="dampers, length, cores, dask, c, scipy, numbalsoda, heyoka; or all."
-        ),
+        typer.Argument(metavar="[PART]...", help="dampers, length, cores, dask, c, scipy, numbalsoda, heyoka; or all."),
     ] = None,
     models: Annotated[
         list[str] | None, typer.Option("--model", metavar="NAME", help="Damper of the part 'dampers'; or all.")
