@@ -13,7 +13,6 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from seatsim.cli.commands.bench import bench
 from seatsim.cli.commands.blind import blind
 from seatsim.cli.commands.dampers import characterise, identify
 from seatsim.cli.commands.describe import describe
@@ -84,7 +83,7 @@ app = typer.Typer(
 )  # fmt: skip
 for command in (
     run, compare, sweep, sweep_report, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test,
-    export, new, check, schema, bench, explore, reproduce,
+    export, new, check, schema, explore, reproduce,
 ):  # fmt: skip
     app.command(cls=_Command)(command)
 app.command("import", cls=_Command)(import_data)

@@ -13,8 +13,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
+from seat_run import DAMPER, GAIN, PLANT, STEP
 
-from seatsim.benchmark.seat_run import DAMPER, GAIN, PLANT, STEP
 from seatsim.rig.coil import Coil
 
 MS, M, KF, CF, KC, CC = PLANT[:6]

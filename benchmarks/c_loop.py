@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import ctypes
-import shutil
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from seat_run import DAMPER, GAIN, PLANT
 
-from seatsim.benchmark.seat_run import DAMPER, GAIN, PLANT
 from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.loop_inputs import LoopSetup
 
@@ -27,11 +26,6 @@ class _Setup(ctypes.Structure):
     """`LoopSetup` of the C files: 34 doubles in their order, then the steps per sample of the law."""
 
     _fields_ = (("values", ctypes.c_double * 34), ("sample_every", ctypes.c_long))
-
-
-def has_compiler() -> bool:
-    """Return whether the machine has gcc."""
-    return shutil.which("gcc") is not None
 
 
 def native_run(
