@@ -20,8 +20,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.excitations.base import Floor
-from seatsim.kernel.cuda_lanes import DeviceInputs, KernelError, free_memory, is_simulated, run_on_device
-from seatsim.kernel.lane_run import LaneEnd, LaneLimits
+from seatsim.kernel.cuda_lanes import (
+    DeviceInputs,
+    KernelError,
+    LaneEnd,
+    LaneLimits,
+    free_memory,
+    is_simulated,
+    run_on_device,
+)
 from seatsim.kernel.numbers import template_of
 from seatsim.metrics import METRICS, Metric, rms, weight
 from seatsim.metrics.arrays import ratio
@@ -144,8 +151,9 @@ def _row(lane: DeviceLane, end: LaneEnd, samples: int, found: dict[str, float]) 
     found |= metrics_of_sums(end.sums, samples, rig)
     metrics = {name: Metric(found[name], known.unit, known.meaning) for name, known in METRICS.items() if name in found}
     is_centred = specification_of(type(lane.scenario.damper.record)).centred
-    drift = judge_centring(end.strokes.lengths, end.strokes.middles) if is_centred else ""
-    return LaneRow(metrics, Excursions(end.fast / samples, end.strong / samples, end.sums.displacement_peak, drift))
+    sums = end.sums
+    drift = judge_centring(sums.lengths, sums.middles) if is_centred else ""
+    return LaneRow(metrics, Excursions(sums.fast / samples, sums.strong / samples, sums.displacement_peak, drift))
 
 
 def _weighted_rms(floor: Array, step: float) -> float:

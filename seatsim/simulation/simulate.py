@@ -18,6 +18,7 @@ from seatsim.kernel.chain import state_at_rest
 from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
+from seatsim.kernel.recorders import keep_rows
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.work import MOST_WORK
 from seatsim.rig.control import LawWithNotes, prepare_law
@@ -96,13 +97,14 @@ def simulate(
         inputs = inputs._replace(sensed=at_rest(scenario.start.displacement), noise=noise)
     # Each channel lies in one piece, as it is read afterwards: a transpose would take a third of the run's time.
     out = np.empty((len(CHANNELS), len(floor.acceleration))).T
-    variable = setup.law, setup.inverse_model.damper, setup.sensors
+    recorder = keep_rows(out)
+    variable = setup.law, setup.inverse_model.damper, setup.sensors, recorder
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
     states = (initial, _initial_state(setup.inverse_model), specification_of(type(scenario.control.law)).initial)
     if isinstance(unit, FmuDamper):
         reached = run_coupled(unit, setup, inputs, states, out)
     else:
-        reached = compiled(run_loop, parts)(setup, inputs, *states, out)
+        reached, *_ = compiled(run_loop, parts)(setup, inputs, *states, recorder)
     if reached < len(out):
         raise diverged(scenario, reached)
     notes = setup.law.notes() if isinstance(setup.law, LawWithNotes) else ()
