@@ -175,7 +175,7 @@ def _define_kernel(form: Form) -> Callable[..., None]:
                 floors[:, own], speeds[:, own], none, none, none, none, none, 0.0, start.displacement, start.velocity,
                 start.sensed, noise[:, :, lane], start.temperature,
             )  # fmt: skip
-            recorder = Summed(driver[:, lane], commands[:, lane], room, most_speed, most_current)
+            recorder: Any = Summed(driver[:, lane], commands[:, lane], room, most_speed, most_current)
             reached, sums, temperature = simulate(start.setup, inputs, start.rig, start.followed, start.law, recorder)
             scatter((sums, temperature, float(reached)), ends, lane)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,9 +87,9 @@ class Summed(NamedTuple):
         command: float = self.commands[k % len(self.commands)]
         return command
 
-    def keep(self, kept: State, rig: Rig, k: int, now: IntegratorState, sample: Sample) -> State:
+    def keep(self, sums: Sums, rig: Rig, k: int, now: IntegratorState, sample: Sample) -> Sums:
         """Return the sums with sample `k`."""
-        s, plant, sums = now.state, rig.plant, cast("Sums", kept)
+        s, plant = now.state, rig.plant
         x, v = s[DISPLACEMENT], s[VELOCITY]
         frame = now.rates[VELOCITY] + sample.floor
         self.commands[k % len(self.commands)] = sample.command
