@@ -98,6 +98,7 @@ class SweepReportAnswer(Answer):
 class SynthesisAnswer(Answer):
     """A design, as in `design.yaml`."""
 
+    measures: list[str]
     gain: list[list[float]]
     gamma: float
     lower_bound: float
