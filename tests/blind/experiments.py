@@ -17,7 +17,7 @@ class SmallExperiment(NamedTuple):
 
 
 def small_experiment(bingham: bool = False, scatter: float = 0.0) -> SmallExperiment:
-    experiment = draw_experiment(np.random.default_rng(5), bingham, CHANNELS, scatter)
+    experiment = draw_experiment(np.random.default_rng(6), bingham, CHANNELS, scatter)
     motions = [simulate_run(experiment, Changes(), k) for k in range(3)]
     context = context_of(experiment, [read_channels(experiment, Changes(), k, motions[k]) for k in range(3)])
     return SmallExperiment(experiment, context, CommandedRuns(experiment, [motion.command for motion in motions]))

@@ -34,7 +34,7 @@ def test_channels_are_missing_at_their_rates() -> None:
     shares = Counter(map(len, missing))
     assert [shares[k] / 4000 for k in range(3)] == pytest.approx([0.6, 0.33, 0.07], abs=0.03)
     single = Counter(some[0] for some in missing if len(some) == 1)
-    assert single["damper_force"] / single.total() == pytest.approx(0.5, abs=0.04)
+    assert single["damper_force"] / single.total() == pytest.approx(0.7, abs=0.04)
 
 
 @pytest.mark.parametrize("power", [1.0, 1.4, 1.7])
