@@ -22,11 +22,13 @@ from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import YamlError, parse_value
-from seatsim.sweeps.axes import MOST_RUNS, Axis, read_axis
+from seatsim.sweeps.axes import Axis, read_axis
 
 DesignName = Literal["cross", "zip", "lhs", "sobol", "table"]
 DESIGNS: tuple[str, ...] = get_args(DesignName)
 KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
+MOST_RUNS = 10_000_000
+"""Runs of a sweep: their numbers have this many digits, and more would be a slip of the keyboard."""
 LARGEST_DESIGN = 2**30
 """Bytes of a table of runs."""
 

@@ -18,8 +18,7 @@ from seatsim.scenario.expansion import expand
 from seatsim.scenario.loading import read_scenario, reread
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.yaml_source import Source
-from seatsim.sweeps.axes import MOST_RUNS
-from seatsim.sweeps.definition import SweepDefinition
+from seatsim.sweeps.definition import MOST_RUNS, SweepDefinition
 from seatsim.sweeps.design import count_points, resolve_design
 
 
