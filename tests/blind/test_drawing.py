@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from seatsim.blind.make import draw_case, draw_experiment, folder, materiality, severity
-from seatsim.blind.make.tolerance import ToleranceRefit, _bounded_least_squares
+from seatsim.blind.make.tolerance import ToleranceRefit, bounded_least_squares
 from seatsim.blind.truth.faults.scenario import Changes, SensorFault
 
 from .experiments import small_experiment
@@ -98,7 +98,7 @@ def test_the_bounded_refit_is_the_projection_onto_the_box() -> None:
     rng = np.random.default_rng(0)
     J, _ = np.linalg.qr(rng.standard_normal((60, 3)))
     theta = np.array([0.4, -2.5, 0.9])
-    found = _bounded_least_squares(J, J @ theta + 0.0)
+    found = bounded_least_squares(J, J @ theta + 0.0)
     np.testing.assert_allclose(found, [0.4, -1.0, 0.9], atol=1e-6)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.blind.make.folder import encode_yaml
+from seatsim.blind.make.folder import encode_yaml, pack
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.errors import InputError
 from seatsim.schema.yaml_source import Source
@@ -125,8 +124,6 @@ def _encode_table(carrier: Carrier, run: str) -> bytes:
     rows = len(next(iter(table.values())))
     columns = {"time": np.arange(rows) * carrier.step, **table}
     formats = ["%.10g", *(f"%.{carrier.decimals.get(name, DECIMALS)}f" for name in table)]
-    packed = io.BytesIO()
-    with gzip.GzipFile(fileobj=packed, mode="wb", mtime=0, compresslevel=6) as stream:
-        stream.write((",".join(columns) + "\n").encode())
-        np.savetxt(stream, np.column_stack(list(columns.values())), fmt=formats, delimiter=",")
-    return packed.getvalue()
+    text = io.StringIO()
+    np.savetxt(text, np.column_stack(list(columns.values())), formats, ",", header=",".join(columns), comments="")
+    return pack(text.getvalue().encode())
