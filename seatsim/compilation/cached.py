@@ -109,7 +109,7 @@ def _find_folder(name: str) -> Path | None:
         _make_private(folder)
         foreign = find_foreign(folder)
         if foreign is not None:
-            folder = _private_cache(foreign) / name
+            folder = _private_cache(cache_folder(), foreign) / name
             _make_private(folder)
     except OSError:
         return None
@@ -124,23 +124,31 @@ def _make_private(folder: Path) -> None:
 
 
 @cache
-def _private_cache(foreign: Path) -> Path:
-    """Return a cache for this process alone, which is removed at its end, and say once why it is needed."""
+def _private_cache(wanted: Path, foreign: Path) -> Path:
+    """Return the user's own cache in place of one that others may write, or one for this process; say so once."""
+    place = _user_cache()
+    _make_private(place)
+    if find_foreign(place) is not None:
+        kept = ExitStack()
+        atexit.register(kept.close)
+        place = kept.enter_context(temporary_folder("seatsim-compiled-"))
     warnings.warn(
-        f"{foreign} may be written by other users, whose code could be run in place of what is cached in"
-        f" {cache_folder()}; everything is compiled anew for this process. Take the right to write from them"
-        f" (chmod go-w {foreign}), or state a folder of your own in SEATSIM_CACHE_DIR",
+        f"{foreign} may be written by other users, whose code could be run in place of what is kept in {wanted};"
+        f" compiled code is kept in {place}. Take the right to write from them (chmod go-w {foreign}), or state a"
+        " folder of your own in SEATSIM_CACHE_DIR",
         stacklevel=2,
     )
-    kept = ExitStack()
-    atexit.register(kept.close)
-    return kept.enter_context(temporary_folder("seatsim-compiled-"))
+    return place
 
 
 def cache_folder() -> Path:
     """Return the folder of compiled runs: `SEATSIM_CACHE_DIR`, or the user's cache folder."""
     chosen = os.environ.get("SEATSIM_CACHE_DIR")
-    return Path(chosen) if chosen else Path(platformdirs.user_cache_dir("seatsim")) / "compiled"
+    return Path(chosen) if chosen else _user_cache()
+
+
+def _user_cache() -> Path:
+    return Path(platformdirs.user_cache_dir("seatsim")) / "compiled"
 
 
 def digest(modules: Iterable[ModuleType]) -> str:

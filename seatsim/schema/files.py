@@ -16,10 +16,11 @@ import shutil
 import socket
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Protocol, TextIO, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 from seatsim.schema.errors import InputError, OutputError
 from seatsim.schema.leftovers import noted, uncut
+from seatsim.schema.links import check_no_link
 
 _HOST = re.sub(r"[^0-9A-Za-z]", "_", socket.gethostname())[:40]
 _PART = re.compile(rf"\..+\.{_HOST}-(\d+)-[0-9a-f]{{8}}\.part(\..*)?")
@@ -130,34 +131,6 @@ def _put_in_place(part: Path, folder: Path, names: Iterable[Path]) -> None:
             else:
                 old.replace(place)
         raise
-
-
-def check_no_link(folder: Path, inside: Path) -> None:
-    """Refuse a way from a folder to what is written in it that leads over a link, and so to somebody else's files.
-
-    A file at the end of the way is no matter: it is put in place of a link, and never written through one.
-
-    Raises:
-        InputError: a folder on the way is a link.
-    """
-    for place in (inside, *inside.parents):
-        if place == folder:
-            return
-        if place.is_symlink():
-            raise InputError(f"{place}: is a link, through which nothing is written; remove it, or give another --out")
-
-
-def open_in_place(path: Path) -> TextIO:
-    """Open a file, made where it is missing, that is read and written where it lies, such as a lock.
-
-    Raises:
-        InputError: it is a link. OutputError: it cannot be written.
-    """
-    try:
-        return os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666), "r+", encoding="utf-8")
-    except OSError as error:
-        check_no_link(path.parent, path)
-        raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
 
 
 def make_folder(folder: Path) -> None:

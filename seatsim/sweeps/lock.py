@@ -9,7 +9,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import check_no_link, make_folder, open_in_place
+from seatsim.schema.files import make_folder
+from seatsim.schema.links import check_no_link, open_in_place
 
 
 @contextmanager

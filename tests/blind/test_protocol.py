@@ -14,7 +14,7 @@ from seatsim.blind.carrier.injections.catalogue import draw_changes
 from seatsim.blind.carrier.recorded import encode_carrier, read_carrier
 from seatsim.blind.labels import EFFECTS
 from seatsim.blind.make.compose import compose
-from seatsim.blind.make.draw_case import CaseSpecification, draw_case, draw_rig
+from seatsim.blind.make.draw_case import CaseSpecification, draw_case
 from seatsim.blind.make.folder import nominal_scenario, recording_header
 from seatsim.blind.truth.experiment import Experiment
 from seatsim.blind.truth.physics.rig import EXCITATION_RATE
@@ -66,7 +66,7 @@ def test_a_classifier_of_all_but_the_signals_stays_at_chance(
 ) -> None:
     monkeypatch.setattr("seatsim.blind.make.draw_varied._add_background", lambda experiment, _: experiment)
     orders = compose(cases, kinds, np.random.default_rng(1))
-    rows = [numbers(told(draw_rig(order, np.random.default_rng([1, k])))) for k, order in enumerate(orders)]
+    rows = [numbers(told(order.draw_rig(np.random.default_rng([1, k])))) for k, order in enumerate(orders)]
     names = sorted({name for row in rows for name in row})
     features = np.array([[row.get(name, 0.0) for name in names] for row in rows])
     half = np.arange(cases) < cases // 2

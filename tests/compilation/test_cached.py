@@ -63,9 +63,13 @@ def test_a_folder_that_cannot_be_written_is_none(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("level", ["above", "above/cache", "above/cache/key"])
 @pytest.mark.parametrize("mode", [0o775, 0o777, 0o757, 0o1777])
-def test_a_private_folder_takes_the_place_of_one_that_others_may_write(level, mode, tmp_path, monkeypatch):
+@pytest.mark.parametrize("home", [0o700, 0o777])
+def test_a_private_folder_takes_the_place_of_one_that_others_may_write(home, level, mode, tmp_path, monkeypatch):
     cache = tmp_path / "above" / "cache"
     monkeypatch.setenv("SEATSIM_CACHE_DIR", str(cache))
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home").chmod(home)
+    monkeypatch.setattr(cached.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "home" / name))
     assert cached._find_folder("key") == cache / "key"
     (tmp_path / level).chmod(mode)
     cached._private_cache.cache_clear()
@@ -75,6 +79,7 @@ def test_a_private_folder_takes_the_place_of_one_that_others_may_write(level, mo
     with pytest.warns(UserWarning, match=rf"{tmp_path / level} may be written by other users.*SEATSIM_CACHE_DIR"):
         private = cached._find_folder("key")
     assert private == cached._find_folder("key") and cache not in private.parents
+    assert (tmp_path / "home" in private.parents) == (home == 0o700)
     assert private.stat().st_mode & 0o777 == 0o700 and find_foreign(private) is None
 
 

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.random import Generator
 
 from seatsim.blind.labels import EFFECTS, Kind, Label, Specification
-from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment
-from seatsim.blind.make.draw_varied import draw_varied_experiment
-from seatsim.blind.make.materiality import COARSE_STEP, CommandedRuns, collinearity
+from seatsim.blind.make.draw_experiment import SCATTER
+from seatsim.blind.make.draw_rig import FaultlessRig, draw_rig
+from seatsim.blind.make.materiality import CommandedRuns, collinearity
 from seatsim.blind.make.severity import find_severity
-from seatsim.blind.make.tolerance import ToleranceRefit
-from seatsim.blind.truth.experiment import CHANNELS, Experiment, context_of, read_channels, simulate_run
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, read_channels, simulate_run
 from seatsim.blind.truth.faults.catalogue import SCENARIOS, scenarios_of
 from seatsim.blind.truth.faults.scenario import Changes, Context, FaultScenario, Shape
 from seatsim.blind.truth.sensors import Readings
@@ -24,7 +22,7 @@ from seatsim.schema.errors import RunError
 ATTEMPTS = 8
 """Attempts with the same faults before others take their place: on some rigs an effect such as play is hardly seen."""
 EXCHANGES = 20
-"""Such changes of the faults; some fault can be seen on every rig, so that more are never needed."""
+"""How often others take their place; some fault can be seen on every rig, so that more are never needed."""
 ROUNDS = 6
 """Of raising faults that are not material beside the others; each raises by 15 % or more."""
 LARGEST_COLLINEARITY = 0.9
@@ -35,15 +33,6 @@ RAISE = 1.15
 """How much further than to the limit a fault is raised."""
 WEAKEST = 0.4
 """Materiality below which a fault is raised no faster, as response and severity are not proportional that far."""
-BINGHAM_SHARE = 0.5
-"""Of the rigs."""
-COMPLETE_SHARE, AT_MOST_ONE_MISSING = 0.6, 0.93
-"""Shares of the rigs that record every channel, and that lack at most one; the others lack two."""
-OPTIONAL = {"damper_force": 0.7, "coil_current": 0.3}
-"""Channels that a rig may lack, and how likely each is the one: a load cell is what is saved first.
-
-A fade could not be found without thermometer, so that no rig lacks it, whatever is wrong with it.
-"""
 
 
 @dataclass(frozen=True)
@@ -60,6 +49,10 @@ class CaseSpecification:
     background: float = 0.0
     scatter: float = SCATTER
     varied: bool = False
+
+    def draw_rig(self, rng: Generator) -> Experiment:
+        """Draw a rig and its protocol, to which neither kind nor names are told."""
+        return draw_rig(rng, self.varied, self.missing, self.scatter, self.background)
 
     def as_dict(self) -> Specification:
         """Return it as it stands in a label."""
@@ -116,22 +109,6 @@ class Case:
         }
 
 
-class _Rig:
-    """A drawn rig, and what measures faults on it; it stays the same whatever is drawn to be wrong with it."""
-
-    def __init__(self, experiment: Experiment) -> None:
-        self.experiment = experiment
-        recorded = range(len(experiment.runs) - 1)
-        motions = [simulate_run(experiment, Changes(), k, step=COARSE_STEP) for k in recorded]
-        self.runs = CommandedRuns(experiment, [motion.command for motion in motions])
-        self.context = context_of(experiment, [read_channels(experiment, Changes(), k, motions[k]) for k in recorded])
-
-    @cached_property
-    def refit(self) -> ToleranceRefit:
-        """What the nominal's tolerance explains of a fault."""
-        return ToleranceRefit(self.experiment, self.runs.commands)
-
-
 def draw_case(specification: CaseSpecification, rng: Generator) -> Case:
     """Draw a case to specification: a rig with its protocol, then faults that are material on it.
 
@@ -143,28 +120,18 @@ def draw_case(specification: CaseSpecification, rng: Generator) -> Case:
         RunError: no draw is material.
     """
     scenarios = _draw_scenarios(specification, rng)
-    rig = _Rig(draw_rig(specification, rng))
+    rig = FaultlessRig(specification.draw_rig(rng))
     for _ in range(EXCHANGES):
         for _ in range(ATTEMPTS):
             case = _attempt(specification, scenarios, rig, rng)
             if case is not None:
                 return case
             scenarios = _draw_scenarios(specification, rng)
-        others = scenarios_of("outside") if specification.kind == "outside" else EFFECTS
-        names = [other if isinstance(other, str) else other.name for other in others]
-        chosen = rng.choice(names, len(specification.names), replace=False)
-        specification = replace(specification, names=tuple(map(str, chosen)))
+        outside = [scenario.name for scenario in scenarios_of("outside")]
+        others = rng.choice(outside if specification.kind == "outside" else EFFECTS, len(scenarios), replace=False)
+        specification = replace(specification, names=tuple(map(str, others)))
         scenarios = _draw_scenarios(specification, rng)
     raise RunError(f"no material case of kind {specification.kind} came of {ATTEMPTS * EXCHANGES} draws")
-
-
-def draw_missing_channels(rng: Generator) -> tuple[str, ...]:
-    """Draw the channels that are not recorded: none in 60 % of cases, rarely two."""
-    u = rng.random()
-    if u < COMPLETE_SHARE:
-        return ()
-    count = 1 if u < AT_MOST_ONE_MISSING else 2
-    return tuple(str(name) for name in rng.choice(list(OPTIONAL), count, replace=False, p=list(OPTIONAL.values())))
 
 
 def _draw_scenarios(specification: CaseSpecification, rng: Generator) -> list[FaultScenario]:
@@ -174,18 +141,8 @@ def _draw_scenarios(specification: CaseSpecification, rng: Generator) -> list[Fa
     return [choice[int(rng.integers(len(choice)))] for choice in choices]
 
 
-def draw_rig(specification: CaseSpecification, rng: Generator) -> Experiment:
-    """Draw a rig and its protocol; nothing of it depends on what is to be wrong with it."""
-    missing = specification.missing if specification.missing is not None else draw_missing_channels(rng)
-    channels = tuple(name for name in CHANNELS if name not in missing)
-    bingham = rng.random() < BINGHAM_SHARE
-    if specification.varied:
-        return draw_varied_experiment(rng, bingham, channels)
-    return draw_experiment(rng, bingham, channels, specification.scatter, specification.background)
-
-
 def _attempt(
-    specification: CaseSpecification, scenarios: Sequence[FaultScenario], rig: _Rig, rng: Generator
+    specification: CaseSpecification, scenarios: Sequence[FaultScenario], rig: FaultlessRig, rng: Generator
 ) -> Case | None:
     """Draw shapes and severities once; None where a fault cannot be made material on this rig."""
     faults: list[DrawnFault] = []
@@ -197,7 +154,7 @@ def _attempt(
     return _settle(specification, faults, rig)
 
 
-def _draw_fault(scenario: FaultScenario, rig: _Rig, rng: Generator) -> DrawnFault | None:
+def _draw_fault(scenario: FaultScenario, rig: FaultlessRig, rng: Generator) -> DrawnFault | None:
     """Draw a fault's shape, and the severity that gives it a drawn materiality when it is alone."""
     if scenario.bingham and not rig.experiment.is_bingham:
         return None
@@ -213,7 +170,7 @@ def _draw_fault(scenario: FaultScenario, rig: _Rig, rng: Generator) -> DrawnFaul
     return DrawnFault(scenario, shape, severity, size, scenario.build(severity, shape, rig.context))
 
 
-def _settle(specification: CaseSpecification, faults: list[DrawnFault], rig: _Rig) -> Case | None:
+def _settle(specification: CaseSpecification, faults: list[DrawnFault], rig: FaultlessRig) -> Case | None:
     """Close the loop with the faults in it; raise what is no longer material beside the others, or give up."""
     experiment = rig.experiment
     runs = range(len(experiment.runs))
@@ -238,7 +195,9 @@ def _sum_of_changes(faults: Sequence[DrawnFault]) -> Changes:
     return sum((fault.changes for fault in faults), Changes())
 
 
-def _measure(faults: Sequence[DrawnFault], runs: CommandedRuns, rig: _Rig) -> tuple[list[DrawnFault], float] | None:
+def _measure(
+    faults: Sequence[DrawnFault], runs: CommandedRuns, rig: FaultlessRig
+) -> tuple[list[DrawnFault], float] | None:
     """Return the faults with their materiality beside the others, and their collinearity; None where one is no case.
 
     That is where the rig is unstable, or where two faults can hardly be distinguished.

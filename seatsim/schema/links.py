@@ -1,0 +1,37 @@
+"""Nothing is written through a link, behind which somebody else may have put a file that is not to change."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TextIO
+
+from seatsim.schema.errors import InputError, OutputError
+
+
+def check_no_link(folder: Path, inside: Path) -> None:
+    """Refuse a way from a folder to what is written in it that leads over a link, and so to somebody else's files.
+
+    A file at the end of the way is no matter: it is put in place of a link, and never written through one.
+
+    Raises:
+        InputError: a folder on the way is a link.
+    """
+    for place in (inside, *inside.parents):
+        if place == folder:
+            return
+        if place.is_symlink():
+            raise InputError(f"{place}: is a link, through which nothing is written; remove it, or give another --out")
+
+
+def open_in_place(path: Path) -> TextIO:
+    """Open a file, made where it is missing, that is read and written where it lies, such as a lock.
+
+    Raises:
+        InputError: it is a link. OutputError: it cannot be written.
+    """
+    try:
+        return os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666), "r+", encoding="utf-8")
+    except OSError as error:
+        check_no_link(path.parent, path)
+        raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
