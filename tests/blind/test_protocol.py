@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import gzip
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -114,6 +115,15 @@ def test_a_change_of_a_carrier_alters_no_file_but_its_signals(carrier: Any, tmp_
                 assert content == before[name], change.form
             else:
                 assert digits(content) == digits(before[name]), change.form
+
+
+def test_a_command_recorded_as_zero_or_one_can_be_changed(tmp_path: Path) -> None:
+    carrier = bench_carrier()
+    table = {**carrier.tables["run-0"], "current_command": np.repeat([0.0, 1.0], 1000)}
+    read = read_carrier(write_carrier(dataclasses.replace(carrier, tables={"run-0": table}), tmp_path / "carrier"))
+    changed = {"run-0": {**table, "current_command": 1.234 * table["current_command"]}}
+    lines = gzip.decompress(encode_carrier(dataclasses.replace(read, tables=changed), ("run-0",))["run-0.csv.gz"])
+    assert float(lines.decode().splitlines()[-1].split(",")[-1]) == pytest.approx(1.234)
 
 
 def digits(table: bytes) -> list[set[int]]:

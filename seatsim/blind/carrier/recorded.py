@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -36,7 +37,7 @@ class Carrier:
     nominal: Content
     tables: Mapping[str, Table]
     decimals: Mapping[str, int] = field(default_factory=dict)
-    """Digits after the point with which each channel was recorded."""
+    """Digits after the point with which each channel is written."""
 
     @property
     def rig(self) -> str:
@@ -94,9 +95,15 @@ def read_carrier(folder: Path) -> Carrier:
 
 
 def _count_decimals(runs: list[Array]) -> int:
+    """Return the digits with which a channel was recorded, or those of a hundredth of its spread where that has more.
+
+    A command that was recorded as 0 or 1 could not be changed otherwise.
+    """
     values = np.concatenate(runs)
-    close = (np.allclose(values, np.round(values, count), rtol=1e-14, atol=0.0) for count in range(DECIMALS))
-    return next((count for count, same in enumerate(close) if same), DECIMALS)
+    spread = float(np.std(values))
+    least = math.ceil(2.0 - math.log10(spread)) if spread > 0.0 else 0
+    enough = range(min(max(least, 0), DECIMALS), DECIMALS)
+    return next((n for n in enough if np.allclose(values, np.round(values, n), rtol=1e-14, atol=0.0)), DECIMALS)
 
 
 def encode_carrier(carrier: Carrier, runs: tuple[str, ...]) -> dict[str, bytes]:
