@@ -24,6 +24,17 @@ def check_no_link(folder: Path, inside: Path) -> None:
             raise InputError(f"{place}: is a link, through which nothing is written; remove it, or give another --out")
 
 
+def check_links_on(way: Path) -> None:
+    """Refuse a way that leads over another user's link; the user's own, and those of the system, are followed.
+
+    Raises:
+        InputError: a folder on the way is such a link. OSError, ValueError: it cannot be looked at.
+    """
+    for place in (way.absolute(), *way.absolute().parents):
+        if place.is_symlink() and hasattr(os, "getuid") and place.lstat().st_uid not in (os.getuid(), 0):
+            raise InputError(f"{place}: is another user's link, through which nothing is written; give another --out")
+
+
 def open_in_place(path: Path) -> TextIO:
     """Open a file, made where it is missing, that is read and written where it lies, such as a lock.
 
