@@ -61,7 +61,7 @@ def best_stump(features: np.ndarray, hits: np.ndarray) -> tuple[int, float, floa
 
 
 @pytest.mark.usefixtures("short")
-@pytest.mark.parametrize(("kinds", "cases"), [("mixed", 800), ("varied", 400)])
+@pytest.mark.parametrize(("kinds", "cases"), [("mixed", 2000), ("varied", 1200)])
 def test_a_classifier_of_all_but_the_signals_stays_at_chance(
     kinds: str, cases: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
