@@ -20,6 +20,7 @@ from typing import Protocol, runtime_checkable
 
 from seatsim.schema.errors import InputError, OutputError
 from seatsim.schema.leftovers import noted, uncut
+from seatsim.schema.links import check_links_on, check_no_link
 
 _HOST = re.sub(r"[^0-9A-Za-z]", "_", socket.gethostname())[:40]
 _PART = re.compile(rf"\..+\.{_HOST}-(\d+)-[0-9a-f]{{8}}\.part(\..*)?")
@@ -110,6 +111,7 @@ def _put_in_place(part: Path, folder: Path, names: Iterable[Path]) -> None:
     try:
         for number, name in enumerate(names):
             place, kept = folder / name, before / str(number)
+            check_no_link(folder, place.parent)
             if place.is_dir():
                 raise IsADirectoryError(f"{place} is a folder")
             place.parent.mkdir(parents=True, exist_ok=True)
@@ -148,11 +150,13 @@ def check_folder(folder: Path) -> None:
     """Refuse a folder that could not be written, before anything is done.
 
     Raises:
-        InputError: it is a file or lies in one, may not be written, or its name cannot be used.
+        InputError: it is a file or lies in one, may not be written, its name cannot be used, or another user's link
+            leads to it.
     """
     try:
         if "\0" in str(folder):
             raise ValueError("it holds a zero byte")
+        check_links_on(folder)
         there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
     except (OSError, ValueError) as error:
         raise InputError(f"{str(folder)!r}: cannot be written: {error}; give another --out") from error

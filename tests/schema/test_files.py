@@ -128,3 +128,33 @@ def test_a_name_that_no_file_can_have_is_bad_input(tmp_path, name):
         with pytest.raises(SeatsimError, match=r"cannot be written"):
             write(tmp_path / name if "x" in name else Path(name))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_files_take_the_place_of_links_and_folders_that_are_links_are_refused(tmp_path):
+    victim, out = tmp_path / "victim", tmp_path / "out"
+    victim.mkdir()
+    (victim / "file").write_text("precious")
+    out.mkdir()
+    for name in ("a", "b"):
+        (out / name).symlink_to(victim / "file")
+    write_text(out / "a", "new")
+    write_together(out, lambda part: [write_text(part / "b", "new")])
+    assert (out / "a").read_text() == (out / "b").read_text() == "new" and not (out / "b").is_symlink()
+    (out / "plots").symlink_to(victim)
+    with pytest.raises(InputError, match="plots: is a link, through which nothing is written"):
+        write_together(out, lambda part: [write_text(part / "b", "newer"), write_text(part / "plots" / "file", "x")])
+    assert (victim / "file").read_text() == "precious" and (out / "b").read_text() == "new"
+    (tmp_path / "results").symlink_to(out)  # a place that the user names may be a link
+    assert write_together(tmp_path / "results", lambda part: [write_text(part / "c", "new")])[0].read_text() == "new"
+
+
+@pytest.mark.skipif(os.name != "posix" or os.getuid() != 0, reason="only root can make another user's link")
+def test_nothing_is_written_over_another_users_link(tmp_path):
+    (tmp_path / "victim").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "victim")
+    assert write_text(tmp_path / "link" / "deep" / "own", "").exists()
+    os.lchown(tmp_path / "link", 12345, -1)
+    for write in (write_text, lambda path, text: write_together(path, lambda part: [write_text(part / "a", text)])):
+        with pytest.raises(InputError, match="link: is another user's link"):
+            write(tmp_path / "link" / "deep" / "other", "")
+    assert [path.name for path in (tmp_path / "victim" / "deep").iterdir()] == ["own"]
