@@ -15,7 +15,7 @@ from seatsim.exchange.printing.declarations import is_row
 from seatsim.exchange.printing.functions import new_program
 from seatsim.exchange.printing.program import Program
 from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, is_tuple, number
-from seatsim.exchange.variables import Variable
+from seatsim.exchange.variables import RATES, Variable
 
 KINDS = {bool: "BOOLEAN_VARIABLE", int: "INTEGER_VARIABLE", float: "REAL_VARIABLE"}
 
@@ -61,10 +61,12 @@ def print_model(block: Block) -> str:
 
 def print_variables(variables: Sequence[Variable]) -> str:
     """Return the table of a model's variables, by which a wrapper finds them."""
+    names = [v.name for v in variables]
+    rates = [names.index(RATES[v.name]) if RATES.get(v.name) in names else -1 for v in variables]
     rows = [
         f'    {{"{v.name}", {KINDS[type(v.value)]}, {v.causality.upper()}, offsetof(Model, {v.place}),'
-        f" {_limit(v.low)}, {_limit(v.high)}}},"
-        for v in variables
+        f" {_limit(v.low)}, {_limit(v.high)}, {rate}}},"
+        for v, rate in zip(variables, rates, strict=True)
     ]
     return resource("variables.h").replace("@ROWS@", "\n".join(rows))
 
