@@ -87,7 +87,7 @@ def test_a_channel_has_a_unit_and_what_is_computed_from_it_has_none(scenario):
         np.sqrt(force**2),
     )
     assert {(each.name, each.unit) for each in computed} == {("", "")}
-    assert isinstance(force[0], float) and isinstance(force.std(), float)
+    assert isinstance(force[0], float)
     with pytest.raises(ValueError, match="read-only"):
         force *= force
     assert Channel(np.zeros(2), "x", "m").shape == (2,)
