@@ -33,7 +33,7 @@ from seatsim.schema.errors import RunError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.inputs import Forces
 from seatsim.simulation.runs import run_one
-from seatsim.simulation.simulate import diverged, prepare_inputs, set_up
+from seatsim.simulation.simulate import prepare_inputs, set_up
 from seatsim.simulation.summed_metrics import RigOfSums, metrics_of_sums
 
 Array = NDArray[np.float64]
@@ -173,7 +173,7 @@ def _run_block(block: Block, template: LaneSetup) -> dict[int, Row]:
     found: dict[int, Row] = {}
     for index, (lane, each) in enumerate(block):
         if rows.reached[index] < samples:
-            found[lane.place] = diverged(lane.scenario, int(rows.reached[index]))
+            found[lane.place] = _run_alone(lane.scenario)
         else:
             driver = np.ascontiguousarray(rows.driver[:, index])
             found[lane.place] = _metrics(lane, each.floor_acceleration, sums[index], driver)
