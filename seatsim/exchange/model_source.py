@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from importlib.resources import files
 from typing import cast
 
@@ -23,6 +24,11 @@ KINDS = {bool: "BOOLEAN_VARIABLE", int: "INTEGER_VARIABLE", float: "REAL_VARIABL
 def resource(name: str) -> str:
     """Return the text of a file of C that comes with this package."""
     return (files("seatsim.exchange") / "c" / name).read_text(encoding="utf-8")
+
+
+def fill(name: str, words: Mapping[str, str]) -> str:
+    """Return the text of such a file with its `@WORD@`s replaced, those that are in the words themselves left alone."""
+    return re.sub(r"@(\w+)@", lambda found: words[found[1]], resource(name))
 
 
 def print_model(block: Block) -> str:
@@ -53,9 +59,7 @@ def print_model(block: Block) -> str:
     ]
     words = {"START": start, "OBSERVE": observe, "ADVANCE": advance}
     words |= {"FIXED_STEP": str(int(block.fixed_step)), "STEP": repr(block.step)}
-    model = resource("model.h")
-    for word, text in (names | words).items():
-        model = model.replace(f"@{word}@", text)
+    model = fill("model.h", names | words)
     return "\n".join([resource("prelude.h"), program.source(), *constants, "", model])
 
 
@@ -68,7 +72,7 @@ def print_variables(variables: Sequence[Variable]) -> str:
         f" {_limit(v.low)}, {_limit(v.high)}, {rate}}},"
         for v, rate in zip(variables, rates, strict=True)
     ]
-    return resource("variables.h").replace("@ROWS@", "\n".join(rows))
+    return fill("variables.h", {"ROWS": "\n".join(rows)})
 
 
 def _call(

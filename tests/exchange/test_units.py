@@ -254,6 +254,16 @@ def test_the_compiler_writes_only_beside_the_library(tmp_path, monkeypatch):
         compiler.compile_library(tmp_path / "a.c", tmp_path / "here" / "a.so")
 
 
+def test_flags_that_are_named_with_the_compiler_are_used(tmp_path, monkeypatch):
+    (tmp_path / "a.c").write_text("int f(void) { return NUMBER; }\n")
+    monkeypatch.setenv("CC", f"{compiler.find_compiler()} -O1 '-DNUMBER=3'")
+    compiler.compile_library(tmp_path / "a.c", tmp_path / "a.so")
+    assert (tmp_path / "a.so").is_file()
+    monkeypatch.setenv("CC", "gcc '-O2")
+    with pytest.raises(InputError, match=r"variable CC is .*No closing quotation"):
+        compiler.compile_library(tmp_path / "a.c", tmp_path / "a.so")
+
+
 def test_a_compiler_that_is_named_but_not_there_is_one_sentence(monkeypatch, seat_file, tmp_path):
     monkeypatch.setenv("CC", "nonexistent -O2")
     with pytest.raises(InputError, match="CC names 'nonexistent', and there is no such program"):
