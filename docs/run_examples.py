@@ -28,7 +28,11 @@ from typing import NamedTuple
 DOCS = Path(__file__).resolve().parent
 AT_ONCE = 2
 BLOCK = re.compile(r"(?:<!-- (not run|printed)(?:, within ([\d.]+) %)? -->\n)?```(sh|python|text)\n(.*?)```", re.DOTALL)
-CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]|\r")
+CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
+FRAME = re.compile("[\u2500-\u257f]")
+"""Lines of a table, which a page need not show."""
+MOST_SHOWN = 3000
+"""Letters of what was printed that an error quotes, from its end."""
 NUMBER = re.compile(r"(\d+(?:\.\d+)?)")
 
 
@@ -71,7 +75,9 @@ def run_page(page: Path) -> str:
             if block.language != "text":
                 said = run_block(block, folder, page)
             elif (missing := find_missing(block.content, said, block.tolerance)) is not None:
-                raise ExampleError(f"{page.name}: this line is not printed:\n{missing}\n\nprinted is\n{said}")
+                raise ExampleError(
+                    f"{page.name}: this line is not printed:\n{missing}\n\nprinted is\n{said[-MOST_SHOWN:]}"
+                )
     return f"-- {page.name}: {len(blocks)} blocks in {time.monotonic() - begun:.0f} s"
 
 
@@ -99,9 +105,11 @@ def run_block(block: Block, folder: str, page: Path) -> str:
         command, cwd=folder, stdin=subprocess.DEVNULL, stdout=end, stderr=end, env=os.environ | {"COLUMNS": "80"}
     ) as process:
         os.close(end)
-        said = CONTROL.sub("", _read_all(terminal).decode(errors="replace"))
+        said = CONTROL.sub("", _read_all(terminal).decode(errors="replace")).replace("\r", "\n")
     if process.returncode:
-        raise ExampleError(f"{page.name}: this example failed with {process.returncode}:\n{block.content}\n{said}")
+        raise ExampleError(
+            f"{page.name}: this example failed with {process.returncode}:\n{block.content}\n{said[-MOST_SHOWN:]}"
+        )
     return said
 
 
@@ -127,8 +135,8 @@ def find_missing(shown: str, said: str, tolerance: float) -> str | None:
 
 
 def is_same(shown: str, said: str, tolerance: float) -> bool:
-    """Whether two lines are the same but for blanks, and for numbers that differ by no more than a part of them."""
-    pairs = zip(*(NUMBER.split(" ".join(line.split())) for line in (shown, said)), strict=False)
+    """Whether two lines are the same but for blanks and frames, and for numbers that differ by a part of them."""
+    pairs = zip(*(NUMBER.split(" ".join(FRAME.sub(" ", line).split())) for line in (shown, said)), strict=False)
     same = all(
         abs(float(a) - float(b)) <= tolerance * abs(float(a)) if k % 2 else a == b for k, (a, b) in enumerate(pairs)
     )

@@ -18,6 +18,7 @@ SAID = "name      RMS [m/s²]\nseat-1        1.272\nseat-2        0.990\n\nverdi
     [
         (SAID, 0.0, None),
         ("seat-1   1.272\n...\nverdict: known, shrink 0.64 (99% of it)\n", 0.0, None),
+        ("│ seat-1 │ 1.272 │\n", 0.0, None),
         ("seat-1   1.273\n", 0.0, "seat-1   1.273"),
         ("seat-1   1.273\n", 0.01, None),
         ("seat-1   1.300\n", 0.01, "seat-1   1.300"),
