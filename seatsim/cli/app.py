@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shlex
 import sys
@@ -127,7 +128,8 @@ def main() -> None:
         sys.exit(1)
     except OSError as error:
         fail(f"{error.filename or 'a file'}: {error.strerror or error}")
-        sys.exit(1)
+        # A name that no file can have is bad input, wherever it was tried first.
+        sys.exit(2 if error.errno == errno.ENAMETOOLONG else 1)
     except Exception as error:
         if os.environ.get(TRACEBACK):
             raise

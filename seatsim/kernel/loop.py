@@ -133,14 +133,19 @@ def command_current(
     law_state: State,
     grid: Array,
 ) -> tuple[float, float, float]:
-    """Return the same for an inverse whose damper is in the state z; `ratio` is the damper's stroke per travel."""
+    """Return the same for an inverse whose damper is in the state z; `ratio` is the damper's stroke per travel.
+
+    The command of a law that gives no finite number is NaN.
+    """
     answer = evaluate_law(law, y, law_state)
+    # What is no finite number must not become a current by being clipped: the command is NaN, at which the run ends.
+    is_number = math.isfinite(answer)
     if not wants_force(law):
-        return min(max(answer, 0.0), top), math.nan, math.nan
+        return min(max(answer, 0.0), top) if is_number else math.nan, math.nan, math.nan
     scaling = model_scaling(model, factors, y.temperature)
     x, v = ratio * y.displacement, ratio * y.velocity
     found = invert(model.damper, model.order, answer, x, v, scaling, z, top, grid)
-    return found.current, answer, found.served
+    return found.current if is_number else math.nan, answer, found.served
 
 
 @jit

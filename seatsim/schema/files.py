@@ -14,6 +14,7 @@ import re
 import secrets
 import shutil
 import socket
+import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Protocol, runtime_checkable
@@ -23,7 +24,9 @@ from seatsim.schema.leftovers import noted, uncut
 from seatsim.schema.links import check_links_on, check_no_link
 
 _HOST = re.sub(r"[^0-9A-Za-z]", "_", socket.gethostname())[:40]
-_PART = re.compile(rf"\..+\.{_HOST}-(\d+)-[0-9a-f]{{8}}\.part(\..*)?")
+_PART = re.compile(r"\..+\.(\w+)-(\d+)-[0-9a-f]{8}\.part(\..*)?")
+_ABANDONED = 86_400.0
+"""Seconds without a change after which what a process of another machine writes counts as left."""
 
 
 @runtime_checkable
@@ -188,14 +191,24 @@ def _name_part(path: Path) -> Path:
 
 
 def remove_left(folder: Path) -> None:
-    """Remove from a folder what processes of this machine that are no more have left there half-written."""
+    """Remove from a folder what processes that are no more have left there half-written.
+
+    Whether one of another machine still runs is not seen from here; what it has not changed for a day is left, too.
+    """
     for each in folder.iterdir() if folder.is_dir() else ():
         found = _PART.fullmatch(each.name)
-        if found and not _is_running(int(found[1])):
+        if found and (_is_abandoned(each) if found[1] != _HOST else not _is_running(int(found[2]))):
             if each.is_dir():
                 shutil.rmtree(each, ignore_errors=True)
             else:
                 each.unlink(missing_ok=True)
+
+
+def _is_abandoned(part: Path) -> bool:
+    try:
+        return time.time() - part.lstat().st_mtime > _ABANDONED
+    except OSError:  # it was put in place meanwhile
+        return False
 
 
 def _is_running(process: int) -> bool:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 
 LONGEST_NAME = 100
+LONGEST_WORD = 1000
 
 
 def explain_bad_name(name: str) -> str:
@@ -18,6 +20,11 @@ def explain_bad_name(name: str) -> str:
     else:
         return ""
     return f"{problem}; it names files: write letters, digits, spaces, - and _, such as rough-track-80C"
+
+
+def cut_words(text: str) -> str:
+    """Return a text without the middle of words of `LONGEST_WORD` letters or more, such as a path made of noise."""
+    return re.sub(rf"\S{{{LONGEST_WORD},}}", lambda found: f"{found[0][:100]}...{found[0][-50:]}", text)
 
 
 def join_names(names: Collection[str], last: str = "and") -> str:

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -111,8 +112,12 @@ def test_what_a_killed_process_has_left_is_removed_and_what_another_writes_is_no
         (part / "a.txt").touch()
     (tmp_path / f".a.txt.{files._HOST}-{2**22 + 1}-0123abcd.part.txt").touch()
     (tmp_path / ".kept.part").touch()
+    old, recent = (tmp_path / f".b.txt.node{k}-1-0123abcd.part.txt" for k in range(2))
+    for part, age in ((old, 2 * 86_400), (recent, 3_600)):
+        part.touch()
+        os.utime(part, (time.time() - age,) * 2)
     write_together(tmp_path / "set", write_two)
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([alive.name, ".kept.part", "set"])
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([alive.name, recent.name, ".kept.part", "set"])
     remove_left(tmp_path / "absent")
 
 

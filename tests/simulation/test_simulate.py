@@ -71,11 +71,25 @@ def test_a_rig_that_runs_away_says_where(scenario):
         simulate(falling)
 
 
-def test_a_channel_carries_its_name_and_unit_over(scenario):
+def test_a_channel_has_a_unit_and_what_is_computed_from_it_has_none(scenario):
     found = run(scenario)
     force = found["damper_force"]
     assert (force.name, force.unit) == ("damper_force", "N")
-    assert (force[10:20].unit, (2.0 * force).unit) == ("N", "N")
+    for part in (force[10:20], force[::2], force[force > 0.0], force[[1, 2]]):
+        assert (part.name, part.unit) == ("damper_force", "N")
+    computed = (
+        2.0 * force,
+        force * force,
+        force / (force + 1e3),
+        force > 0.0,
+        np.cumsum(force),
+        force.cumsum(),
+        np.sqrt(force**2),
+    )
+    assert {(each.name, each.unit) for each in computed} == {("", "")}
+    assert isinstance(force[0], float)
+    with pytest.raises(ValueError, match="read-only"):
+        force *= force
     assert Channel(np.zeros(2), "x", "m").shape == (2,)
 
 
