@@ -29,9 +29,14 @@ class Part(NamedTuple):
     refers_to: tuple[Hashable, ...] = ()
 
 
+def permitted_of(size: int) -> int:
+    """Return how many bytes a file of `size` bytes may make."""
+    return min(LARGEST, max(LEAST, TIMES * size))
+
+
 def check_made(made: float, size: int, what: str = "what it states") -> None:
     """Raise TooMuchError where `made` bytes are more than a file of `size` bytes may make."""
-    permitted = min(LARGEST, max(LEAST, TIMES * size))
+    permitted = permitted_of(size)
     if made > permitted:
         raise TooMuchError(
             f"{what} would take at least {in_mib(made)} of memory; permitted for a file of {in_mib(size)} are"

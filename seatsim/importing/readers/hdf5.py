@@ -77,9 +77,9 @@ def _never_written(item: h5py.Dataset) -> float:
     if item.is_virtual or not item.size:
         return 0.0
     if item.chunks is None:
-        return float(item.id.get_storage_size() == 0)
+        return 1.0 if item.id.get_storage_size() == 0 else 0.0
     every = prod(ceil(length / chunk) for length, chunk in zip(item.shape, item.chunks, strict=True))
-    return 1.0 - int(item.id.get_num_chunks()) / every
+    return 1.0 - float(int(item.id.get_num_chunks()) / every)
 
 
 def _texts(value: object) -> list[str]:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.readers.bounds import BYTES_OF_PART, LARGEST, check_made
+from seatsim.importing.readers.bounds import BYTES_OF_PART, check_made, permitted_of
 
 Array: TypeAlias = NDArray[np.generic]
 Resolve: TypeAlias = Callable[[Array, str, str], object]
@@ -78,7 +78,7 @@ class Elements:
         if element.kind != PACKED:
             return element
         try:
-            content = zlib.decompressobj().decompress(element.content, LARGEST)
+            content = zlib.decompressobj().decompress(element.content, permitted_of(self.size) + 1)
         except zlib.error as error:
             raise ValueError(f"a variable cannot be unpacked: {error}") from error
         self.count(len(content))

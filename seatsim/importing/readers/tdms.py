@@ -37,7 +37,10 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     stated = [channel for group in described.groups() for channel in group.channels()]
     check_made(sum(BYTES_OF_PART + 8 * len(channel) for channel in stated), len(content), "what its channels state")
     file = nptdms.TdmsFile.read(io.BytesIO(content))
-    if file.file_status.incomplete_final_segment:
+    status = file.file_status
+    if status.incomplete_final_segment or any(
+        each.read_length < each.expected_length for each in (status.channel_statuses or {}).values()
+    ):
         raise InputError(f"{path}: its last segment lacks data; the file is truncated: export it again")
     channels = [channel for group in file.groups() for channel in group.channels()]
     starts = [start for channel in channels if (start := _start_time(channel)) is not None]
