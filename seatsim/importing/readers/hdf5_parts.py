@@ -103,9 +103,9 @@ def _sources(item: h5py.Dataset, place: str, path: Path, sources: set[Path]) -> 
 
     covered = 0
     for each in item.virtual_sources():
-        covered += each.vspace.get_select_npoints()
+        needed = each.vspace.get_select_npoints()
+        covered += needed
         missing = f"{place}: takes numbers from '{each.dset_name}' of '{each.file_name}', which is not there"
-        needed = each.src_space.get_select_npoints()
         if each.file_name == HERE:
             source = item.file.get(each.dset_name)
             if not isinstance(source, h5py.Dataset) or source.size < needed:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 
 from seatsim.importing.readers.bounds import Part, check_made, check_parts
 
@@ -21,6 +21,10 @@ OWNED_4 = {
 OWNED_3 = {b"HD": 3, b"DG": 4, b"CG": 3, b"CN": 5}
 """How many of its first links a block follows: those behind them refer back, to channels elsewhere."""
 PACKED = b"##DZ"
+LEADS_TO = {
+    (b"HD", 0): b"DG", (b"DG", 0): b"DG", (b"DG", 1): b"CG", (b"CG", 0): b"CG", (b"CG", 1): b"CN", (b"CN", 0): b"CN",
+}  # fmt: skip
+"""Kinds of blocks to which the first links of others lead: these are followed without a look at the kind."""
 EVENT_ABOVE = (1, 2)
 """Links of an event to the event above it and to the beginning of its range."""
 
@@ -43,11 +47,22 @@ def _block_4(content: bytes, address: Hashable) -> Part:
         return Part(0)
     count = min(struct.unpack_from("<Q", content, address + 16)[0], OWNED_4[kind], (len(content) - address - 24) // 8)
     links = list(struct.unpack_from(f"<{count}Q", content, address + 24))
+    _check_kinds(content, kind[2:], links, 2)
     if kind == b"##EV":
         links = [link for number, link in enumerate(links) if number not in EVENT_ABOVE]
     if kind == b"##CN" and count > 5 and content[links[5] : links[5] + 4] == b"##CG":
         del links[5]  # a group of values of any length stands beside the group of the channel
     return Part(8 * count, tuple(link for link in links if 0 < link < len(content)))
+
+
+def _check_kinds(content: bytes, kind: bytes, links: Sequence[int], before: int) -> None:
+    """Raise ValueError where a link leads to a block of another kind, whose letters come after `before` others."""
+    for number, link in enumerate(links):
+        wanted = LEADS_TO.get((kind, number))
+        if link and wanted and content[link + before : link + before + 2] != wanted:
+            raise ValueError(
+                f"a block {kind.decode()} leads to address {link}, where no block {wanted.decode()} begins"
+            )
 
 
 def _unpacked(content: bytes, address: int) -> int:
@@ -65,4 +80,5 @@ def _block_3(content: bytes, address: Hashable, order: str) -> Part:
     kind = content[address : address + 2]
     count = min(OWNED_3.get(kind, 0), (len(content) - address - 4) // 4)
     links = struct.unpack_from(f"{order}{max(0, count)}I", content, address + 4)
+    _check_kinds(content, kind, links, 0)
     return Part(4 * len(links), tuple(link for link in links if 0 < link < len(content)))
