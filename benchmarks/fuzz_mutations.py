@@ -9,6 +9,8 @@ import re
 import zipfile
 import zlib
 
+from seatsim.schema.tables import UNPACKING_ERRORS
+
 WORDS = (
     "~", "true", "-1", "0", "1e400", "-.inf", ".nan", "1e-320", "9" * 5000, "0x" + "f" * 300, "'" * 3, '"\\0"', "[]",
     "{}", "!!bool x", "!!python/name:os.system", "!own {a: 1}", "&a [*a]", "*a", "<<", "[" * 50, "{a: " * 40,
@@ -85,7 +87,7 @@ def _change_member(content: bytes, generator: random.Random) -> bytes:
             chosen = generator.choice(old.namelist())
             for name in old.namelist():
                 new.writestr(name, mutate(old.read(name), generator) if name == chosen else old.read(name))
-    except (ValueError, OSError, zipfile.BadZipFile, zlib.error, NotImplementedError):  # damaged by an earlier change
+    except (*UNPACKING_ERRORS, RuntimeError):  # an earlier change has damaged it
         return _damage(content, generator)
     return changed.getvalue()
 

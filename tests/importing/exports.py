@@ -99,7 +99,8 @@ def mat_timetable(path, table):
     frame.index = pd.to_timedelta(table["time"], unit="s")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # it says that MATLAB writes times in s
-        matio.save_to_mat(str(path), {"run": frame}, version="v7.3" if "73" in path.name else "v7")
+        version = "v7.3" if "73" in path.name else "v7"
+        matio.save_to_mat(str(path), {"run": frame}, version=version, do_compression=False)
 
 
 def simulink(path, table):

@@ -42,7 +42,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     with asammdf.MDF(io.BytesIO(content)) as file:
         check_made(sum(_bytes_of(group) for group in file.groups), len(content), "what its groups state")
         for index, group in enumerate(file.groups):
-            _check_places(group)
+            _check_places(group, len(content))
             master = file.masters_db.get(index)
             wanted = [(None, index, number) for number in range(len(group.channels)) if number != master]
             chosen = file.select(wanted, ignore_value2text_conversions=True) if wanted else []
@@ -62,9 +62,13 @@ def _bytes_of(group: Any) -> int:
     return int(stated.cycles_nr) * max(int(size), 8 * len(group.channels))
 
 
-def _check_places(group: Any) -> None:
-    """Raise ValueError where a channel lies beyond its rows: asammdf would read the memory behind them."""
+def _check_places(group: Any, size: int) -> None:
+    """Raise ValueError where rows lie beyond the file, or a channel beyond its rows: asammdf would read on there."""
     stated = group.channel_group
+    rows, held = stated.cycles_nr * stated.samples_byte_nr, sum(block.original_size for block in group.data_blocks)
+    is_beyond = any(block.address + block.compressed_size > size for block in group.data_blocks)
+    if group.channels and (rows > held or is_beyond):
+        raise ValueError(f"{rows} bytes of rows are stated, which are not there")
     marks = getattr(stated, "invalidation_bytes_nr", 0)
     for channel in group.channels:
         if hasattr(channel, "byte_offset"):  # of version 4

@@ -14,7 +14,7 @@ from seatsim.importing.readers.bounds import TooMuchError, check_made
 from seatsim.importing.signals import DataFile, Group
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.guarded import is_there, read_bytes
-from seatsim.schema.tables import LARGEST_FILE, unpack
+from seatsim.schema.tables import LARGEST_FILE, UNPACKING_ERRORS, unpack
 
 LONGEST_REASON = 200
 """Letters of what a library says that an error repeats."""
@@ -137,8 +137,8 @@ def _check_unpacked(path: Path, content: bytes) -> None:
     """Raise InputError where the parts of a ZIP are too large together, before any is unpacked."""
     try:
         parts = zipfile.ZipFile(io.BytesIO(content)).infolist()
-    except (zipfile.BadZipFile, ValueError, OSError) as error:
-        raise InputError(f"{path}: cannot be unpacked ({error}); it is truncated: copy it again") from error
+    except UNPACKING_ERRORS as error:
+        raise InputError(f"{path}: cannot be unpacked ({error}); it is truncated or damaged: copy it again") from error
     try:
         check_made(sum(each.file_size for each in parts), len(content), "what it unpacks to")
     except TooMuchError as error:
