@@ -100,8 +100,8 @@ def _lie(content: bytes, generator: random.Random) -> bytes:
     at = generator.randrange(max(1, min(reach, len(content))))
     at = size * ((len(content) - at if generator.random() < 0.3 else at) // size)
     other = size * (generator.randrange(len(content) + 1) // size)
-    number = generator.choice((0, 1, 2, 255, 2**15, 2**16 - 1, 2**24, 2**31 - 1, 2**32 - 1, 2**40, 2**63, other))
-    new = (number % 2 ** (8 * size)).to_bytes(size, generator.choice(("little", "little", "big")))
+    number: int = generator.choice((0, 1, 2, 255, 2**15, 2**16 - 1, 2**24, 2**31 - 1, 2**32 - 1, 2**40, 2**63, other))
+    new = (number % (1 << 8 * size)).to_bytes(size, generator.choice(("little", "little", "big")))
     if generator.random() < 0.3:
         new = content[other : other + size]
     return content[:at] + new + content[at + len(new) :]

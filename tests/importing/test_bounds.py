@@ -4,8 +4,8 @@ import time
 
 import pytest
 
-from seatsim.importing.readers.bounds import LEAST, TIMES, Part, TooMuchError, check_made, check_parts
 from seatsim.importing.readers.reading import read_file
+from seatsim.schema.bounds import LEAST, TIMES, Part, TooMuchError, check_made, check_parts
 from seatsim.schema.errors import InputError
 
 from .attacks import ATTACKS, sheet

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatsim.importing.readers.arrow_messages import bytes_of_messages
-from seatsim.importing.readers.bounds import check_made
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.readers.text import column_values
 from seatsim.importing.signals import TIME, Array, DataFile, Group, Signal
+from seatsim.schema.bounds import check_made
 
 if TYPE_CHECKING:
     import pyarrow as pa

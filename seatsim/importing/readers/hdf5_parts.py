@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from seatsim.importing.optional import need
-from seatsim.importing.readers.bounds import Part, check_made, check_parts
+from seatsim.schema.bounds import Part, check_made, check_parts
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.tables import LARGEST_FILE

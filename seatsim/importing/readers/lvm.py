@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
@@ -60,8 +61,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     Raises:
         InputError: the file has no table, its x is no time, or a channel states no interval.
     """
-    text = content.decode(layout.encoding or "utf-8-sig", errors="replace")
-    lines = text.splitlines()
+    lines = _text(content, layout).splitlines()
     separator = next((line[9] for line in lines[:20] if line.startswith("Separator") and line[9:]), "\t")
     cells = [line.split(separator) for line in lines]
     first = next((number for number, row in enumerate(cells) if row[0] == END), len(cells))
@@ -72,6 +72,13 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         for column, piece in _pieces(segment, table, head.get("X_Columns", "One").strip(), path):
             pieces.setdefault((column, piece.signal.name, piece.signal.unit), []).append(piece)
     return DataFile(path, "", tuple(_join(list(pieces.values()))))
+
+
+def _text(content: bytes, layout: TextLayout) -> str:
+    if layout.encoding is None:
+        with suppress(UnicodeDecodeError):
+            return content.decode("utf-8-sig")
+    return content.decode(layout.encoding or "cp1252", errors="replace")
 
 
 def _segments(lines: Sequence[str], separator: str) -> Iterator[_Segment]:

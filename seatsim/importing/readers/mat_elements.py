@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.readers.bounds import BYTES_OF_PART, check_made, permitted_of
+from seatsim.schema.bounds import BYTES_OF_PART, check_made, permitted_of
 
 Array: TypeAlias = NDArray[np.generic]
 Resolve: TypeAlias = Callable[[Array, str, str], object]

@@ -12,7 +12,7 @@ from seatsim.importing.readers.naming import UNITS, bare
 
 VALUES = ("values", "data", "signal", "y", "ydata")
 LABELS = ("label", "signalname", "channelname", "name", "title", "blockname")
-TIMES = ("time", "t", "zeit", "temps", "timestamp", "timestamps")
+TIMES = ("time", "t", "zeit", "temps", "timestamp", "timestamps", "tout")
 ABSCISSAS = (*TIMES, "x", "xdata")
 STARTS = ("x0", "xoffset", "xorg", "start")
 """Fields of a structure that is a channel: its values, its name, its times in s, and the time in s of its first value.
@@ -20,6 +20,8 @@ Names stand here without underscores and capitals."""
 INDEX = "xindex"
 """Field that says which of several vectors of times a channel has, counted from 1 (dSPACE)."""
 TIME_INFO = "timeinfo"
+UNITS_OF_TIME = ("xunit", "xunits", "unitx", "timeunit", "timeunits")
+"""A structure that states the unit of times, and fields that do."""
 BESIDE = (TIME_INFO, "header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
 """Structures that state something of what stands beside them."""
 PARTS = (

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.importing.optional import need
-from seatsim.importing.readers.bounds import BYTES_OF_PART, LEAST
 from seatsim.importing.readers.hdf5_parts import REFERRED, open_checked
 from seatsim.importing.readers.mat_elements import Array, Resolve, read_variables
+from seatsim.schema.bounds import BYTES_OF_PART, LEAST
 
 Value: TypeAlias = "NDArray[np.generic] | str | dict[str, Value] | list[Value] | None"
 """Numbers, a text, a structure, cells or structures of many; None for what is none of these."""

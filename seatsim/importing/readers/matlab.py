@@ -20,6 +20,7 @@ from seatsim.importing.readers.mat_names import (
     STARTS,
     TIME_INFO,
     TIMES,
+    UNITS_OF_TIME,
     VALUES,
     is_vector,
     join_flat,
@@ -28,7 +29,7 @@ from seatsim.importing.readers.mat_names import (
 from seatsim.importing.readers.mat_values import Value, read_values
 from seatsim.importing.readers.naming import as_text, bare, scalar, signals_of, stated_rate, stated_unit
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import Array, DataFile, Group, Signal, add_channels
+from seatsim.importing.signals import TIME, Array, DataFile, Group, Signal, add_channels
 from seatsim.schema.units import DIMENSIONS, find_conversion
 
 Structure = Mapping[str, Value]
@@ -92,7 +93,8 @@ class _Reader:
             vectors = {}  # times of the channels in the structures below
         timed = {max(vector.shape) for key, vector in vectors.items() if bare(key) in TIMES}
         for key, vector in vectors.items():
-            signals = signals_of(key, vector, as_text(of_key.get(key, "")))
+            # Simulink calls the times of its outputs tout.
+            signals = signals_of(TIME if bare(key) == "tout" else key, vector, as_text(of_key.get(key, "")))
             beside_times = max(vector.shape) in timed
             self._add(name, signals, _Clock((), clock.rate) if beside_times else clock, f"{name}.{key}".strip("."))
         for key, below in inner.items():
@@ -164,7 +166,8 @@ def _times(held: Structure, names: Sequence[str]) -> tuple[Array, ...]:
 def _clock(held: Structure, stated: Structure, names: Sequence[str]) -> _Clock:
     """Return what a structure states of time, in s and Hz."""
     info = next((value for key, value in held.items() if bare(key) == TIME_INFO and isinstance(value, dict)), {})
-    found = find_conversion(stated_unit(info), DIMENSIONS["time"]) if stated_unit(info) else None
+    unit = next((as_text(value) for key, value in stated.items() if bare(key) in UNITS_OF_TIME), stated_unit(info))
+    found = find_conversion(unit, DIMENSIONS["time"]) if unit else None
     factor = found.factor if found else 1.0
     rate, start = stated_rate(stated), _start(stated)
     times = tuple(factor * each for each in _times(held, names))

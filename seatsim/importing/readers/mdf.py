@@ -11,10 +11,10 @@ from typing import Any, Protocol
 import numpy as np
 
 from seatsim.importing.optional import need
-from seatsim.importing.readers.bounds import check_made
 from seatsim.importing.readers.mdf_blocks import check_blocks
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import DataFile, Group, Signal, add_channels
+from seatsim.schema.bounds import check_made
 
 
 class Closing(Protocol):

@@ -10,7 +10,7 @@ import struct
 import zlib
 from collections.abc import Hashable, Sequence
 
-from seatsim.importing.readers.bounds import Part, check_made, check_parts
+from seatsim.schema.bounds import Part, check_made, check_parts
 
 BEGIN = 64
 """Address of the first block."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -43,10 +44,12 @@ def stated_unit(values: Mapping[str, object]) -> str:
 
 
 def scalar(value: object) -> float | None:
-    """Return a single number, whatever array it stands in, None where there is none."""
+    """Return a single number, whatever array or text it stands in, None where there is none."""
     if isinstance(value, Mapping | list | tuple):
         return None
     array = np.asarray(value)
+    if array.size == 1 and array.dtype.kind in "USO" and re.fullmatch(r"\d+([.,]\d*)?", as_text(array).strip()):
+        return float(as_text(array).replace(",", "."))
     return float(array.ravel()[0]) if array.size == 1 and array.dtype.kind in "fiu" else None
 
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.readers.bounds import TooMuchError, check_made
 from seatsim.importing.signals import DataFile, Group
+from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.tables import LARGEST_FILE, UNPACKING_ERRORS, unpack

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatsim.importing.optional import need
-from seatsim.importing.readers.bounds import BYTES_OF_PART, check_made
 from seatsim.importing.readers.naming import scalar, signals_of
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.schema.bounds import BYTES_OF_PART, check_made
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:

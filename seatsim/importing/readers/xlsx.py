@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatsim.importing.optional import need
-from seatsim.importing.readers.bounds import TooMuchError, check_made
 from seatsim.importing.readers.header import first_row_of_numbers, split_header
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
