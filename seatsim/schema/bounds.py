@@ -12,8 +12,9 @@ from typing import NamedTuple
 from seatsim.schema.guarded import in_mib
 
 LEAST, LARGEST = 2**24, 2**30
-TIMES = 100
-"""Bytes that any file may make, that none may exceed, and how many times its own size it may make between these."""
+"""Bytes that any file may make, and up to which it may make more than a number of each of its bytes."""
+TIMES, NUMBER = 100, 8
+"""How many times its size a file may make: where it is packed or doubled, and where each byte becomes a number."""
 BYTES_OF_PART = 256
 """Bytes that a part takes in memory, however small it is: a channel, a group, a text."""
 
@@ -31,7 +32,7 @@ class Part(NamedTuple):
 
 def permitted_of(size: int) -> int:
     """Return how many bytes a file of `size` bytes may make."""
-    return min(LARGEST, max(LEAST, TIMES * size))
+    return max(LEAST, min(LARGEST, TIMES * size), NUMBER * size)
 
 
 def check_made(made: float, size: int, what: str = "what it states") -> None:
@@ -40,7 +41,7 @@ def check_made(made: float, size: int, what: str = "what it states") -> None:
     if made > permitted:
         raise TooMuchError(
             f"{what} would take at least {in_mib(made)} of memory; permitted for a file of {in_mib(size)} are"
-            f" {in_mib(permitted)} ({TIMES} times its size, at least {in_mib(LEAST)}, at most {in_mib(LARGEST)})"
+            f" {in_mib(permitted)} ({TIMES} times its size, at least {in_mib(LEAST)}, up to {in_mib(LARGEST)})"
         )
 
 

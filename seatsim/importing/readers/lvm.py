@@ -63,13 +63,12 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """
     lines = _text(content, layout).splitlines()
     separator = next((line[9] for line in lines[:20] if line.startswith("Separator") and line[9:]), "\t")
-    cells = [line.split(separator) for line in lines]
-    first = next((number for number, row in enumerate(cells) if row[0] == END), len(cells))
-    head = {row[0]: row[1] for row in cells[:first] if len(row) > 1}
+    first = next((number for number, line in enumerate(lines) if line.startswith(END)), len(lines))
+    head = {key: value for key, _, value in (line.partition(separator) for line in lines[:first])}
     pieces: dict[tuple[int, str, str], list[_Piece]] = {}
     for segment in _segments(lines[first + 1 :], separator):
-        table = _table(segment, separator, head.get("Decimal_Separator", ".").strip() or ".")
-        for column, piece in _pieces(segment, table, head.get("X_Columns", "One").strip(), path):
+        table = _table(segment, separator, head.get("Decimal_Separator", "").strip(separator).strip() or ".")
+        for column, piece in _pieces(segment, table, head.get("X_Columns", "One").strip(separator).strip(), path):
             pieces.setdefault((column, piece.signal.name, piece.signal.unit), []).append(piece)
     return DataFile(path, "", tuple(_join(list(pieces.values()))))
 

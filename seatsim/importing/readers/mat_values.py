@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from seatsim.importing.optional import need
 from seatsim.importing.readers.hdf5_parts import REFERRED, open_checked
 from seatsim.importing.readers.mat_elements import Array, Resolve, read_variables
-from seatsim.schema.bounds import BYTES_OF_PART, LEAST
+from seatsim.importing.signals import TIME
+from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
 
 Value: TypeAlias = "NDArray[np.generic] | str | dict[str, Value] | list[Value] | None"
 """Numbers, a text, a structure, cells or structures of many; None for what is none of these."""
@@ -48,7 +49,8 @@ def read_values(path: Path, content: bytes) -> dict[str, Value]:
         warnings.simplefilter("ignore")  # what mat-io cannot resolve is None, and named by who takes no channel of it
         if is_hdf5(content):
             return _read_hdf5(path, content)
-        return {name: _plain(value) for name, value in read_variables(content, _open_objects).items()}
+        plain = _Plain(len(content))
+        return {name: plain.of(value) for name, value in read_variables(content, _open_objects).items()}
 
 
 def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
@@ -57,10 +59,11 @@ def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
         if SUBSYSTEM in file:
             reader.subsystem = _subsystem(reader.read_struct(file[SUBSYSTEM]), "<")
         found: dict[str, Value] = {}
+        plain = _Plain(len(content))
         for name in file:
             if name not in (REFERRED, SUBSYSTEM):
                 try:
-                    found[name] = _plain(reader.read_h5_data(file[name]))
+                    found[name] = plain.of(reader.read_h5_data(file[name]))
                 except NotImplementedError:  # no variable of MATLAB
                     found[name] = None
         return found
@@ -99,50 +102,56 @@ def _check_reference(numbers: Any) -> None:
             raise ValueError("an array of objects states more of them than it has")
 
 
-def _plain(value: object) -> Value:
-    """Return what mat-io or the reader of elements has made as a plain value."""
-    import pandas as pd
+class _Plain:
+    """Makes plain values of what mat-io or the reader of elements has made, no more than a file may make."""
 
-    if isinstance(value, pd.DataFrame):
-        return _table(value)
-    if isinstance(value, dict):
-        return {str(key): _plain(each) for key, each in value.items()}
-    if isinstance(value, np.ndarray):
-        return _plain_array(value)
-    if type(value).__name__ == "MatlabCanonicalEmpty":
-        return np.empty((0, 0))
-    properties = getattr(value, "properties", None)  # of an object of a class that mat-io does not know
-    return _plain(properties) if isinstance(properties, dict) else value if isinstance(value, str) else None
+    def __init__(self, size: int) -> None:
+        self.size, self.parts = size, 0
 
+    def of(self, value: object) -> Value:
+        """Return a plain value; an object counts as often as something holds it."""
+        import pandas as pd
 
-def _plain_array(array: NDArray[Any]) -> Value:
-    """Return numbers as an array, and what is one text, structure or cell of many as it is."""
-    flat, kind = array.ravel(order="F"), array.dtype.kind
-    if kind in "Mm":
-        return _seconds(array)
-    if kind in "fiub":
-        return array
-    several: list[Value] = []
-    if array.dtype.names:
-        several = [{name: _plain(each[name]) for name in array.dtype.names} for each in flat]
-    elif kind in "UT":
-        several = [str(each) for each in flat]
-    elif kind == "O":
-        return [_plain(each) for each in flat]
-    else:
-        return None
-    return several[0] if len(several) == 1 else several
+        self.parts += 1
+        check_made(BYTES_OF_PART * self.parts, self.size)
+        if isinstance(value, pd.DataFrame):
+            return self._of_table(value)
+        if isinstance(value, dict):
+            return {str(key): self.of(each) for key, each in value.items()}
+        if isinstance(value, np.ndarray):
+            return self._of_array(value)
+        if type(value).__name__ == "MatlabCanonicalEmpty":
+            return np.empty((0, 0))
+        properties = getattr(value, "properties", None)  # of an object of a class that mat-io does not know
+        return self.of(properties) if isinstance(properties, dict) else value if isinstance(value, str) else None
 
+    def _of_array(self, array: NDArray[Any]) -> Value:
+        """Return numbers as an array, and what is one text or structure as it is, not as a list."""
+        flat, kind = array.ravel(order="F"), array.dtype.kind
+        if kind in "Mm":
+            return _seconds(array)
+        if kind in "fiub":
+            return array
+        several: list[Value] = []
+        if array.dtype.names:
+            several = [{name: self.of(each[name]) for name in array.dtype.names} for each in flat]
+        elif kind in "UT":
+            several = [str(each) for each in flat]
+        elif kind == "O":
+            return [self.of(each) for each in flat]
+        else:
+            return None
+        return several[0] if len(several) == 1 else several
 
-def _table(frame: Any) -> dict[str, Value]:
-    """Return the columns of a table, with its times in s if it has such, and its units by column."""
-    columns: dict[str, Value] = {"time": _seconds(frame.index.to_numpy())} if frame.index.dtype.kind in "Mm" else {}
-    columns |= {str(name): _plain(frame[name].to_numpy()) for name in frame}
-    stated: Mapping[str, Any] = frame.attrs
-    units: list[Any] = next((stated[key] for key in UNITS if key in stated), [])
-    if len(units) == len(frame.columns):
-        columns["units"] = {str(name): str(unit) for name, unit in zip(frame, units, strict=True)}
-    return columns
+    def _of_table(self, frame: Any) -> dict[str, Value]:
+        """Return the columns of a table, with its times in s if it has such, and its units by column."""
+        columns: dict[str, Value] = {TIME: _seconds(frame.index.to_numpy())} if frame.index.dtype.kind in "Mm" else {}
+        columns |= {str(name): self.of(frame[name].to_numpy()) for name in frame}
+        stated: Mapping[str, Any] = frame.attrs
+        units: list[Any] = next((stated[key] for key in UNITS if key in stated), [])
+        if len(units) == len(frame.columns):
+            columns["units"] = {str(name): str(unit) for name, unit in zip(frame, units, strict=True)}
+        return columns
 
 
 def _seconds(times: NDArray[np.generic]) -> NDArray[np.generic]:

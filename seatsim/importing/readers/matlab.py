@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatsim.importing.readers.mat_names import (
     ABSCISSAS,
@@ -33,6 +34,7 @@ from seatsim.importing.signals import TIME, Array, DataFile, Group, Signal, add_
 from seatsim.schema.units import DIMENSIONS, find_conversion
 
 Structure = Mapping[str, Value]
+AnyArray = NDArray[np.generic]
 LATEST = 1e7
 """s; a start that is larger is a date."""
 
@@ -85,18 +87,11 @@ class _Reader:
             return
         before = len(self.timed) + len(self.even)
         clock = own if own.times or own.rate else above
-        units = held.get("units", held.get("unit"))
-        of_key = units if isinstance(units, dict) else {}
-        vectors = {key: value for key, value in held.items() if isinstance(value, np.ndarray) and value.size > 1}
         inner = {key: value for key, value in held.items() if isinstance(value, dict | list)}
-        if inner and all(bare(key) in TIMES for key in vectors):
-            vectors = {}  # times of the channels in the structures below
-        timed = {max(vector.shape) for key, vector in vectors.items() if bare(key) in TIMES}
-        for key, vector in vectors.items():
-            # Simulink calls the times of its outputs tout.
-            signals = signals_of(TIME if bare(key) == "tout" else key, vector, as_text(of_key.get(key, "")))
-            beside_times = max(vector.shape) in timed
-            self._add(name, signals, _Clock((), clock.rate) if beside_times else clock, f"{name}.{key}".strip("."))
+        vectors = {key: value for key, value in held.items() if isinstance(value, np.ndarray) and value.size > 1}
+        # Nothing but times is there for the channels in the structures below.
+        if not inner or any(bare(key) not in TIMES for key in vectors):
+            self._read_vectors(name, vectors, held.get("units", held.get("unit")), clock)
         for key, below in inner.items():
             if bare(key) not in ABSCISSAS or not own.times:
                 self._read_inner(name, key, label if bare(key) in VALUES else key, below, clock)
@@ -104,6 +99,16 @@ class _Reader:
         for key, value in held.items():
             if value is None or (is_empty and isinstance(value, np.ndarray) and value.size == 0):
                 self.left_out.append(f"{name}.{key}".strip("."))
+
+    def _read_vectors(self, name: str, vectors: Mapping[str, AnyArray], units: Value, clock: _Clock) -> None:
+        """Take vectors that stand beside each other, with their times if these are among them."""
+        timed = {max(vector.shape) for key, vector in vectors.items() if bare(key) in TIMES}
+        for key, vector in vectors.items():
+            unit = as_text(units.get(key, "")) if isinstance(units, dict) else ""
+            # Simulink calls the times of its outputs tout.
+            signals = signals_of(TIME if bare(key) == "tout" else key, vector, unit)
+            beside_times = max(vector.shape) in timed
+            self._add(name, signals, _Clock((), clock.rate) if beside_times else clock, f"{name}.{key}".strip("."))
 
     def _read_inner(self, above: str, key: str, label: str, value: Value, clock: _Clock) -> None:
         """Take the channels of a structure or of each of a list; one without times of its own is beside the others."""
@@ -115,7 +120,7 @@ class _Reader:
             for number, each in enumerate(value, 1):
                 if isinstance(each, dict | list):
                     self._read_inner(above, key, f"{label}#{number}" if len(value) > 1 else label, each, clock)
-                elif is_vector(each):
+                elif each is None or is_vector(each):
                     self._add(name, signals_of(f"{label}#{number}", np.asarray(each)), clock, name)
 
     def _add(self, name: str, signals: list[Signal], clock: _Clock, place: str) -> None:
@@ -158,9 +163,14 @@ def _times(held: Structure, names: Sequence[str]) -> tuple[Array, ...]:
             times = each[channel] if isinstance(each, dict) and channel else each if bare(key) in names else None
             if is_vector(times):
                 vector = np.squeeze(np.asarray(times))
-                if vector.dtype.kind in "fiu" and vector.ndim == 1 and (np.diff(vector) >= 0).all():
+                if vector.dtype.kind in "fiu" and vector.ndim == 1 and _rises(vector):
                     found.append(vector.astype(np.float64))
     return tuple(found)
+
+
+def _rises(vector: AnyArray) -> bool:
+    steps = np.diff(vector.astype(np.float64))
+    return bool((steps >= 0.0).all() and (steps > 0.0).any())
 
 
 def _clock(held: Structure, stated: Structure, names: Sequence[str]) -> _Clock:
@@ -169,9 +179,9 @@ def _clock(held: Structure, stated: Structure, names: Sequence[str]) -> _Clock:
     unit = next((as_text(value) for key, value in stated.items() if bare(key) in UNITS_OF_TIME), stated_unit(info))
     found = find_conversion(unit, DIMENSIONS["time"]) if unit else None
     factor = found.factor if found else 1.0
-    rate, start = stated_rate(stated), _start(stated)
+    start = _start(stated)
     times = tuple(factor * each for each in _times(held, names))
-    return _Clock(times, rate / factor if rate else None, factor * start if start is not None else None)
+    return _Clock(times, stated_rate(stated, factor), factor * start if start is not None else None)
 
 
 def _start(stated: Structure) -> float | None:

@@ -28,13 +28,16 @@ def bare(name: str) -> str:
     return name.lower().replace("_", "").replace(" ", "")
 
 
-def stated_rate(values: Mapping[str, object]) -> float | None:
-    """Return the sample rate in Hz that stands among named values, None where none does."""
+def stated_rate(values: Mapping[str, object], seconds: float = 1.0) -> float | None:
+    """Return the sample rate in Hz that stands among named values, None where none does.
+
+    `seconds` is the unit of intervals in s.
+    """
     for names, is_rate in ((RATES, True), (STEPS, False)):
         for key, value in values.items():
             number = scalar(value) if bare(key) in names else None
             if number is not None and number > 0.0:
-                return number if is_rate else 1.0 / number
+                return number if is_rate else 1.0 / (seconds * number)
     return None
 
 

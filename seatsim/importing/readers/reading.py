@@ -88,6 +88,8 @@ def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
         raise
     except TooMuchError as error:
         raise InputError(f"{path}: {error}") from error
+    except RecursionError as error:
+        raise InputError(f"{path}: its parts lie too deep in each other, or hold themselves") from error
     except Exception as error:  # libraries raise whatever a damaged file makes them stumble over
         reason = str(error).strip().split("\n")[0][:LONGEST_REASON] or type(error).__name__
         problem = f"cannot be read as {found.name} ({reason}); it is truncated, damaged, or of a kind that is not read"

@@ -66,7 +66,7 @@ def _why_not(kind: int, held: Mapping[str, object]) -> str:
     """Return what a data set is if it is no response over time, else an empty text."""
     if kind != FUNCTION:
         return f"no function, but of type {kind}"
-    function, axis = int(cast("int", held["func_type"])), int(cast("int", held["abscissa_spec_data_type"]))
+    function, axis = (int(cast("int", held[key]) or 0) for key in ("func_type", "abscissa_spec_data_type"))
     if function not in OVER_TIME:
         return FUNCTIONS[function] if 0 < function < len(FUNCTIONS) else f"a function of type {function}"
     return "" if axis in TIME_AXIS else f"a function over {str(held['abscissa_axis_lab']).strip() or axis}"
