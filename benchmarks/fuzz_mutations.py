@@ -84,7 +84,7 @@ def _change_member(content: bytes, generator: random.Random) -> bytes:
     changed = io.BytesIO()
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(changed, "w", zipfile.ZIP_DEFLATED) as new:
-            chosen = generator.choice(old.namelist())
+            chosen = generator.choice(["", *old.namelist()])
             for name in old.namelist():
                 new.writestr(name, mutate(old.read(name), generator) if name == chosen else old.read(name))
     except (*UNPACKING_ERRORS, RuntimeError):  # an earlier change has damaged it

@@ -21,10 +21,10 @@ def test_a_structure_that_asks_for_too_much_is_refused_at_once(name, tmp_path):
     path = tmp_path / "a.bin"
     path.write_bytes(ATTACKS[name](tmp_path))
     assert path.stat().st_size < 2**22
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(InputError) as raised:
         read_file(path)
-    assert time.perf_counter() - start < 5.0
+    assert time.process_time() - start < 5.0
     assert "\n" not in str(raised.value)
 
 

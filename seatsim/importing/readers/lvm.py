@@ -59,7 +59,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the channels of a file, those of the same times as one group; the pieces of a channel follow each other.
 
     Raises:
-        InputError: the file has no table, its x is no time, or a channel states no interval.
+        InputError: a segment lacks rows, its x is no time, or a channel states no interval.
     """
     lines = _text(content, layout).splitlines()
     separator = next((line[9] for line in lines[:20] if line.startswith("Separator") and line[9:]), "\t")
@@ -103,6 +103,8 @@ def _table(segment: _Segment, separator: str, decimal: str) -> Array:
 
     remarks = [column for column, name in enumerate(segment.names) if name == REMARK]
     columns = [column for column in range(len(segment.names)) if column not in remarks]
+    if not segment.rows:
+        return np.empty((0, len(segment.names)))
     frame = pd.read_csv(
         io.StringIO("\n".join(segment.rows)), sep=separator, decimal=decimal, header=None, index_col=False,
         names=range(len(segment.names)), dtype=dict.fromkeys(columns, np.float64),
@@ -120,6 +122,8 @@ def _pieces(segment: _Segment, table: Array, x_columns: str, path: Path) -> Iter
     steps = [float(cell.replace(",", ".") or "nan") for cell in segment.cells("Delta_X")]
     zeros = [float(cell.replace(",", ".") or "0") for cell in segment.cells("X0")]
     samples = [int(cell or "0") for cell in segment.cells("Samples")]
+    if len(table) < max(samples, default=0):
+        raise InputError(f"{path}: has {len(table)} of {max(samples)} rows; the file is truncated: export it again")
     described = zip(segment.channels(), segment.cells("Y_Unit_Label"), _begins(segment), steps, zeros, strict=True)
     for column, unit, begins, step, zero in described:
         values = table[:, column]

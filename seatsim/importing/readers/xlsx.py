@@ -56,13 +56,12 @@ def _rows(sheet: ReadOnlyWorksheet, size: int) -> list[Sequence[Cell]]:
     rows: list[Sequence[Cell]] = []
     cells = 0
     for number, row in enumerate(sheet.iter_rows(values_only=True)):
-        cells += len(row) if any(cell is not None for cell in row) else 0
         if number >= MOST_ROWS:
             raise TooMuchError(f"the sheet {sheet.title} states more than {MOST_ROWS} rows, the most that Excel has")
-        if len(rows) % 1000 == 0:
-            check_made(BYTES_OF_CELL * cells, size, f"the sheet {sheet.title}")
         if any(cell is not None for cell in row):
             rows.append(row)
+            cells += len(row)
+            check_made(BYTES_OF_CELL * cells, size, f"the sheet {sheet.title}")
     width = max((len(row) for row in rows), default=0)
     check_made(BYTES_OF_CELL * width * len(rows), size, f"the sheet {sheet.title}")
     return [(*row, *[None] * (width - len(row))) for row in rows]
