@@ -179,6 +179,24 @@ def mdf_rows_beyond_the_file(folder):
     return bytes(content)
 
 
+def _mdf_packed(stated, folder):
+    """Put a packed block of 64 MiB of zeros, which states so many bytes, in the place of the rows."""
+    content = _written(exports.mdf, "a.mf4", folder)
+    content += bytes(-len(content) % 8)
+    packed = zlib.compress(bytes(2**26), 9)
+    _link(content, next(_blocks(content, b"##DG")), 2, len(content))
+    content += struct.pack("<4s4xQQ2sBBIQQ", b"##DZ", 48 + len(packed), 0, b"DT", 0, 0, 0, stated, len(packed)) + packed
+    return bytes(content)
+
+
+def mdf_packed_zeros(folder):
+    return _mdf_packed(2**26, folder)
+
+
+def mdf_packed_zeros_that_state_less(folder):
+    return _mdf_packed(64 * len(ROWS), folder)
+
+
 def mdf3_channels_in_a_circle(folder):
     content = _written(exports.mdf, "a.mdf", folder)
     block = content.index(b"CN", 64)

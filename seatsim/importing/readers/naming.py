@@ -19,6 +19,8 @@ STEPS = (
     "samplinginterval", "dx", "deltax", "xdelta", "xinc", "xincrement",
 )  # fmt: skip
 """Names, without their underscores, under which the sample rate in Hz, or the interval in s, is stated."""
+NUMBER = re.compile(r"\s*\d+([.,]\d*)?([eE][-+]?\d{1,2})?\s*")
+"""A number as a text."""
 UNITS = ("unit", "units", "unitstring", "einheit", "ylabelunit", "yunit", "unity", "nunit")
 """Names under which a unit is stated."""
 
@@ -36,7 +38,7 @@ def stated_rate(values: Mapping[str, object], seconds: float = 1.0) -> float | N
     for names, is_rate in ((RATES, True), (STEPS, False)):
         for key, value in values.items():
             number = scalar(value) if bare(key) in names else None
-            if number is not None and number > 0.0:
+            if number is not None and 0.0 < number < np.inf:
                 return number if is_rate else 1.0 / (seconds * number)
     return None
 
@@ -51,7 +53,7 @@ def scalar(value: object) -> float | None:
     if isinstance(value, Mapping | list | tuple):
         return None
     array = np.asarray(value)
-    if array.size == 1 and array.dtype.kind in "USO" and re.fullmatch(r"\d+([.,]\d*)?", as_text(array).strip()):
+    if array.size == 1 and array.dtype.kind in "USO" and NUMBER.fullmatch(as_text(array)):
         return float(as_text(array).replace(",", "."))
     return float(array.ravel()[0]) if array.size == 1 and array.dtype.kind in "fiu" else None
 
