@@ -88,6 +88,15 @@ def mat73_cell_in_itself(folder):
     return b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM" + path.read_bytes()[128:]
 
 
+def mat73_large_empty_array(folder):
+    h5py = pytest.importorskip("h5py")
+    path = folder / "empty.mat"
+    with h5py.File(path, "w", userblock_size=512) as file:
+        empty = file.create_dataset("empty", data=np.array([2**28, 1], np.uint64))
+        empty.attrs["MATLAB_class"], empty.attrs["MATLAB_empty"] = np.bytes_("double"), np.uint8(1)
+    return b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM" + path.read_bytes()[128:]
+
+
 def _mat(*elements):
     return b"MATLAB 5.0 MAT-file".ljust(124) + b"\0\1IM" + b"".join(elements)
 

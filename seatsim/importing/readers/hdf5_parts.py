@@ -10,7 +10,7 @@ import io
 from collections.abc import Hashable, Iterator
 from contextlib import contextmanager
 from math import prod
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,8 +28,6 @@ NUMBER = 8
 """Bytes of a number as channels hold it."""
 HERE = "."
 """How a virtual data set names its own file."""
-REFERRED = "#refs#"
-"""Folder in which MATLAB keeps what its cells and structures refer to."""
 
 
 @contextmanager
@@ -60,7 +58,7 @@ def _part(item: Hashable, path: Path, size: int, follows: bool, sources: set[Pat
     place = f"{path}, {getattr(item, 'name', None) or 'an object without a name'}"
     made = sum(_bytes_of(item.attrs.get_id(name)) for name in item.attrs) if isinstance(item, h5py.HLObject) else 0
     if isinstance(item, h5py.Group):
-        return Part(made, tuple(_members(item, place, follows)))
+        return Part(made, tuple(_members(item, place)))
     if not isinstance(item, h5py.Dataset):
         return Part(made)
     if item.external:
@@ -69,7 +67,8 @@ def _part(item: Hashable, path: Path, size: int, follows: bool, sources: set[Pat
     check_made(made, size, str(item.name))
     if item.is_virtual:
         return Part(made, tuple(_sources(item, place, path, sources)))
-    return Part(made, tuple(_referred(item)) if follows and item.dtype == h5py.ref_dtype else ())
+    holds_references = h5py.check_ref_dtype(item.dtype) is h5py.Reference
+    return Part(made, tuple(_referred(item)) if follows and holds_references else ())
 
 
 def _bytes_of(array: Any) -> int:
@@ -78,19 +77,18 @@ def _bytes_of(array: Any) -> int:
     return prod(shape) * int(max(NUMBER, array.dtype.itemsize))
 
 
-def _members(group: h5py.Group, place: str, follows: bool) -> Iterator[h5py.HLObject]:
-    """Yield what lies in a group; what its cells refer to is met there."""
+def _members(group: h5py.Group, place: str) -> Iterator[h5py.HLObject]:
+    """Yield what lies in a group."""
     import h5py
 
     for name in group:
         link = group.get(name, getlink=True)
         if isinstance(link, h5py.ExternalLink):
             raise InputError(f"{place}: '{name}' is a link to another file ({link.filename}), which is not followed")
-        if not (follows and name == REFERRED):
-            item = group.get(name)
-            if item is None:
-                raise InputError(f"{place}: '{name}' is a link to '{link.path}', which is not there")
-            yield item
+        item = group.get(name)
+        if item is None:
+            raise InputError(f"{place}: '{name}' is a link to '{link.path}', which is not there")
+        yield item
 
 
 def _referred(item: h5py.Dataset) -> Iterator[h5py.HLObject]:
@@ -113,7 +111,7 @@ def _sources(item: h5py.Dataset, place: str, path: Path, sources: set[Path]) -> 
             yield source
         else:
             beside = path.parent / each.file_name
-            if len(PurePosixPath(each.file_name).parts) > 1 or not is_there(beside):
+            if Path(each.file_name).name != each.file_name or not is_there(beside):
                 raise InputError(f"{missing}; its files must lie beside it")
             sources.add(beside)
             _check_source(beside, each.dset_name, needed, missing)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.importing.optional import need
-from seatsim.importing.readers.hdf5_parts import REFERRED, open_checked
+from seatsim.importing.readers.hdf5_parts import open_checked
 from seatsim.importing.readers.mat_elements import Array, Resolve, read_variables
 from seatsim.importing.signals import TIME
 from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
@@ -24,8 +24,8 @@ Value: TypeAlias = "NDArray[np.generic] | str | dict[str, Value] | list[Value] |
 
 USER_BLOCK, HDF5 = 512, b"\x89HDF\r\n\x1a\n"
 """Bytes before an HDF5 file in a MAT file, and how it begins."""
-SUBSYSTEM = "#subsystem#"
-"""Folder of a file of version 7.3 that holds what its objects hold."""
+REFERRED, SUBSYSTEM = "#refs#", "#subsystem#"
+"""Folders of a file of version 7.3 that hold what its cells and structures refer to, and what its objects hold."""
 REFERENCE = 0xDD000000
 """First number of an array that tells which object it is."""
 MOST_OBJECTS = LEAST // BYTES_OF_PART
@@ -127,6 +127,7 @@ class _Plain:
 
     def _of_array(self, array: NDArray[Any]) -> Value:
         """Return numbers as an array, and what is one text or structure as it is, not as a list."""
+        check_made(array.nbytes, self.size)  # an empty array may state any dimensions
         flat, kind = array.ravel(order="F"), array.dtype.kind
         if kind in "Mm":
             return _seconds(array)
