@@ -53,6 +53,18 @@ def test_a_start_that_is_missing_or_was_never_set_is_said(tmp_path):
     assert not read_file(tmp_path / "b.tdms").notes
 
 
+@pytest.mark.parametrize("step", [0.0, -0.002, 1e-310, np.nan, 1e300])
+def test_a_rate_that_no_logger_has_is_refused(tmp_path, step):
+    nptdms = pytest.importorskip("nptdms")
+    with nptdms.TdmsWriter(tmp_path / "a.tdms") as writer:
+        writer.write_segment([nptdms.ChannelObject("A", "force", TIME, {"wf_increment": step})])
+    if step:
+        with pytest.raises(InputError, match="states a sample rate of"):
+            read_file(tmp_path / "a.tdms")
+    else:
+        assert read_file(tmp_path / "a.tdms").groups[0].rate is None
+
+
 def lvm(x_columns, tables, decimal=".", steps=(0.01, 0.01), starts=("09:51:40.5",)):
     """Return a file of two channels: a segment for each of `tables`, which hold rows of cells."""
     blank = "\t" if x_columns == "Multi" else ""

@@ -23,6 +23,8 @@ SNIFFED = 4096
 USER_BLOCK = 512
 """Bytes that may stand before an HDF5 file."""
 LEAST_ROWS = 2
+LOWEST_RATE, HIGHEST_RATE, LATEST_START = 1e-6, 1e9, 1e10
+"""Rates in Hz and starts in s, 300 years apart, beyond which a file is damaged."""
 LARGEST_NUMBER = 1e100
 """What is larger, or infinite, was never measured and counts as a row without a number: its square overflows."""
 
@@ -156,11 +158,16 @@ def _is_text(head: bytes) -> bool:
 
 
 def _checked(file: DataFile) -> DataFile:
-    """Return a file whose groups all hold rows and numbers."""
+    """Return a file whose groups all hold rows and numbers, at a rate and from a start that there may be."""
     groups = tuple(group for group in file.groups if group.signals and group.rows >= LEAST_ROWS)
     if not groups:
         said = "".join(f"; {note}" for note in file.notes)
         raise InputError(f"{file.path}: holds no channel with at least {LEAST_ROWS} rows of numbers{said}")
+    for group in groups:
+        if group.rate is not None and not LOWEST_RATE <= group.rate <= HIGHEST_RATE:
+            raise InputError(f"{file.path}: states a sample rate of {group.rate:g} Hz, which no logger has; correct it")
+        if group.start is not None and not abs(group.start) <= LATEST_START:
+            raise InputError(f"{file.path}: states that channels begin at {group.start:g} s; correct that")
     return file._replace(groups=tuple(_named_once(group) for group in groups))
 
 
