@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.axis_doubts import doubt_time
+from seatsim.importing.group_time import check_is_history, find_clock
 from seatsim.importing.import_map import AxisMap, ImportMap
-from seatsim.importing.names import is_of, read_name
-from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.importing.signals import DataFile, Group
 from seatsim.importing.time_axis import Axis, even_axis, measured_axis, unbroken
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
@@ -47,9 +47,10 @@ def clock_groups(files: Sequence[DataFile], stated: ImportMap, doubts: list[Issu
 def _clock(file: DataFile, group: Group, stated: ImportMap, doubts: list[Issue]) -> Clocked:
     """Return a group with its time: of the column that the map names, of the format, or at the stated rate."""
     label = f"{file.path.name}, {group.name}" if group.name and len(file.groups) > 1 else file.path.name
+    check_is_history(group, str(file.path))
     rate = stated.sample_rate or group.rate
-    time = _time_column(group, stated)
-    if time is not None and (stated.sample_rate is None or stated.time is not None):
+    time = _time_column(group, stated, label, doubts)
+    if time is not None:
         group, axis = _timed(label, group, time, doubts)
         return Clocked(file.path.name, label, group, axis)
     if rate is not None:
@@ -62,12 +63,15 @@ def _clock(file: DataFile, group: Group, stated: ImportMap, doubts: list[Issue])
     )
 
 
-def _time_column(group: Group, stated: ImportMap) -> AxisMap | None:
-    """Return the column of time that the map names, else the one that is called so: other loggers name it otherwise."""
+def _time_column(group: Group, stated: ImportMap, label: str, doubts: list[Issue]) -> AxisMap | None:
+    """Return the column of time that the map names, else the one that is found: other loggers name it otherwise."""
     if stated.time is not None and group.find(stated.time.column) is not None:
         return stated.time
-    meanings = ((signal.name, read_name(signal.name, signal.unit)) for signal in group.signals)
-    return next((AxisMap(name, meaning.unit) for name, meaning in meanings if meaning.quantity == "time"), None)
+    clock = find_clock(group)
+    if clock is None or (stated.sample_rate is not None and stated.time is None):
+        return None
+    doubts += [Issue("note", "time", f"{label}: {clock.assumption}")] if clock.assumption else []
+    return AxisMap(clock.column, clock.unit)
 
 
 def _timed(label: str, group: Group, time: AxisMap, doubts: list[Issue]) -> tuple[Group, Axis]:
@@ -78,19 +82,11 @@ def _timed(label: str, group: Group, time: AxisMap, doubts: list[Issue]) -> tupl
     axis = measured_axis(conversion(time.unit or "s", DIMENSIONS["time"]).factor * times[there])
     if axis is None:
         raise InputError(f"{label}: column '{time.column}' does not rise as a time does; name another one under time")
-    doubts += doubt_time(axis, f"{label}, {time.column}")
+    found = list(doubt_time(axis, f"{label}, {time.column}"))
+    if axis.resolution and not axis.is_even:
+        raise InputError(found[-1].sentence)
+    doubts += found
     return group._replace(signals=signals), axis
-
-
-def read_clock(signal: Signal) -> Axis | None:
-    """Return the times of a column that is called time, in s where its unit is none of time; None if they never rise.
-
-    Rows that hold no number are left out.
-    """
-    unit = read_name(signal.name, signal.unit).unit
-    values = signal.values[np.isfinite(signal.values)]
-    factor = conversion(unit if unit and is_of(unit, "time") else "s", DIMENSIONS["time"]).factor
-    return measured_axis(factor * values) if len(values) > 2 else None
 
 
 def list_names(names: Sequence[str], most: int = 12) -> str:

@@ -16,7 +16,8 @@ from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmissio
 from seatsim.metrics.weighting import weight
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import STANDARD_GRAVITY
-from seatsim.standards.acceleration_records import AccelerationRecord, find_axes, load_accelerations
+from seatsim.standards.acceleration_axes import choose_axes
+from seatsim.standards.acceleration_records import AccelerationRecord, load_accelerations
 
 FLOOR = {"floor.x": "x", "floor.y": "y", "floor.z": "z"}
 """Axes at the base of the seat, and the axis of the seat whose weighting and SEAT factor they belong to."""
@@ -101,7 +102,7 @@ def comfort(
     named = {axis.lower(): column for axis, column in (channels or {}).items()}
     _check_axes(named)
     records = _chosen(load_accelerations(source, rate, unit, [*named.values()]), runs, source)
-    named = named or find_axes(records[0])
+    named = named or choose_axes(records[0].name, records[0].columns)
     doses = {axis: _doses(records, axis, column, blocks) for axis, column in named.items()}
     axes = {axis: _assess(axis, named[axis], doses[axis], records) for axis in DIRECTIONS if axis in named}
     if not axes:
@@ -201,6 +202,7 @@ def _motion_sickness(
 def _notes(
     records: Sequence[AccelerationRecord], named: Mapping[str, str], axes: Mapping[str, AxisAssessment]
 ) -> Iterator[str]:
+    yield from (note for record in records for note in record.notes)
     if len(records) > 1:
         yield f"{len(records)} runs count as one vibration: {', '.join(record.name for record in records)}"
     for axis, found in axes.items():

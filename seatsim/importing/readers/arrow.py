@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from seatsim.importing.readers.columns import column_values
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.readers.text import column_values
 from seatsim.importing.signals import DataFile, Group, Signal
 
 if TYPE_CHECKING:

@@ -1,0 +1,100 @@
+"""Which column of a group is its time, in which unit, and whether its rows are a history over time at all."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.importing.names import is_of, read_name
+from seatsim.importing.signals import Group, Signal
+from seatsim.importing.time_axis import Axis, measured_axis
+from seatsim.schema.errors import InputError
+from seatsim.schema.units import DIMENSIONS, conversion
+
+SLOWEST, FASTEST = 20.0, 50_000.0
+"""Hz; a column of time without unit is in s where its rows are between these rates, else its unit is asked for."""
+
+
+class Clock(NamedTuple):
+    """A column that is the time of its group.
+
+    `unit` is empty where none is stated and s is not likely; `axis` is in s then. `axis` is None where the column does
+    not rise. `is_named` tells whether its name says time.
+    """
+
+    column: str
+    unit: str
+    axis: Axis | None
+    is_named: bool = True
+
+    @property
+    def open(self) -> str:
+        """What has to be stated before the column can be used, empty where nothing has."""
+        if self.unit and self.axis is not None:
+            return ""
+        seen = f"has no unit, and its rows are {1.0 / self.axis.rate:.4g} apart" if self.axis else "does not rise"
+        return f"'{self.column}' {seen}"
+
+    @property
+    def assumption(self) -> str:
+        """A sentence on a column that is taken for the time without a name that says so, else an empty one."""
+        if self.is_named or self.axis is None:
+            return ""
+        return (
+            f"{self.column}: no column is called time; this one rises evenly and is taken for it, in s"
+            f" ({self.axis.rate:.6g} Hz)"
+        )
+
+
+def find_clock(group: Group) -> Clock | None:
+    """Return the column of time: of those that are called so the one that rises most evenly.
+
+    Where none is called so, and the format states no rate, it is the first column if its name says nothing and it
+    rises evenly by another step than 1, by which rows are counted.
+    """
+    named = [
+        _clock(signal, unit)
+        for signal in group.signals
+        for quantity, *_, unit, _ in [read_name(signal.name, signal.unit)]
+        if quantity == "time"
+    ]
+    if named:
+        return min(named, key=lambda clock: _flaws(clock.axis))
+    first = group.signals[0]
+    if group.rate is not None or group.is_road or read_name(first.name, first.unit).quantity is not None or first.unit:
+        return None
+    clock = _clock(first, "")._replace(is_named=False)
+    is_even = clock.axis is not None and not _flaws(clock.axis) and not (np.diff(first.values) == 1.0).all()
+    return clock if is_even and clock.unit else None
+
+
+def _clock(signal: Signal, stated: str) -> Clock:
+    unit = stated if stated and is_of(stated, "time") else ""
+    times = signal.values[np.isfinite(signal.values)]
+    axis = measured_axis(conversion(unit or "s", DIMENSIONS["time"]).factor * times) if len(times) > 2 else None
+    if not unit and axis is not None and SLOWEST <= axis.rate <= FASTEST:
+        unit = "s"
+    return Clock(signal.name, unit, axis)
+
+
+def _flaws(axis: Axis | None) -> int:
+    """Return how far an axis is from even: 0 for one without a flaw."""
+    if axis is None:
+        return 4
+    return 3 if not axis.is_even else 2 if len(axis.breaks) else int(axis.resolution > 0.0)
+
+
+def is_spectrum(group: Group) -> bool:
+    """Say whether the rows of a group follow each other in frequency."""
+    first = group.signals[0]
+    return read_name(first.name, first.unit).quantity == "frequency" and bool(np.all(np.diff(first.values) > 0.0))
+
+
+def check_is_history(group: Group, place: str) -> None:
+    """Raise InputError where a group is a spectrum."""
+    if is_spectrum(group):
+        raise InputError(
+            f"{place}: its rows stand over '{group.signals[0].name}', not over time: it is a spectrum; export the time"
+            " histories"
+        )

@@ -1,0 +1,111 @@
+"""How a text table is written: its delimiter, its decimal sign, and which of its rows hold numbers."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+DELIMITERS = (";", "\t", ",", "|", " ")
+"""Delimiters in the order in which they are taken where several fit alike: a blank stands inside names, too."""
+MISSING = ("", "nan", "NaN", "NAN", "NA", "n/a", "N/A", "null", "NULL", "None", "-", "#N/A", "inf", "-inf", "---", "*")
+"""What a cell without a value holds."""
+SIGN = "[+\\-\u2212\u2013]"
+"""Signs of numbers: a minus and a dash of typesetting are a minus, too."""
+THOUSANDS = {
+    ".": rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}(?:[,'\u2019 \u00a0\u202f]\d{{3}})+(?:\.\d+)?",
+    ",": rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}(?:[.'\u2019 \u00a0\u202f]\d{{3}})+(?:,\d+)?",
+}
+"""A number whose thousands are parted, such as 1,234.5, by decimal sign."""
+PLAIN = {
+    ".": re.compile(rf"(?:{SIGN}\s*)?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?"),
+    ",": re.compile(rf"(?:{SIGN}\s*)?(?:\d+,?\d*|,\d+)(?:[eEdD][+-]?\d+)?"),
+}
+"""What a number looks like with each decimal sign."""
+PARTED = {sign: re.compile(pattern) for sign, pattern in THOUSANDS.items()}
+DATE = r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4}|\d{8}"
+CLOCK = r"\d{1,2}:\d{2}(?::\d{2})?(?:[.,:]\d+)?(?:\s*[AaPp]\.?[Mm]\.?)?"
+STAMP = re.compile(rf"(?:{DATE})(?:[ T_,-]+{CLOCK})?(?:Z| ?UTC|[+-]\d\d:?\d\d)?|{CLOCK}")
+"""A date, a time of day, or both."""
+BLANKS = re.compile(rf'"[^"]*"|(?:(?<![^\s]){SIGN} +(?=[.,\d]))?[^\s"]+')
+"""A cell of a table that is parted by blanks; one may stand between a sign and its number."""
+SCORED = 50
+"""Lines by which delimiter and decimal sign are chosen."""
+
+Kind = bool | None
+"""True for a cell that holds a number or a time, None for one that holds nothing, False for a text."""
+
+
+class Dialect(NamedTuple):
+    """How a table is written."""
+
+    delimiter: str
+    decimal: str
+
+
+def split_line(line: str, delimiter: str) -> list[str]:
+    """Return the cells of a line, without the quotation marks around them."""
+    if delimiter == " ":
+        return [cell.strip('"') for cell in BLANKS.findall(line)]
+    if '"' in line:
+        return next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
+    return line.split(delimiter)
+
+
+def kind_of(cell: str, decimal: str) -> Kind:
+    """Say what a cell holds."""
+    plain = cell.strip()
+    if plain in MISSING:
+        return None
+    patterns = (PLAIN[decimal], PARTED[decimal], STAMP)
+    return any(pattern.fullmatch(plain) for pattern in patterns)
+
+
+def find_body(kinds: Sequence[Sequence[Kind]]) -> tuple[int, int]:
+    """Return where the longest stretch of rows begins and ends that are equally wide and hold numbers or nothing."""
+    best, begin, holds_numbers = (0, 0), 0, False
+    for index, row in enumerate(kinds):
+        if not any(row) and False in row:
+            begin, holds_numbers = index + 1, False
+            continue
+        if len(row) != len(kinds[begin]):
+            begin, holds_numbers = index, False
+        holds_numbers |= any(row)
+        if holds_numbers and index + 1 - begin > best[1] - best[0]:
+            best = (begin, index + 1)
+    return best
+
+
+def find_dialect(lines: Sequence[str], delimiter: str | None, decimal: str | None) -> Dialect | None:
+    """Return how the last lines are written that are not blank, as far as it is not stated; None: without numbers."""
+    last = [line for line in lines if line.strip()][-SCORED:]
+    best, most = None, 0.0
+    for each in (delimiter,) if delimiter else DELIMITERS:
+        for sign in (decimal,) if decimal else (".", ","):
+            if each == sign and not any('"' in line for line in last):
+                continue
+            score = _score(last, each, sign)
+            if score > most + 1e-9:
+                best, most = Dialect(each, sign), score
+    return best
+
+
+def _score(lines: Sequence[str], delimiter: str, decimal: str) -> float:
+    """Return how well lines are read: which share of them is the table, and how much of it is numbers."""
+    rows = [split_line(line, delimiter) for line in lines]
+    begin, end = find_body([[kind_of(cell, decimal) for cell in row] for row in rows])
+    filled = [cell.strip() for row in rows[begin:end] for cell in row if cell.strip() not in MISSING]
+    # Where thousands are parted the decimal sign is not certain: 1,234 may be 1.234.
+    numbers = sum(_is_certain(cell, decimal) for cell in filled)
+    if not numbers:
+        return 0.0
+    # A column of texts (remarks) is no reason against a delimiter; a comma that splits 0,5 in two gives as many
+    # columns, so that lines which agree and the numbers of a line count as well.
+    return float((numbers / len(filled)) ** 2 * (end - begin) / len(lines) * (numbers / (end - begin)) ** 0.1)
+
+
+def _is_certain(cell: str, decimal: str) -> bool:
+    return bool(
+        PLAIN[decimal].fullmatch(cell) or STAMP.fullmatch(cell) or (decimal in cell and PARTED[decimal].fullmatch(cell))
+    )
