@@ -33,7 +33,7 @@ QUANTITIES: Mapping[str, tuple[str, ...]] = {
     "frequency": ("frequency", "frequenz", "frequence", "pinlv", "freq"),
     "distance": ("distance", "chainage", "station", "strecke", "abstand", "juli"),
     "elevation": ("elevation", "height", "profile", "profil", "hohe", "hoehe", "hauteur", "gaodu", "z"),
-    "mark": ("valid", "gultig", "gueltig", "segment", "marker", "trigger", "index"),
+    "mark": ("valid", "gultig", "gueltig", "segment", "marker", "trigger", "index", "row", "zeile", "counter"),
 }  # fmt: skip
 """Words for what a column holds; for a velocity before a displacement, since `x` alone is one."""
 PLACES: Mapping[str, tuple[str, ...]] = {

@@ -135,9 +135,11 @@ def _rate(group: Group, clock: Clock | None, path: Path, stated: float | None) -
     """
     axis = clock.axis if clock else None
     if stated is not None:
-        found = axis.rate if axis and axis.is_even else group.rate
+        found = axis.rate if axis and clock and clock.unit and axis.is_even else group.rate
         is_contrary = found is not None and abs(stated / found - 1.0) > CONTRARY
-        return stated, [f"the file states {found:.6g} Hz; the stated {stated:g} Hz is taken"] if is_contrary else []
+        notes = [f"the file states {found:.6g} Hz; the stated {stated:g} Hz is taken"] if is_contrary else []
+        lost = list(doubt_time(axis, clock.column)) if axis and clock and len(axis.breaks) else []
+        return stated, [*notes, *(issue.sentence for issue in lost)]
     if clock is not None:
         return _rate_of(clock, path)
     sidecar = path.with_name(stem(path.name) + ".yaml")
@@ -156,7 +158,8 @@ def _rate_of(clock: Clock, path: Path) -> tuple[float, list[str]]:
     said = [issue.sentence for issue in doubt_time(clock.axis, clock.column)]
     if len(clock.axis.breaks) or not clock.axis.is_even:
         raise InputError(
-            f"{path}: {clock.column} does not rise in even steps ({'; '.join(said)}); seatsim import resamples such files"
+            f"{path}: {clock.column} does not rise in even steps ({'; '.join(said)}); seatsim import resamples"
+            " such files"
         )
     return clock.axis.rate, [*([clock.assumption] if clock.assumption else []), *said]
 

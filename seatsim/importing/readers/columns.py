@@ -16,18 +16,29 @@ if TYPE_CHECKING:
 MOST_TEXTS = 0.5
 """Share of the rows that are no numbers from which a column is one of texts."""
 DAY = 86400.0
+AMBIGUOUS = rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}[.,]\d{{3}}"
+"""A number that may have a decimal sign, or one between thousands."""
 
 
 class Cells(NamedTuple):
-    """Values of shape (N,), NaN where none stands; the unit is `s` where they were read off times."""
+    """Values of shape (N,), NaN where none stands; the unit is `s` where they were read off times.
+
+    `parted` quotes a cell such as `1.234` whose mark was taken for one of thousands, empty where there is none.
+    """
 
     values: Array
     unit: str = ""
+    parted: str = ""
 
     @property
     def holds_numbers(self) -> bool:
         """Say whether there is any."""
         return not np.isnan(self.values).all()
+
+    @property
+    def is_date(self) -> bool:
+        """Say whether these are dates without a time of day."""
+        return self.unit == "s" and not (self.values[np.isfinite(self.values)] % DAY).any()
 
 
 def column_values(column: pa.ChunkedArray) -> Array | None:
@@ -79,7 +90,8 @@ def _read_texts(texts: pd.Series[str], decimal: str) -> Cells | None:
     if not np.isfinite(found).all():
         found = max(found, _numbers(plain, "," if decimal == "." else "."), key=lambda each: np.isfinite(each).sum())
     if np.isnan(found).sum() <= MOST_TEXTS * len(found):
-        return Cells(found)
+        parted = plain[plain.str.fullmatch(AMBIGUOUS, na=False) & (np.abs(found) >= 1e3)]
+        return Cells(found, parted=f"'{parted.iloc[0]}'" if len(parted) else "")
     times = _read_stamps(plain)
     return None if np.isnan(times).sum() > MOST_TEXTS * len(times) else Cells(times, "s")
 

@@ -30,8 +30,11 @@ STAMP = re.compile(rf"(?:{DATE})(?:[ T_,-]+{CLOCK})?(?:Z| ?UTC|[+-]\d\d:?\d\d)?|
 """A date, a time of day, or both."""
 BLANKS = re.compile(rf'"[^"]*"|(?:(?<![^\s]){SIGN} +(?=[.,\d]))?[^\s"]+')
 """A cell of a table that is parted by blanks; one may stand between a sign and its number."""
+LEADING_ZERO = re.compile(r"0\d+")
 SCORED = 50
-"""Lines by which delimiter and decimal sign are chosen."""
+"""Lines at either end by which delimiter and decimal sign are chosen."""
+DISAGREEING = 0.9
+"""Weight of a way to read a table in which the line above its rows has another number of cells."""
 
 Kind = bool | None
 """True for a cell that holds a number or a time, None for one that holds nothing, False for a text."""
@@ -78,17 +81,28 @@ def find_body(kinds: Sequence[Sequence[Kind]]) -> tuple[int, int]:
 
 
 def find_dialect(lines: Sequence[str], delimiter: str | None, decimal: str | None) -> Dialect | None:
-    """Return how the last lines are written that are not blank, as far as it is not stated; None: without numbers."""
-    last = [line for line in lines if line.strip()][-SCORED:]
+    """Return how lines are written that are not blank, as far as it is not stated; None where they hold no numbers.
+
+    The last lines tell it, as the first may be titles; these tell which way has as many names as columns.
+    """
+    first, last = lines[:SCORED], lines[-SCORED:]
     best, most = None, 0.0
     for each in (delimiter,) if delimiter else DELIMITERS:
         for sign in (decimal,) if decimal else (".", ","):
             if each == sign and not any('"' in line for line in last):
                 continue
-            score = _score(last, each, sign)
+            score = _score(last, each, sign) * (1.0 if _agrees_with_names(first, each, sign) else DISAGREEING)
+            score += 1e-3 * _score(first, each, sign)
             if score > most + 1e-9:
                 best, most = Dialect(each, sign), score
     return best
+
+
+def _agrees_with_names(lines: Sequence[str], delimiter: str, decimal: str) -> bool:
+    """Say whether the line above the first rows has as many cells as they have, or there is none."""
+    rows = [split_line(line, delimiter) for line in lines]
+    begin, _ = find_body([[kind_of(cell, decimal) for cell in row] for row in rows])
+    return begin == 0 or len(rows[begin - 1]) == len(rows[begin])
 
 
 def _score(lines: Sequence[str], delimiter: str, decimal: str) -> float:
@@ -96,8 +110,7 @@ def _score(lines: Sequence[str], delimiter: str, decimal: str) -> float:
     rows = [split_line(line, delimiter) for line in lines]
     begin, end = find_body([[kind_of(cell, decimal) for cell in row] for row in rows])
     filled = [cell.strip() for row in rows[begin:end] for cell in row if cell.strip() not in MISSING]
-    # Where thousands are parted the decimal sign is not certain: 1,234 may be 1.234.
-    numbers = sum(_is_certain(cell, decimal) for cell in filled)
+    numbers = sum(_count(cell, decimal) for cell in filled)
     if not numbers:
         return 0.0
     # A column of texts (remarks) is no reason against a delimiter; a comma that splits 0,5 in two gives as many
@@ -105,7 +118,8 @@ def _score(lines: Sequence[str], delimiter: str, decimal: str) -> float:
     return float((numbers / len(filled)) ** 2 * (end - begin) / len(lines) * (numbers / (end - begin)) ** 0.1)
 
 
-def _is_certain(cell: str, decimal: str) -> bool:
-    return bool(
-        PLAIN[decimal].fullmatch(cell) or STAMP.fullmatch(cell) or (decimal in cell and PARTED[decimal].fullmatch(cell))
-    )
+def _count(cell: str, decimal: str) -> float:
+    """Return how certainly a cell is a number: 1,234 may be 1.234, and 0500 may stand behind a decimal sign."""
+    if PLAIN[decimal].fullmatch(cell) or STAMP.fullmatch(cell):
+        return 0.5 if LEADING_ZERO.fullmatch(cell) else 1.0
+    return (1.0 if decimal in cell else 0.5) if PARTED[decimal].fullmatch(cell) else 0.0

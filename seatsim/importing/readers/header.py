@@ -41,7 +41,7 @@ def split_header(rows: Sequence[Sequence[str]], first: int, columns: int) -> Hea
     Of the rows of texts that fill most columns one may hold units; of the others the one that says most holds the
     names, the last one where several say as much.
     """
-    full = [row for row in rows[:first] if len(row) == columns and _fills(row)]
+    full = [row for row in rows[:first] if len(row) == columns and may_be_names(row)]
     below = next((row for row in reversed(full) if is_units(row)), None) if len(full) > 1 else None
     others = [row for row in full if row is not below]
     names = max(reversed(others), key=_count_meanings, default=[""] * columns)
@@ -54,14 +54,24 @@ def split_header(rows: Sequence[Sequence[str]], first: int, columns: int) -> Hea
     )
 
 
-def _fills(row: Sequence[str]) -> bool:
-    """Say whether a row holds texts in most columns, and no number."""
-    texts = [cell for cell in row if cell.strip()]
-    return len(texts) >= max(1, 0.6 * len(row)) and not any(kind_of(cell, ".") for cell in texts)
+def may_be_names(row: Sequence[str]) -> bool:
+    """Say whether a row holds texts in most columns, and no number; numbers that count columns are names, too."""
+    filled = [cell for cell in row if cell.strip()]
+    return len(filled) >= max(1, 0.6 * len(row)) and (
+        not any(kind_of(cell, ".") for cell in filled) or count_columns(row)
+    )
+
+
+def count_columns(row: Sequence[str]) -> bool:
+    """Say whether a row has a text or nothing in front, and then numbers that count from 0 or 1."""
+    numbers = [cell.strip() for cell in row[1:]]
+    counts = [[str(number) for number in range(begin, begin + len(numbers))] for begin in (0, 1)]
+    return len(numbers) > 1 and not kind_of(row[0], ".") and numbers in counts
 
 
 def _count_meanings(row: Sequence[str]) -> int:
-    return sum(read_name(cell)[:2] != (None, None) for cell in row)
+    """Return how many different names of a row mean something: `V, V` are units of several columns."""
+    return sum(read_name(cell)[:2] != (None, None) for cell in {*row})
 
 
 def is_units(row: Sequence[str]) -> bool:

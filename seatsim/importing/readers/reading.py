@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import zipfile
 from importlib import import_module
 from pathlib import Path
@@ -65,6 +66,11 @@ NOT_TABLES = {
     b"%PDF": "a PDF", b"\x89PNG": "a picture", b"\xff\xd8\xff": "a picture", b"\x7fELF": "a program",
     b"\xd0\xcf\x11\xe0": "an Excel file of the old kind (.xls): save it as .xlsx",
 }  # fmt: skip
+MARKUP = {
+    re.compile(rb"\s*[{\[]\s*(?:[\[{\"}\]]|-?\d)"): "a JSON file",
+    re.compile(rb"\s*<(?:\?xml|!doctype|html|[a-z]+[ >])", re.IGNORECASE): "an XML or HTML file",
+}
+"""How texts begin that are no tables."""
 ZIP = b"PK\x03\x04"
 
 
@@ -108,6 +114,9 @@ def _recognise(path: Path, content: bytes) -> Format:
     for magic, what in NOT_TABLES.items():
         if head.startswith(magic):
             raise InputError(f"{path}: is {what}; permitted: {KNOWN}")
+    for pattern, what in MARKUP.items():
+        if pattern.match(head.removeprefix(b"\xef\xbb\xbf")):
+            raise InputError(f"{path}: is {what}; export its channels as a table; permitted: {KNOWN}")
     if head.startswith(ZIP):
         _check_unpacked(path, content)
         return names["XLSX"]
@@ -135,8 +144,8 @@ def _check_unpacked(path: Path, content: bytes) -> None:
 
 
 def _is_text(head: bytes) -> bool:
-    """Say whether bytes are text: without control characters, or UTF-16."""
-    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
+    """Say whether bytes are text: without control characters, or UTF-16, whose every other byte is 0 in a table."""
+    if head.startswith((b"\xff\xfe", b"\xfe\xff")) or not (any(head[::2]) and any(head[1::2])):
         return True
     control = sum(byte < 9 or 13 < byte < 32 for byte in head)
     return control == 0

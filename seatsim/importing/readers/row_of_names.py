@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from seatsim.importing.names import read_name
 from seatsim.importing.readers.dialect import BLANKS, DELIMITERS, Dialect, Kind, kind_of, split_line
-from seatsim.importing.readers.header import is_units
+from seatsim.importing.readers.header import is_units, may_be_names
 from seatsim.schema.errors import InputError
 
 COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+)\s*")
@@ -61,10 +61,10 @@ def fit_names(path: Path, above: Sequence[str], rows: Rows, dialect: Dialect, is
             many; it quotes both lines.
     """
     fitted = [_fit(line, rows, dialect) for line in above]
-    fits = [len(cells) == rows.columns and not any(kind_of(cell, ".") for cell in cells) for cells in fitted]
+    fits = [len(cells) == rows.columns and may_be_names(cells) for cells in fitted]
     last = next((index for index in reversed(range(len(above))) if _names(above[index], fitted[index], dialect)), None)
     if last is None or fits[last] or (any(fits) and not is_units(fitted[last])):
-        return fitted
+        return [[ROW, *cells[1:]] if cells and not cells[0] and rows.has_labels else cells for cells in fitted]
     if len(fitted[last]) == rows.columns - 1 and rows.has_labels:
         return [*fitted[:last], [ROW, *fitted[last]]]
     if is_stated:

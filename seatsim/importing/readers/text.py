@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.importing.readers.columns import read_column
 from seatsim.importing.readers.dialect import BLANKS, MISSING, Dialect, find_dialect, kind_of, split_line
-from seatsim.importing.readers.header import Header, first_row_of_numbers, split_header
+from seatsim.importing.readers.header import Header, count_columns, first_row_of_numbers, split_header
 from seatsim.importing.readers.rate_in_header import find_rate
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.readers.row_of_names import COMMENT, Rows, fit_names, quote
@@ -51,9 +51,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     head = _read_head(path, content, layout)
     body, notes = _clean(_without_lines(content, head.header.lines), head)
     table = _table(path, content, body, head, notes)
-    signals, left_out = _signals(table, head)
-    if left_out:
-        notes.append(f"columns that hold no numbers: {', '.join(left_out)}")
+    signals = _signals(table, head, notes)
     if not content.endswith((b"\n", b"\r")):
         notes.append("the last line has no end; if the file was cut there, its last number is wrong")
     return DataFile(path, "CSV", part_by_time(signals, find_rate(head.above)), tuple(notes))
@@ -69,6 +67,8 @@ def _as_utf8(content: bytes, stated: str | None) -> bytes:
 def _encoding(content: bytes) -> str:
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "utf-16"
+    if b"\0" in content[:2]:
+        return "utf-16-le" if content[1:2] == b"\0" else "utf-16-be"
     try:
         content.decode("utf-8")
     except UnicodeDecodeError:
@@ -87,6 +87,7 @@ def _read_head(path: Path, content: bytes, layout: TextLayout) -> Head:
     kinds = [[kind_of(cell, dialect.decimal) for cell in row] for row in rows]
     if layout.header is None:
         first = first_row_of_numbers(kinds, str(path))
+        first += first == 0 and len(rows) > 1 and count_columns(rows[0])
     else:
         first = sum(index < layout.header for index in used)
         if first == len(used):
@@ -139,7 +140,7 @@ def _clean(body: bytes, head: Head) -> tuple[bytes, list[str]]:
     left_out = len(lines) - len(kept)
     if is_parted_by_blanks:
         kept = [b" ".join(_joined(cell) for cell in BLANKS.findall(line.decode())) for line in kept]
-    notes = [f"{left_out} lines among the rows hold remarks or the names again; they are left out"] if left_out else []
+    notes = [f"lines among the rows that hold remarks or the names again are left out: {left_out}"] if left_out else []
     return b"\n".join(kept) + b"\n", notes
 
 
@@ -208,13 +209,18 @@ def _find(lines: Sequence[str], text: str) -> int:
     return lines.index(plain) + 1 if plain in lines else len(lines)
 
 
-def _signals(table: pa.Table, head: Head) -> tuple[list[Signal], list[str]]:
-    """Return the columns of numbers, and the names of the others."""
-    signals, left_out = [], []
+def _signals(table: pa.Table, head: Head, notes: list[str]) -> list[Signal]:
+    """Return the columns of numbers; a column of dates is added to the times of day behind it. The others are noted."""
+    signals, left_out, days = [], [], None
     for name, unit, column in zip(head.header.names, head.header.units, table.columns, strict=True):
         found = read_column(column, head.dialect.decimal)
-        if found is not None and found.holds_numbers:
-            signals.append(Signal(name, unit or found.unit, found.values))
-        elif not re.fullmatch(r"column \d+", name):
-            left_out.append(name)
-    return signals, left_out
+        if found is None or not found.holds_numbers:
+            left_out += [] if re.fullmatch(r"column \d+", name) else [name]
+        elif found.is_date:
+            days = found.values
+        else:
+            since = days if days is not None and found.unit == "s" else 0.0
+            signals.append(Signal(name, unit or found.unit, found.values + since))
+            notes += [f"{name}: {found.parted} is read with its thousands parted"] if found.parted else []
+    notes += [f"columns that hold no numbers: {', '.join(left_out)}"] if left_out else []
+    return signals
