@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.signals import DataFile, Group
+from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.guarded import in_mib, is_there, read_bytes
 from seatsim.schema.tables import LARGEST_FILE, unpack
+from seatsim.schema.text import make_printable
 
 LARGEST_SHEETS = 2**30
 """Bytes of an XLSX once it is unpacked."""
@@ -152,21 +153,31 @@ def _is_text(head: bytes) -> bool:
 
 
 def _checked(file: DataFile) -> DataFile:
-    """Return a file whose groups all hold rows and numbers."""
+    """Return a file whose groups all hold rows and numbers, and have distinct names: a second `run` is `run#2`."""
     groups = tuple(group for group in file.groups if group.signals and group.rows >= LEAST_ROWS)
     if not groups:
         raise InputError(f"{file.path}: holds no channel with at least {LEAST_ROWS} rows of numbers; export it again")
-    return file._replace(groups=tuple(_named_once(group) for group in groups))
+    names = [make_printable(group.name) for group in groups]
+    titles = [f"{name}#{names[:index].count(name) + 1}" if name in names[:index] else name
+              for index, name in enumerate(names)]  # fmt: skip
+    return file._replace(
+        groups=tuple(_named_once(group._replace(name=title)) for group, title in zip(groups, titles, strict=True))
+    )
 
 
 def _named_once(group: Group) -> Group:
-    """Return a group whose channels hold finite numbers and have distinct names: a second `force` is `force#2`."""
+    """Return a group whose channels hold finite numbers and have distinct names that can be printed.
+
+    A second `force` is `force#2`.
+    """
     seen: dict[str, int] = {}
     signals = []
     for signal in group.signals:
-        seen[signal.name] = seen.get(signal.name, 0) + 1
-        number = seen[signal.name]
+        name = make_printable(re.sub(r"\s", " ", signal.name))
+        seen[name] = seen.get(name, 0) + 1
+        number = seen[name]
         values = np.asarray(signal.values, dtype=np.float64)
         values = np.where(np.abs(values) <= LARGEST_NUMBER, values, np.nan)
-        signals.append(signal._replace(name=f"{signal.name}#{number}" if number > 1 else signal.name, values=values))
+        unit = make_printable(signal.unit)
+        signals.append(Signal(f"{name}#{number}" if number > 1 else name, unit, values))
     return group._replace(signals=tuple(signals))
