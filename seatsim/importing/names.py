@@ -5,6 +5,7 @@ A word of four letters and more counts wherever it stands in a name, a shorter o
 
 from __future__ import annotations
 
+import functools
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping
@@ -84,6 +85,7 @@ BY_UNIT = ("acceleration", "velocity", "displacement", "force", "current", "volt
 """Quantities that a unit alone tells, where no word does."""
 SHORT_UNITS = ("A", "mA", "N", "kN", "daN", "V", "mV", "g", "C", "K", "F", "m", "cm", "mm", "um", "s", "ms", "us", "s2")
 """Units that end names and could be taken for words."""
+DIGITS = "0123456789"
 LONG = 4
 """Letters from which a word counts inside another one."""
 
@@ -109,6 +111,7 @@ class Meaning(NamedTuple):
         return self.quantity == "acceleration" and self.axis in ("x", "y")
 
 
+@functools.lru_cache(maxsize=1024)
 def read_name(name: str, unit: str = "") -> Meaning:
     """Return what the name of a column says, with the unit that its file states beside it."""
     plain, words = _plain(name), _words(name)
@@ -223,4 +226,4 @@ def _words(name: str) -> set[str]:
     """Return the words of a name: parted by what is no letter or digit, and by capitals inside."""
     parted = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name)
     words = set(re.split(r"[^0-9a-z]+", _plain(parted))) | set(re.split(r"[^0-9a-z]+", _plain(name)))
-    return (words | {re.sub(r"\d+$", "", word) for word in words if not re.fullmatch(r"z\d", word)}) - {""}
+    return (words | {word.rstrip(DIGITS) for word in words if not re.fullmatch(r"z\d", word)}) - {""}

@@ -19,8 +19,8 @@ THOUSANDS = {
 }
 """A number whose thousands are parted, such as 1,234.5, by decimal sign."""
 PLAIN = {
-    ".": re.compile(rf"(?:{SIGN}\s*)?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?"),
-    ",": re.compile(rf"(?:{SIGN}\s*)?(?:\d+,?\d*|,\d+)(?:[eEdD][+-]?\d+)?"),
+    ".": re.compile(rf"(?:{SIGN}\s*)?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?"),
+    ",": re.compile(rf"(?:{SIGN}\s*)?(?:\d+(?:,\d*)?|,\d+)(?:[eEdD][+-]?\d+)?"),
 }
 """What a number looks like with each decimal sign."""
 PARTED = {sign: re.compile(pattern) for sign, pattern in THOUSANDS.items()}

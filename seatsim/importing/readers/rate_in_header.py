@@ -10,6 +10,8 @@ ENTRY = re.compile(
     r"""(?P<number>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)["']?[\s;,|\[(]*(?P<unit>[A-Za-zµμ]*)[\W_]*$"""
 )
 """A key, a number and perhaps a unit, in a line of their own."""
+LONGEST = 200
+"""Letters of a line that may be such an entry."""
 SAMPLE = r"(?:sampl\w*|abtast|scan|acquisition)[ _]*"
 RATE = re.compile(rf"{SAMPLE}(?:rate|freq\w*)|fs|samplerate|fr[ée]quence d.[ée]chantillonnage", re.IGNORECASE)
 STEP = re.compile(rf"{SAMPLE}(?:interval\w*|period\w*|step|zeit)|dt|delta[ _]?[tx]", re.IGNORECASE)
@@ -19,10 +21,8 @@ IN_S = {"": 1.0, "s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs
 
 def find_rate(lines: Sequence[str]) -> float | None:
     """Return the sample rate in Hz that lines state, None where none does."""
-    for line in lines:
-        entry = ENTRY.match(line)
-        if entry is None:
-            continue
+    entries = (ENTRY.match(line) for line in lines if len(line) <= LONGEST)
+    for entry in filter(None, entries):
         number = float(entry["number"].replace(",", "."))
         unit = (entry["unit"] or entry["of_key"] or "").lower()
         key = entry["key"].strip()
