@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.names import is_of, read_name
+from seatsim.importing.names import is_of, is_unclear, read_name
 from seatsim.importing.signals import Group, Signal
 from seatsim.importing.time_axis import Axis, measured_axis
 from seatsim.schema.errors import InputError
@@ -14,6 +14,9 @@ from seatsim.schema.units import DIMENSIONS, conversion
 
 SLOWEST, FASTEST = 20.0, 50_000.0
 """Hz; a column of time without unit is in s where its rows are between these rates, else its unit is asked for."""
+
+EXACT = 0.25
+"""Largest deviation from even spacing, in steps, of times that are rounded to their last digit."""
 
 
 class Clock(NamedTuple):
@@ -50,8 +53,8 @@ class Clock(NamedTuple):
 def find_clock(group: Group) -> Clock | None:
     """Return the column of time: of those that are called so the one that rises most evenly.
 
-    Where none is called so, and the format states no rate, it is the first column if its name says nothing and it
-    rises evenly by another step than 1, by which rows are counted.
+    Where none is called so, and the format states no rate, it is the first column if no word of its name means
+    something and it rises exactly evenly, as nothing measured does, by another step than 1, by which rows are counted.
     """
     named = [
         _clock(signal, unit)
@@ -62,11 +65,17 @@ def find_clock(group: Group) -> Clock | None:
     if named:
         return min(named, key=lambda clock: _flaws(clock.axis))
     first = group.signals[0]
-    if group.rate is not None or group.is_road or read_name(first.name, first.unit).quantity is not None or first.unit:
+    if group.rate is not None or group.is_road or first.unit or not is_unclear(first.name):
         return None
     clock = _clock(first, "")._replace(is_named=False)
-    is_even = clock.axis is not None and not _flaws(clock.axis) and not (np.diff(first.values) == 1.0).all()
-    return clock if is_even and clock.unit else None
+    return clock if clock.unit and _is_exact(clock.axis) and not (np.diff(first.values) == 1.0).all() else None
+
+
+def _is_exact(axis: Axis | None) -> bool:
+    if axis is None or _flaws(axis):
+        return False
+    times = axis.times
+    return bool(np.max(np.abs(times - np.linspace(times[0], times[-1], len(times)))) * axis.rate <= EXACT)
 
 
 def _clock(signal: Signal, stated: str) -> Clock:

@@ -22,7 +22,7 @@ QUANTITIES: Mapping[str, tuple[str, ...]] = {
         "displacement", "disp", "stroke", "travel", "position", "deflection", "weg", "federweg", "einfederung", "hub",
         "auslenkung", "deplacement", "debattement", "course", "weiyi", "xingcheng", "x", "s", "lvdt",
     ),
-    "velocity": ("velocity", "speed", "geschwindigkeit", "geschw", "vitesse", "sudu", "v"),
+    "velocity": ("velocity", "speed", "vel", "geschwindigkeit", "geschw", "vitesse", "sudu", "v"),
     "force": ("force", "load", "kraft", "effort", "zunili", "li", "f", "fd"),
     "current": ("current", "strom", "bestromung", "courant", "intensite", "dianliu", "i"),
     "voltage": ("voltage", "spannung", "tension", "dianya", "u"),
@@ -30,6 +30,7 @@ QUANTITIES: Mapping[str, tuple[str, ...]] = {
     "time": (
         "time", "zeit", "temps", "shijian", "t", "timestamp", "timestamps", "zeitstempel", "elapsed", "datetime",
         "uhrzeit", "seconds", "sekunden", "secondes", "millis", "milliseconds", "sec", "secs", "msec",
+        "x_value", "abscissa", "abszisse",
     ),
     "frequency": ("frequency", "frequenz", "frequence", "pinlv", "freq"),
     "distance": ("distance", "chainage", "station", "strecke", "abstand", "juli"),
@@ -160,6 +161,11 @@ def _rank(name: str) -> tuple[list[str], list[str]]:
     both = (_words(_before_unit(name)), words)
     letters = [each for some in both for each, known in QUANTITIES.items() if some & {*known} and each not in sure]
     return sure, list(dict.fromkeys(letters))
+
+
+def is_unclear(name: str) -> bool:
+    """Say whether no word of a name means a quantity, though a letter may."""
+    return not _rank(name)[0]
 
 
 def is_of(unit: str, quantity: str) -> bool:

@@ -35,11 +35,11 @@ def fit_axes(signals: Iterable[Signal]) -> dict[str, list[str]]:
     return found
 
 
-def choose_axes(name: str, columns: Mapping[str, Signal]) -> dict[str, str]:
+def choose_axes(name: str, columns: Mapping[str, Signal], said: Sequence[str] = ()) -> dict[str, str]:
     """Return the column of each axis that is found; several that may be one of the floor are none.
 
     Raises:
-        InputError: no column fits, or several fit an axis of the person.
+        InputError: no column fits, or several fit an axis of the person; it ends with what was `said` of the file.
     """
     fitting = fit_axes(columns.values())
     for axis, names in fitting.items():
@@ -49,8 +49,8 @@ def choose_axes(name: str, columns: Mapping[str, Signal]) -> dict[str, str]:
             )
     found = {axis: names[0] for axis, names in fitting.items() if len(names) == 1}
     if not found:
-        there = ", ".join(columns)
-        raise InputError(f"{name}: no column has a usual name; name them with --channel AXIS=COLUMN; columns: {there}")
+        there = f"name them with --channel AXIS=COLUMN; columns: {', '.join(columns) or 'none'}"
+        raise InputError("; ".join([f"{name}: no column has a usual name", there, *said]))
     return found
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -89,7 +89,7 @@ def load_accelerations(
     check_is_history(group, str(path))
     clock = find_clock(group)
     columns = {each.name: each._replace(unit=_unit(each)) for each in group.signals if not _is_time(each, clock)}
-    sample_rate, notes = _rate(group, clock, path, rate)
+    sample_rate, notes = _rate(group, clock, path, rate, file.notes)
     notes = [*file.notes, *notes, *([] if wanted else _say_other_groups(file, group))]
     return [AccelerationRecord(path.name, sample_rate, columns, unit, tuple(notes))]
 
@@ -128,10 +128,13 @@ def _is_time(signal: Signal, clock: Clock | None) -> bool:
     return is_clock or read_name(signal.name, signal.unit).quantity == "time"
 
 
-def _rate(group: Group, clock: Clock | None, path: Path, stated: float | None) -> tuple[float, list[str]]:
+def _rate(
+    group: Group, clock: Clock | None, path: Path, stated: float | None, said: Sequence[str]
+) -> tuple[float, list[str]]:
     """Return the sample rate of a group in Hz, and what is to be said of it.
 
-    It is the stated one, else that of its time, of its format, or of the sidecar of its file.
+    It is the stated one, else that of its time, of its format, or of the sidecar of its file. An error ends with what
+    the reader has `said` of the file.
     """
     axis = clock.axis if clock else None
     if stated is not None:
@@ -145,7 +148,8 @@ def _rate(group: Group, clock: Clock | None, path: Path, stated: float | None) -
     sidecar = path.with_name(stem(path.name) + ".yaml")
     rate = group.rate or (constants(Source(sidecar)).get("rate") if sidecar.exists() else None)
     if rate is None:
-        raise InputError(f"{path}: no column holds the time (time_s, time_ms, t), and no rate is stated; give --rate")
+        lacking = "no column holds the time (time_s, time_ms, t), and no rate is stated; give --rate"
+        raise InputError("; ".join([f"{path}: {lacking}", *said]))
     return rate, []
 
 

@@ -102,7 +102,7 @@ def comfort(
     named = {axis.lower(): column for axis, column in (channels or {}).items()}
     _check_axes(named)
     records = _chosen(load_accelerations(source, rate, unit, [*named.values()]), runs, source)
-    named = named or choose_axes(records[0].name, records[0].columns)
+    named = named or choose_axes(records[0].name, records[0].columns, records[0].notes)
     doses = {axis: _doses(records, axis, column, blocks) for axis, column in named.items()}
     axes = {axis: _assess(axis, named[axis], doses[axis], records) for axis in DIRECTIONS if axis in named}
     if not axes:

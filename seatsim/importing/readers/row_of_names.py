@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.importing.names import read_name
+from seatsim.importing.names import Meaning, read_name
 from seatsim.importing.readers.dialect import BLANKS, DELIMITERS, Dialect, Kind, kind_of, split_line
 from seatsim.importing.readers.header import is_units, may_be_names
 from seatsim.schema.errors import InputError
@@ -92,7 +92,7 @@ def _fit(line: str, rows: Rows, dialect: Dialect) -> list[str]:
     text = mark.sub("", line)
     is_remark = text != line.lstrip()
     for words in (text, LABEL.sub("", text)):
-        for part in _ways(dialect.delimiter, is_remark):
+        for part in _ways(words, dialect.delimiter, is_remark):
             cells = [cell.strip() for cell in part(words)]
             while len(cells) > rows.columns and not cells[-1]:
                 cells.pop()
@@ -101,12 +101,15 @@ def _fit(line: str, rows: Rows, dialect: Dialect) -> list[str]:
     return [cell.strip() for cell in split_line(text, dialect.delimiter)]
 
 
-def _ways(delimiter: str, is_remark: bool) -> Iterator[Callable[[str], list[str]]]:
-    """Yield how names may be parted: as the numbers are, else by another delimiter, in a remark by blanks, too."""
+def _ways(text: str, delimiter: str, is_remark: bool) -> Iterator[Callable[[str], list[str]]]:
+    """Yield how names may be parted: as the numbers are, else by another delimiter.
+
+    Blanks part them in a remark, or where every word means something: a title is no row of names.
+    """
     for each in (delimiter, *(other for other in DELIMITERS if other != delimiter)):
         if each != " ":
             yield partial(split_line, delimiter=each)
-        elif is_remark or delimiter == " ":
+        elif is_remark or delimiter == " " or all(read_name(word) != Meaning(None) for word in text.split()):
             yield lambda text: [cell.strip('"') for cell in BLANKS.findall(text)]
             yield lambda text: re.split(r"\s+(?![\[({</])", text.strip())
             yield lambda text: re.split(r"\s{2,}|\t", text.strip())
