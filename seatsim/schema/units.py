@@ -59,8 +59,8 @@ USUAL = {si: tuple(units) for si, units in CONVERSIONS.items()}
 """Units in which a quantity is usually recorded, by its SI unit; errors list them, doubts compare with them."""
 OWN_SPELLINGS = {
     "m/s^2": {"g": "standard_gravity", "gn": "standard_gravity", "g_n": "standard_gravity", "gal": "cm/s^2",
-              "mg": "millistandard_gravity", "g0": "standard_gravity", "ms2": "m/s^2", "ms-2": "m/s^2", "ms^-2": "m/s^2",
-              "ms⁻²": "m/s^2", "m.s-2": "m/s^2"},
+              "mg": "millistandard_gravity", "g0": "standard_gravity", "ms2": "m/s^2", "ms-2": "m/s^2",
+              "ms^-2": "m/s^2", "ms⁻²": "m/s^2", "m.s-2": "m/s^2"},
     "degC": {"c": "degC", "f": "degF", "celsius": "degC", "fahrenheit": "degF", "k": "kelvin", "deg c": "degC",
              "deg f": "degF", "grad c": "degC"},
     "N": {"lb": "lbf", "lbs": "lbf", "kg": "kgf", "kp": "kgf"},
@@ -70,7 +70,9 @@ OWN_SPELLINGS = {
     "m": {'"': "inch", "in": "inch", "zoll": "inch"},
 }  # fmt: skip
 """Spellings that mean something else, or nothing, to pint, by the unit that is wanted: `g` of a mass is a gram."""
-SIGNS = {"⁻": "-", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF", "µ": "u", "μ": "u", "·": "*", "⋅": "*"}
+SIGNS = {
+    "⁻²": "^-2", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF", "µ": "u", "μ": "u", "·": "*", "⋅": "*",
+}  # fmt: skip
 
 NO_UNITS = ("links",)
 """Words in names that pint takes for units: `links` is German for left."""
