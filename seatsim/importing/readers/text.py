@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 SAMPLE = 65536
 """Bytes from which delimiter, decimal sign and header are found."""
+SIGN_APART = re.compile(rb"[+-] +[.,\d]")
 LONGEST_NAME = 8
 """Lines over which a name in quotation marks may go."""
 
@@ -111,13 +112,10 @@ def _sample(content: bytes) -> list[str]:
     lines = lines[:-1] if len(content) > SAMPLE and len(lines) > 1 else lines
     for index, line in enumerate(lines):
         if line.count('"') % 2:
-            more = next((end for end in range(index + 1, index + LONGEST_NAME) if _closes(lines, index, end)), index)
-            lines[index : more + 1] = [" ".join(lines[index : more + 1]), *[""] * (more - index)]
+            following = range(index + 1, min(index + LONGEST_NAME, len(lines)))
+            end = next((each for each in following if lines[each].count('"') % 2), index)
+            lines[index : end + 1] = [" ".join(lines[index : end + 1]), *[""] * (end - index)]
     return lines
-
-
-def _closes(lines: Sequence[str], begin: int, end: int) -> bool:
-    return end < len(lines) and lines[end].count('"') % 2 == 1 and '"' in lines[begin]
 
 
 def _without_lines(content: bytes, count: int) -> bytes:
@@ -139,13 +137,15 @@ def _clean(body: bytes, head: Head) -> tuple[bytes, list[str]]:
     kept = [line for line in lines if not (line.strip() in names or (marks and line.startswith(marks)))]
     left_out = len(lines) - len(kept)
     if is_parted_by_blanks:
-        kept = [b" ".join(_joined(cell) for cell in BLANKS.findall(line.decode())) for line in kept]
+        part = _cells_of_blanks if b'"' in body or SIGN_APART.search(body) else bytes.split
+        kept = [b" ".join(part(line)) for line in kept]
     notes = [f"lines among the rows that hold remarks or the names again are left out: {left_out}"] if left_out else []
     return b"\n".join(kept) + b"\n", notes
 
 
-def _joined(cell: str) -> bytes:
-    return (cell if cell.startswith('"') else "".join(cell.split())).encode()
+def _cells_of_blanks(line: bytes) -> list[bytes]:
+    cells = BLANKS.findall(line.decode(errors="replace"))
+    return [(cell if cell.startswith('"') else "".join(cell.split())).encode() for cell in cells]
 
 
 def _repeats(body: bytes, above: Sequence[str]) -> bool:
