@@ -70,7 +70,7 @@ def _time_column(group: Group, stated: ImportMap, label: str, doubts: list[Issue
     clock = find_clock(group)
     if clock is None or (stated.sample_rate is not None and stated.time is None):
         return None
-    doubts += [Issue("note", "time", f"{label}: {clock.assumption}")] if clock.assumption else []
+    doubts += [Issue("note", "time", f"{label}: {said}") for said in clock.assumptions]
     return AxisMap(clock.column, clock.unit)
 
 

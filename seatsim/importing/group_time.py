@@ -15,6 +15,8 @@ from seatsim.schema.units import DIMENSIONS, conversion
 SLOWEST, FASTEST = 20.0, 50_000.0
 """Hz; a column of time without unit is in s where its rows are between these rates, else its unit is asked for."""
 
+SAME_RATE = 0.01
+"""Fraction by which the rates of two columns of the same time may differ."""
 EXACT = 0.25
 """Largest deviation from even spacing, in steps, of times that are rounded to their last digit."""
 
@@ -23,13 +25,14 @@ class Clock(NamedTuple):
     """A column that is the time of its group.
 
     `unit` is empty where none is stated and s is not likely; `axis` is in s then. `axis` is None where the column does
-    not rise. `is_named` tells whether its name says time.
+    not rise. `is_named` tells whether its name says time. `others` are columns of time with another rate.
     """
 
     column: str
     unit: str
     axis: Axis | None
     is_named: bool = True
+    others: tuple[str, ...] = ()
 
     @property
     def open(self) -> str:
@@ -40,14 +43,17 @@ class Clock(NamedTuple):
         return f"'{self.column}' {seen}"
 
     @property
-    def assumption(self) -> str:
-        """A sentence on a column that is taken for the time without a name that says so, else an empty one."""
-        if self.is_named or self.axis is None:
-            return ""
-        return (
-            f"{self.column}: no column is called time; this one rises evenly and is taken for it, in s"
-            f" ({self.axis.rate:.6g} Hz)"
-        )
+    def assumptions(self) -> list[str]:
+        """Sentences on a column that is taken for the time without a name that says so, or in place of others."""
+        said = []
+        if not self.is_named and self.axis is not None:
+            seen = f"this one rises evenly and is taken for it, in s ({self.axis.rate:.6g} Hz)"
+            said.append(f"{self.column}: no column is called time; {seen}")
+        if self.others:
+            said.append(
+                f"{self.column}: is taken for the time of all columns; {', '.join(self.others)} has another rate"
+            )
+        return said
 
 
 def find_clock(group: Group) -> Clock | None:
@@ -63,12 +69,20 @@ def find_clock(group: Group) -> Clock | None:
         if quantity == "time"
     ]
     if named:
-        return min(named, key=lambda clock: _flaws(clock.axis))
+        best = min(named, key=lambda clock: _flaws(clock.axis))
+        return best._replace(others=tuple(each.column for each in named if _differs(each, best)))
     first = group.signals[0]
     if group.rate is not None or group.is_road or first.unit or not is_unclear(first.name):
         return None
     clock = _clock(first, "")._replace(is_named=False)
     return clock if clock.unit and _is_exact(clock.axis) and not (np.diff(first.values) == 1.0).all() else None
+
+
+def _differs(clock: Clock, other: Clock) -> bool:
+    """Say whether two columns of time, both in a known unit, have different rates."""
+    if clock.axis is None or other.axis is None or not (clock.unit and other.unit):
+        return False
+    return abs(clock.axis.rate / other.axis.rate - 1.0) > SAME_RATE
 
 
 def _is_exact(axis: Axis | None) -> bool:

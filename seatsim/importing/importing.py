@@ -79,7 +79,8 @@ def import_files(
         used = stated
         check_files(used.runs, [file.path.name for file in files], map_file or Path(FILE))
     if stated is None:
-        notes += _say_left_out(files, used)
+        clocks = (find_clock(group) for file in files for group in file.groups)
+        notes += [said for clock in clocks if clock for said in clock.assumptions] + _say_left_out(files, used)
     if used.rig == "road":
         road, doubts = assemble_road(files, used)
         return Import(folder, used, stated is None, write_road(folder, road, used), notes, doubts)

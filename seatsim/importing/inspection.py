@@ -119,8 +119,7 @@ def _doubt_rows(group: Group, clock: Clock | None) -> Iterator[Issue]:
         yield Issue("warning", "spectrum", text, group.signals[0].name)
     if clock is None:
         return
-    if clock.assumption:
-        yield Issue("note", "time", clock.assumption, clock.column)
+    yield from (Issue("note", "time", said, clock.column) for said in clock.assumptions)
     if clock.axis is None:
         yield Issue("warning", "restart", f"{clock.column}: does not rise as a time does; no rate is taken from it")
     else:

@@ -165,7 +165,7 @@ def _rate_of(clock: Clock, path: Path) -> tuple[float, list[str]]:
             f"{path}: {clock.column} does not rise in even steps ({'; '.join(said)}); seatsim import resamples"
             " such files"
         )
-    return clock.axis.rate, [*([clock.assumption] if clock.assumption else []), *said]
+    return clock.axis.rate, [*clock.assumptions, *said]
 
 
 def _recorded(folder: Path) -> list[AccelerationRecord]:

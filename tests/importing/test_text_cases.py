@@ -84,6 +84,7 @@ def test_comfort_is_refused_for_the_true_reason(tmp_path, content, rate, sentenc
 @pytest.mark.parametrize(
     ("content", "rate", "sentence"),
     [
+        (table(X, T, Z, 2 * T, head=["acc_x,t1,acc_z,t2"]), None, "t1: is taken for the time of all columns; t2 has"),
         (READ["whole seconds"][0], None, "the rate is estimated as 250 Hz: state it .* by --rate"),
         (READ["first column without a name"][0], None, "column 1: no column is called time; this one rises evenly"),
         (PLAIN, 500.0, "the file states 250 Hz; the stated 500 Hz is taken"),

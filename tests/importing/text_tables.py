@@ -97,7 +97,16 @@ READ = {
         table(T, Z, TRAVEL, head=["Time [s]  Seat acc z [m/s2]  Travel [mm]"], sep="  "),
         {"Seat acc z": ("m/s2", Z), "Travel": ("mm", TRAVEL)}, RATE,
     ),
+    "a mark in quotation marks": (table(X, Y, Z, head=['"# x","y","z"']), XYZ, None),
+    "units before names": (
+        table(T, X, Z, head=["s,g,-", "t,acc_x,acc_z"]), {"acc_x": ("g", X), "acc_z": ("", Z)}, RATE,
+    ),
     # Ways to write
+    "lines in quotation marks": ("".join(f'"{line}"\n' for line in PLAIN.splitlines()), ACC, RATE),
+    "units in the cells": (
+        table(texts(T, "{:.4f} s"), texts(X, "{:.4f} m/s²"), texts(Z, "{:.4f} g"), head=["t;acc_x;acc_z"], sep=";"),
+        {"acc_x": ("m/s²", X), "acc_z": ("g", Z)}, RATE,
+    ),
     "Excel's sep=": (table(T, X, Z, head=["sep=;", "t;acc_x;acc_z"], sep=";", dec=","), ACC, RATE),
     "byte order mark": ("\ufeff" + PLAIN, ACC, RATE),
     "UTF-16": (PLAIN.encode("utf-16"), ACC, RATE),
@@ -195,6 +204,7 @@ REFUSED = {
         PLAIN.replace(MIDDLE, f"{MIDDLE},"), r"line 302: has 4 columns where the others have 3: '.*'; correct",
     ),
     "cut": (PLAIN[:-9], "line 601: has 2 columns where the others have 3; the file is truncated"),
-    "a letter": ("Dear sir,\nthis is no table.\n", "holds no row of numbers; it is no table$"),
+    "another table": (PLAIN + PLAIN.replace("acc", "vel"), "stands a row of texts, 't, vel_x, vel_z'; if another"),
+    "a letter": ("Dear sir,\nthis is no table.\n", "no row of numbers; it is no table, or csv.delimiter has to be"),
 }  # fmt: skip
 """What stands in a file, and the sentence with which it is refused."""

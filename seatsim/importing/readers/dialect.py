@@ -7,6 +7,8 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from seatsim.schema.units import USUAL
+
 DELIMITERS = (";", "\t", ",", "|", " ")
 """Delimiters in the order in which they are taken where several fit alike: a blank stands inside names, too."""
 MISSING = ("", "nan", "NaN", "NAN", "NA", "n/a", "N/A", "null", "NULL", "None", "-", "#N/A", "inf", "-inf", "---", "*")
@@ -30,7 +32,15 @@ STAMP = re.compile(rf"(?:{DATE})(?:[ T_,-]+{CLOCK})?(?:Z| ?UTC|[+-]\d\d:?\d\d)?|
 """A date, a time of day, or both."""
 BLANKS = re.compile(rf'"[^"]*"|(?:(?<![^\s]){SIGN} +(?=[.,\d]))?[^\s"]+')
 """A cell of a table that is parted by blanks; one may stand between a sign and its number."""
+LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | {
+    "m/s2", "m/s²", "mm/s2", "°c", "c", "k", "f", "hz", "-", "sec", "in", "lb", "kg", "bar", "pa", "deg", "rad", "°",
+    "1/s", "rpm", "w", "%",
+}  # fmt: skip
+WITH_UNIT = re.compile(r"(\S.*?[\d.,])\s*([^\W\d_][^\s\d]*[²2]?|%|°C?)")
+"""A number with its unit in the same cell."""
 LEADING_ZERO = re.compile(r"0\d+")
+LONGEST_NUMBER = 40
+"""Letters of a cell that may hold a number and its unit."""
 SCORED = 50
 """Lines at either end by which delimiter and decimal sign are chosen."""
 DISAGREEING = 0.9
@@ -62,7 +72,13 @@ def kind_of(cell: str, decimal: str) -> Kind:
     if plain in MISSING:
         return None
     patterns = (PLAIN[decimal], PARTED[decimal], STAMP)
-    return any(pattern.fullmatch(plain) for pattern in patterns)
+    return any(pattern.fullmatch(_without_unit(plain)) for pattern in patterns)
+
+
+def _without_unit(cell: str) -> str:
+    """Return a cell without a well-known unit at its end."""
+    found = WITH_UNIT.fullmatch(cell) if len(cell) <= LONGEST_NUMBER else None
+    return found[1] if found and found[2].lower() in LISTED_UNITS else cell
 
 
 def find_body(kinds: Sequence[Sequence[Kind]]) -> tuple[int, int]:
@@ -120,6 +136,7 @@ def _score(lines: Sequence[str], delimiter: str, decimal: str) -> float:
 
 def _count(cell: str, decimal: str) -> float:
     """Return how certainly a cell is a number: 1,234 may be 1.234, and 0500 may stand behind a decimal sign."""
+    cell = _without_unit(cell)
     if PLAIN[decimal].fullmatch(cell) or STAMP.fullmatch(cell):
         return 0.5 if LEADING_ZERO.fullmatch(cell) else 1.0
     return (1.0 if decimal in cell else 0.5) if PARTED[decimal].fullmatch(cell) else 0.0

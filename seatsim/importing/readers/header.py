@@ -11,18 +11,16 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from seatsim.importing.names import read_name
-from seatsim.importing.readers.dialect import Kind, find_body, kind_of
+from seatsim.importing.readers.dialect import LISTED_UNITS, Kind, find_body, kind_of
 from seatsim.schema.errors import InputError
-from seatsim.schema.units import USUAL, is_unit
+from seatsim.schema.units import is_unit
 
 BRACKETS = re.compile(r"^(.*?)\s*([\[({<])\s*([^\[\](){}<>]*?)\s*[\])}>]\s*$")
 SLASH = re.compile(r"^(.*?\S)\s*/\s*\(?([^/()\s]+(?:/[^/()\s]+)?)\)?$")
 UNIT_CELL = re.compile(r"^[\[(]?\s*[A-Za-zµμ°²³%\"Ω][A-Za-zµμ°²³%/*^_. ·0-9-]{0,11}\s*[\])]?$|^[\[(]?[-1]?[\])]?$")
-LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | {
-    "m/s2", "m/s²", "mm/s2", "°c", "c", "k", "f", "hz", "-", "sec", "in", "lb", "kg", "bar", "pa", "deg", "rad", "°",
-    "1/s", "rpm", "w", "%",
-}  # fmt: skip
 
+NOTHING = "-"
+"""What stands in place of a unit where none is stated."""
 MOSTLY = 0.75
 """Share of the rows from the first one on, as far as the table was looked at, that belong to it."""
 
@@ -47,6 +45,7 @@ def split_header(rows: Sequence[Sequence[str]], first: int, columns: int) -> Hea
     names = max(reversed(others), key=_count_meanings, default=[""] * columns)
     named = [_name_and_unit(name, index) for index, name in enumerate(names)]
     stated = [_unmarked(unit).strip("[]() ") for unit in below or [""] * columns]
+    stated = ["" if unit == NOTHING else unit for unit in stated]
     return Header(
         tuple(name for name, _ in named),
         tuple(unit or of_name for unit, (_, of_name) in zip(stated, named, strict=True)),
@@ -94,8 +93,8 @@ def _name_and_unit(cell: str, index: int) -> tuple[str, str]:
     found = BRACKETS.match(text)
     if found and found[1]:
         unit = found[3].removeprefix("in ").strip()
-        if found[2] == "[" or is_unit(unit):
-            return found[1].rstrip("/ ").strip() or text, unit
+        if found[2] == "[" or is_unit(unit) or unit == NOTHING:
+            return found[1].rstrip("/ ").strip() or text, "" if unit == NOTHING else unit
     parted = SLASH.match(text)
     if parted and is_unit(parted[2]):
         return parted[1], parted[2]

@@ -94,6 +94,7 @@ def _fit(line: str, rows: Rows, dialect: Dialect) -> list[str]:
     for words in (text, LABEL.sub("", text)):
         for part in _ways(words, dialect.delimiter, is_remark):
             cells = [cell.strip() for cell in part(words)]
+            cells[:1] = [mark.sub("", cell) for cell in cells[:1]]
             while len(cells) > rows.columns and not cells[-1]:
                 cells.pop()
             if rows.filled <= len(cells) <= rows.columns:
@@ -102,17 +103,21 @@ def _fit(line: str, rows: Rows, dialect: Dialect) -> list[str]:
 
 
 def _ways(text: str, delimiter: str, is_remark: bool) -> Iterator[Callable[[str], list[str]]]:
-    """Yield how names may be parted: as the numbers are, else by another delimiter.
+    """Yield how names may be parted: as the numbers are; where that delimiter is absent, by another one.
 
     Blanks part them in a remark, or where every word means something: a title is no row of names.
     """
-    for each in (delimiter, *(other for other in DELIMITERS if other != delimiter)):
-        if each != " ":
-            yield partial(split_line, delimiter=each)
-        elif is_remark or delimiter == " " or all(read_name(word) != Meaning(None) for word in text.split()):
-            yield lambda text: [cell.strip('"') for cell in BLANKS.findall(text)]
-            yield lambda text: re.split(r"\s+(?![\[({</])", text.strip())
-            yield lambda text: re.split(r"\s{2,}|\t", text.strip())
+    if delimiter != " ":
+        yield partial(split_line, delimiter=delimiter)
+        if delimiter in text:
+            return
+    yield from (
+        partial(split_line, delimiter=each) for each in DELIMITERS if each not in (" ", delimiter) and each in text
+    )
+    if is_remark or delimiter == " " or all(read_name(word) != Meaning(None) for word in text.split()):
+        yield lambda text: [cell.strip('"') for cell in BLANKS.findall(text)]
+        yield lambda text: re.split(r"\s+(?![\[({</])", text.strip())
+        yield lambda text: re.split(r"\s{2,}|\t", text.strip())
 
 
 def quote(line: str) -> str:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from seatsim.importing.readers.columns import read_column
 from seatsim.importing.readers.dialect import BLANKS, MISSING, Dialect, find_dialect, kind_of, split_line
 from seatsim.importing.readers.header import Header, count_columns, first_row_of_numbers, split_header
@@ -24,6 +26,9 @@ if TYPE_CHECKING:
 SAMPLE = 65536
 """Bytes from which delimiter, decimal sign and header are found."""
 SIGN_APART = re.compile(rb"[+-] +[.,\d]")
+FEW = 20
+WHOLE_LINE = re.compile(rb'"[^"]*[,;\t|][^"]*"')
+"""A line that stands in quotation marks as a whole; a table that begins with some lines of this kind has no others."""
 LONGEST_NAME = 8
 """Lines over which a name in quotation marks may go."""
 
@@ -53,6 +58,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     body, notes = _clean(_without_lines(content, head.header.lines), head)
     table = _table(path, content, body, head, notes)
     signals = _signals(table, head, notes)
+    _check_texts(path, table, signals)
     if not content.endswith((b"\n", b"\r")):
         notes.append("the last line has no end; if the file was cut there, its last number is wrong")
     return DataFile(path, "CSV", part_by_time(signals, find_rate(head.above)), tuple(notes))
@@ -62,7 +68,9 @@ def _as_utf8(content: bytes, stated: str | None) -> bytes:
     encoding = stated or _encoding(content)
     if encoding != "utf-8":
         content = content.decode(encoding, errors="replace").encode()
-    return content.removeprefix(b"\xef\xbb\xbf")
+    content = content.removeprefix(b"\xef\xbb\xbf")
+    lines = content[:SAMPLE].splitlines()[:FEW]
+    return content.replace(b'"', b"") if lines and all(WHOLE_LINE.fullmatch(line) for line in lines) else content
 
 
 def _encoding(content: bytes) -> str:
@@ -82,8 +90,9 @@ def _read_head(path: Path, content: bytes, layout: TextLayout) -> Head:
     used = [index for index, line in enumerate(lines) if line.strip() and not COMMENT.match(line)]
     dialect = find_dialect([lines[index] for index in used], layout.delimiter, layout.decimal)
     if dialect is None:
-        stated = ", or csv.delimiter and csv.decimal are wrong" if layout.delimiter or layout.decimal else ""
-        raise InputError(f"{path}: holds no row of numbers; it is no table{stated}")
+        is_stated = layout.delimiter or layout.decimal
+        reason = "csv.delimiter and csv.decimal are wrong" if is_stated else "csv.delimiter has to be stated in a map"
+        raise InputError(f"{path}: holds no row of numbers; it is no table, or {reason}")
     rows = [split_line(lines[index], dialect.delimiter) for index in used]
     kinds = [[kind_of(cell, dialect.decimal) for cell in row] for row in rows]
     if layout.header is None:
@@ -202,6 +211,18 @@ def _check_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], head
     more = f" (and {len(bad) - 1} more lines)" if len(bad) > 1 else ""
     wanted = len(head.header.names)
     raise InputError(f"{path}, line {line}: has {columns} columns where the others have {wanted}{more}{reason}")
+
+
+def _check_texts(path: Path, table: pa.Table, signals: Sequence[Signal]) -> None:
+    """Raise InputError at a row of texts in columns of numbers: another table may begin there."""
+    empty = np.all([np.isnan(signal.values) for signal in signals], axis=0) if signals else np.empty(0)
+    for row in np.flatnonzero(empty):
+        texts = [text for column in table.columns if isinstance(text := column[int(row)].as_py(), str)]
+        if len(texts) >= len(signals):
+            raise InputError(
+                f"{path}: among the numbers stands a row of texts, {quote(', '.join(texts))}; if another table begins"
+                " there, split the file, else remove that line"
+            )
 
 
 def _find(lines: Sequence[str], text: str) -> int:
