@@ -14,6 +14,7 @@ from seatsim.metrics.directions import DIRECTIONS, POINTS, Direction, direction,
 from seatsim.metrics.exposure import Exposure, assess_exposure
 from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmission
 from seatsim.metrics.weighting import weight
+from seatsim.recordings.quality.plausible_ranges import say_implausible
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import STANDARD_GRAVITY
 from seatsim.standards.acceleration_axes import choose_axes
@@ -211,6 +212,8 @@ def _notes(
             cause = "gravity" if abs(size - STANDARD_GRAVITY) < 0.05 * STANDARD_GRAVITY else "an offset of the sensor"
             mean = f"{found.removed:.3g} {found.direction.unit}"
             yield f"{axis}: a mean of {mean}, {cause}, was taken out of {found.column}"
+        if said := say_implausible(records[0].values(found.column, found.direction.unit), found.direction.unit):
+            yield f"{found.column}: {said}"
     unitless = [column for column in dict.fromkeys(named.values()) if records[0].is_unitless(column)]
     if unitless:
         yield f"{', '.join(unitless)}: no unit is stated, so m/s^2 (rad/s^2) is taken; another one by --unit"

@@ -1,15 +1,18 @@
 """Text tables of many writers: each is read right, or refused with one true sentence."""
 
+import gzip
 import re
 
 import numpy as np
 import pytest
 
+from seatsim.importing.importing import import_files
 from seatsim.importing.inspection import inspect_file
 from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
 from seatsim.standards.comfort import comfort
 
+from .helpers import read_run
 from .text_tables import PLAIN, RATE, READ, REFUSED, ROWS, TRAVEL, T, X, Y, Z, table
 
 
@@ -87,6 +90,7 @@ def test_comfort_is_refused_for_the_true_reason(tmp_path, content, rate, sentenc
         (table(X, T, Z, 2 * T, head=["acc_x,t1,acc_z,t2"]), None, "t1: is taken for the time of all columns; t2 has"),
         (READ["whole seconds"][0], None, "the rate is estimated as 250 Hz: state it .* by --rate"),
         (READ["first column without a name"][0], None, "column 1: no column is called time; this one rises evenly"),
+        (table(T, 2000.0 * Z, head=["t,acc_z"]), None, "acc_z: reaches .* more than a seat does"),
         (PLAIN, 500.0, "the file states 250 Hz; the stated 500 Hz is taken"),
         (table(T + 0.27 * (T > 1), Z, head=["t,acc_z"]), 250.0, "67 rows are missing"),
         (table(T, ["-"] * ROWS, Z, head=["t,acc_x,acc_z"]), None, "columns that hold no numbers: acc_x"),
@@ -95,3 +99,23 @@ def test_comfort_is_refused_for_the_true_reason(tmp_path, content, rate, sentenc
 def test_comfort_says_what_it_assumes_of_a_file(tmp_path, content, rate, sentence):
     notes = comfort(write(tmp_path, content), rate=rate).notes
     assert any(re.search(sentence, note) for note in notes), notes
+
+
+def test_columns_with_times_of_their_own_are_put_on_one(tmp_path):
+    floor, travel = np.sin(4.0 * np.pi * T), np.sin(4.0 * np.pi * 2.0 * T)
+    path = write(tmp_path, table(T, floor, 2.0 * T, travel, head=["t1;a_Boden [g];t2;Federweg [mm]"], sep=";", dec=","))
+    found = import_files([path], tmp_path / "out")
+    assert found.rate == RATE and not any("t2" in note for note in found.notes)
+    got = read_run(tmp_path / "out")
+    np.testing.assert_allclose(1e3 * got["suspension_displacement"], np.sin(4.0 * np.pi * got["time"]), atol=0.01)
+
+
+def test_a_road_whose_track_is_a_formula_is_written_disarmed(tmp_path):
+    along = np.arange(0.0, 20.0, 0.05)
+    path = write(
+        tmp_path, table(along, 0.01 * np.sin(along), head=['distance [m];"=HYPERLINK(""x"") elevation [m]"'], sep=";")
+    )
+    import_files([path], tmp_path / "road")
+    with gzip.open(tmp_path / "road" / "road.csv.gz", "rt") as file:
+        assert "'=HYPERLINK" in file.readline()
+    assert "'=HYPERLINK" in (tmp_path / "road" / "excitation.yaml").read_text()
