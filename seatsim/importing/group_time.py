@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.names import is_of, is_unclear, read_name
+from seatsim.importing.names import is_of, read_name
 from seatsim.importing.signals import Group, Signal
 from seatsim.importing.time_axis import Axis, measured_axis
 from seatsim.schema.errors import InputError
@@ -59,20 +59,16 @@ class Clock(NamedTuple):
 def find_clock(group: Group) -> Clock | None:
     """Return the column of time: of those that are called so the one that rises most evenly.
 
-    Where none is called so, and the format states no rate, it is the first column if no word of its name means
-    something and it rises exactly evenly, as nothing measured does, by another step than 1, by which rows are counted.
+    Where none is called so, and the format states no rate, it is the first column if its name means nothing and it
+    rises exactly evenly, as nothing measured does, by another step than 1, by which rows are counted.
     """
-    named = [
-        _clock(signal, unit)
-        for signal in group.signals
-        for quantity, *_, unit, _ in [read_name(signal.name, signal.unit)]
-        if quantity == "time"
-    ]
+    meanings = [(signal, read_name(signal.name, signal.unit)) for signal in group.signals]
+    named = [_clock(signal, meaning.unit) for signal, meaning in meanings if meaning.quantity == "time"]
     if named:
         best = min(named, key=lambda clock: _flaws(clock.axis))
         return best._replace(others=tuple(each.column for each in named if _differs(each, best)))
-    first = group.signals[0]
-    if group.rate is not None or group.is_road or first.unit or not is_unclear(first.name):
+    first, meaning = meanings[0]
+    if group.rate is not None or group.is_road or first.unit or meaning.quantity is not None:
         return None
     clock = _clock(first, "")._replace(is_named=False)
     return clock if clock.unit and _is_exact(clock.axis) and not (np.diff(first.values) == 1.0).all() else None

@@ -163,11 +163,6 @@ def _rank(name: str) -> tuple[list[str], list[str]]:
     return sure, list(dict.fromkeys(letters))
 
 
-def is_unclear(name: str) -> bool:
-    """Say whether no word of a name means a quantity, though a letter may."""
-    return not _rank(name)[0]
-
-
 def is_of(unit: str, quantity: str) -> bool:
     """Say whether a unit is one of a quantity."""
     if quantity == "frequency":

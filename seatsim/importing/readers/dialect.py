@@ -36,7 +36,7 @@ LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | {
     "m/s2", "m/s²", "mm/s2", "°c", "c", "k", "f", "hz", "-", "sec", "in", "lb", "kg", "bar", "pa", "deg", "rad", "°",
     "1/s", "rpm", "w", "%",
 }  # fmt: skip
-WITH_UNIT = re.compile(r"(\S.*?[\d.,])\s*([^\W\d_][^\s\d]*[²2]?|%|°C?)")
+WITH_UNIT = re.compile(r"(\S.*?[\d.,])\s+([^\W\d_][^\s\d]*[²2]?|%|°C?)")
 """A number with its unit in the same cell."""
 LEADING_ZERO = re.compile(r"0\d+")
 LONGEST_NUMBER = 40
