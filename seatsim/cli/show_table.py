@@ -96,4 +96,4 @@ def _plain(cell: object) -> str:
 
 
 def _unmarked(cell: object) -> str:
-    return (cell if isinstance(cell, Text) else Text.from_markup(str(cell))).plain
+    return (cell if isinstance(cell, Text) else Text.from_markup(str(cell), emoji=False)).plain

@@ -14,7 +14,7 @@ from typing import TextIO
 from rich.console import Console
 
 from seatsim.compilation.watch import watch_compilation
-from seatsim.schema.text import cut_words
+from seatsim.schema.text import cut_words, make_printable
 
 
 class _Terminal(Console):
@@ -42,8 +42,8 @@ def print_any_letter() -> None:
             stream.reconfigure(errors="replace")
 
 
-out = _Terminal()
-err = _Terminal(stderr=True)
+out = _Terminal(emoji=False)
+err = _Terminal(emoji=False, stderr=True)
 
 COMPILING = "compiling (first time only)"
 Report = Callable[[str], None]
@@ -77,7 +77,7 @@ def announce(address: str) -> None:
 
 def say(text: str) -> None:
     """Print a sentence as it is."""
-    out.print(text, markup=False, highlight=False, soft_wrap=True)
+    out.print(make_printable(text), markup=False, highlight=False, soft_wrap=True)
 
 
 def wrote(folder: Path, paths: Sequence[Path]) -> None:
@@ -93,12 +93,12 @@ def wrote_one(path: Path) -> None:
 def warn(texts: Iterable[str], kind: str = "note") -> None:
     """Print what the user has to know about the result."""
     for text in texts:
-        err.print(f"{kind}: {text}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+        err.print(make_printable(f"{kind}: {text}"), style="yellow", markup=False, highlight=False, soft_wrap=True)
 
 
 def complain(text: str) -> None:
     """Print what failed."""
-    err.print(text, style="red", markup=False, highlight=False, soft_wrap=True)
+    err.print(make_printable(text), style="red", markup=False, highlight=False, soft_wrap=True)
 
 
 def fail(text: str) -> None:

@@ -68,7 +68,7 @@ def assemble(files: Sequence[DataFile], stated: ImportMap) -> Assembled:
     notes: list[str] = []
     parts: list[tuple[str, list[Clocked]]] = []
     for name, members in _group_runs(files, stated):
-        parts += split_at_gaps(name, clock_groups(members, stated, doubts), stated)
+        parts += split_at_gaps(name, clock_groups(members, stated, doubts), stated, notes)
     rate = stated.resample or max(each.axis.rate for _, clocked in parts for each in clocked)
     runs, align = [], dict(stated.align)
     for name, clocked in parts:
@@ -131,6 +131,13 @@ def _tabulate(
     held = {name: _moved(used.by_group[label][name], moved.get(label, 0.0)) for name, label in used.taken_from.items()}
     begin = max(each.start for each in held.values())
     end = min(each.start + (len(each.values) - 1) / each.rate for each in held.values())
+    shortest = min(held.values(), key=lambda each: len(each.values) / each.rate)
+    lasts = (len(shortest.values) - 1) / shortest.rate
+    if lasts < SHORTEST_RUN:
+        raise InputError(
+            f"{run}: lasts {lasts:.3g} s by its times, {len(shortest.values)} rows at {shortest.rate:.6g} Hz; a run"
+            f" needs {SHORTEST_RUN:g} s: check the rate, or the unit under time"
+        )
     if end - begin < SHORTEST_RUN:
         raise InputError(
             f"{run}: its files have less than {SHORTEST_RUN:g} s in common ({max(0.0, end - begin):.3g} s at"

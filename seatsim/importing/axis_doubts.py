@@ -31,13 +31,23 @@ def doubt_time(axis: Axis, channel: str) -> Iterator[Issue]:
         first = next(int(row) for row in axis.breaks if axis.times[row] - axis.times[row - 1] > 0.0)
         text = f"{axis.lost} rows are missing, the first at {axis.times[first - 1]:.6g} s; gaps: split or gaps: fill"
         yield doubter.say("warning", "gap", text)
-    if not axis.is_even:
+    if axis.resolution:
+        yield doubter.say("warning", "rounded", _say_rounded(axis))
+    elif not axis.is_even:
         yield doubter.say(
             "warning", "uneven", f"rows are not evenly spaced; they are interpolated at {axis.rate:.5g} Hz"
         )
     if not SLOWEST <= axis.rate <= FASTEST:
         text = f"rows are {1.0 / axis.rate:.4g} s apart, {axis.rate:.4g} Hz; is its unit another one, such as ms?"
         yield doubter.say("warning", "rate", text)
+
+
+def _say_rounded(axis: Axis) -> str:
+    """Return what stamps that are about as coarse as the rows, or coarser, say of the rate."""
+    steps = f"its stamps go in steps of {axis.resolution:.4g} s, about as coarse as the rows or coarser"
+    if axis.is_even:
+        return f"{steps}; the rate is estimated as {axis.rate:.6g} Hz: state it by sample_rate in the map, or by --rate"
+    return f"{steps}, and the rows are not even by them; state the rate by sample_rate in the map, or by --rate"
 
 
 def doubt_distance(along: Array, channel: str) -> Iterator[Issue]:

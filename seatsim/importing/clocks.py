@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.axis_doubts import doubt_time
+from seatsim.importing.group_time import check_is_history, find_clock
 from seatsim.importing.import_map import AxisMap, ImportMap
-from seatsim.importing.names import is_of, read_name
-from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.importing.signals import DataFile, Group
 from seatsim.importing.time_axis import Axis, even_axis, measured_axis, unbroken
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
@@ -47,10 +47,11 @@ def clock_groups(files: Sequence[DataFile], stated: ImportMap, doubts: list[Issu
 def _clock(file: DataFile, group: Group, stated: ImportMap, doubts: list[Issue]) -> Clocked:
     """Return a group with its time: of the column that the map names, of the format, or at the stated rate."""
     label = f"{file.path.name}, {group.name}" if group.name and len(file.groups) > 1 else file.path.name
+    check_is_history(group, str(file.path))
     rate = stated.sample_rate or group.rate
-    time = _time_column(group, stated)
-    if time is not None and (stated.sample_rate is None or stated.time is not None):
-        group, axis = _timed(label, group, time, doubts)
+    time = _time_column(group, stated, label, doubts)
+    if time is not None:
+        group, axis = _timed(label, group, time, stated.sample_rate, doubts)
         return Clocked(file.path.name, label, group, axis)
     if rate is not None:
         return Clocked(file.path.name, label, group, even_axis(group.rows, rate, group.start or 0.0))
@@ -62,35 +63,35 @@ def _clock(file: DataFile, group: Group, stated: ImportMap, doubts: list[Issue])
     )
 
 
-def _time_column(group: Group, stated: ImportMap) -> AxisMap | None:
-    """Return the column of time that the map names, else the one that is called so: other loggers name it otherwise."""
+def _time_column(group: Group, stated: ImportMap, label: str, doubts: list[Issue]) -> AxisMap | None:
+    """Return the column of time that the map names, else the one that is found: other loggers name it otherwise."""
     if stated.time is not None and group.find(stated.time.column) is not None:
         return stated.time
-    meanings = ((signal.name, read_name(signal.name, signal.unit)) for signal in group.signals)
-    return next((AxisMap(name, meaning.unit) for name, meaning in meanings if meaning.quantity == "time"), None)
+    clock = find_clock(group)
+    if clock is None or (stated.sample_rate is not None and stated.time is None):
+        return None
+    doubts += [Issue("note", "time", f"{label}: {said}") for said in clock.assumptions]
+    return AxisMap(clock.column, clock.unit)
 
 
-def _timed(label: str, group: Group, time: AxisMap, doubts: list[Issue]) -> tuple[Group, Axis]:
-    """Return a group without the rows that have no time, and the times of the others."""
+def _timed(label: str, group: Group, time: AxisMap, rate: float | None, doubts: list[Issue]) -> tuple[Group, Axis]:
+    """Return a group without the rows that have no time, and the times of the others.
+
+    Of stamps that are as coarse as the rows, or coarser, a stated rate takes the place.
+    """
     times = next(signal.values for signal in group.signals if signal.name == time.column)
     there = np.isfinite(times)
     signals = tuple(signal._replace(values=signal.values[there]) for signal in group.signals)
     axis = measured_axis(conversion(time.unit or "s", DIMENSIONS["time"]).factor * times[there])
     if axis is None:
         raise InputError(f"{label}: column '{time.column}' does not rise as a time does; name another one under time")
-    doubts += doubt_time(axis, f"{label}, {time.column}")
+    if axis.resolution and rate is not None:
+        return group._replace(signals=signals), even_axis(int(there.sum()), rate, float(axis.times[0]))
+    found = list(doubt_time(axis, f"{label}, {time.column}"))
+    if axis.resolution and not axis.is_even:
+        raise InputError(found[-1].sentence)
+    doubts += found
     return group._replace(signals=signals), axis
-
-
-def read_clock(signal: Signal) -> Axis | None:
-    """Return the times of a column that is called time, in s where its unit is none of time; None if they never rise.
-
-    Rows that hold no number are left out.
-    """
-    unit = read_name(signal.name, signal.unit).unit
-    values = signal.values[np.isfinite(signal.values)]
-    factor = conversion(unit if unit and is_of(unit, "time") else "s", DIMENSIONS["time"]).factor
-    return measured_axis(factor * values) if len(values) > 2 else None
 
 
 def list_names(names: Sequence[str], most: int = 12) -> str:
@@ -98,7 +99,9 @@ def list_names(names: Sequence[str], most: int = 12) -> str:
     return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
 
 
-def split_at_gaps(name: str, clocked: list[Clocked], stated: ImportMap) -> list[tuple[str, list[Clocked]]]:
+def split_at_gaps(
+    name: str, clocked: list[Clocked], stated: ImportMap, notes: list[str]
+) -> list[tuple[str, list[Clocked]]]:
     """Return a run, or the runs between its gaps, as the map says."""
     broken = next((each for each in clocked if len(each.axis.breaks)), None)
     if broken is None:
@@ -109,20 +112,26 @@ def split_at_gaps(name: str, clocked: list[Clocked], stated: ImportMap) -> list[
         said = next(doubt_time(broken.axis, broken.label)).sentence
         allowed = "gaps: fill" if len(clocked) > 1 else "gaps: split (runs of the parts) or gaps: fill (interpolate)"
         raise InputError(f"{said}; say in the map what to do: {allowed}")
-    return _parts(name, broken)
+    return _parts(name, broken, notes)
 
 
-def _parts(name: str, broken: Clocked) -> list[tuple[str, list[Clocked]]]:
-    """Return the runs between the gaps of a group."""
+def _parts(name: str, broken: Clocked, notes: list[str]) -> list[tuple[str, list[Clocked]]]:
+    """Return the runs between the gaps of a group; a sentence names those that are too short to be one."""
     parts: list[tuple[str, list[Clocked]]] = []
+    short: list[str] = []
     for begin, end in pairwise([0, *broken.axis.breaks.tolist(), len(broken.axis.times)]):
-        if (end - begin) / broken.axis.rate >= SHORTEST_RUN:
+        lasts = (end - begin - 1) / broken.axis.rate
+        if lasts < SHORTEST_RUN:
+            short.append(f"{lasts:.3g} s from {broken.axis.times[begin]:.6g} s on")
+        else:
             signals = tuple(signal._replace(values=signal.values[begin:end]) for signal in broken.group.signals)
             axis = unbroken(broken.axis.times[begin:end], broken.axis.rate, broken.axis.is_even)
             part = broken._replace(group=broken.group._replace(signals=signals), axis=axis)
             parts.append((f"{name}-{len(parts) + 1}", [part]))
     if not parts:
         raise InputError(f"{broken.label}: no part between its gaps lasts {SHORTEST_RUN:g} s; nothing is left")
+    if short:
+        notes.append(f"{broken.label}: parts of less than {SHORTEST_RUN:g} s are left out: {list_names(short)}")
     return parts
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.importing.assembly import Assembled, assemble, doubt_runs
+from seatsim.importing.group_time import find_clock
 from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map
 from seatsim.importing.map_text import write_map
 from seatsim.importing.matching import propose
@@ -78,7 +79,8 @@ def import_files(
         used = stated
         check_files(used.runs, [file.path.name for file in files], map_file or Path(FILE))
     if stated is None:
-        notes += _say_left_out(files, used)
+        clocks = (find_clock(group) for file in files for group in file.groups)
+        notes += [said for clock in clocks if clock for said in clock.assumptions] + _say_left_out(files, used)
     if used.rig == "road":
         road, doubts = assemble_road(files, used)
         return Import(folder, used, stated is None, write_road(folder, road, used), notes, doubts)
@@ -122,7 +124,9 @@ def _say_left_out(files: Sequence[DataFile], used: ImportMap) -> list[str]:
     """Return a sentence on the columns that a proposed map does not use, if there are any."""
     axes = [axis.column for axis in (used.time, used.distance) if axis]
     taken = {*axes, *(name for entry in used.channels.values() for name in (entry.column, entry.minus))}
-    columns = [signal.name for file in files for group in file.groups for signal in group.signals]
+    groups = [group for file in files for group in file.groups]
+    taken |= {clock.column for group in groups if (clock := find_clock(group))}
+    columns = [signal.name for group in groups for signal in group.signals]
     left = [f"'{name}'" for name in dict.fromkeys(columns) if name not in taken]
     if not left:
         return []

@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.axis_doubts import doubt_distance, doubt_time
-from seatsim.importing.clocks import read_clock
 from seatsim.importing.doubts import doubt_channel
+from seatsim.importing.group_time import Clock, find_clock, is_spectrum
 from seatsim.importing.import_map import Rig
-from seatsim.importing.matching import Column, channel_of
+from seatsim.importing.matching import Column, channel_of, read_columns
 from seatsim.importing.names import DIMENSION, is_of, read_name, without_unit
 from seatsim.importing.readers.reading import TextLayout, read_file
 from seatsim.importing.relations import doubt_pairs
@@ -74,21 +74,22 @@ def inspect_file(path: Path, layout: TextLayout | None = None) -> Inspection:
     file = read_file(path, layout)
     channels: dict[str, list[ChannelSummary]] = {}
     doubts = [Issue("note", "left_out", note) for note in file.notes]
+    columns = [column for group in file.groups for column in read_columns(group)]
+    rig: Rig = "seat" if any(column.meaning.place for column in columns) else "damper_bench"
     for group in file.groups:
-        summaries, found = _group(group)
+        summaries, found = _group(group, rig)
         channels[group.name] = summaries
         doubts += found
     return Inspection(str(path), file.format, channels, [*doubts, *_repeated_rows(file)])
 
 
-def _group(group: Group) -> tuple[list[ChannelSummary], list[Issue]]:
+def _group(group: Group, rig: Rig) -> tuple[list[ChannelSummary], list[Issue]]:
     """Return the channels of a group, and the doubts about them, their time and what they are to each other."""
-    columns = [Column(group, signal, read_name(signal.name, signal.unit)) for signal in group.signals]
-    clock = next((column for column in columns if column.meaning.quantity == "time"), None)
-    axis = read_clock(clock.signal) if clock else None
+    columns = read_columns(group)
+    clock = find_clock(group)
+    axis = clock.axis if clock else None
     rate = axis.rate if axis else group.rate
-    found = list(doubt_time(axis, clock.signal.name)) if axis and clock else []
-    rig: Rig = "seat" if any(column.meaning.place for column in columns) else "damper_bench"
+    found = list(_doubt_rows(group, clock))
     found += [
         issue
         for c in columns
@@ -99,7 +100,7 @@ def _group(group: Group) -> tuple[list[ChannelSummary], list[Issue]]:
     quantities: dict[str, str | None] = {}
     summaries = []
     for column in columns:
-        if column is clock or column.meaning.quantity == "distance":
+        if (clock and column.signal.name == clock.column) or column.meaning.quantity == "distance":
             continue
         values, quantity = _in_si(column)
         if column.meaning.quantity != "mark":
@@ -109,6 +110,20 @@ def _group(group: Group) -> tuple[list[ChannelSummary], list[Issue]]:
     parts = _longest_part(axis, known) if axis else known
     commands = {column.signal.name for column in columns if column.meaning.is_command}
     return summaries, [*found, *doubt_pairs(parts, rate, quantities, commands)]
+
+
+def _doubt_rows(group: Group, clock: Clock | None) -> Iterator[Issue]:
+    """Yield what is wrong with the time of a group, or that its rows are not over time."""
+    if is_spectrum(group):
+        text = f"{group.signals[0].name}: rows stand over it, not over time: a spectrum, of which no recording is made"
+        yield Issue("warning", "spectrum", text, group.signals[0].name)
+    if clock is None:
+        return
+    yield from (Issue("note", "time", said, clock.column) for said in clock.assumptions)
+    if clock.axis is None:
+        yield Issue("warning", "restart", f"{clock.column}: does not rise as a time does; no rate is taken from it")
+    else:
+        yield from doubt_time(clock.axis, clock.column)
 
 
 def _longest_part(axis: Axis, channels: Mapping[str, Array]) -> dict[str, Array]:

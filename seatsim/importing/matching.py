@@ -6,22 +6,19 @@ open and says what to write.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-
+from seatsim.importing.group_time import check_is_history, find_clock, is_spectrum
 from seatsim.importing.import_map import AxisMap, ChannelMap, Gaps, ImportMap, Rig
 from seatsim.importing.names import DIMENSION, Meaning, is_of, read_name, without_unit
 from seatsim.importing.signals import DataFile, Group, Signal
-from seatsim.importing.time_axis import measured_axis
 from seatsim.recordings.channel_units import CHANNELS
 from seatsim.schema.units import DIMENSIONS
 
 NEEDED = {"seat": ("floor_acceleration",), "damper_bench": ("displacement", "damper_force"), "road": ()}
 BENCH_ONLY = ("displacement", "velocity", "command_voltage")
-SLOWEST, FASTEST = 20.0, 50_000.0
-"""Hz; a column of time without unit is in s where its rows are between these rates, else its unit is asked for."""
 LISTED = 12
 
 
@@ -41,11 +38,15 @@ class Proposal(NamedTuple):
 
 
 def propose(files: Sequence[DataFile], rig: Rig | None = None) -> Proposal:
-    """Return the map of some files that belong to one rig."""
-    columns = [
-        Column(group, signal, read_name(signal.name, signal.unit))
-        for file in files for group in file.groups for signal in group.signals
-    ]  # fmt: skip
+    """Return the map of some files that belong to one rig.
+
+    Raises:
+        InputError: they hold nothing but spectra.
+    """
+    groups = [group for file in files for group in file.groups]
+    if all(is_spectrum(group) for group in groups):
+        check_is_history(groups[0], str(files[0].path))
+    columns = [column for group in groups for column in read_columns(group)]
     if rig == "road" or (rig is None and _is_road(columns)):
         return _propose_road(columns)
     chosen = rig or _rig_of(columns)
@@ -67,11 +68,34 @@ def propose(files: Sequence[DataFile], rig: Rig | None = None) -> Proposal:
     return Proposal(ImportMap(channels, chosen, time, gaps=gaps), tuple(open_ends))
 
 
+def read_columns(group: Group) -> list[Column]:
+    """Return the columns of a group with what their names say.
+
+    Where names differ by x, y and z alone these are axes, so that x is no displacement and z no elevation.
+    """
+    names = {signal.name for signal in group.signals}
+    columns = []
+    for signal in group.signals:
+        meaning = read_name(signal.name, signal.unit)
+        if not signal.unit and meaning.quantity in ("displacement", "elevation") and names >= _along_axes(signal.name):
+            meaning = meaning._replace(quantity=None, unit="")
+        columns.append(Column(group, signal, meaning))
+    return columns
+
+
+def _along_axes(name: str) -> set[str]:
+    """Return a name with x, y and z in place of the letter of an axis that stands alone in it."""
+    parts = re.split(r"(?<![A-Za-z])[xyzXYZ](?![A-Za-z])", name)
+    is_capital = any(letter in name for letter in "XYZ")
+    return {letter.join(parts) for letter in ("XYZ" if is_capital else "xyz")} if len(parts) == 2 else {""}
+
+
 def _rig_of(columns: Sequence[Column]) -> Rig:
-    """Return the rig that the columns are of: a bench has force and displacement, and no acceleration of a floor."""
+    """Return the rig that the columns are of: a bench has force and displacement, and no acceleration of a place."""
     quantities = {column.meaning.quantity for column in columns}
     names = {without_unit(column.signal.name, column.meaning.unit) for column in columns}
-    if "floor_acceleration" in names or any(_seat_channel(c.meaning) == "floor_acceleration" for c in columns):
+    placed = {"floor_acceleration", "frame_acceleration", "driver_acceleration"}
+    if placed & names or any(_seat_channel(column.meaning) in placed for column in columns):
         return "seat"
     return "damper_bench" if {"displacement", "force"} <= quantities else "seat"
 
@@ -84,7 +108,11 @@ def _is_road(columns: Sequence[Column]) -> bool:
 
 
 def channel_of(column: Column, rig: Rig) -> str | None:
-    """Return the channel that a column may be, None where its name does not say so."""
+    """Return the channel that a column may be, None where its name does not say so, or its unit contradicts."""
+    return None if column.meaning.is_contradicted else _named_channel(column, rig)
+
+
+def _named_channel(column: Column, rig: Rig) -> str | None:
     exact = without_unit(column.signal.name, column.meaning.unit)
     if exact in CHANNELS[rig]:
         return exact
@@ -116,10 +144,11 @@ def _damper_channel(meaning: Meaning) -> str | None:
 
 
 def _candidates(columns: Sequence[Column], rig: Rig) -> dict[str, list[Column]]:
+    """Return the columns that each channel may be; those of another unit only where there are no others."""
     found: dict[str, list[Column]] = {}
-    for column in columns:
-        channel = channel_of(column, rig)
-        if channel is not None:
+    for column in sorted(columns, key=lambda each: each.meaning.is_contradicted):
+        channel = _named_channel(column, rig)
+        if channel is not None and (channel not in found or not column.meaning.is_contradicted):
             found.setdefault(channel, []).append(column)
     return found
 
@@ -137,11 +166,12 @@ def _entry(name: str, candidates: Sequence[Column], unit: str) -> tuple[ChannelM
     entry = ChannelMap(first.signal.name, stated or None)
     if len(names) > 1 and not exact:
         return entry, f"{name}: {' and '.join(names[:LISTED])} fit equally well; keep one as its column"
+    if first.meaning.is_contradicted:
+        seen = f"'{first.signal.name}' is stated in {first.meaning.unit}, which is no unit of it"
+        return entry, f"{name}: {seen}; write unit, such as {_examples(unit)}, with scale and offset, or leave it out"
     if not stated:
-        return (
-            entry,
-            f"{name}: the file states no unit of '{first.signal.name}'; write it as unit, such as {_examples(unit)}",
-        )
+        seen = f"the file states no unit of '{first.signal.name}'"
+        return entry, f"{name}: {seen}; write it as unit, such as {_examples(unit)}"
     return entry, ""
 
 
@@ -170,25 +200,14 @@ def _time(columns: Sequence[Column], is_one_file: bool) -> tuple[AxisMap | None,
 
     Formats that state their rate need no column.
     """
-    named = [column for column in columns if column.meaning.quantity == "time"]
-    if not named:
+    clock = next((found for column in columns if (found := find_clock(column.group))), None)
+    if clock is None:
         if all(column.group.rate for column in columns):
             return None, "", None
         return None, "time: no column holds the time; write sample_rate: in Hz, or time: {column: ..., unit: s}", None
-    first = named[0]
-    unit = first.meaning.unit if first.meaning.unit and is_of(first.meaning.unit, "time") else ""
-    axis = measured_axis(first.signal.values[np.isfinite(first.signal.values)])
-    gaps: Gaps | None = "split" if axis is not None and len(axis.breaks) and is_one_file else None
-    if not unit:
-        if axis is None or not SLOWEST <= axis.rate <= FASTEST:
-            seen = f"{1.0 / axis.rate:.4g} apart" if axis else "not rising"
-            name = first.signal.name
-            problem = (
-                f"time: '{name}' has no unit, and its rows are {seen}; write time: {{column: {name}, unit: ms}} or s"
-            )
-            return AxisMap(first.signal.name, ""), problem, gaps
-        unit = "s"
-    return AxisMap(first.signal.name, unit), "", gaps
+    gaps: Gaps | None = "split" if clock.axis is not None and len(clock.axis.breaks) and is_one_file else None
+    problem = f"time: {clock.open}; write time: {{column: {clock.column}, unit: ms}} or s" if clock.open else ""
+    return AxisMap(clock.column, clock.unit), problem, gaps
 
 
 def _propose_road(columns: Sequence[Column]) -> Proposal:

@@ -5,28 +5,37 @@ A word of four letters and more counts wherever it stands in a name, a shorter o
 
 from __future__ import annotations
 
+import functools
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from seatsim.schema.units import DIMENSIONS, find_conversion
+from seatsim.schema.units import DIMENSIONS, find_conversion, is_unit
 
 QUANTITIES: Mapping[str, tuple[str, ...]] = {
-    "acceleration": ("acceleration", "accel", "acc", "a", "beschleunigung", "beschl", "acz", "az", "jiasudu"),
+    "acceleration": (
+        "acceleration", "accel", "acc", "a", "beschleunigung", "beschl", "ax", "ay", "az", "accx", "accy", "accz",
+        "acz", "jiasudu",
+    ),
     "displacement": (
         "displacement", "disp", "stroke", "travel", "position", "deflection", "weg", "federweg", "einfederung", "hub",
         "auslenkung", "deplacement", "debattement", "course", "weiyi", "xingcheng", "x", "s", "lvdt",
     ),
-    "velocity": ("velocity", "speed", "geschwindigkeit", "geschw", "vitesse", "sudu", "v"),
+    "velocity": ("velocity", "speed", "vel", "geschwindigkeit", "geschw", "vitesse", "sudu", "v"),
     "force": ("force", "load", "kraft", "effort", "zunili", "li", "f", "fd"),
     "current": ("current", "strom", "bestromung", "courant", "intensite", "dianliu", "i"),
     "voltage": ("voltage", "spannung", "tension", "dianya", "u"),
     "temperature": ("temperature", "temp", "temperatur", "wendu", "thermo"),
-    "time": ("time", "zeit", "temps", "shijian", "t", "timestamp", "timestamps", "zeitstempel"),
+    "time": (
+        "time", "zeit", "temps", "shijian", "t", "timestamp", "timestamps", "zeitstempel", "elapsed", "datetime",
+        "uhrzeit", "seconds", "sekunden", "secondes", "millis", "milliseconds", "sec", "secs", "msec",
+        "x_value", "abscissa", "abszisse",
+    ),
+    "frequency": ("frequency", "frequenz", "frequence", "pinlv", "freq"),
     "distance": ("distance", "chainage", "station", "strecke", "abstand", "juli"),
     "elevation": ("elevation", "height", "profile", "profil", "hohe", "hoehe", "hauteur", "gaodu", "z"),
-    "mark": ("valid", "gultig", "gueltig", "segment", "marker", "trigger", "index"),
+    "mark": ("valid", "gultig", "gueltig", "segment", "marker", "trigger", "index", "row", "zeile", "counter"),
 }  # fmt: skip
 """Words for what a column holds; for a velocity before a displacement, since `x` alone is one."""
 PLACES: Mapping[str, tuple[str, ...]] = {
@@ -55,19 +64,29 @@ COMMANDS = (
     "ref",
     "demand",
 )
-LATERAL = ("x", "y", "lateral", "longitudinal", "fore", "quer", "laengs", "langs", "ax", "ay", "accx", "accy")
+AXES: Mapping[str, tuple[str, ...]] = {
+    "x": ("x", "ax", "accx", "longitudinal", "fore", "laengs", "langs"),
+    "y": ("y", "ay", "accy", "lateral", "quer"),
+    "z": ("z", "az", "accz", "acz", "vertical", "vertikal"),
+}
 OTHERS = ("ambient", "umgebung", "room", "raum", "engine", "motor")
 DAMPERS = ("damper", "dampfer", "daempfer", "amortisseur", "zuni", "load cell", "mrd")
-"""Words for commands, for axes other than the vertical, for what belongs to no seat, and for its damper."""
+"""Words for commands, for axes, for what belongs to no seat, and for its damper."""
 DIMENSION = {
     "acceleration": "acceleration", "displacement": "length", "velocity": "velocity", "force": "force",
     "current": "current", "voltage": "voltage", "temperature": "temperature", "time": "time",
     "distance": "length", "elevation": "length", "angular_acceleration": "angular_acceleration",
 }  # fmt: skip
+TIMES = {
+    "ms": "ms", "msec": "ms", "millis": "ms", "milliseconds": "ms", "sec": "s", "secs": "s", "seconds": "s",
+    "sekunden": "s", "secondes": "s",
+}  # fmt: skip
+"""Units of time that are names of a column by themselves."""
 BY_UNIT = ("acceleration", "velocity", "displacement", "force", "current", "voltage", "temperature")
 """Quantities that a unit alone tells, where no word does."""
 SHORT_UNITS = ("A", "mA", "N", "kN", "daN", "V", "mV", "g", "C", "K", "F", "m", "cm", "mm", "um", "s", "ms", "us", "s2")
 """Units that end names and could be taken for words."""
+DIGITS = "0123456789"
 LONG = 4
 """Letters from which a word counts inside another one."""
 
@@ -78,32 +97,76 @@ class Meaning(NamedTuple):
     quantity: str | None
     place: str | None = None
     is_command: bool = False
-    is_lateral: bool = False
+    axis: str | None = None
     unit: str = ""
     is_damper: bool = False
 
+    @property
+    def is_contradicted(self) -> bool:
+        """Whether the unit is one of something else: a force in V is the voltage of its sensor."""
+        return bool(self.quantity in DIMENSION and not is_of(self.unit, self.quantity) and is_unit(self.unit))
 
+    @property
+    def is_lateral(self) -> bool:
+        """Whether it is an acceleration along another axis than the vertical."""
+        return self.quantity == "acceleration" and self.axis in ("x", "y")
+
+
+@functools.lru_cache(maxsize=1024)
 def read_name(name: str, unit: str = "") -> Meaning:
     """Return what the name of a column says, with the unit that its file states beside it."""
     plain, words = _plain(name), _words(name)
-    quantity = _first(QUANTITIES, plain, _words(_before_unit(name))) or _first(QUANTITIES, plain, words)
-    if quantity is None and unit:
-        quantity = next((each for each in BY_UNIT if is_of(unit, each)), None)
     if any(word in words or (len(word) >= LONG and word in plain) for word in OTHERS):
         return Meaning(None)
-    stated = unit or (unit_of_name(name, quantity) if quantity else "")
+    quantity, stated = _read_quantity(name, unit)
     return Meaning(
         quantity,
         _first(PLACES, plain, words),
         any(_has(word, plain, words) for word in COMMANDS),
-        quantity == "acceleration" and any(word in words for word in LATERAL),
+        next((axis for axis, known in AXES.items() if words & {*known}), None),
         stated,
         any(_has(word, plain, words) for word in DAMPERS),
     )
 
 
+def _read_quantity(name: str, unit: str) -> tuple[str | None, str]:
+    """Return what a column holds, and its unit: of the words in its name the one counts that the unit is of.
+
+    A letter gives way to a unit of something else: `v2` in m/s^2 is an acceleration. A whole word does not.
+    """
+    if not unit and _plain(name).strip() in TIMES:
+        return "time", TIMES[_plain(name).strip()]
+    sure, letters = _rank(name)
+    if not unit:
+        named = next(((each, found) for each in (*sure, *letters) if (found := unit_of_name(name, each))), None)
+        quotient = unit_of_name(name, "acceleration")
+        if named is None and not sure and "/" in quotient:
+            return "acceleration", quotient
+        return named or (next(iter((*sure, *letters)), None), "")
+    fitting = next((each for each in (*sure, *letters) if is_of(unit, each)), None)
+    by_unit = next((each for each in (*BY_UNIT, "time") if is_of(unit, each)), None)
+    if fitting is None and (by_unit is not None or is_unit(unit)):
+        return (sure[0] if sure else by_unit), unit
+    return fitting or next(iter((*sure, *letters)), None), unit
+
+
+def _rank(name: str) -> tuple[list[str], list[str]]:
+    """Return the quantities that words of a name mean, whole words and long ones first; then those of letters."""
+    plain, words = _plain(name), _words(name)
+    longs = {each: [word for word in known if len(word) >= LONG] for each, known in QUANTITIES.items()}
+    alone = [each for each, known in longs.items() if words & {*known}]
+    inside = {each: max((len(word) for word in known if word in plain), default=0) for each, known in longs.items()}
+    parts = sorted((each for each in inside if inside[each] and each not in alone), key=lambda each: -inside[each])
+    sure = [*alone, *parts]
+    both = (_words(_before_unit(name)), words)
+    letters = [each for some in both for each, known in QUANTITIES.items() if some & {*known} and each not in sure]
+    return sure, list(dict.fromkeys(letters))
+
+
 def is_of(unit: str, quantity: str) -> bool:
     """Say whether a unit is one of a quantity."""
+    if quantity == "frequency":
+        return unit.lower() in ("hz", "khz")
     wanted = DIMENSIONS[DIMENSION[quantity]] if quantity in DIMENSION else None
     return wanted is not None and (unit == wanted or find_conversion(unit, wanted) is not None)
 
@@ -164,4 +227,4 @@ def _words(name: str) -> set[str]:
     """Return the words of a name: parted by what is no letter or digit, and by capitals inside."""
     parted = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name)
     words = set(re.split(r"[^0-9a-z]+", _plain(parted))) | set(re.split(r"[^0-9a-z]+", _plain(name)))
-    return (words | {re.sub(r"\d+$", "", word) for word in words if not re.fullmatch(r"z\d", word)}) - {""}
+    return (words | {word.rstrip(DIGITS) for word in words if not re.fullmatch(r"z\d", word)}) - {""}

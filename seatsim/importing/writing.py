@@ -18,6 +18,7 @@ from seatsim.importing.signals import Array
 from seatsim.provenance.manifest import write_documented
 from seatsim.recordings.channel_units import CHANNELS
 from seatsim.schema.files import write_packed, write_whole
+from seatsim.schema.text import disarm
 
 HEADER = "recording.yaml"
 ROAD, EXCITATION = "road.csv.gz", "excitation.yaml"
@@ -69,8 +70,8 @@ def write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> li
     """Write a road as a table over distance, and a scenario's `excitation` that drives on its middle track."""
     import pandas as pd
 
-    frame = pd.DataFrame(road)
-    tracks = [name for name in road if name != DISTANCE]
+    frame = pd.DataFrame({str(disarm(name)): values for name, values in road.items()})
+    tracks = [name for name in frame if name != DISTANCE]
     excitation = {"excitation": {"kind": "table", "path": ROAD, "distance_column": DISTANCE,
                                  "column": tracks[len(tracks) // 2], "speed": SPEED}}  # fmt: skip
     write_table = partial(frame.to_csv, mode="wb", index=False, float_format="%.9g")

@@ -29,6 +29,8 @@ from seatsim.schema.yaml_text import KeyPath
 if TYPE_CHECKING:
     from seatsim.excitations.base import Excitation
 
+LARGEST_SEED = 2**63 - 1
+"""The largest whole number that a column of a table holds."""
 BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
 SEAT_KEYS = (*BENCH_KEYS, "plant", "driver", "controller", "excitation", "start", "sweep", "variants", "published")
 CONTROL_KEYS = ("law", "sample_time", "inverse", "sensors")
@@ -180,11 +182,9 @@ def _effects(values: object, source: Source) -> tuple[Record, ...]:
 
 
 def _seed(value: object, source: Source) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise source.error(
-            ("seed",),
-            f"{value!r} is not permitted; it must be a whole number of at least 0{sweep_hint(value, ('seed',))}",
-        )
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= LARGEST_SEED:
+        needed = f"a whole number of at least 0 and at most {LARGEST_SEED}"
+        raise source.error(("seed",), f"{value!r} is not permitted; it must be {needed}{sweep_hint(value, ('seed',))}")
     return value
 
 

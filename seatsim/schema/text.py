@@ -1,4 +1,4 @@
-"""Names in sentences."""
+"""Names in sentences, on a terminal and in tables for a spreadsheet."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from collections.abc import Collection
 
 LONGEST_NAME = 100
 LONGEST_WORD = 1000
+FORMULA = re.compile(r"[=@\t\r]|[+-](?!\d[\d.,]*\s?[^\W\d]*$)")
+"""How a text begins that a spreadsheet computes; a size with a sign and a unit, such as `-10 degC`, is none."""
 
 
 def explain_bad_name(name: str) -> str:
@@ -31,3 +33,13 @@ def join_names(names: Collection[str], last: str = "and") -> str:
     """Return one or more names as they stand in a sentence: `a, b and c`."""
     *first, end = names
     return f"{', '.join(first)} {last} {end}" if first else end
+
+
+def make_printable(text: str) -> str:
+    """Return a text in which signs that a terminal would obey or hide are written as Python escapes them."""
+    return "".join(sign if sign.isprintable() or sign in "\n\t" else ascii(sign)[1:-1] for sign in text)
+
+
+def disarm(cell: object) -> object:
+    """Return a cell of a CSV; before a text that a spreadsheet would compute stands an apostrophe, which it hides."""
+    return f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell

@@ -59,7 +59,8 @@ USUAL = {si: tuple(units) for si, units in CONVERSIONS.items()}
 """Units in which a quantity is usually recorded, by its SI unit; errors list them, doubts compare with them."""
 OWN_SPELLINGS = {
     "m/s^2": {"g": "standard_gravity", "gn": "standard_gravity", "g_n": "standard_gravity", "gal": "cm/s^2",
-              "mg": "millistandard_gravity"},
+              "mg": "millistandard_gravity", "g0": "standard_gravity", "ms2": "m/s^2", "ms-2": "m/s^2",
+              "ms^-2": "m/s^2", "ms⁻²": "m/s^2", "m.s-2": "m/s^2"},
     "degC": {"c": "degC", "f": "degF", "celsius": "degC", "fahrenheit": "degF", "k": "kelvin", "deg c": "degC",
              "deg f": "degF", "grad c": "degC"},
     "N": {"lb": "lbf", "lbs": "lbf", "kg": "kgf", "kp": "kgf", "newton": "N", "newtons": "N"},
@@ -69,7 +70,12 @@ OWN_SPELLINGS = {
     "m": {'"': "inch", "in": "inch", "zoll": "inch"},
 }  # fmt: skip
 """Spellings that mean something else, or nothing, to pint, by the unit that is wanted: `g` of a mass is a gram."""
-SIGNS = {"²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF", "µ": "u", "μ": "u", "·": "*", "⋅": "*"}
+SIGNS = {
+    "⁻²": "^-2", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF", "µ": "u", "μ": "u", "·": "*", "⋅": "*",
+}  # fmt: skip
+
+NO_UNITS = ("links",)
+"""Words in names that pint takes for units: `links` is German for left."""
 
 
 def conversion(unit: str, wanted: str) -> Conversion:
@@ -96,6 +102,21 @@ LONGEST = 60
 def find_conversion(unit: str, wanted: str) -> Conversion | None:
     """Return the conversion, None where there is none."""
     return CONVERSIONS.get(wanted, {}).get(unit) or _look_up(unit, wanted)
+
+
+@functools.lru_cache(maxsize=256)
+def is_unit(text: str) -> bool:
+    """Say whether a text is a unit, of whatever quantity."""
+    plain = text.strip().lower()
+    if len(text) > LONGEST or not plain or plain in NO_UNITS or plain.isdigit():
+        return False
+    if any(text in units for units in USUAL.values()) or any(plain in units for units in OWN_SPELLINGS.values()):
+        return True
+    try:
+        _registry().Unit(_spelt(text, ""))
+    except Exception:  # as in `_look_up`
+        return False
+    return True
 
 
 def _look_up(unit: str, wanted: str) -> Conversion | None:

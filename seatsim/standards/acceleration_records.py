@@ -2,45 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.clocks import read_clock
-from seatsim.importing.matching import Column, channel_of
-from seatsim.importing.names import read_name, unit_of_name, without_unit
+from seatsim.importing.axis_doubts import doubt_time
+from seatsim.importing.group_time import Clock, check_is_history, find_clock
+from seatsim.importing.names import read_name, unit_of_name
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.metrics.directions import DIRECTIONS
 from seatsim.recordings.bench_columns import constants
 from seatsim.recordings.bench_tables import stem
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import conversion
 from seatsim.schema.yaml_source import Source
+from seatsim.standards.acceleration_axes import fit_axes
 
 QUANTITIES = ("acceleration", "angular_acceleration")
 """What the columns hold whose units are read off the ends of their names."""
-ALIASES = {
-    **{axis: (axis, *(f"{a}_{axis}" for a in ("acc", "acceleration", "seat"))) for axis in ("x", "y", "z")},
-    "floor.z": ("floor_acceleration", "floor_z"),
-}
-"""Columns that are taken for an axis where no channel is named, without the unit at their end."""
-CHANNELS = {"z": "driver_acceleration", "floor.z": "floor_acceleration"}
-"""Channel of a recording that stands for an axis; so does the one column whose name means it."""
+CONTRARY = 0.01
+"""Fraction by which a stated rate differs from that of the times, from which it is said."""
 
 
 class AccelerationRecord(NamedTuple):
     """One uninterrupted record: columns as they stand in their file, at `sample_rate` Hz; units are empty if unknown.
 
-    `unit` is that of the columns whose unit the file does not state, None where nobody has stated it.
+    `unit` is that of the columns whose unit the file does not state, None where nobody has stated it. `notes` are
+    sentences on what was assumed of the file, or left out of it.
     """
 
     name: str
     sample_rate: float
     columns: Mapping[str, Signal]
     unit: str | None = None
+    notes: tuple[str, ...] = ()
 
     def values(self, name: str, wanted: str) -> Array:
         """Return a column in a unit, which it is taken to be in where none is stated, shape (N,).
@@ -87,38 +86,36 @@ def load_accelerations(
         raise InputError(f"{path}: holds no {HEADER}; give a file of measured accelerations or a recording")
     file = read_file(path)
     group = _choose_group(file, wanted)
-    columns = {each.name: each._replace(unit=_unit(each)) for each in group.signals if not _is_time(each)}
-    return [AccelerationRecord(path.name, rate or _rate(group, path), columns, unit)]
-
-
-def find_axes(record: AccelerationRecord) -> dict[str, str]:
-    """Return the columns of a record that have usual names, by axis.
-
-    Raises:
-        InputError: there are none.
-    """
-    plain = {without_unit(name, signal.unit): name for name, signal in record.columns.items()}
-    found = {axis: plain[name] for axis, names in ALIASES.items() for name in names if name in plain}
-    for axis, channel in CHANNELS.items():
-        meant = [signal.name for signal in record.columns.values() if _channel(signal) == channel]
-        if channel in meant or len(meant) == 1:
-            found.setdefault(axis, channel if channel in meant else meant[0])
-    if not found:
-        there = ", ".join(record.columns)
-        raise InputError(
-            f"{record.name}: no column has a usual name; name them with --channel AXIS=COLUMN; columns: {there}"
-        )
-    return found
+    check_is_history(group, str(path))
+    clock = find_clock(group)
+    columns = {each.name: each._replace(unit=_unit(each)) for each in group.signals if not _is_time(each, clock)}
+    sample_rate, notes = _rate(group, clock, path, rate, file.notes)
+    notes = [*file.notes, *notes, *([] if wanted else _say_other_groups(file, group))]
+    return [AccelerationRecord(path.name, sample_rate, columns, unit, tuple(notes))]
 
 
 def _choose_group(file: DataFile, wanted: Collection[str]) -> Group:
     holding = [each for each in file.groups if {*wanted} <= {signal.name for signal in each.signals}]
-    return max(holding or file.groups, key=lambda each: sum(_channel(signal) is not None for signal in each.signals))
+    return max(holding or file.groups, key=lambda each: len(fit_axes(each.signals)))
 
 
-def _channel(signal: Signal) -> str | None:
-    """Return the channel of a seat that a column is by its name."""
-    return channel_of(Column(Group("", (signal,)), signal, read_name(signal.name, signal.unit)), "seat")
+def _say_other_groups(file: DataFile, chosen: Group) -> list[str]:
+    """Return a sentence on accelerations of groups that are not evaluated.
+
+    Raises:
+        InputError: they are along an axis of the person that the chosen group lacks: the total would be too small.
+    """
+    here = fit_axes(chosen.signals)
+    others = {each.name: fit_axes(each.signals) for each in file.groups if each is not chosen}
+    for name, found in others.items():
+        lacking = [axis for axis in found if axis in DIRECTIONS and axis not in here]
+        if lacking:
+            raise InputError(
+                f"{file.path}: {found[lacking[0]][0]} of '{name}' has another time than {', '.join(here)} of"
+                f" '{chosen.name}'; seatsim import puts them on one, --channel AXIS=COLUMN takes columns of one alone"
+            )
+    left_out = ", ".join(f"'{name}'" for name, found in others.items() if found)
+    return [f"'{chosen.name}' is evaluated alone; accelerations stand in {left_out}, too"] if left_out else []
 
 
 def _unit(signal: Signal) -> str:
@@ -126,23 +123,49 @@ def _unit(signal: Signal) -> str:
     return signal.unit or next((found for each in QUANTITIES if (found := unit_of_name(signal.name, each))), "")
 
 
-def _is_time(signal: Signal) -> bool:
-    return read_name(signal.name, signal.unit).quantity == "time"
+def _is_time(signal: Signal, clock: Clock | None) -> bool:
+    is_clock = clock is not None and signal.name == clock.column
+    return is_clock or read_name(signal.name, signal.unit).quantity == "time"
 
 
-def _rate(group: Group, path: Path) -> float:
-    """Return the sample rate of a group in Hz: of its time, of its format, or of the sidecar of its file."""
-    clock = next((signal for signal in group.signals if _is_time(signal)), None)
+def _rate(
+    group: Group, clock: Clock | None, path: Path, stated: float | None, said: Sequence[str]
+) -> tuple[float, list[str]]:
+    """Return the sample rate of a group in Hz, and what is to be said of it.
+
+    It is the stated one, else that of its time, of its format, or of the sidecar of its file. An error ends with what
+    the reader has `said` of the file.
+    """
+    axis = clock.axis if clock else None
+    if stated is not None:
+        found = axis.rate if axis and clock and clock.unit and axis.is_even else group.rate
+        is_contrary = found is not None and abs(stated / found - 1.0) > CONTRARY
+        notes = [f"the file states {found:.6g} Hz; the stated {stated:g} Hz is taken"] if is_contrary else []
+        lost = list(doubt_time(axis, clock.column)) if axis and clock and len(axis.breaks) else []
+        return stated, [*notes, *(issue.sentence for issue in lost)]
     if clock is not None:
-        axis = read_clock(clock)
-        if axis is None or len(axis.breaks) or not axis.is_even:
-            raise InputError(f"{path}: {clock.name} does not rise in even steps; seatsim import resamples such files")
-        return axis.rate
+        return _rate_of(clock, path)
     sidecar = path.with_name(stem(path.name) + ".yaml")
     rate = group.rate or (constants(Source(sidecar)).get("rate") if sidecar.exists() else None)
     if rate is None:
-        raise InputError(f"{path}: no column holds the time (time_s, time_ms, t), and no rate is stated; give --rate")
-    return rate
+        lacking = "no column holds the time (time_s, time_ms, t), and no rate is stated; give --rate"
+        raise InputError("; ".join([f"{path}: {lacking}", *said]))
+    return rate, []
+
+
+def _rate_of(clock: Clock, path: Path) -> tuple[float, list[str]]:
+    """Return the sample rate of a column of time in Hz, and what is to be said of it."""
+    if clock.axis is None or clock.open:
+        raise InputError(
+            f"{path}: {clock.open}; give --rate, or state its unit under time in the map of seatsim import"
+        )
+    said = [issue.sentence for issue in doubt_time(clock.axis, clock.column)]
+    if len(clock.axis.breaks) or not clock.axis.is_even:
+        raise InputError(
+            f"{path}: {clock.column} does not rise in even steps ({'; '.join(said)}); seatsim import resamples"
+            " such files"
+        )
+    return clock.axis.rate, [*clock.assumptions, *said]
 
 
 def _recorded(folder: Path) -> list[AccelerationRecord]:

@@ -14,9 +14,11 @@ from seatsim.metrics.directions import DIRECTIONS, POINTS, Direction, direction,
 from seatsim.metrics.exposure import Exposure, assess_exposure
 from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmission
 from seatsim.metrics.weighting import weight
+from seatsim.recordings.quality.plausible_ranges import say_implausible
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import STANDARD_GRAVITY
-from seatsim.standards.acceleration_records import AccelerationRecord, find_axes, load_accelerations
+from seatsim.standards.acceleration_axes import choose_axes
+from seatsim.standards.acceleration_records import AccelerationRecord, load_accelerations
 
 FLOOR = {"floor.x": "x", "floor.y": "y", "floor.z": "z"}
 """Axes at the base of the seat, and the axis of the seat whose weighting and SEAT factor they belong to."""
@@ -101,7 +103,7 @@ def comfort(
     named = {axis.lower(): column for axis, column in (channels or {}).items()}
     _check_axes(named)
     records = _chosen(load_accelerations(source, rate, unit, [*named.values()]), runs, source)
-    named = named or find_axes(records[0])
+    named = named or choose_axes(records[0].name, records[0].columns, records[0].notes)
     doses = {axis: _doses(records, axis, column, blocks) for axis, column in named.items()}
     axes = {axis: _assess(axis, named[axis], doses[axis], records) for axis in DIRECTIONS if axis in named}
     if not axes:
@@ -201,6 +203,7 @@ def _motion_sickness(
 def _notes(
     records: Sequence[AccelerationRecord], named: Mapping[str, str], axes: Mapping[str, AxisAssessment]
 ) -> Iterator[str]:
+    yield from (note for record in records for note in record.notes)
     if len(records) > 1:
         yield f"{len(records)} runs count as one vibration: {', '.join(record.name for record in records)}"
     for axis, found in axes.items():
@@ -209,6 +212,8 @@ def _notes(
             cause = "gravity" if abs(size - STANDARD_GRAVITY) < 0.05 * STANDARD_GRAVITY else "an offset of the sensor"
             mean = f"{found.removed:.3g} {found.direction.unit}"
             yield f"{axis}: a mean of {mean}, {cause}, was taken out of {found.column}"
+        if said := say_implausible(records[0].values(found.column, found.direction.unit), found.direction.unit):
+            yield f"{found.column}: {said}"
     unitless = [column for column in dict.fromkeys(named.values()) if records[0].is_unitless(column)]
     if unitless:
         yield f"{', '.join(unitless)}: no unit is stated, so m/s^2 (rad/s^2) is taken; another one by --unit"

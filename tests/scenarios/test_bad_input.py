@@ -105,6 +105,7 @@ CASES = [
     ("step: 0.001", "step: 1", ["line 19", "at most 0.01 s"]),
     ("step: 0.001", "steps: 0.001", ["line 19", "did you mean 'step'"]),
     ("seed: 7", "seed: -7", ["line 2", "seed", "at least 0"]),
+    ("seed: 7", "seed: 99999999999999999999", ["line 2", "seed", "at most 9223372036854775807"]),
     ("seed: 7", "seed: lucky", ["line 2", "'lucky'", "whole number"]),
     ("solver: {step: 0.001}", "sweep: {plant.driver_mass: 55.0}", ["line 19", "list"]),
     ("solver: {step: 0.001}", "sweep: {plant.driver_mas: [55.0, 75.0]}", ["driver_mas", "did you mean 'driver_mass'"]),

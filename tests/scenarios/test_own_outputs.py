@@ -1,11 +1,11 @@
 """What own code gives is checked: one error names the class and where it went wrong, and no figure comes of it."""
 
 import pytest
+from seatsim.simulation.ensemble import simulate_ensemble
 
 import seatsim
 from seatsim.scenario.loading import load
 from seatsim.schema.errors import RunError
-from seatsim.simulation.ensemble import simulate_ensemble
 from seatsim.simulation.simulate import simulate
 
 CODE = """

@@ -9,6 +9,7 @@ import typer
 
 from seatsim.cli.options import Json, NewFolder, OwnCode
 from seatsim.cli.terminal import answer, say, show_progress, warn, wrote
+from seatsim.schema.text import make_printable
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -95,20 +96,21 @@ def _show(found: Inspection) -> None:
 
 
 def _table(title: str, channels: list[ChannelSummary]) -> Table:
+    from rich.markup import escape
     from rich.table import Table
 
-    table = Table(title=title, title_justify="left", box=None, header_style="bold")
+    table = Table(title=escape(make_printable(title)), title_justify="left", box=None, header_style="bold")
     table.add_column("channel", no_wrap=True)
     for name in COLUMNS:
         table.add_column(name, justify="left" if name in ("unit", "swing", "is") else "right", no_wrap=True)
     for each in channels:
         cells = {
-            "unit": each.unit or "?", "Hz": "" if each.rate is None else f"{each.rate:.6g}", "RMS": f"{each.rms:.4g}",
-            "least": f"{each.low:.4g}", "greatest": f"{each.high:.4g}",
+            "unit": escape(each.unit) or "?", "Hz": "" if each.rate is None else f"{each.rate:.6g}",
+            "RMS": f"{each.rms:.4g}", "least": f"{each.low:.4g}", "greatest": f"{each.high:.4g}",
             "noise": "" if each.noise is None else f"{each.noise:.2g}",
             "swing": each.spark, "mean": f"{each.mean:.4g}", "is": each.channel or "", "rows": str(each.rows),
         }  # fmt: skip
-        table.add_row(each.name, *(cells[name] for name in COLUMNS))
+        table.add_row(escape(each.name), *(cells[name] for name in COLUMNS))
     return table
 
 

@@ -20,6 +20,7 @@ from seatsim.provenance.manifest import write_documented
 from seatsim.report.characterisation import report_characterisation
 from seatsim.report.rendering import write_html
 from seatsim.schema.files import write_json, write_whole
+from seatsim.schema.text import disarm
 
 LISTED = 45
 """Most rows of the table on the terminal."""
@@ -68,7 +69,7 @@ def write_characterisation(found: Characterisation, folder: Path) -> list[Path]:
     return write_documented(
         folder,
         lambda part: [
-            write_whole(part / "cycles.csv", partial(table.to_csv, index=False)),
+            write_whole(part / "cycles.csv", partial(table.map(disarm).to_csv, index=False)),
             write_json(part / "characterisation.json", contents(found)),
             write_html(report, part / "report.html"),
             *write_pictures(plot_characterisation(found), part),

@@ -23,6 +23,7 @@ from seatsim.provenance.manifest import write_documented
 from seatsim.report.identification import report_identification
 from seatsim.report.rendering import write_html
 from seatsim.schema.files import write_json, write_text, write_together, write_whole
+from seatsim.schema.text import disarm
 
 MEASURED = ("seconds", "ns_per_step")
 """What a fit and a step took, which differs each time."""
@@ -144,7 +145,7 @@ def write_league(places: Sequence[BenchmarkEntry], folder: Path, seed: int) -> l
     import pandas as pd
 
     frame = pd.DataFrame([place._asdict() for place in places])
-    write = partial(frame.to_csv, index=False)
+    write = partial(frame.map(disarm).to_csv, index=False)
     return write_documented(
         folder, lambda part: [write_whole(part / "league.csv", write)], seed, {"league.csv": MEASURED}
     )

@@ -16,6 +16,7 @@ from seatsim.report.blocks import Report
 from seatsim.report.rendering import write_html
 from seatsim.report.runs import report_runs
 from seatsim.schema.files import write_json, write_together, write_whole
+from seatsim.schema.text import disarm
 from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Result, Run
@@ -112,11 +113,11 @@ def _write_table(rows: Sequence[Mapping[str, object]], path: Path) -> None:
     """Write rows below each other, with a column for every name; what is absent or NaN stays empty."""
     names = dict.fromkeys(name for row in rows for name in row)
     with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(names), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(map(disarm, names))
+        writer.writerows([_cell(row.get(name, "")) for name in names] for row in rows)
 
 
 def _cell(value: object) -> object:
     """Return a value as a table writes it; NaN is an empty cell."""
-    return "" if isinstance(value, float) and math.isnan(value) else value
+    return "" if isinstance(value, float) and math.isnan(value) else disarm(value)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from seatsim.provenance.manifest import write_documented
 from seatsim.report.sweep import state_importance, write_sweep_report
 from seatsim.schema.files import write_together, write_whole
+from seatsim.schema.text import disarm
 from seatsim.sweeps.statistics.exceedance import Exceedance, count_exceedances
 from seatsim.sweeps.statistics.inputs import read_rows
 from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
@@ -32,13 +33,14 @@ def report_sweep(folder: Path, out: Path) -> SweepReport:
     """
     rows = read_rows(folder)
     quantiles, found, exceeded = tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows)
+    sensitivities = tabulate_sensitivities(found)
     # In the folder of the sweep the manifest is that of the sweep.
     write = write_together if out.resolve() == folder.resolve() else write_documented
     paths = write(
         out,
         lambda part: [
-            write_whole(part / "table.csv", partial(quantiles.to_csv, index=False)),
-            write_whole(part / "sensitivity.csv", partial(tabulate_sensitivities(found).to_csv, index=False)),
+            write_whole(part / "table.csv", partial(quantiles.map(disarm).to_csv, index=False)),
+            write_whole(part / "sensitivity.csv", partial(sensitivities.map(disarm).to_csv, index=False)),
             write_sweep_report(rows, quantiles, found, exceeded, part / "report.html"),
         ],
     )

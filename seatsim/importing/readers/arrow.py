@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatsim.importing.readers.arrow_messages import bytes_of_messages
+from seatsim.importing.readers.columns import column_values
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.readers.text import column_values
 from seatsim.importing.signals import TIME, Array, DataFile, Group, Signal
 from seatsim.schema.bounds import check_made
 

@@ -1,6 +1,7 @@
-"""Where the numbers of a table of cells begin, and what the lines above them say: names and units.
+"""Where the numbers of a table of cells begin, and what the lines above them say: names and units of its columns.
 
-Text tables and sheets share this: lines of titles, a row of names, perhaps a row of units, then rows of numbers.
+Text tables and sheets share this: lines of titles, a row of names, perhaps a row of units, then rows of numbers. A row
+names the columns only where it has as many cells as there are columns.
 """
 
 from __future__ import annotations
@@ -9,19 +10,19 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from seatsim.importing.names import read_name
+from seatsim.importing.readers.dialect import LISTED_UNITS, Kind, find_body, kind_of
 from seatsim.schema.errors import InputError
-from seatsim.schema.units import USUAL
+from seatsim.schema.units import is_unit
 
-BRACKETS = re.compile(r"^(.*?)\s*[\[(]\s*([^\[\]()]*?)\s*[\])]\s*$")
+BRACKETS = re.compile(r"^(.*?)\s*([\[({<])\s*([^\[\](){}<>]*?)\s*[\])}>]\s*$")
+SLASH = re.compile(r"^(.*?\S)\s*/\s*\(?([^/()\s]+(?:/[^/()\s]+)?)\)?$")
 UNIT_CELL = re.compile(r"^[\[(]?\s*[A-Za-zµμ°²³%\"Ω][A-Za-zµμ°²³%/*^_. ·0-9-]{0,11}\s*[\])]?$|^[\[(]?[-1]?[\])]?$")
-LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | {
-    "m/s2", "m/s²", "mm/s2", "°c", "c", "k", "f", "hz", "-", "sec", "in", "lb", "kg", "bar", "pa", "deg", "rad", "°",
-    "1/s", "rpm", "w", "%",
-}  # fmt: skip
 
-
-FOLLOWING = 4
-"""Rows of numbers with which a table begins, or as many as there are."""
+NOTHING = "-"
+"""What stands in place of a unit where none is stated."""
+MOSTLY = 0.75
+"""Share of the rows from the first one on, as far as the table was looked at, that belong to it."""
 
 
 class Header(NamedTuple):
@@ -33,20 +34,18 @@ class Header(NamedTuple):
 
 
 def split_header(rows: Sequence[Sequence[str]], first: int, columns: int) -> Header:
-    """Return what the rows above the row `first` say of so many columns.
+    """Return what the rows above the row `first` say of so many columns; rows of another width are titles.
 
-    The row of names is the last one that fills most columns; below it may stand a row of units.
+    Of the rows of texts that fill most columns one may hold units; of the others the one that says most holds the
+    names, the last one where several say as much.
     """
-    full = [row for row in rows[:first] if sum(bool(cell.strip()) for cell in row) >= max(1, 0.6 * columns)]
-    units: Sequence[str] = [""] * columns
-    names: Sequence[str] = []
-    if len(full) > 1 and is_units(full[-1]):
-        names, units = full[-2], full[-1]
-    elif full:
-        names = full[-1]
-    cells = [name.strip().strip('"') for name in names] + [""] * columns
-    named = [_name_and_unit(name, index) for index, name in enumerate(cells[:columns])]
-    stated = [unit.strip().strip('"[]()').strip() for unit in [*units, *[""] * columns]][:columns]
+    full = [row for row in rows[:first] if len(row) == columns and may_be_names(row)]
+    below = next((row for row in reversed(full) if is_units(row)), None) if len(full) > 1 else None
+    others = [row for row in full if row is not below]
+    names = max(reversed(others), key=_count_meanings, default=[""] * columns)
+    named = [_name_and_unit(name, index) for index, name in enumerate(names)]
+    stated = [_unmarked(unit).strip("[]() ") for unit in below or [""] * columns]
+    stated = ["" if unit == NOTHING else unit for unit in stated]
     return Header(
         tuple(name for name, _ in named),
         tuple(unit or of_name for unit, (_, of_name) in zip(stated, named, strict=True)),
@@ -54,32 +53,75 @@ def split_header(rows: Sequence[Sequence[str]], first: int, columns: int) -> Hea
     )
 
 
+def may_be_names(row: Sequence[str]) -> bool:
+    """Say whether a row holds texts in most columns, and no number; numbers that count columns are names, too."""
+    filled = [cell for cell in row if cell.strip()]
+    return len(filled) >= max(1, 0.6 * len(row)) and (
+        not any(kind_of(cell, ".") for cell in filled) or count_columns(row)
+    )
+
+
+def count_columns(row: Sequence[str]) -> bool:
+    """Say whether a row has a text or nothing in front, and then numbers that count from 0 or 1."""
+    numbers = [cell.strip() for cell in row[1:]]
+    counts = [[str(number) for number in range(begin, begin + len(numbers))] for begin in (0, 1)]
+    return len(numbers) > 1 and not kind_of(row[0], ".") and numbers in counts
+
+
+def _count_meanings(row: Sequence[str]) -> int:
+    """Return how many different names of a row mean something: `V, V` are units of several columns."""
+    return sum(read_name(cell)[:2] != (None, None) for cell in {*row})
+
+
 def is_units(row: Sequence[str]) -> bool:
     """Say whether a row of cells holds units: all look like one, and at least half are well known."""
-    cells = [cell.strip().strip('"') for cell in row if cell.strip().strip('"')]
+    cells = [text for cell in row if (text := _unmarked(cell))]
     known = sum(cell.strip("[]() ").lower() in LISTED_UNITS for cell in cells)
     return bool(cells) and all(UNIT_CELL.match(cell) for cell in cells) and known >= 0.5 * len(cells)
 
 
+def _unmarked(cell: str) -> str:
+    return cell.strip().strip('"').strip()
+
+
 def _name_and_unit(cell: str, index: int) -> tuple[str, str]:
-    """Return the name and the unit of a cell such as `a_Sitz [g]`; a column without name is called by its number."""
-    found = BRACKETS.match(cell)
+    """Return the name and the unit of a cell such as `a_Sitz [g]` or `F/kN`; one without name is called by its number.
+
+    A word in round brackets, such as `(left)`, is a unit only where there is such a one.
+    """
+    text = " ".join(_unmarked(cell).split())
+    found = BRACKETS.match(text)
     if found and found[1]:
-        return found[1].strip(), found[2]
-    return cell or f"column {index + 1}", ""
+        unit = found[3].removeprefix("in ").strip()
+        if found[2] == "[" or is_unit(unit) or unit == NOTHING:
+            return found[1].rstrip("/ ").strip() or text, "" if unit == NOTHING else unit
+    parted = SLASH.match(text)
+    if parted and is_unit(parted[2]):
+        return parted[1], parted[2]
+    return text or f"column {index + 1}", ""
 
 
-def first_row_of_numbers(rows: Sequence[Sequence[bool]], place: str) -> int:
-    """Return the first row from which on most cells are numbers; `rows` say of each cell whether it is one.
+def first_row_of_numbers(rows: Sequence[Sequence[Kind]], place: str) -> int:
+    """Return the first row of the table; `rows` say of each cell what it holds.
+
+    The table is the longest stretch of equally wide rows with numbers. A row belongs to it where the first column of
+    numbers holds no text, and at most half of the others do: a line of factors or serial numbers begins with a word.
 
     Raises:
         InputError: there is no such row.
     """
-    width = max((len(row) for row in rows), default=0)
-    numbers = [sum(row) >= max(1, 0.5 * width) for row in rows]
-    for index in range(len(rows)):
-        # One line of numbers among titles is none of the table, which goes on, though a row of it may lack numbers.
-        following = numbers[index : index + FOLLOWING]
-        if numbers[index] and sum(following) >= 0.75 * len(following):
-            return index
-    raise InputError(f"{place}: holds no row of numbers; it is no table, or its decimal sign is not the one stated")
+    begin, end = find_body(rows)
+    if begin == end:
+        raise InputError(f"{place}: holds no row of numbers; it is no table")
+    body = rows[begin:end]
+    columns = range(len(body[0]))
+    numeric = [column for column in columns if 2 * sum(row[column] is True for row in body) > len(body)]
+    numeric = numeric or [column for column in columns if any(row[column] for row in body)]
+    belongs = [len(row) == len(columns) and _belongs(row, numeric) for row in rows[:end]]
+    # Rows above a remark belong to the table, a line of numbers among titles does not.
+    return next(row for row in range(end) if belongs[row] and sum(belongs[row:end]) >= MOSTLY * (end - row))
+
+
+def _belongs(row: Sequence[Kind], numeric: Sequence[int]) -> bool:
+    texts = sum(row[column] is False for column in numeric)
+    return any(row) and row[numeric[0]] is not False and 2 * texts <= len(numeric)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import zipfile
 from importlib import import_module
 from pathlib import Path
@@ -15,6 +16,7 @@ from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.tables import LARGEST_FILE, UNPACKING_ERRORS, unpack
+from seatsim.schema.text import make_printable
 
 LONGEST_REASON = 200
 """Letters of what a library says that an error repeats."""
@@ -71,6 +73,11 @@ NOT_TABLES = {
     b"%PDF": "a PDF", b"\x89PNG": "a picture", b"\xff\xd8\xff": "a picture", b"\x7fELF": "a program",
     b"\xd0\xcf\x11\xe0": "an Excel file of the old kind (.xls): save it as .xlsx",
 }  # fmt: skip
+MARKUP = {
+    re.compile(rb"\s*[{\[]\s*(?:[\[{\"}\]]|-?\d)"): "a JSON file",
+    re.compile(rb"\s*<(?:\?xml|!doctype|html|[a-z]+[ >])", re.IGNORECASE): "an XML or HTML file",
+}
+"""How texts begin that are no tables."""
 ZIP = b"PK\x03\x04"
 
 
@@ -118,6 +125,9 @@ def _recognise(path: Path, content: bytes) -> Format:
     for magic, what in NOT_TABLES.items():
         if head.startswith(magic):
             raise InputError(f"{path}: is {what}; permitted: {KNOWN}")
+    for pattern, what in MARKUP.items():
+        if pattern.match(head.removeprefix(b"\xef\xbb\xbf")):
+            raise InputError(f"{path}: is {what}; export its channels as a table; permitted: {KNOWN}")
     if head.startswith(ZIP):
         _check_unpacked(path, content)
         return names["XLSX"]
@@ -150,15 +160,18 @@ def _check_unpacked(path: Path, content: bytes) -> None:
 
 
 def _is_text(head: bytes) -> bool:
-    """Say whether bytes are text: without control characters, or UTF-16."""
-    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
+    """Say whether bytes are text: without control characters, or UTF-16, whose every other byte is 0 in a table."""
+    if head.startswith((b"\xff\xfe", b"\xfe\xff")) or not (any(head[::2]) and any(head[1::2])):
         return True
     control = sum(byte < 9 or 13 < byte < 32 for byte in head)
     return control == 0
 
 
 def _checked(file: DataFile) -> DataFile:
-    """Return a file whose groups all hold rows and numbers, at a rate and from a start that there may be."""
+    """Return a file whose groups hold rows and numbers, at a rate and from a start that there may be, by one name each.
+
+    A second group `run` is `run#2`.
+    """
     groups = tuple(group for group in file.groups if group.signals and group.rows >= LEAST_ROWS)
     if not groups:
         said = "".join(f"; {note}" for note in file.notes)
@@ -168,17 +181,27 @@ def _checked(file: DataFile) -> DataFile:
             raise InputError(f"{file.path}: states a sample rate of {group.rate:g} Hz, which no logger has; correct it")
         if group.start is not None and not abs(group.start) <= LATEST_START:
             raise InputError(f"{file.path}: states that channels begin at {group.start:g} s; correct that")
-    return file._replace(groups=tuple(_named_once(group) for group in groups))
+    names = [make_printable(group.name) for group in groups]
+    titles = [f"{name}#{names[:index].count(name) + 1}" if name in names[:index] else name
+              for index, name in enumerate(names)]  # fmt: skip
+    return file._replace(
+        groups=tuple(_named_once(group._replace(name=title)) for group, title in zip(groups, titles, strict=True))
+    )
 
 
 def _named_once(group: Group) -> Group:
-    """Return a group whose channels hold finite numbers and have distinct names: a second `force` is `force#2`."""
+    """Return a group whose channels hold finite numbers and have distinct names that can be printed.
+
+    A second `force` is `force#2`.
+    """
     seen: dict[str, int] = {}
     signals = []
     for signal in group.signals:
-        seen[signal.name] = seen.get(signal.name, 0) + 1
-        number = seen[signal.name]
+        name = make_printable(re.sub(r"\s", " ", signal.name))
+        seen[name] = seen.get(name, 0) + 1
+        number = seen[name]
         values = np.asarray(signal.values, dtype=np.float64)
         values = np.where(np.abs(values) <= LARGEST_NUMBER, values, np.nan)
-        signals.append(signal._replace(name=f"{signal.name}#{number}" if number > 1 else signal.name, values=values))
+        unit = make_printable(signal.unit)
+        signals.append(Signal(f"{name}#{number}" if number > 1 else name, unit, values))
     return group._replace(signals=tuple(signals))

@@ -2,67 +2,82 @@
 
 from __future__ import annotations
 
-import csv
 import re
-from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from seatsim.importing.readers.header import Header, first_row_of_numbers, split_header
+from seatsim.importing.readers.columns import read_column
+from seatsim.importing.readers.dialect import BLANKS, MISSING, Dialect, find_dialect, kind_of, split_line
+from seatsim.importing.readers.header import Header, count_columns, first_row_of_numbers, split_header
+from seatsim.importing.readers.rate_in_header import find_rate
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.importing.readers.row_of_names import COMMENT, Rows, fit_names, quote
+from seatsim.importing.readers.time_pairs import part_by_time
+from seatsim.importing.signals import DataFile, Signal
 from seatsim.schema.errors import InputError
-from seatsim.schema.tables import InvalidRow, check_rows
 
 if TYPE_CHECKING:
     import pyarrow as pa
+    from pyarrow import csv as arrow_csv
 
 SAMPLE = 65536
 """Bytes from which delimiter, decimal sign and header are found."""
-MOST_HEADER_LINES = 200
-DELIMITERS = (";", "\t", ",", "|", " ")
-MISSING = ("", "nan", "NaN", "NAN", "NA", "n/a", "N/A", "null", "NULL", "None", "-", "#N/A", "inf", "-inf", "---", "*")
-"""What a cell without a value holds."""
-THOUSANDS = r"[+-]?\d{1,3}(?:\.\d{3})+,\d+"
-"""A number such as 1.234,5."""
-NUMBER = {
-    ".": re.compile(r"^[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$"),
-    ",": re.compile(rf"^(?:[+-]?(\d+,?\d*|,\d+)([eEdD][+-]?\d+)?|{THOUSANDS})$"),
-}
-"""What a number looks like with each decimal sign."""
+SIGN_APART = re.compile(rb"[+-] +[.,\d]")
+FEW = 20
+WHOLE_LINE = re.compile(rb'"[^"]*[,;\t|][^"]*"')
+"""A line that stands in quotation marks as a whole; a table that begins with some lines of this kind has no others."""
+LONGEST_NAME = 8
+"""Lines over which a name in quotation marks may go."""
+
+
+class Head(NamedTuple):
+    """The beginning of a table: its first lines, how they are written, and what those above the numbers say."""
+
+    lines: list[str]
+    dialect: Dialect
+    header: Header
+
+    @property
+    def above(self) -> list[str]:
+        """The lines above the first row of numbers."""
+        return self.lines[: self.header.lines]
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
-    """Return the columns of a text table as one group.
+    """Return the columns of a text table, in a group for each column of time that has others behind it.
 
     Raises:
-        InputError: it holds no rows of numbers, or a row has fewer or more columns than the others.
+        InputError: it holds no rows of numbers, its names are not as many as its columns, or a row has fewer or more
+            columns than the others.
     """
-    encoding = layout.encoding or _encoding(content)
+    content = _as_utf8(content, layout.encoding)
+    head = _read_head(path, content, layout)
+    body, notes = _clean(_without_lines(content, head.header.lines), head)
+    table = _table(path, content, body, head, notes)
+    signals = _signals(table, head, notes)
+    _check_texts(path, table, signals)
+    if not content.endswith((b"\n", b"\r")):
+        notes.append("the last line has no end; if the file was cut there, its last number is wrong")
+    return DataFile(path, "CSV", part_by_time(signals, find_rate(head.above)), tuple(notes))
+
+
+def _as_utf8(content: bytes, stated: str | None) -> bytes:
+    encoding = stated or _encoding(content)
     if encoding != "utf-8":
         content = content.decode(encoding, errors="replace").encode()
     content = content.removeprefix(b"\xef\xbb\xbf")
-    lines = _sample(content)
-    delimiter, decimal = _dialect(lines, layout, path)
-    rows = [_cells(line, delimiter) for line in lines]
-    numeric = [[_is_number(cell, decimal) for cell in row] for row in rows]
-    first = layout.header if layout.header is not None else first_row_of_numbers(_padded(numeric), str(path))
-    if first >= len(rows):
-        raise InputError(
-            f"{path}: has {len(rows)} lines; csv.header {first} counts those above the first row of numbers"
-        )
-    columns = len(rows[first])
-    header = split_header(rows, first, columns)
-    table = _table(path, content, header, delimiter, decimal)
-    signals, left_out = _signals(table, header, decimal)
-    return DataFile(path, "CSV", (Group("", tuple(signals)),), _notes(left_out, content))
+    lines = content[:SAMPLE].splitlines()[:FEW]
+    return content.replace(b'"', b"") if lines and all(WHOLE_LINE.fullmatch(line) for line in lines) else content
 
 
 def _encoding(content: bytes) -> str:
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "utf-16"
+    if b"\0" in content[:2]:
+        return "utf-16-le" if content[1:2] == b"\0" else "utf-16-be"
     try:
         content.decode("utf-8")
     except UnicodeDecodeError:
@@ -70,156 +85,163 @@ def _encoding(content: bytes) -> str:
     return "utf-8"
 
 
+def _read_head(path: Path, content: bytes, layout: TextLayout) -> Head:
+    lines = _sample(content)
+    used = [index for index, line in enumerate(lines) if line.strip() and not COMMENT.match(line)]
+    dialect = find_dialect([lines[index] for index in used], layout.delimiter, layout.decimal)
+    if dialect is None:
+        is_stated = layout.delimiter or layout.decimal
+        reason = "csv.delimiter and csv.decimal are wrong" if is_stated else "csv.delimiter has to be stated in a map"
+        raise InputError(f"{path}: holds no row of numbers; it is no table, or {reason}")
+    rows = [split_line(lines[index], dialect.delimiter) for index in used]
+    kinds = [[kind_of(cell, dialect.decimal) for cell in row] for row in rows]
+    if layout.header is None:
+        first = first_row_of_numbers(kinds, str(path))
+        first += first == 0 and len(rows) > 1 and count_columns(rows[0])
+    else:
+        first = sum(index < layout.header for index in used)
+        if first == len(used):
+            raise InputError(
+                f"{path}: has {len(lines)} lines; csv.header {layout.header} counts those above the first row of"
+                " numbers"
+            )
+    above = used[first] if layout.header is None else layout.header
+    table = Rows(lines[used[first]], rows[first:], kinds[first:])
+    names = fit_names(path, lines[:above], table, dialect, layout.header is not None)
+    header = split_header(names, len(names), len(rows[first]))
+    return Head(lines, dialect, header._replace(lines=above))
+
+
 def _sample(content: bytes) -> list[str]:
-    """Return the first lines of a table; one that the sample cuts is left out."""
-    lines = content[:SAMPLE].decode(errors="replace").splitlines()
-    return lines[:-1] if len(content) > SAMPLE and len(lines) > 1 else lines
+    """Return the first lines of a table; one that the sample cuts is left out, and a name over several stands in one.
+
+    The lines that such a name takes beside its first one are empty here.
+    """
+    lines = [line.decode(errors="replace") for line in content[:SAMPLE].splitlines()]
+    lines = lines[:-1] if len(content) > SAMPLE and len(lines) > 1 else lines
+    for index, line in enumerate(lines):
+        if line.count('"') % 2:
+            following = range(index + 1, min(index + LONGEST_NAME, len(lines)))
+            end = next((each for each in following if lines[each].count('"') % 2), index)
+            lines[index : end + 1] = [" ".join(lines[index : end + 1]), *[""] * (end - index)]
+    return lines
 
 
-def _dialect(lines: list[str], layout: TextLayout, path: Path) -> tuple[str, str]:
-    """Return the delimiter and the decimal sign with which most cells of the last lines are numbers."""
-    body = [line for line in lines if line.strip()][-50:]
-    best, most = ("", ""), 0.0
-    for delimiter in [layout.delimiter] if layout.delimiter else DELIMITERS:
-        for decimal in [layout.decimal] if layout.decimal else (".", ","):
-            if delimiter == decimal and not any('"' in line for line in body):
-                continue
-            score = _score(body, delimiter, decimal)
-            if score > most:
-                best, most = (delimiter, decimal), score
-    if most <= 0.0:
-        raise InputError(f"{path}: holds no row of numbers; it is no table, or csv.delimiter and csv.decimal are wrong")
-    return best
+def _without_lines(content: bytes, count: int) -> bytes:
+    """Return the content below so many lines."""
+    begin = sum(len(line) for line in content[:SAMPLE].splitlines(keepends=True)[:count])
+    return content[begin:]
 
 
-def _score(lines: list[str], delimiter: str, decimal: str) -> float:
-    """Return how many numbers a line has, for lines that agree in their columns and hold hardly anything else."""
-    rows = [_cells(line, delimiter) for line in lines]
-    width, alike = Counter(len(row) for row in rows).most_common(1)[0]
-    cells = [cell for row in rows if len(row) == width for cell in row]
-    filled = [cell for cell in cells if cell.strip() not in MISSING]
-    numbers = sum(_is_number(cell, decimal) for cell in filled)
-    if not numbers:
-        return 0.0
-    # A column of texts (dates, remarks) is no reason against a delimiter; a comma that splits 0,5 in two is one of
-    # several columns too, so that lines which agree and cells which are filled count as well.
-    return float((numbers / len(filled)) ** 2 * alike / len(rows) * width**0.1 * (numbers / len(cells)) ** 0.1)
+def _clean(body: bytes, head: Head) -> tuple[bytes, list[str]]:
+    """Return rows as pyarrow reads them, without remarks and names among them, and sentences on those."""
+    for sign in ("\u2212", "\u2013"):
+        body = body.replace(sign.encode(), b"-")
+    names = {line.strip().encode() for line in head.above if line.strip()} if _repeats(body, head.above) else set()
+    marks = tuple(mark for mark in (b"#", b"%", b"//") if body.startswith(mark) or b"\n" + mark in body)
+    is_parted_by_blanks = head.dialect.delimiter == " "
+    if not (names or marks or is_parted_by_blanks):
+        return body, []
+    lines = body.splitlines()
+    kept = [line for line in lines if not (line.strip() in names or (marks and line.startswith(marks)))]
+    left_out = len(lines) - len(kept)
+    if is_parted_by_blanks:
+        part = _cells_of_blanks if b'"' in body or SIGN_APART.search(body) else bytes.split
+        kept = [b" ".join(part(line)) for line in kept]
+    notes = [f"lines among the rows that hold remarks or the names again are left out: {left_out}"] if left_out else []
+    return b"\n".join(kept) + b"\n", notes
 
 
-def _cells(line: str, delimiter: str) -> list[str]:
-    if delimiter == " ":
-        return line.split()
-    if '"' in line:
-        return next(csv.reader([line], delimiter=delimiter))
-    return line.split(delimiter)
+def _cells_of_blanks(line: bytes) -> list[bytes]:
+    cells = BLANKS.findall(line.decode(errors="replace"))
+    return [(cell if cell.startswith('"') else "".join(cell.split())).encode() for cell in cells]
 
 
-def _is_number(cell: str, decimal: str) -> bool:
-    return bool(NUMBER[decimal].match(cell.strip()))
+def _repeats(body: bytes, above: Sequence[str]) -> bool:
+    last = next((line for line in reversed(above) if line.strip()), None)
+    return last is not None and last.strip().encode() in body
 
 
-def _padded(numeric: list[list[bool]]) -> list[list[bool]]:
-    """Return the rows as wide as most are, so that a long line of title does not count as the table's width."""
-    width = Counter(len(row) for row in numeric).most_common(1)[0][0]
-    return [row if len(row) == width else [False] * width for row in numeric[:MOST_HEADER_LINES]]
-
-
-def _table(path: Path, content: bytes, header: Header, delimiter: str, decimal: str) -> pa.Table:
+def _table(path: Path, content: bytes, body: bytes, head: Head, notes: list[str]) -> pa.Table:
     import pyarrow as pa
     from pyarrow import csv as arrow_csv
 
-    if delimiter == " ":
-        content = b"\n".join(b" ".join(line.split()) for line in content.splitlines())
-    bad: list[InvalidRow] = []
+    bad: list[arrow_csv.InvalidRow] = []
 
     def note(row: arrow_csv.InvalidRow) -> str:
-        bad.append(InvalidRow(row.number, row.actual_columns, row.expected_columns))
+        bad.append(row)
         return "skip"
 
-    names = [str(index) for index in range(len(header.names))]
+    names = [str(index) for index in range(len(head.header.names))]
     try:
         table = arrow_csv.read_csv(
-            pa.BufferReader(content),
-            arrow_csv.ReadOptions(skip_rows=header.lines, column_names=names, use_threads=not _is_short(content)),
-            arrow_csv.ParseOptions(delimiter=delimiter, invalid_row_handler=note),
-            arrow_csv.ConvertOptions(decimal_point=decimal, null_values=list(MISSING), strings_can_be_null=True),
+            pa.BufferReader(body),
+            arrow_csv.ReadOptions(column_names=names),
+            arrow_csv.ParseOptions(delimiter=head.dialect.delimiter, invalid_row_handler=note),
+            arrow_csv.ConvertOptions(
+                decimal_point=head.dialect.decimal, null_values=list(MISSING), strings_can_be_null=True
+            ),
         )
     except pa.ArrowInvalid as error:
-        raise InputError(f"{path}: cannot be read as a table: {error}") from error
-    check_rows(bad, path)
+        raise InputError(f"{path}: cannot be read as a table: {str(error).splitlines()[0]}") from error
+    if bad:
+        _check_rows(path, content, [(row.text, row.actual_columns) for row in bad], head, notes)
     return table
 
 
-def _is_short(content: bytes) -> bool:
-    """Say whether one thread is enough, so that an error can name the line."""
-    return len(content) < 16 * SAMPLE
+def _check_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], head: Head, notes: list[str]) -> None:
+    """Raise InputError at the first row of another length than the names; lines of text below the table are noted."""
+    lines = [line.strip() for line in content.decode(errors="replace").splitlines()]
+    last = [line for line in lines if line][-len(bad) :]
+    texts = {text.strip() for text, _ in bad}
+    is_footer = {*last} == texts and not any(
+        kind_of(split_line(text, head.dialect.delimiter)[0], head.dialect.decimal) for text in texts
+    )
+    if is_footer:
+        notes.append(f"lines below the table are left out: {'; '.join(quote(line) for line in last[:3])}")
+        return
+    text, columns = min(bad, key=lambda row: _find(lines, row[0]))
+    line = _find(lines, text)
+    is_last = text.strip() == last[-1]
+    reason = (
+        "; the file is truncated or damaged: export it again"
+        if is_last
+        else f": {quote(text)}; correct or remove that line"
+    )
+    more = f" (and {len(bad) - 1} more lines)" if len(bad) > 1 else ""
+    wanted = len(head.header.names)
+    raise InputError(f"{path}, line {line}: has {columns} columns where the others have {wanted}{more}{reason}")
 
 
-def _signals(table: pa.Table, header: Header, decimal: str) -> tuple[list[Signal], list[str]]:
-    """Return the columns of numbers, and the names of the others."""
-    signals, left_out = [], []
-    for name, unit, column in zip(header.names, header.units, table.columns, strict=True):
-        values = column_values(column, decimal)
-        if values is None:
-            left_out.append(name)
-        elif not (name.startswith("column ") and np.isnan(values).all()):
-            signals.append(Signal(name, unit, values))
-    return signals, left_out
+def _check_texts(path: Path, table: pa.Table, signals: Sequence[Signal]) -> None:
+    """Raise InputError at a row of texts in columns of numbers: another table may begin there."""
+    empty = np.all([np.isnan(signal.values) for signal in signals], axis=0) if signals else np.empty(0)
+    for row in np.flatnonzero(empty):
+        texts = [text for column in table.columns if isinstance(text := column[int(row)].as_py(), str)]
+        if len(texts) >= len(signals):
+            raise InputError(
+                f"{path}: among the numbers stands a row of texts, {quote(', '.join(texts))}; if another table begins"
+                " there, split the file, else remove that line"
+            )
 
 
-def column_values(column: pa.ChunkedArray, decimal: str = ".") -> Array | None:
-    """Return a column as numbers, a time of day in s since its first value; None where most of it is text."""
-    import pyarrow as pa
-
-    kind = column.type
-    if pa.types.is_timestamp(kind) or pa.types.is_time(kind) or pa.types.is_date(kind):
-        return _seconds(column)
-    if pa.types.is_null(kind):
-        return np.full(len(column), np.nan)
-    if pa.types.is_string(kind) or pa.types.is_large_string(kind):
-        return _numbers_of_texts(column, decimal)
-    if pa.types.is_dictionary(kind) or not (pa.types.is_primitive(kind) or pa.types.is_decimal(kind)):
-        return None
-    whole = column.cast(pa.float64(), safe=False).combine_chunks()
-    if whole.null_count:
-        values = np.asarray(whole.to_numpy(zero_copy_only=False), dtype=np.float64)
-    else:  # without pandas, which pyarrow would load, and which takes longer than a small file
-        values = np.frombuffer(whole.buffers()[1], np.float64, len(whole), 8 * whole.offset)
-    return values if np.isfinite(values).all() else np.where(np.isfinite(values), values, np.nan)
+def _find(lines: Sequence[str], text: str) -> int:
+    plain = text.strip()
+    return lines.index(plain) + 1 if plain in lines else len(lines)
 
 
-def _seconds(column: pa.ChunkedArray) -> Array:
-    import pandas as pd
-
-    times = pd.Series(column.to_pandas().astype(str))
-    parsed = pd.to_timedelta(times, errors="coerce")
-    if parsed.isna().all():
-        dates = pd.to_datetime(times, errors="coerce", utc=True, format="mixed")
-        parsed = dates - dates.dropna().iloc[0]
-    return np.asarray((parsed - parsed.dropna().iloc[0]).dt.total_seconds(), dtype=np.float64)
-
-
-def _numbers_of_texts(column: pa.ChunkedArray, decimal: str) -> Array | None:
-    """Return the numbers of a column that a few other texts made one of texts, NaN for those."""
-    import pandas as pd
-
-    texts = column.to_pandas()
-    plain = texts.str.strip()
-    if decimal == ",":  # with a decimal sign behind them points can only part thousands
-        plain = plain.where(~plain.str.fullmatch(THOUSANDS, na=False), plain.str.replace(".", "", regex=False))
-    plain = plain.str.replace(decimal, ".", regex=False)
-    values = np.asarray(pd.to_numeric(plain, errors="coerce"), dtype=np.float64)
-    if np.isnan(values).sum() <= 0.5 * len(values):
-        return np.where(np.isfinite(values), values, np.nan)
-    dates = pd.to_datetime(texts.iloc[:5], errors="coerce", format="mixed")
-    if dates.notna().all() and len(texts):
-        whole = pd.to_datetime(texts, errors="coerce", format="mixed")
-        return np.asarray((whole - whole.dropna().iloc[0]).dt.total_seconds(), dtype=np.float64)
-    return None
-
-
-def _notes(left_out: list[str], content: bytes) -> tuple[str, ...]:
-    notes = [f"columns that hold no numbers: {', '.join(left_out)}"] if left_out else []
-    if not content.endswith((b"\n", b"\r")):
-        notes.append("the last line has no end; if the file was cut there, its last number is wrong")
-    return tuple(notes)
+def _signals(table: pa.Table, head: Head, notes: list[str]) -> list[Signal]:
+    """Return the columns of numbers; a column of dates is added to the times of day behind it. The others are noted."""
+    signals, left_out, days = [], [], None
+    for name, unit, column in zip(head.header.names, head.header.units, table.columns, strict=True):
+        found = read_column(column, head.dialect.decimal)
+        if found is None or not found.holds_numbers:
+            left_out += [] if re.fullmatch(r"column \d+", name) else [name]
+        elif found.is_date:
+            days = found.values
+        else:
+            since = days if days is not None and found.unit == "s" else 0.0
+            signals.append(Signal(name, unit or found.unit, found.values + since))
+            notes += [f"{name}: {found.parted} is read with its thousands parted"] if found.parted else []
+    notes += [f"columns that hold no numbers: {', '.join(left_out)}"] if left_out else []
+    return signals

@@ -1,0 +1,121 @@
+"""Text tables of many writers: each is read right, or refused with one true sentence."""
+
+import gzip
+import re
+
+import numpy as np
+import pytest
+
+from seatsim.importing.importing import import_files
+from seatsim.importing.inspection import inspect_file
+from seatsim.importing.readers.reading import read_file
+from seatsim.schema.errors import InputError
+from seatsim.standards.comfort import comfort
+
+from .helpers import read_run
+from .text_tables import PLAIN, RATE, READ, REFUSED, ROWS, TRAVEL, T, X, Y, Z, table
+
+
+def write(folder, content):
+    path = folder / "a.csv"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+@pytest.mark.parametrize("name", READ)
+def test_a_table_is_read_right(tmp_path, name):
+    content, columns, rate = READ[name]
+    path = write(tmp_path, content)
+    found = {signal.name: signal for group in read_file(path).groups for signal in group.signals}
+    for column, (unit, values) in (columns or {}).items():
+        assert found[column].unit == unit
+        np.testing.assert_allclose(found[column].values, values, rtol=1e-6, atol=1e-9)
+    rates = [held[0].rate for held in inspect_file(path).channels.values()]
+    if rate is None:
+        assert rates == [None]
+    else:
+        assert rates == pytest.approx(rate if isinstance(rate, list) else [rate], rel=1e-3)
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_file_is_refused_for_its_true_reason(tmp_path, name):
+    content, sentence = REFUSED[name]
+    with pytest.raises(InputError, match=sentence):
+        read_file(write(tmp_path, content))
+
+
+@pytest.mark.parametrize(
+    ("content", "rate", "expected"),
+    [
+        (READ["savetxt"][0], RATE, {"x": X, "y": Y, "z": Z}),
+        (READ["label among names"][0], None, {"x": X, "y": Y, "z": Z}),
+        (table(T, X, Y, Z, head=["t [s];Sitz x [m/s^2];Sitz y [m/s^2];Sitz z [m/s^2]"], sep=";"), None,
+         {"x": X, "y": Y, "z": Z}),
+        (table(T, TRAVEL, X, Y, Z, head=["t,x [mm],acc_x,acc_y,acc_z"]), None, {"x": X, "y": Y, "z": Z}),
+        (table(T, X, Y, Z, X, Y, Z, head=["t,Seat X,Seat Y,Seat Z,Floor X,Floor Y,Floor Z"]).replace(" X", " Ax")
+         .replace(" Y", " Ay").replace(" Z", " Az"), None, {"x": X, "y": Y, "z": Z}),
+    ],
+)  # fmt: skip
+def test_comfort_takes_each_axis_from_its_column(tmp_path, content, rate, expected):
+    found = comfort(write(tmp_path, content), rate=rate)
+    plain = comfort(write(tmp_path, table(*expected.values(), head=[",".join(expected)])), rate=RATE)
+    assert {axis: each.dose.rms for axis, each in found.axes.items()} == pytest.approx(
+        {axis: each.dose.rms for axis, each in plain.axes.items()}, rel=1e-6
+    )
+
+
+SPECTRUM = table(T * RATE / 2, np.abs(Z), head=["Frequency [Hz],acc_z [m/s^2]"])
+
+
+@pytest.mark.parametrize(
+    ("content", "rate", "sentence"),
+    [
+        (SPECTRUM, None, "over 'Frequency', not over time: it is a spectrum"),
+        (SPECTRUM, 500.0, "it is a spectrum"),
+        (READ["a count is no time"][0], None, "no column holds the time"),
+        (table(1e3 * T, Z, head=["time,acc_z"]), None, "'time' has no unit, and its rows are 4 apart; give --rate"),
+        (table(T + 0.27 * (T > 1), Z, head=["t,acc_z"]), None, "67 rows are missing, the first at 1 s"),
+        (table(T, X, 2 * T, Y, head=["t1,x,t2,y"]), None, "y of 't2' has another time than x of 't1'"),
+        (table(T, X, Z, Z, head=["t,acc_x,Sitz z [g],Fahrer z [g]"]), None, "Sitz z and Fahrer z may be axis z"),
+    ],
+)
+def test_comfort_is_refused_for_the_true_reason(tmp_path, content, rate, sentence):
+    with pytest.raises(InputError, match=sentence):
+        comfort(write(tmp_path, content), rate=rate)
+
+
+@pytest.mark.parametrize(
+    ("content", "rate", "sentence"),
+    [
+        (table(X, T, Z, 2 * T, head=["acc_x,t1,acc_z,t2"]), None, "t1: is taken for the time of all columns; t2 has"),
+        (READ["whole seconds"][0], None, "the rate is estimated as 250 Hz: state it .* by --rate"),
+        (READ["first column without a name"][0], None, "column 1: no column is called time; this one rises evenly"),
+        (table(T, 2000.0 * Z, head=["t,acc_z"]), None, "acc_z: reaches .* more than a seat does"),
+        (PLAIN, 500.0, "the file states 250 Hz; the stated 500 Hz is taken"),
+        (table(T + 0.27 * (T > 1), Z, head=["t,acc_z"]), 250.0, "67 rows are missing"),
+        (table(T, ["-"] * ROWS, Z, head=["t,acc_x,acc_z"]), None, "columns that hold no numbers: acc_x"),
+    ],
+)
+def test_comfort_says_what_it_assumes_of_a_file(tmp_path, content, rate, sentence):
+    notes = comfort(write(tmp_path, content), rate=rate).notes
+    assert any(re.search(sentence, note) for note in notes), notes
+
+
+def test_columns_with_times_of_their_own_are_put_on_one(tmp_path):
+    floor, travel = np.sin(4.0 * np.pi * T), np.sin(4.0 * np.pi * 2.0 * T)
+    path = write(tmp_path, table(T, floor, 2.0 * T, travel, head=["t1;a_Boden [g];t2;Federweg [mm]"], sep=";", dec=","))
+    found = import_files([path], tmp_path / "out")
+    assert found.rate == RATE and not any("t2" in note for note in found.notes)
+    got = read_run(tmp_path / "out")
+    np.testing.assert_allclose(1e3 * got["suspension_displacement"], np.sin(4.0 * np.pi * got["time"]), atol=0.01)
+
+
+def test_a_road_whose_track_is_a_formula_is_written_disarmed(tmp_path):
+    along = np.arange(0.0, 20.0, 0.05)
+    path = write(
+        tmp_path, table(along, 0.01 * np.sin(along), head=['distance [m];"=HYPERLINK(""x"") elevation [m]"'], sep=";")
+    )
+    import_files([path], tmp_path / "road")
+    with gzip.open(tmp_path / "road" / "road.csv.gz", "rt") as file:
+        assert "'=HYPERLINK" in file.readline()
+    assert "'=HYPERLINK" in (tmp_path / "road" / "excitation.yaml").read_text()
