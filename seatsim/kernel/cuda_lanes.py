@@ -31,9 +31,9 @@ POINTS = CELLS + 1
 """Points of the grid of `seatsim.kernel.inverse.invert`, as a number that the compiler takes for a constant."""
 THREADS = 64
 """Threads of a block: a lane takes so many registers that larger blocks leave some of them unused."""
-END = LaneEnd(NO_SUMS, NO_STROKES, 0.0, 0.0, 0.0, 0.0)
+END = LaneEnd(NO_SUMS, NO_STROKES, 0.0, 0.0, 0.0, 0.0, 0.0)
 ROWS = float64[:, ::1]
-SIGNATURE = void(float64, float64, ROWS, ROWS, ROWS, int64[::1], float64[:, :, ::1], ROWS, ROWS, ROWS)
+SIGNATURE = void(*(float64,) * 4, ROWS, ROWS, ROWS, int64[::1], float64[:, :, ::1], ROWS, ROWS, ROWS)
 """Types of the arguments of a kernel."""
 
 
@@ -121,6 +121,8 @@ def _define_kernel(form: Form) -> Callable[..., None]:
     def run(
         most_speed: float,
         most_current: float,
+        coldest: float,
+        hottest: float,
         starts: Array,
         floors: Array,
         speeds: Array,
@@ -135,7 +137,8 @@ def _define_kernel(form: Form) -> Callable[..., None]:
             grid = cuda.local.array(POINTS, float64)
             own = floor_of[lane]
             signals = LaneSignals(floors[:, own], speeds[:, own], noise[:, :, lane], commands[:, lane], driver[:, lane])
-            end = run_lane(gather(starts, lane), LaneLimits(most_speed, most_current), signals, grid)
+            limits = LaneLimits(most_speed, most_current, coldest, hottest)
+            end = run_lane(gather(starts, lane), limits, signals, grid)
             scatter(end, ends, lane)
 
     return run

@@ -59,10 +59,12 @@ class LaneSignals(NamedTuple):
 
 
 class LaneLimits(NamedTuple):
-    """Ends of the data behind a damper: its speed in m/s, its current in A."""
+    """Ends of the data behind a damper: its speed in m/s, its current in A, its temperatures in degC."""
 
     speed: float
     current: float
+    coldest: float
+    hottest: float
 
 
 class Strokes(NamedTuple):
@@ -89,6 +91,7 @@ class LaneEnd(NamedTuple):
     strokes: Strokes
     fast: float
     strong: float
+    foreign: float
     temperature: float
     reached: float
 
@@ -106,7 +109,7 @@ def run_lane(lane: LaneStart, limits: LaneLimits, signals: LaneSignals, grid: Ar
     factors = scaling_at(setup.factors, temperature)
     now = start(rig, lane.rig, Disturbance(signals.floor[0], 0.0, 0.0), 0.0, factors, step)
     current, demand = 0.0, Demand(0.0, math.nan, math.nan)
-    sums, strokes, fast, strong = NO_SUMS, NO_STROKES, 0.0, 0.0
+    sums, strokes, fast, strong, foreign = NO_SUMS, NO_STROKES, 0.0, 0.0, 0.0
     for k in range(samples):
         floor = signals.floor[k]
         sensed = advance_filters(setup.sensors, floor, now.state[DISPLACEMENT], now.rates, sensed)
@@ -122,6 +125,7 @@ def run_lane(lane: LaneStart, limits: LaneLimits, signals: LaneSignals, grid: Ar
         sums = add_to_sums(setup, Lane(now, current, 0.0), demand, frame, sums, k == 0)
         fast += 1.0 if abs(ratio * now.state[VELOCITY]) > limits.speed else 0.0
         strong += 1.0 if current > limits.current else 0.0
+        foreign += 0.0 if limits.coldest <= temperature <= limits.hottest else 1.0
         if k == samples - 1:
             break
         before, after = _command_at(signals.commands, k - late - 1), _command_at(signals.commands, k - late)
@@ -132,7 +136,7 @@ def run_lane(lane: LaneStart, limits: LaneLimits, signals: LaneSignals, grid: Ar
         last, held = now, current
         now, current, good = advance(rig, coil, acting, factors, last, timing.tolerance)
         if not good:
-            return LaneEnd(sums, strokes, fast, strong, temperature, float(k))
+            return LaneEnd(sums, strokes, fast, strong, foreign, temperature, float(k))
         strokes = _add_turn(strokes, now.state[DISPLACEMENT], last.state[VELOCITY], now.state[VELOCITY])
         followed = follow_state(
             model.damper,
@@ -149,7 +153,7 @@ def run_lane(lane: LaneStart, limits: LaneLimits, signals: LaneSignals, grid: Ar
             work = now.state[DAMPER_WORK] - last.state[DAMPER_WORK]
             temperature += warm_up(setup.thermal, coil, temperature, work, held, current, step)
             factors = scaling_at(setup.factors, temperature)
-    return LaneEnd(sums, strokes, fast, strong, temperature, float(samples))
+    return LaneEnd(sums, strokes, fast, strong, foreign, temperature, float(samples))
 
 
 @jit

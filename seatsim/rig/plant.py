@@ -50,6 +50,11 @@ class Plant(NamedTuple):
         float, param("-", "damper stroke per suspension displacement", above=0, high=10, usual=(0.1, 3))
     ] = 1.0
 
+    @property
+    def end_stops(self) -> tuple[float, float] | None:
+        """Displacements in m, (low, high), at which the suspension meets its end stops; None where none are stated."""
+        return None if self.travel == Plant._field_defaults["travel"] else self.travel
+
 
 class PlantMatrices(NamedTuple):
     """Matrices of `x' = A x + B1 z0'' + B2 Fd`, `y = C2 x`, with x = (zs - z0, its rate, zc - zs, its rate).

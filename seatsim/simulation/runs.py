@@ -15,6 +15,7 @@ from seatsim.scenario.loading import load
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, RunError, SynthesisError
+from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.result import Result, Run
 from seatsim.simulation.simulate import History, simulate
 from seatsim.simulation.validity import list_reasons
@@ -65,7 +66,7 @@ def measure_run(scenario: Scenario, history: History) -> dict[str, Metric]:
     return summarise(
         history.channels,
         history.step,
-        travel=plant.travel if plant else None,
+        travel=augment_plant(scenario.effects, plant).end_stops if plant else None,
         coil_resistance=scenario.coil.resistance,
     )
 
