@@ -21,7 +21,7 @@ CLOSE_UP = 6.0
 STRIDE = 0.1
 """Raster in s on which a close-up begins, the digits that its title has."""
 NEAR = 0.2
-"""Share of the way to an end stop that the motion must reach for the stop to be drawn; else it would flatten the motion."""
+"""Share of an end stop's distance that the motion must reach for the stop to be drawn; else it would look flat."""
 
 
 class ChannelPanel(NamedTuple):

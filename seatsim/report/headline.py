@@ -1,0 +1,110 @@
+"""What runs come to, in a sentence: a single one, alternatives under one condition, or several conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatsim.report.alternatives import (
+    EQUAL,
+    SAME,
+    Alternatives,
+    compare_figures,
+    list_alternatives,
+    measure_comfort,
+    read_metric,
+    state_best,
+    state_comfort,
+)
+from seatsim.report.formatting import format_percent, format_quantity
+from seatsim.scenario.conditions import choice_of
+from seatsim.schema.text import name_some
+from seatsim.simulation.result import Run
+
+LISTED = 3
+"""Conditions of which a sentence names the best choice."""
+
+
+def describe_run(run: Run) -> str:
+    """Return in a sentence what a run comes to: comfort, and the travel that it takes."""
+    seat, travel = read_metric(run, "seat_factor"), read_metric(run, "suspension_displacement_peak")
+    said = f"{run.scenario.title}: the driver feels {state_comfort(run)}"
+    if np.isfinite(seat):
+        change = compare_figures(seat)
+        said += f", {change} {'as' if change == EQUAL else 'than'} the floor moves"
+    said += f"; the suspension travels up to {format_quantity(travel, 'm')} from its rest"
+    hits = read_metric(run, "end_stop_hits")
+    if np.isfinite(hits):
+        said += f" and meets its end stops {count_times(hits)}" if hits else " and never meets its end stops"
+    return f"{said}."
+
+
+def compare_runs(runs: Sequence[Run]) -> str:
+    """Return in one or two sentences the best choice under each condition of some runs, the worst condition first."""
+    groups = list_alternatives(runs)
+    compared = [group for group in groups if len(group.runs) > 1]
+    if sum(len(group.runs) for group in groups) < 2:
+        return f"{len(runs)} runs were simulated; too few of them have figures that can be relied on to be compared."
+    if not compared:
+        return _state_range(groups)
+    alone = [f"“{_name_alone(group)}”" for group in groups if len(group.runs) == 1]
+    left = f" No other run shares the condition of {name_some(alone, last='or')}." if alone else ""
+    return f"{_state_one(compared[0]) if len(compared) == 1 else _state_several(compared)}{left}"
+
+
+def count_times(hits: float) -> str:
+    """Return how often something happens, in words."""
+    return "once" if hits == 1 else f"{hits:.0f} times"
+
+
+def _state_range(groups: Sequence[Alternatives]) -> str:
+    """Return what runs come to of which no two share a condition, the worst first, so that none is called better."""
+    worst, mildest = groups[0], groups[-1]
+    low, high = measure_comfort(mildest.runs[0]), measure_comfort(worst.runs[0])
+    lead = f"Under {len(groups)} conditions the driver feels"
+    if high <= (1 + SAME) * low:
+        said = f"{lead} the same, {state_comfort(worst.runs[0])}."
+    else:
+        said = (
+            f"{lead} {format_quantity(low, 'm/s^2')} to {state_comfort(worst.runs[0])}; the worst is"
+            f" “{_name_alone(worst)}”, the mildest “{_name_alone(mildest)}”."
+        )
+    if len({choice_of(group.runs[0].scenario) for group in groups}) > 1:
+        said += " No two runs share floor, temperature and driver, so that none is called better than another."
+    return said
+
+
+def _name_alone(group: Alternatives) -> str:
+    return group.condition or group.names[0]
+
+
+def _state_one(group: Alternatives) -> str:
+    """Return which runs of one condition are the most comfortable, and by how much."""
+    count, leaders = len(group.runs), group.leaders
+    if leaders == count:
+        alike = format_percent(SAME)
+        return f"All {count} runs are alike in comfort, within {alike}: the driver feels {state_best(group)}."
+    names = [f"“{name}”" for name in group.names[:leaders]]
+    which = f"{names[0]} is" if leaders == 1 else f"{name_some(names)} are alike and"
+    return f"Of {count} runs {which} the most comfortable: the driver feels {state_best(group)}."
+
+
+def _state_several(groups: Sequence[Alternatives]) -> str:
+    """Return which choice is the best under all of several conditions, or which is under which."""
+    worst, count = groups[0], len(groups)
+    every = f"all {count}" if count > 2 else "both"
+    leading = [{choice_of(run.scenario) for run in group.runs[: group.leaders]} for group in groups]
+    always = set.intersection(*leading)
+    for name, run in zip(worst.names, worst.runs, strict=True):
+        if choice_of(run.scenario) in always:
+            return (
+                f"“{name}” is the most comfortable under {every} conditions. The worst of them is"
+                f" {worst.condition}: the driver feels {state_best(worst)}."
+            )
+    listed = [f"{group.condition}: “{group.names[0]}”, {state_best(group)}" for group in groups[:LISTED]]
+    others = f"; and {count - LISTED} others" if count > LISTED else ""
+    return (
+        f"No choice is the most comfortable under {every} conditions. The best of each, the worst condition first:"
+        f" {'; '.join(listed)}{others}."
+    )
