@@ -211,8 +211,8 @@ METRICS: Mapping[str, MetricSpecification] = {
 """All metrics by name, in the order of the table."""
 SHORT: Mapping[str, str] = {
     "driver_acceleration_rms": "driver RMS", "driver_acceleration_weighted": "driver Wk RMS",
-    "driver_vdv": "driver VDV", "driver_jerk_rms": "driver jerk", "seat_factor": "SEAT factor",
-    "suspension_displacement_rms": "travel RMS", "suspension_displacement_peak": "travel peak",
-    "end_stop_hits": "end-stop hits", "current_rms": "current RMS",
+    "driver_vdv": "driver VDV", "seat_factor": "SEAT factor", "suspension_displacement_rms": "travel RMS",
+    "suspension_displacement_peak": "travel peak", "end_stop_hits": "end-stop hits", "driver_jerk_rms": "driver jerk",
+    "current_rms": "current RMS",
 }  # fmt: skip
 """What metrics are called where there is little room: in tables, pictures and sentences, on paper and on a screen."""

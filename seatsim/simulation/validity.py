@@ -10,6 +10,7 @@ import numpy as np
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.metrics import Metric
+from seatsim.metrics.weighting import least_rate
 from seatsim.rig.plant import USUAL_TRAVEL
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.registry import name_of, specification_of
@@ -57,6 +58,17 @@ def judge_run(scenario: Scenario, excursions: Excursions, metrics: Mapping[str, 
     return tuple(found)
 
 
+def explain_unweighted(step: float, metrics: Mapping[str, Metric]) -> tuple[str, ...]:
+    """Return why the figures of a run that the weighting by Wk needs are left out; nothing where they are there."""
+    if "driver_acceleration_weighted" in metrics or "driver_acceleration_rms" not in metrics:
+        return ()
+    return (
+        f"weighted figures (Wk RMS, VDV, SEAT factor) are left out: with solver.step {1e3 * step:g} ms there are"
+        f" {1 / step:.4g} samples a second, and Wk needs {least_rate():g}; choose a step of"
+        f" {1e3 / least_rate():g} ms or less",
+    )
+
+
 def list_ranges_left(scenario: Scenario, history: History) -> tuple[str, ...]:
     """Return a sentence for every range that a run leaves; those of the damper for more than 1 % of the time."""
     return _list_ranges_left(scenario, _measure_excursions(scenario, history))
@@ -91,6 +103,7 @@ def _list_ranges_left(scenario: Scenario, excursions: Excursions) -> tuple[str, 
         return _doubt_travel(scenario, excursions.travel)
     cls = type(scenario.damper.record)
     specification, model = specification_of(cls), name_of("damper", cls)
+    coldest, hottest = specification.temperatures
     checks = [
         (
             excursions.fast,
@@ -104,7 +117,7 @@ def _list_ranges_left(scenario: Scenario, excursions: Excursions) -> tuple[str, 
         ),
         (
             excursions.foreign,
-            "not at " + " to ".join(f"{end:g}" for end in dict.fromkeys(specification.temperatures)) + " degC",
+            f"not at {coldest:g} degC" if coldest == hottest else f"outside {coldest:g} to {hottest:g} degC",
             "the force there is an extrapolation",
         ),
     ]
