@@ -17,7 +17,7 @@ from seatsim.report.alternatives import (
     state_best,
     state_comfort,
 )
-from seatsim.report.formatting import format_percent, format_quantity
+from seatsim.report.formatting import format_quantity
 from seatsim.scenario.conditions import choice_of
 from seatsim.schema.text import name_some
 from seatsim.simulation.result import Run
@@ -82,12 +82,15 @@ def _name_alone(group: Alternatives) -> str:
 def _state_one(group: Alternatives) -> str:
     """Return which runs of one condition are the most comfortable, and by how much."""
     count, leaders = len(group.runs), group.leaders
+    under = f"{group.condition}: " if group.condition else ""
     if leaders == count:
-        alike = format_percent(SAME)
-        return f"All {count} runs are alike in comfort, within {alike}: the driver feels {state_best(group)}."
+        every = f"All {count}" if count > 2 else "Both"
+        return (
+            f"{under}{every} runs are alike in comfort, within {100 * SAME:g} %: the driver feels {state_best(group)}."
+        )
     names = [f"“{name}”" for name in group.names[:leaders]]
     which = f"{names[0]} is" if leaders == 1 else f"{name_some(names)} are alike and"
-    return f"Of {count} runs {which} the most comfortable: the driver feels {state_best(group)}."
+    return f"{under}Of {count} runs {which} the most comfortable: the driver feels {state_best(group)}."
 
 
 def _state_several(groups: Sequence[Alternatives]) -> str:

@@ -56,7 +56,8 @@ def _say_trials(name: str, run: Run) -> str:
         return ""
     best = min(known, key=lambda each: each.metrics[SEAT].value)
     keys = join_names(list(dict.fromkeys(each.key for each in known)))
-    tried = f" Half and twice of {keys} were tried on the first {STRETCH:g} s of {name}"
+    part = f"the first {STRETCH:g} s of " if run.history["time"][-1] > STRETCH else ""
+    tried = f" Half and twice of {keys} were tried on {part}{name}"
     before, after = own.metrics[SEAT].value, best.metrics[SEAT].value
     if after > (1 - SAME) * before:
         return f"{tried}: none lowers its SEAT factor of {format_number(before)}."

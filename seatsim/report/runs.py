@@ -17,7 +17,6 @@ from seatsim.report.credibility.evidence import collect_runs
 from seatsim.report.formatting import (
     describe_channel,
     format_number,
-    format_percent,
     format_quantity,
     format_sentence,
     format_setting,
@@ -38,7 +37,7 @@ METHOD = (
     "All figures are of the whole run. The driver's weighted RMS acceleration is weighted by Wk of ISO 2631-1; the SEAT"
     " factor is that over the floor's.",
     "Floor, seed, temperature, driver and start are conditions, under which a seat has to do well; all else is a"
-    f" choice. Only runs under one condition are compared. Figures within {format_percent(SAME)} count as equal.",
+    f" choice. Only runs under one condition are compared. Figures within {100 * SAME:g} % count as equal.",
     SPECTRA,
 )
 

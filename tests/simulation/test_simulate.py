@@ -155,7 +155,7 @@ def test_a_run_says_why_its_figures_are_unverified(kept_seat_file):
         doubtful.warnings
     )
     assert Result([sure, doubtful]).rows[1]["unverified"] == "; ".join(doubtful.unverified)
-    quiet = comparison([sure, doubtful], "both")
+    quiet = comparison([sure, doubtful, sure], "both")
     assert [next(iter(quiet.columns[0].cells)), list(quiet.columns[0].cells)[1][-1]] == ["seat", "*"]
     best = [cell for column in quiet.columns for cell in column.cells if "bold" in str(cell)]
     assert best and all("bold" not in str(list(column.cells)[1]) for column in quiet.columns)
