@@ -10,8 +10,8 @@ import seatsim
 README = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
 COLUMNS = {
     "driver_acceleration_rms": 1.0, "driver_acceleration_weighted": 1.0, "driver_vdv": 1.0, "seat_factor": 1.0,
-    "suspension_displacement_rms": 1e3, "suspension_displacement_peak": 1e3, "end_stop_hits": 1.0, "driver_jerk_rms": 1.0,
-    "current_rms": 1.0,
+    "suspension_displacement_rms": 1e3, "suspension_displacement_peak": 1e3, "end_stop_hits": 1.0,
+    "driver_jerk_rms": 1.0, "current_rms": 1.0,
 }  # fmt: skip
 
 
