@@ -162,8 +162,8 @@ def _make_switch(name: str, candidate: Candidate) -> Switch:
     fields = {field.name: field for field in describe(candidate.cls)}
     shown = {name: describe_channel(fields[name].meaning, fields[name].unit) for name in candidate.free}
     sliders = [
-        Slider(name, own.words, own.unit, *(own.factor * value for value in (*ends, start)), own.factor)
-        for (name, own), start, ends in zip(shown.items(), candidate.start, _reach(candidate), strict=True)
+        Slider(name, own.words, own.unit, own.factor * low, own.factor * high, own.factor * start, own.factor)
+        for (name, own), start, (low, high) in zip(shown.items(), candidate.start, _reach(candidate), strict=True)
     ]
     return Switch(name, name.replace(":", ", "), format_sentence(describe_effect(candidate.effect)), sliders)
 

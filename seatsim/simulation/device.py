@@ -151,8 +151,8 @@ def _row(lane: DeviceLane, end: LaneEnd, samples: int, found: dict[str, float]) 
     metrics = {name: Metric(found[name], known.unit, known.meaning) for name, known in METRICS.items() if name in found}
     is_centred = specification_of(type(lane.scenario.damper.record)).centred
     drift = judge_centring(end.strokes.lengths, end.strokes.middles) if is_centred else ""
-    shares = (count / samples for count in (end.fast, end.strong, end.foreign))
-    return LaneRow(metrics, Excursions(*shares, end.sums.displacement_peak, drift))
+    fast, strong, foreign = (count / samples for count in (end.fast, end.strong, end.foreign))
+    return LaneRow(metrics, Excursions(fast, strong, foreign, end.sums.displacement_peak, drift))
 
 
 def _weighted_rms(floor: Array, step: float) -> float:

@@ -6,8 +6,6 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import NamedTuple
 
-import numpy as np
-
 from seatsim.excitations.base import Floor
 from seatsim.metrics import Metric
 from seatsim.scenario.numbers import LAW, is_permitted, list_numbers, set_number
@@ -53,6 +51,6 @@ def _list_changes(scenario: Scenario) -> Iterator[tuple[str, float]]:
 
 def _begin(floor: Floor) -> Floor:
     count = round(STRETCH / floor.step) + 1
-    return floor._replace(
-        **{name: part[:count] for name, part in floor._asdict().items() if isinstance(part, np.ndarray)}
-    )
+    motion = floor._asdict()
+    del motion["step"]
+    return Floor(floor.step, **{name: part[:count] for name, part in motion.items() if part is not None})
