@@ -23,7 +23,7 @@ from seatsim.schema.text import name_some
 from seatsim.simulation.result import Run
 
 LISTED = 3
-"""Conditions of which a sentence names the best choice."""
+"""Conditions beside the worst of which a sentence names the best choice."""
 
 
 def describe_run(run: Run) -> str:
@@ -40,17 +40,17 @@ def describe_run(run: Run) -> str:
     return f"{said}."
 
 
-def compare_runs(runs: Sequence[Run]) -> str:
-    """Return in one or two sentences the best choice under each condition of some runs, the worst condition first."""
+def compare_runs(runs: Sequence[Run]) -> list[str]:
+    """Return in sentences the best choice under each condition of some runs, the worst condition first."""
     groups = list_alternatives(runs)
     compared = [group for group in groups if len(group.runs) > 1]
     if sum(len(group.runs) for group in groups) < 2:
-        return f"{len(runs)} runs were simulated; too few of them have figures that can be relied on to be compared."
+        return [f"{len(runs)} runs were simulated; too few of them have figures that can be relied on to be compared."]
     if not compared:
         return _state_range(groups)
     alone = [f"“{_name_alone(group)}”" for group in groups if len(group.runs) == 1]
-    left = f" No other run shares the condition of {name_some(alone, last='or')}." if alone else ""
-    return f"{_state_one(compared[0]) if len(compared) == 1 else _state_several(compared)}{left}"
+    left = [f"No other run shares the condition of {name_some(alone, last='or')}."] if alone else []
+    return [*([_state_one(compared[0])] if len(compared) == 1 else _state_several(compared)), *left]
 
 
 def count_times(hits: float) -> str:
@@ -58,7 +58,7 @@ def count_times(hits: float) -> str:
     return "once" if hits == 1 else f"{hits:.0f} times"
 
 
-def _state_range(groups: Sequence[Alternatives]) -> str:
+def _state_range(groups: Sequence[Alternatives]) -> list[str]:
     """Return what runs come to of which no two share a condition, the worst first, so that none is called better."""
     worst, mildest = groups[0], groups[-1]
     low, high = measure_comfort(mildest.runs[0]), measure_comfort(worst.runs[0])
@@ -70,9 +70,9 @@ def _state_range(groups: Sequence[Alternatives]) -> str:
             f"{lead} {format_quantity(low, 'm/s^2')} to {state_comfort(worst.runs[0])}; the worst is"
             f" “{_name_alone(worst)}”, the mildest “{_name_alone(mildest)}”."
         )
-    if len({choice_of(group.runs[0].scenario) for group in groups}) > 1:
-        said += " No two runs share floor, temperature and driver, so that none is called better than another."
-    return said
+    if len({choice_of(group.runs[0].scenario) for group in groups}) == 1:
+        return [said]
+    return [said, "No two runs share floor, temperature and driver, so that none is called better than another."]
 
 
 def _name_alone(group: Alternatives) -> str:
@@ -93,21 +93,22 @@ def _state_one(group: Alternatives) -> str:
     return f"{under}Of {count} runs {which} the most comfortable: the driver feels {state_best(group)}."
 
 
-def _state_several(groups: Sequence[Alternatives]) -> str:
+def _state_several(groups: Sequence[Alternatives]) -> list[str]:
     """Return which choice is the best under all of several conditions, or which is under which."""
     worst, count = groups[0], len(groups)
-    every = f"all {count}" if count > 2 else "both"
     leading = [{choice_of(run.scenario) for run in group.runs[: group.leaders]} for group in groups]
     always = set.intersection(*leading)
     for name, run in zip(worst.names, worst.runs, strict=True):
         if choice_of(run.scenario) in always:
-            return (
-                f"“{name}” is the most comfortable under {every} conditions. The worst of them is"
-                f" {worst.condition}: the driver feels {state_best(worst)}."
-            )
-    listed = [f"{group.condition}: “{group.names[0]}”, {state_best(group)}" for group in groups[:LISTED]]
-    others = f"; and {count - LISTED} others" if count > LISTED else ""
-    return (
-        f"No choice is the most comfortable under {every} conditions. The best of each, the worst condition first:"
-        f" {'; '.join(listed)}{others}."
+            every = f"all {count}" if count > 2 else "both"
+            return [
+                f"“{name}” is the most comfortable under {every} conditions. The worst of them is {worst.condition}: the"
+                f" driver feels {state_best(worst)}."
+            ]
+    first, *others = [f"“{group.names[0]}”: the driver feels {state_best(group)}." for group in groups]
+    named = [f"At {group.condition} it is {said}" for group, said in zip(groups[1:], others, strict=True)]
+    more = [f"And {len(named) - LISTED} other conditions, which are milder."] if len(named) > LISTED else []
+    lead = (
+        f"Which run is the most comfortable depends on the condition. At the worst of {count}, {worst.condition}, it is"
     )
+    return [f"{lead} {first}", *named[:LISTED], *more]

@@ -65,13 +65,13 @@ def report_runs(runs: Sequence[Run], command: str, title: str, failures: Sequenc
     ]
     single = len(runs) == 1
     about = f"Simulated run: {title}" if single else f"Comparison of {len(runs)} simulated runs: {title}"
-    answer = describe_run(runs[0]) if single else compare_runs(runs)
-    return Report(about, answer, _list_gaps(runs, failures), advise_on_runs(runs), sections)
+    answer, *others = [describe_run(runs[0])] if single else compare_runs(runs)
+    return Report(about, answer, [*others, *_list_gaps(runs, failures)], advise_on_runs(runs), sections)
 
 
 def _list_gaps(runs: Sequence[Run], failures: Sequence[str]) -> list[str]:
     """Return what the answer leaves out: runs that failed, and those whose figures cannot be relied on."""
-    doubtful = [name for name, run in zip(name_runs(runs), runs, strict=True) if run.unverified]
+    doubtful = [f"“{name}”" for name, run in zip(name_runs(runs), runs, strict=True) if run.unverified]
     texts = [f"The figures of {name_some(doubtful)} cannot be relied on; the notes say why."] if doubtful else []
     if failures:
         others = f", and {len(failures) - 1} others" if len(failures) > 1 else ""
