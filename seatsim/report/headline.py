@@ -102,13 +102,11 @@ def _state_several(groups: Sequence[Alternatives]) -> list[str]:
         if choice_of(run.scenario) in always:
             every = f"all {count}" if count > 2 else "both"
             return [
-                f"“{name}” is the most comfortable under {every} conditions. The worst of them is {worst.condition}: the"
-                f" driver feels {state_best(worst)}."
+                f"“{name}” is the most comfortable under {every} conditions. The worst of them is {worst.condition}:"
+                f" the driver feels {state_best(worst)}."
             ]
     first, *others = [f"“{group.names[0]}”: the driver feels {state_best(group)}." for group in groups]
     named = [f"At {group.condition} it is {said}" for group, said in zip(groups[1:], others, strict=True)]
     more = [f"And {len(named) - LISTED} other conditions, which are milder."] if len(named) > LISTED else []
-    lead = (
-        f"Which run is the most comfortable depends on the condition. At the worst of {count}, {worst.condition}, it is"
-    )
+    lead = f"Which run is the most comfortable depends on the condition. At the worst, {worst.condition}, it is"
     return [f"{lead} {first}", *named[:LISTED], *more]

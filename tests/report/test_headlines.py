@@ -64,7 +64,7 @@ CASES = {
         " “80 °C”.",
     ]),
     "laws on floors": ({"variants": THREE, "sweep": {"excitation.spectral_class": ["EM2", "EM5", "EM6"]}}, [
-        "Which run is the most comfortable depends on the condition. At the worst of 3, spectral class EM2, it is"
+        "Which run is the most comfortable depends on the condition. At the worst, spectral class EM2, it is"
         " “skyhook”: the driver feels 0.781 m/s² (weighted RMS), 19 % less than with the best passive run, “0 A”, at"
         " 38 % less travel (RMS).",
         "At spectral class EM5 it is “0 A”: the driver feels 0.569 m/s² (weighted RMS); control does not make it less:"
