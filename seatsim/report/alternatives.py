@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.metrics.arrays import ratio
 from seatsim.plots.runs.naming import distinguish_runs
 from seatsim.report.formatting import format_percent, format_quantity
 from seatsim.scenario.conditions import group_by_condition, is_passive
@@ -34,11 +36,15 @@ class Alternatives(NamedTuple):
 
 
 def list_alternatives(runs: Sequence[Run]) -> list[Alternatives]:
-    """Return the runs that can be relied on in groups of one condition each, the worst condition first."""
-    found = []
+    """Return the runs that can be relied on in groups of one condition each, the worst condition first.
+
+    Where some have weighted figures, those without are left out: the two cannot be compared.
+    """
+    found, is_weighted = [], any(COMFORT in run.metrics for run in runs)
     for group in group_by_condition((run.scenario, run) for run in runs):
         condition, names = distinguish_runs(group, runs)
-        known = [pair for pair in zip(group, names, strict=True) if _is_reliable(pair[0])]
+        named = [pair for pair in zip(group, names, strict=True) if _is_reliable(pair[0])]
+        known = [pair for pair in named if COMFORT in pair[0].metrics or not is_weighted]
         if known:
             ordered = sorted(known, key=lambda pair: measure_comfort(pair[0]))
             found.append(Alternatives(condition, *zip(*ordered, strict=True)))
@@ -98,8 +104,11 @@ def state_best(group: Alternatives) -> str:
 
 def _compare_runs(run: Run, base: Run) -> tuple[str, str]:
     """Return how the comfort of a run, and how the travel that it takes, compares with those of another."""
-    travel = compare_figures(read_metric(run, TRAVEL) / read_metric(base, TRAVEL))
     comfort = compare_figures(measure_comfort(run) / measure_comfort(base))
+    change = ratio(read_metric(run, TRAVEL), read_metric(base, TRAVEL))
+    if math.isnan(change):
+        return comfort, "more travel than none"
+    travel = compare_figures(change)
     return comfort, "equal travel" if travel == EQUAL else f"{travel} travel (RMS)"
 
 
