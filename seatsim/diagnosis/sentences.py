@@ -14,11 +14,11 @@ def write_answer(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return (
             f"There is no gap beyond noise and the stated tolerance of the parameters: {size} nominal,"
-            f" {gap.calibrated.overall:.3f} refitted, noise {gap.floor.overall:.3f} (in standard deviations)."
+            f" {gap.calibrated.overall:.3f} refitted, {_noise(gap)} (in standard deviations)."
         )
     if diagnosis.verdict == "unknown" and not diagnosis.selected:
         where = f"Something in the {_unexplained(diagnosis)} that no effect of the library explains makes the gap"
-        return f"{where}: {size} nominal, noise {gap.floor.overall:.3f} (in standard deviations)."
+        return f"{where}: {size} nominal, {_noise(gap)} (in standard deviations)."
     # What was found stands first, also where something stays unexplained: it is what the reader can act on.
     named = "; ".join(_cause(diagnosis, name) for name in diagnosis.selected)
     sentence = f"{named}: {_taken(gap)}"
@@ -33,12 +33,16 @@ def write_answer(diagnosis: Diagnosis) -> str:
 
 def _taken(gap: Gaps) -> str:
     """Return a clause on how much of the gap the effects and the refitted parameters take off."""
-    figures = f"{gap.before.overall:.3f} to {gap.after.overall:.3f}, noise {gap.floor.overall:.3f}"
+    figures = f"{gap.before.overall:.3f} to {gap.after.overall:.3f}, {_noise(gap)}"
     removable = gap.before.overall - gap.floor.overall
     if gap.after.overall >= gap.before.overall or removable <= 0.0:
         return f"that takes nothing off the gap of the run held out ({figures})"
     share = min((gap.before.overall - gap.after.overall) / removable, 1.0)
     return f"that takes {share:.0%} of the gap that can be removed ({figures}, in standard deviations)"
+
+
+def _noise(gap: Gaps) -> str:
+    return f"noise {gap.floor.overall:.3f}" if gap.floor.overall else "noise not stated"
 
 
 def _alike(diagnosis: Diagnosis) -> str:

@@ -97,6 +97,10 @@ class EndStop(NamedTuple):
     damping: Annotated[float, param("s/m", "Hunt-Crossley damping", low=0, high=100)] = 0.5
     power: Annotated[float, param("-", "exponent of the buffer's law", low=1, high=3)] = 1.0
 
+    def plant(self, plant: Plant) -> Plant:
+        """Return the seat with its travel between the buffers, beyond which its end stops are met."""
+        return plant._replace(travel=(self.low, self.high)) if self.stiffness > 0.0 else plant
+
     def suspension_force(self, plant: Plant, x: float, v: float, z: State) -> float:
         """Return the force of the buffers in N, positive against extension."""
         if self.stiffness <= 0.0:

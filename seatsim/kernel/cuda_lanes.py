@@ -22,7 +22,7 @@ from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup
 from seatsim.kernel.numbers import SHARED, numbers
-from seatsim.kernel.sums import NO_SUMS, Summed, Sums
+from seatsim.kernel.sums import NO_SUMS, LaneLimits, Summed, Sums
 from seatsim.rig.state import State
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ POINTS = CELLS + 1
 THREADS = 64
 """Threads of a block: a lane takes so many registers that larger blocks leave some of them unused."""
 ROWS = float64[:, ::1]
-SIGNATURE = void(float64, float64, ROWS, ROWS, ROWS, int64[::1], float64[:, :, ::1], ROWS, ROWS, ROWS)
+SIGNATURE = void(*(float64,) * 4, ROWS, ROWS, ROWS, int64[::1], float64[:, :, ::1], ROWS, ROWS, ROWS)
 """Types of the arguments of a kernel."""
 
 
@@ -79,13 +79,6 @@ class LaneEnd(NamedTuple):
 
 
 END = LaneEnd(NO_SUMS, 0.0, 0.0)
-
-
-class LaneLimits(NamedTuple):
-    """Ends of the data behind a damper: its speed in m/s, its current in A."""
-
-    speed: float
-    current: float
 
 
 class KernelError(Exception):
@@ -157,6 +150,8 @@ def _define_kernel(form: Form) -> Callable[..., None]:
     def run(
         most_speed: float,
         most_current: float,
+        coldest: float,
+        hottest: float,
         starts: Array,
         floors: Array,
         speeds: Array,
@@ -175,7 +170,8 @@ def _define_kernel(form: Form) -> Callable[..., None]:
                 floors[:, own], speeds[:, own], none, none, none, none, none, 0.0, start.displacement, start.velocity,
                 start.sensed, noise[:, :, lane], start.temperature,
             )  # fmt: skip
-            recorder: Any = Summed(driver[:, lane], commands[:, lane], room, most_speed, most_current)
+            limits = LaneLimits(most_speed, most_current, coldest, hottest)
+            recorder: Any = Summed(driver[:, lane], commands[:, lane], room, limits)
             reached, sums, temperature = simulate(start.setup, inputs, start.rig, start.followed, start.law, recorder)
             scatter((sums, temperature, float(reached)), ends, lane)
 

@@ -32,7 +32,8 @@ class Sums(NamedTuple):
     `below` and `above` are 1 while the suspension is beyond its travel; `stored` is the energy at the first sample, the
     sums of the current are those of its square. `turn` is the displacement at the last reversal of the suspension (NaN:
     none yet), `lengths` the sum of its strokes, `middles` twice that of the distances of their middles from mid-stroke.
-    `fast` and `strong` count the samples beyond the ends of the data behind the damper.
+    `fast`, `strong` and `foreign` count the samples beyond the speed, the current and the temperatures of the data
+    behind the damper.
     """
 
     samples: float = 0.0
@@ -60,23 +61,31 @@ class Sums(NamedTuple):
     middles: float = 0.0
     fast: float = 0.0
     strong: float = 0.0
+    foreign: float = 0.0
 
 
 NO_SUMS = Sums()
+
+
+class LaneLimits(NamedTuple):
+    """Ends of the data behind a damper: its speed in m/s, its current in A, its temperatures in degC."""
+
+    speed: float
+    current: float
+    coldest: float
+    hottest: float
 
 
 class Summed(NamedTuple):
     """Keeps sums, and the driver's acceleration in m/s^2 in `driver`, shape (N,).
 
     `commands`, shape (D,), holds the last D commands, D above the delay in steps by two; `room` is that of the inverse.
-    The data behind the damper end at `most_speed` in m/s and `most_current` in A.
     """
 
     driver: Array
     commands: Array
     room: Array
-    most_speed: float
-    most_current: float
+    limits: LaneLimits
 
     def nothing(self) -> State:
         """Return the sums before the first sample."""
@@ -89,7 +98,7 @@ class Summed(NamedTuple):
 
     def keep(self, sums: Sums, rig: Rig, k: int, now: IntegratorState, sample: Sample) -> Sums:
         """Return the sums with sample `k`."""
-        s, plant = now.state, rig.plant
+        s, plant, limits = now.state, rig.plant, self.limits
         x, v = s[DISPLACEMENT], s[VELOCITY]
         frame = now.rates[VELOCITY] + sample.floor
         self.commands[k % len(self.commands)] = sample.command
@@ -133,6 +142,7 @@ class Summed(NamedTuple):
             x if turns else sums.turn,
             sums.lengths + abs(x - sums.turn) if strokes else sums.lengths,
             sums.middles + abs(x + sums.turn) if strokes else sums.middles,
-            sums.fast + (1.0 if abs(plant.damper_ratio * v) > self.most_speed else 0.0),
-            sums.strong + (1.0 if sample.current > self.most_current else 0.0),
+            sums.fast + (1.0 if abs(plant.damper_ratio * v) > limits.speed else 0.0),
+            sums.strong + (1.0 if sample.current > limits.current else 0.0),
+            sums.foreign + (0.0 if limits.coldest <= sample.temperature <= limits.hottest else 1.0),
         )

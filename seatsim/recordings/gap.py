@@ -55,8 +55,8 @@ class Gap:
         return draw(self, names)
 
     def _repr_html_(self) -> str:
-        rows = [(name, value, self.floor["channels"][name]) for name, value in self.channels.items()]
-        overall = ("overall", self.overall, self.floor["overall"])
+        rows = [(name, value, self.floor["channels"][name] or "not stated") for name, value in self.channels.items()]
+        overall = ("overall", self.overall, self.floor["overall"] or "not stated")
         return html_table("Gap in standard deviations", ("channel", "gap", "noise floor"), [*rows, overall])
 
 

@@ -53,6 +53,16 @@ def format_percent(share: float | None) -> str:
     return text.replace("-0.0", "0.0").replace("-", MINUS)
 
 
+def format_noise(share: float | None) -> str:
+    """Return the gap that the stated noise alone makes; one of 0 is that of sensors whose noise nobody stated."""
+    return "not stated" if share == 0 else format_percent(share)
+
+
+def say_noise(share: float) -> str:
+    """Return the same as a clause."""
+    return "no sensor noise is stated" if share == 0 else f"sensor noise alone makes {format_percent(share)}"
+
+
 def format_setting(value: float) -> str:
     """Return a number that somebody chose, with no more digits than it has."""
     return f"{value:.6g}".replace("-", MINUS)

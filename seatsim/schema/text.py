@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 LONGEST_NAME = 100
 LONGEST_WORD = 1000
@@ -33,6 +33,13 @@ def join_names(names: Collection[str], last: str = "and") -> str:
     """Return one or more names as they stand in a sentence: `a, b and c`."""
     *first, end = names
     return f"{', '.join(first)} {last} {end}" if first else end
+
+
+def name_some(names: Sequence[str], most: int = 3, last: str = "and") -> str:
+    """Return the first names as they stand in a sentence, and how many others there are: `a, b, c and 2 others`."""
+    left = len(names) - most
+    others = [f"{left} other{'s' * (left > 1)}"] if left > 0 else []
+    return join_names([*names[:most], *others], last)
 
 
 def make_printable(text: str) -> str:

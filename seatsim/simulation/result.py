@@ -91,10 +91,14 @@ class Run:
 
 @dataclass(frozen=True)
 class Result:
-    """The runs of one or several scenarios, and performance bounds by rig (`Scenario.rig`) where asked for."""
+    """The runs of one or several scenarios, performance bounds by rig (`Scenario.rig`) where asked for, and failures.
+
+    `failures` says why other runs of the scenarios were not carried to their end.
+    """
 
     runs: Sequence[Run]
     brackets: Mapping[str, Any] = field(default_factory=dict)
+    failures: Sequence[str] = ()
 
     def __getitem__(self, name: str) -> Channel:
         """Return a channel of the first run with its unit."""

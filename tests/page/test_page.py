@@ -221,6 +221,10 @@ def test_an_effect_that_is_not_there_makes_the_gap_grow():
     name = next(switch.name for switch in view.switches if switch.name == "damper.seal_friction")
     before, after = view.show({}), view.show({"effects": {name: {"force": 60.0}}})
     assert before.answer.startswith("The nominal simulation is off by") and "grows" in after.answer
+    # What a slider shows in millimetres is stated in metres.
+    assert {slider.unit for switch in view.switches for slider in switch.sliders} & {"m", "mm"} == {"mm"}
+    saved = view.encode({"effects": {name: {"force": 60.0, "presliding": 0.5}}})
+    assert saved["effects"][-1]["parameters"]["presliding"] == pytest.approx(5e-4)
     saved = view.encode({"effects": {name: {"force": 60.0}}})
     assert saved["effects"][-1]["effect"] == name and saved["effects"][-1]["parameters"]["force"] == 60.0
     with pytest.raises(InputError, match="no effect"):

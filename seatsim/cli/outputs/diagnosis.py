@@ -10,6 +10,7 @@ from rich.table import Table
 from ruamel.yaml import YAML
 
 from seatsim.blind.processes import run_jobs
+from seatsim.cli.gap_table import show_floor
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.result import Diagnosis, GapFigures, RunGaps
 from seatsim.effects.base import EFFECTS
@@ -85,11 +86,13 @@ def make_tables(diagnosis: Diagnosis) -> list[Table]:
     gaps = Table(title=f"gap on {', '.join(diagnosis.held_out)}, in standard deviations", title_justify="left")
     for heading in ("channel", "nominal", "refitted", "with effects", "noise floor"):
         gaps.add_column(heading, justify="left" if heading == "channel" else "right")
-    columns = (gap.before, gap.calibrated, gap.after, gap.floor)
+    columns = (gap.before, gap.calibrated, gap.after)
     for name in gap.before.channels:
-        gaps.add_row(name, *(f"{column.channels[name]:.4f}" for column in columns))
+        gaps.add_row(
+            name, *(f"{column.channels[name]:.4f}" for column in columns), show_floor(gap.floor.channels[name])
+        )
     gaps.add_section()
-    gaps.add_row("overall", *(f"{column.overall:.4f}" for column in columns))
+    gaps.add_row("overall", *(f"{column.overall:.4f}" for column in columns), show_floor(gap.floor.overall))
     ranked = Table(title=f"verdict: {diagnosis.verdict}", title_justify="left")
     for heading in ("effect", "probability", "own shrink"):
         ranked.add_column(heading, justify="left" if heading == "effect" else "right")

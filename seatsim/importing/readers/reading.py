@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.signals import DataFile, Group
+from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.guarded import is_there, read_bytes
