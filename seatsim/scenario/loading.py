@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
 SEAT_KEYS = (*BENCH_KEYS, "plant", "driver", "controller", "excitation", "start", "sweep", "variants", "published")
+FILES = (("controller", "design"), ("excitation", "path"))
+"""Section and key under which a scenario names a file, from its own folder."""
 CONTROL_KEYS = ("law", "sample_time", "inverse", "sensors")
 # An excitation may read a recording, whose nominal is a scenario: their package builds on this one.
 EXCITATIONS: Registry[Excitation, object] = Registry("excitation")
