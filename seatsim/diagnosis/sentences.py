@@ -66,6 +66,8 @@ def _cause(diagnosis: Diagnosis, name: str) -> str:
     cause = next(cause for cause in diagnosis.causes if cause.effect == name)
     meaning = (EFFECTS.find(name).__doc__ or name).split("\n")[0].split(":")[0].rstrip(".")
     values = _values(cause)
+    if cause.at_bound:
+        values += "; all of its size lies at the end of its range, so that it may stand for another cause"
     return f"{name} ({meaning[0].lower()}{meaning[1:]}{'; ' + values if values else ''})"
 
 
@@ -73,7 +75,8 @@ def _values(cause: Cause) -> str:
     parts = []
     for name, found in cause.parameters.items():
         if isinstance(found, Estimate):
-            parts.append(f"{name} {found.value:.3g} {found.unit}".rstrip(" -"))
+            end = ", the end of its range" if found.at_bound else ""
+            parts.append(f"{name} {found.value:.3g} {found.unit}".rstrip(" -") + end)
         else:
             parts.append(str(found))
     return ", ".join(parts)

@@ -79,7 +79,7 @@ class ProgressiveSpring(NamedTuple):
     off={"low": -1.0, "high": 1.0, "power": 1.0},
     forms=(
         Form(
-            {"low": -0.012, "high": 0.012, "stiffness": 10000.0, "damping": 0.5},
+            {"low": -0.012, "high": 0.012, "stiffness": 10000.0, "damping": 0.5, "power": 1.0},
             within={"stiffness": (5000.0, 1e6)},
         ),
     ),

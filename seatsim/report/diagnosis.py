@@ -123,6 +123,9 @@ def advise(diagnosis: Diagnosis) -> list[str]:
     at_bound = [each.name for each in diagnosis.parameters if each.at_bound]
     if at_bound:
         found.append(f"Measure {join_names(at_bound)}: the refit stops at the bound of its tolerance.")
+    at_bound = [cause.effect for cause in _select(diagnosis) if cause.at_bound]
+    if at_bound:
+        found.append(f"Confirm {join_names(at_bound)} first: all of its size lies at the end of its range.")
     what = "the refitted parameters and the effects found" if diagnosis.selected else "the refitted parameters"
     found.append(f"Check the result on another recording: seatsim gap augmented.yaml OTHER_RECORDING (the nominal"
                  f" scenario with {what}).")  # fmt: skip

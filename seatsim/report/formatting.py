@@ -69,9 +69,11 @@ def format_setting(value: float) -> str:
 
 
 def format_estimate(value: Estimate | str) -> str:
-    """Return a parameter with its standard deviation, rounded to two digits of that, and its unit."""
+    """Return a parameter with its standard deviation, rounded to two digits of that, its unit, and whether it ends."""
     if isinstance(value, str):
         return value
+    if value.at_bound:
+        return f"{format_estimate(value._replace(at_bound=False))} (the end of its range)"
     shown = describe_channel("", value.unit)
     unit = "" if shown.unit == "-" else f" {shown.unit}"
     value = value._replace(value=shown.factor * value.value, std=shown.factor * value.std)
