@@ -195,10 +195,12 @@ def _respond(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Par
 
 
 def _measure_reach(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Parameters) -> float:
-    """Return the share of the permitted travel that an excitation takes; 0 for what is no excitation of a seat."""
+    """Return the share of the permitted travel, or of a bench's stroke, that an excitation takes; 0 for other kinds."""
     plant, largest = problem.scenario.plant, problem.settings.design.largest_travel
-    if candidate.scenario is None or plant is None or problem.bench:
+    if candidate.scenario is None:
         return 0.0
+    if plant is None or problem.bench:
+        return float(np.max(np.abs(candidate.floor.displacement))) / largest
     stated = min(-plant.travel[0], plant.travel[1]) < UNSTATED_TRAVEL
     low, high = plant.travel if stated else (-largest, largest)
     travel = _respond(problem, candidate, rig)["suspension_displacement"]
