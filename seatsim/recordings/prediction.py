@@ -117,7 +117,8 @@ def _check_augmented(
     found = stated.get("selected")
     selected = found if isinstance(found, list) else []
     # The signal of a random disturbance is not simulated: such a cause has no fitted parameters.
-    missing = [cause.effect for cause in causes if cause.stds and cause.effect in selected and cause.effect not in present]
+    fitted = [cause.effect for cause in causes if cause.stds and cause.effect in selected]
+    missing = [effect for effect in fitted if effect not in present]
     if missing:
         lacks = f"{scenario.name}: lacks {' and '.join(dict.fromkeys(missing))}, which {diagnosis} found"
         augmented = diagnosis.parent / str(stated.get("augmented", "augmented.yaml"))

@@ -154,7 +154,7 @@ def test_a_gas_force_of_many_standard_deviations_is_found():
 def test_a_fit_that_is_worse_than_the_mean_is_none():
     records = [record._replace(force=record.force + 4000.0) for record in sines(BINGHAM)]
     with pytest.raises(
-        RunError, match="hong_sigmoid_gaussian: the best parameters found leave .* mean alone fits better"
+        RunError, match=r"hong_sigmoid_gaussian: the best parameters found leave .* mean alone fits better"
     ):
         identify_records(records, "hong_sigmoid_gaussian")
 

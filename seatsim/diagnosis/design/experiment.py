@@ -76,7 +76,8 @@ def propose_experiment(objective: Objective, nuisances: Linearisation, group: Se
     now = _likeness(objective, changes, stack_jacobian(objective, nuisances))
     sensors, first = _name_sensors(members), ""
     if sensors:
-        first = f"calibrating {' and '.join(sensors)} tells a wrong sensor from a change of the rig"
+        unloaded = " while it is unloaded" if sensors == ["damper force"] else ""
+        first = f"calibrating {' and '.join(sensors)}{unloaded} tells a wrong sensor from a change of the rig"
         members = [member for member in members if member.parameters.terms[-1].block != "sensor"]
         if len(members) <= 1:
             return _propose("intervention", "calibrate_sensor", first, now, 0.0)
