@@ -199,7 +199,7 @@ def _propose_experiment(
     objective: Objective, decision: Decision, nuisances: Linearisation
 ) -> ProposedExperiment | None:
     """Return the experiment that separates the first group of equivalent effects, None where there is no group."""
-    if decision.verdict != "ambiguous" or objective.problem.bench:
+    if decision.verdict != "ambiguous":
         return None
     return propose_experiment(objective, nuisances, decision.groups[0])
 

@@ -24,7 +24,8 @@ from seatsim.schema.fields import bounds, describe
 Array = NDArray[np.float64]
 
 SPAN = 1e3
-"""Factor by which a positive parameter may differ from its start where its bounds do not say."""
+"""Factor by which a positive parameter may differ from its start, and from its size in the data, where its bounds do
+not say."""
 DATA_SHARE = 0.1
 """Share of what its unit is worth in the data that a parameter counts in where it is zero at the start."""
 LEAST_RATIO = 1e-12
@@ -112,7 +113,10 @@ class Coordinates:
         low, high = self.bounds[name]
         size = abs(value) or natural
         if low > 0.0 or (low == 0.0 and value > 0.0):
-            ends = math.log(max(low, size / SPAN) / size), math.log(min(high, size * SPAN) / size)
+            # What the data are a thousand times larger than has no influence, whatever the default is.
+            least = max(low, min(size, natural) / SPAN)
+            most = high if math.isfinite(high) else SPAN * max(size, natural)
+            ends = math.log(least / size), math.log(most / size)
             return [Component(name, None, unit, size, natural, True, *ends, None)]
         return [Component(name, None, unit, size, natural, False, low / size, high / size, None)]
 

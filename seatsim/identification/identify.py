@@ -35,6 +35,8 @@ from seatsim.schema.notebook import Pictures, draw, html_table
 Array = NDArray[np.float64]
 
 DEFAULTS = IdentificationSettings()
+NO_BETTER_THAN_MEAN = 1.01
+"""Mean square error over the variance of the force from which on a fit is none: the mean of each record leaves 1."""
 TIMED_RUNS = 3
 """Runs of which the fastest counts: others only add what else the processor did."""
 
@@ -112,6 +114,10 @@ def identify_records(
     diverged = [each.record.name for each in assessments if each.part == "train" and not each.complete]
     if diverged:
         raise RunError(f"{model}: no parameters were found with which its state stays finite on {', '.join(diverged)}")
+    cost = problem.cost(vector)
+    if cost > NO_BETTER_THAN_MEAN:
+        left = f"the best parameters found leave {100.0 * cost**0.5:.0f} % of the force's standard deviation"
+        raise RunError(f"{model}: {left}, so that its mean alone fits better; choose another model")
     tests = [each.record for each in assessments if each.part == "test"]
     notes = [
         *_note_parameters(problem, vector, known),
@@ -123,7 +129,7 @@ def identify_records(
         origin=origin,
         assessments=assessments,
         information=known,
-        bic=known.bic(problem.cost(vector)),
+        bic=known.bic(cost),
         seconds=time.perf_counter() - began,
         ns_per_step=_time_step(bench, problem.inputs),
         warm=problem.reference is not None,

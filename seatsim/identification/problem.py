@@ -35,7 +35,8 @@ MOST_PARTS_IN_SEARCH = 32
 NEAR_BOUND = 1e-3
 """Distance from a bound, in components of order one, that counts as on it."""
 DIVERGED = 10.0
-"""Scaled residual that stands for a force that is not finite, and that no other exceeds."""
+"""Scaled residual that stands for a force that is not finite, and that no other exceeds; over the mean force where that
+is larger than the standard deviation."""
 DIFFERENCE_STEP = 1e-3
 """Step of the differences, in components of order one: well above the simulation's error, well below their range."""
 
@@ -107,7 +108,9 @@ class IdentificationProblem(NamedTuple):
         for inputs, weight in zip(self.inputs, self.weights, strict=True):
             force = predict_force(bench, inputs, MOST_PARTS_IN_SEARCH, self.tolerance)
             part = weight * (force - inputs.force)[inputs.counted :]
-            limit = DIVERGED / math.sqrt(len(part))
+            # A mean of many standard deviations, as that of a gas force, is no divergence.
+            offset = weight * len(part) ** 0.5 * abs(float(np.mean(inputs.force[inputs.counted :])))
+            limit = max(1.0, offset) * DIVERGED / math.sqrt(len(part))
             parts.append(np.clip(np.where(np.isfinite(part), part, limit), -limit, limit))
         return np.concatenate(parts)
 

@@ -22,6 +22,23 @@ DEFAULT = "default"
 Tolerance = float | Literal["fitted"]
 """Fraction to which a parameter is known, or `fitted` where it was fitted to such data."""
 Tolerances = Tolerance | Mapping[str, Tolerance]
+Refusal = Literal[
+    "rate",
+    "jump",
+    "short",
+    "duplicate",
+    "repeat",
+    "still",
+    "constant",
+    "clipped",
+    "stuck",
+    "doubled",
+    "sign",
+    "unit",
+    "exchange",
+    "late",
+]
+"""Checks of the data because of which a recording is refused, unless its owner accepts what they find."""
 
 
 class _Fraction(NamedTuple):
@@ -35,7 +52,7 @@ class Header(NamedTuple):
 
     `parameter_tolerance` is one tolerance, or a mapping of them by dotted key with one under `default`, None where none
     is stated. `model_error` is the share of each channel's local amplitude that the nominal's form is known to miss,
-    None where none is stated.
+    None where none is stated. `accept` names the checks of the data that the rig's owner overrules.
     """
 
     rig: Literal["seat", "damper_bench"]
@@ -43,6 +60,7 @@ class Header(NamedTuple):
     nominal: str
     parameter_tolerance: Tolerances | None = None
     model_error: Annotated[float | None, param("-", "share of the local amplitude missed", low=0, high=1)] = None
+    accept: tuple[Refusal, ...] = ()
 
     @property
     def default_tolerance(self) -> Tolerance:

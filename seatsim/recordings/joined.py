@@ -18,8 +18,8 @@ CURRENTS = ("current_command", "command_voltage", "coil_current")
 def join_recordings(first: Recording, second: Recording) -> tuple[Recording, list[str]]:
     """Return the runs of two recordings as one recording, and sentences on what differs between them.
 
-    Nominal scenario, tolerances and model error are those of the first. A run of the second whose name is taken gets
-    `after-` before it; the larger noise of a channel counts.
+    Nominal scenario, tolerances and model error are those of the first; what either accepts is accepted. A run of the
+    second whose name is taken gets `after-` before it; the larger noise of a channel counts.
 
     Raises:
         InputError: rig, sample rate or nominal scenario differ, or the recordings share no channel of the current.
@@ -28,7 +28,8 @@ def join_recordings(first: Recording, second: Recording) -> tuple[Recording, lis
     shared = [name for name in first.channels if name in second.channels]
     channels = {name: _louder(first.channels[name], second.channels[name]) for name in shared}
     runs = first.runs | {entry.name: entry for entry in _rename(first, second)}
-    return replace(first, runs=runs, channels=channels), [*_say(first, second, shared)]
+    header = first.header._replace(accept=(*first.header.accept, *second.header.accept))
+    return replace(first, header=header, runs=runs, channels=channels), [*_say(first, second, shared)]
 
 
 def _check_alike(first: Recording, second: Recording) -> None:

@@ -92,7 +92,8 @@ def predict_gap(
         runs: all of the recording's where none are named.
 
     Raises:
-        InputError: the diagnosis is none or states no model error, or no channel of it stands above its noise here.
+        InputError: the diagnosis is none or states no model error, the scenario lacks an effect that it found, or no
+            channel of it stands above its noise here.
         RunError: a simulation could not be carried to its end.
     """
     recording = recording if isinstance(recording, Recording) else load_recording(recording)
@@ -100,11 +101,28 @@ def predict_gap(
     stated, names = _read_diagnosis(Path(diagnosis)), list(runs) or list(recording.runs)
     with expect(diagnosis, "diagnosis"):
         error, causes = read_model_error(stated, str(diagnosis)), _read_causes(stated)
+        _check_augmented(augmented, stated, causes, Path(diagnosis))
     after = _simulate(augmented, recording, names)
     before = _simulate(single(recording.nominal), recording, names)
     shifted = [_simulate(other, recording, names) for other in _move_parameters(augmented, causes)]
     simulated = SimulatedRigs(recording.header.sample_rate, before, after, shifted)
     return _combine(error, simulated, str(recording.folder))
+
+
+def _check_augmented(
+    scenario: Scenario, stated: Mapping[str, object], causes: Sequence[StatedCause], diagnosis: Path
+) -> None:
+    """Raise InputError where a scenario lacks an effect that the diagnosis found: it is not the augmented one."""
+    present = {EFFECTS.name_of(type(effect)) for effect in scenario.effects}
+    found = stated.get("selected")
+    selected = found if isinstance(found, list) else []
+    # The signal of a random disturbance is not simulated: such a cause has no fitted parameters.
+    fitted = [cause.effect for cause in causes if cause.stds and cause.effect in selected]
+    missing = [effect for effect in fitted if effect not in present]
+    if missing:
+        lacks = f"{scenario.name}: lacks {' and '.join(dict.fromkeys(missing))}, which {diagnosis} found"
+        augmented = diagnosis.parent / str(stated.get("augmented", "augmented.yaml"))
+        raise InputError(f"{lacks}; a prediction is of the augmented scenario: give {augmented}")
 
 
 def _combine(error: ModelError, rigs: SimulatedRigs, place: str) -> Prediction:

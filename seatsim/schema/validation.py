@@ -130,6 +130,8 @@ def _problem(record: type, error: ErrorDetails) -> str:
     if error["type"] == "literal_error":
         options = [part.strip("' ") for part in str(context["expected"]).replace(" or ", ", ").split(",")]
         return f"{value} is not permitted{nearest(error['input'], options)}; permitted: {', '.join(options)}"
+    if error["type"] == "tuple_type":
+        return f"{value} is not permitted; it must be a list, such as [{error['input']}]"
     if error["type"].startswith(("float", "int", "finite")):
         return f"{value} is not permitted; it must be a finite number{f' in {unit}' if suffix else ''}"
     return f"{value} is not permitted: {error['msg'][0].lower()}{error['msg'][1:]}"

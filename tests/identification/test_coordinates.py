@@ -1,6 +1,7 @@
 """The vector of a damper's free parameters: there and back, scaled to another damper, fixed by the user."""
 
 import math
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from seatsim.identification.coordinates import Coordinates
 from seatsim.identification.current_laws import evaluate_law, interpolate_law
 from seatsim.identification.scales import Scales, parse_unit
 from seatsim.schema.errors import InputError
-from seatsim.schema.fields import bounds
+from seatsim.schema.fields import bounds, param
 from seatsim.schema.registry import find, names, specification_of
 
 MODELS = [name for name in names("damper") if find("damper", name).__module__.startswith("seatsim.dampers.")]
@@ -49,6 +50,18 @@ def test_a_vector_comes_back_from_its_record_and_stays_in_bounds(model):
         for name in numeric_fields(type(record)):
             low, high = bounds(type(record), name)
             assert low <= getattr(record, name) <= high, "a file with it could not be read again"
+
+
+@pytest.mark.parametrize(("default", "true"), [(0.5, 980.0), (1e-3, 4990.0), (4000.0, 0.2)])
+def test_stated_bounds_are_searched_whatever_the_default_is(default, true):
+    class Own(NamedTuple):
+        bounded: Annotated[float, param("N", "yield force", low=0, high=5e3)] = default
+        unbounded: Annotated[float, param("N", "yield force", low=0)] = default
+
+    between = Coordinates(Own(), SCALES)
+    record = Own(true, true)
+    same(between.to_record(between.to_vector(record)), record)
+    assert between.to_record(between.high).bounded == pytest.approx(5e3)
 
 
 def test_held_fields_and_ranges_are_no_components():

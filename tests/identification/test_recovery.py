@@ -142,6 +142,28 @@ def test_the_example_gives_the_damper_it_was_made_with():
         assert estimate.value == pytest.approx(truth["parameters"][name], rel=0.05), name
 
 
+def test_a_gas_force_of_many_standard_deviations_is_found():
+    slow = BINGHAM._replace(f0=4000.0, c_a=200.0, fc_a=20.0)
+    records = [made(slow, 0.01, 0.2, noise=0.02, seconds=8.0), made(slow, 0.005, 0.5, noise=0.02, seconds=8.0, seed=2)]
+    assert all(np.mean(record.force) > 100.0 * np.std(record.force) for record in records)
+    found = identify_records(records, "bingham")
+    assert found.mean("train").fit_percent > 97.0
+    assert found.bench.damper.f0 == pytest.approx(4000.0, rel=1e-3)
+
+
+def test_a_fit_that_is_worse_than_the_mean_is_none():
+    records = [record._replace(force=record.force + 4000.0) for record in sines(BINGHAM)]
+    with pytest.raises(
+        RunError, match=r"hong_sigmoid_gaussian: the best parameters found leave .* mean alone fits better"
+    ):
+        identify_records(records, "hong_sigmoid_gaussian")
+
+
+def test_a_parameter_that_ends_at_a_bound_is_flagged():
+    found = identify_records([record._replace(force=300.0 * record.force) for record in sines(BINGHAM)], "sigmoid")
+    assert any(note.startswith("at the end of its range: ") for note in found.notes)
+
+
 def test_bad_requests_are_refused(bench):
     with pytest.raises(InputError, match=r"no damper is called 'bignham' \(did you mean 'bingham'\?\)"):
         seatsim.identify(bench, "bignham")

@@ -126,6 +126,20 @@ def test_a_prediction_needs_no_outputs_and_agrees_with_what_is_measured(heavier)
     assert blind.before == pytest.approx(found.before, rel=1e-3) and blind.after == pytest.approx(found.after, rel=1e-3)
 
 
+def test_a_scenario_without_what_the_diagnosis_found_is_not_the_augmented_one(heavier):
+    copy, right, diagnosis = heavier
+    cause = {"effect": "suspension.friction", "parameters": {"force": {"value": 30.0, "std": 1.0, "unit": "N"}}}
+    content = json.loads(diagnosis.read_text()) | {"causes": [cause], "selected": [cause["effect"]]}
+    diagnosis.write_text(json.dumps(content))
+    with pytest.raises(
+        seatsim.InputError, match=r"lacks suspension.friction, which .* found; .* give .*augmented.yaml"
+    ):
+        predict_gap(copy / "nominal.yaml", copy, diagnosis)
+    entry = "\neffects: [{effect: suspension.friction, parameters: {force: 30.0}}]\n"
+    right.write_text(right.read_text() + entry)
+    assert predict_gap(right, copy, diagnosis).after > 0.0
+
+
 def call(monkeypatch, *arguments):
     monkeypatch.setattr("sys.argv", ["seatsim", *map(str, arguments)])
     with pytest.raises(SystemExit) as stopped:

@@ -75,7 +75,8 @@ def propose_experiment(objective: Objective, nuisances: Linearisation, group: Se
     now = _likeness(objective, changes, stack_jacobian(objective, nuisances))
     sensors, first = _name_sensors(members), ""
     if sensors:
-        first = f"calibrating {' and '.join(sensors)} tells a wrong sensor from a change of the rig"
+        unloaded = " while it is unloaded" if sensors == ["damper force"] else ""
+        first = f"calibrating {' and '.join(sensors)}{unloaded} tells a wrong sensor from a change of the rig"
         members = [member for member in members if member.parameters.terms[-1].block != "sensor"]
         if len(members) <= 1:
             return _propose("intervention", "calibrate_sensor", first, now, 0.0)
@@ -194,10 +195,12 @@ def _respond(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Par
 
 
 def _measure_reach(problem: DiagnosisProblem, candidate: CandidateExperiment, rig: Parameters) -> float:
-    """Return the share of the permitted travel that an excitation takes; 0 for what is no excitation of a seat."""
+    """Return the share of the permitted travel, or of a bench's stroke, that an excitation takes; 0 for other kinds."""
     plant, largest = problem.scenario.plant, problem.settings.design.largest_travel
-    if candidate.scenario is None or plant is None or problem.bench:
+    if candidate.scenario is None:
         return 0.0
+    if plant is None or problem.bench:
+        return float(np.max(np.abs(candidate.floor.displacement))) / largest
     low, high = augment_plant(problem.scenario.effects, plant).end_stops or (-largest, largest)
     travel = _respond(problem, candidate, rig)["suspension_displacement"]
     return float(max(np.max(travel) / max(high, 1e-9), np.min(travel) / min(low, -1e-9)))

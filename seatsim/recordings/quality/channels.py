@@ -6,14 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.recordings.quality.damage import NOTABLE, Doubter, doubt_dropouts, doubt_spikes
+from seatsim.recordings.quality.damage import NOTABLE, REGULAR, Doubter, doubt_dropouts, doubt_spikes
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.plausible_ranges import say_implausible
-from seatsim.recordings.quality.run_under_test import MOTION, RunUnderTest
+from seatsim.recordings.quality.run_under_test import MOTION, RunUnderTest, is_at_rest
 from seatsim.recordings.quality.shapes import flat_tops, plateaus, quantum
 
 STUCK = 0.5
 """s; a noisy channel without any change for this long is stuck."""
+ACCELERATIONS = ("floor_acceleration", "frame_acceleration", "driver_acceleration")
+"""Channels that nothing lets rest in a run that moves: friction and play may hold a travel, a coil its current."""
 STEADY = ("suspension_displacement", "displacement", "velocity")
 """Channels that inertia keeps from jumping: a force and an acceleration jump where a current is switched."""
 HOTTEST = 130.0
@@ -38,9 +40,12 @@ def check_ranges(run: RunUnderTest) -> Iterator[Issue]:
 
 def _constant(run: RunUnderTest, channel: str) -> Iterator[Issue]:
     values, noise = run.table[channel], run.noise(channel)
-    if (channel in MOTION or noise > 0.0) and np.ptp(values) == 0.0:
+    if channel in ACCELERATIONS and np.ptp(values) == 0.0:
         text = f"is {values[0]:g} throughout; the sensor is dead: repair it or remove the channel"
-        yield run.issue("warning" if channel == "damper_temperature" else "error", "constant", text, channel)
+        yield run.issue("error", "constant", text, channel)
+    elif (channel in MOTION or noise > 0.0) and np.ptp(values) == 0.0:
+        text = f"is {values[0]:g} throughout; what it measures rests, or the sensor is dead: it cannot be assessed"
+        yield run.issue("warning", "constant", text, channel)
     elif channel in MOTION and run.is_still(channel) and channel != run.driver:
         text = f"shows hardly more than its noise of {noise:g}; it cannot be assessed"
         yield run.issue("warning", "silent", text, channel)
@@ -56,7 +61,10 @@ def _current(run: RunUnderTest, channel: str, gain: float) -> Iterator[Issue]:
         text = f"{seen} where max_current is {most:g} A; is it in m{unit}? convert it to {unit}"
         yield run.issue("error", "unit", text, channel)
     elif -low > max(0.25 * most, 2.0 * high):
-        yield run.issue("error", "sign", f"{seen}; its sign is swapped: turn it", channel)
+        # A sensor's zero may be off, that of a command not: only its command tells the sign of a current for sure.
+        is_sure = channel != "coil_current" or run.opposes_command
+        text = "its sign is swapped: turn it" if is_sure else "its sign is swapped, or its zero is off: check both"
+        yield run.issue("error" if is_sure else "warning", "sign", f"{seen}; {text}", channel)
     elif -low > 0.25 * most or high > 1.3 * most:
         text = f"{seen}, outside 0 to {most:g} A; check its zero and its scale"
         yield run.issue("warning", "range", text, channel)
@@ -76,17 +84,22 @@ def _temperature(run: RunUnderTest, channel: str) -> Iterator[Issue]:
 
 
 def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
-    """Report clipped tops, values repeated over several rows, and stretches without change."""
+    """Report clipped tops, values repeated over several rows, and stretches without change.
+
+    Only a channel whose noise is finer than its resolution is known to be clipped or stuck. A coil current may rest at
+    the limit of its supply, and any other channel where friction or play holds what it measures.
+    """
     for channel, values in run.table.items():
         if channel in ("current_command", "command_voltage", "damper_temperature") or np.ptp(values) == 0.0:
             continue
-        is_fine = run.noise(channel) > quantum(values)
+        is_sure = channel in MOTION and run.is_fine(channel)
         for extreme, rows in flat_tops(values):
-            is_sure = is_fine and rows > CLIPPED * len(values)
-            text = f"{rows} rows stand at its extreme {extreme:.4g}; it is clipped: widen its range"
-            yield run.issue("error" if is_sure else "warning", "clipped", text, channel)
-        if is_fine:
-            yield from _held(run, channel)
+            is_error = is_sure and rows > CLIPPED * len(values)
+            text = f"{rows} rows stand at its extreme {extreme:.4g}"
+            cause = "it is clipped: widen its range" if is_sure else "it rests there, or is clipped: look at its range"
+            yield run.issue("error" if is_error else "warning", "clipped", f"{text}; {cause}", channel)
+        if run.noise(channel) > quantum(values):
+            yield from _held(run, channel, is_sure)
 
 
 def check_sizes(run: RunUnderTest) -> Iterator[Issue]:
@@ -106,13 +119,19 @@ def check_damage(run: RunUnderTest) -> Iterator[Issue]:
             yield from place_in_run(run.name, found)
 
 
-def _held(run: RunUnderTest, channel: str) -> Iterator[Issue]:
+def _held(run: RunUnderTest, channel: str, is_sure: bool) -> Iterator[Issue]:
     lengths, starts = plateaus(run.table[channel])
-    longest = int(np.argmax(lengths))
-    if lengths[longest] > max(STUCK * run.rate, 20):
-        begin, end = starts[longest] / run.rate, (starts[longest] + lengths[longest]) / run.rate
-        text = f"is stuck from {begin:.3g} to {end:.3g} s; cut the run there or repair the sensor"
-        yield run.issue("error", "stuck", text, channel)
-    elif np.median(lengths) >= 2:
-        text = f"holds each value for {int(np.median(lengths))} rows; its own rate is lower: interpolate it"
+    longest, usual = int(np.argmax(lengths)), int(np.median(lengths))
+    rows = slice(starts[longest], starts[longest] + lengths[longest])
+    if is_sure and lengths[longest] > max(STUCK * run.rate, 20) and _moves_beside(run, channel, rows):
+        text = f"is stuck from {rows.start / run.rate:.3g} to {rows.stop / run.rate:.3g} s"
+        yield run.issue("error", "stuck", f"{text}; cut the run there or repair the sensor", channel)
+    elif usual >= 2 and np.mean(lengths == usual) > REGULAR:
+        text = f"holds each value for {usual} rows; its own rate is lower: interpolate it"
         yield run.issue("warning", "held", text, channel)
+
+
+def _moves_beside(run: RunUnderTest, channel: str, rows: slice) -> bool:
+    """Say whether another channel moves in some rows, as is assumed where there is none."""
+    others = [name for name in MOTION if name in run.table and name != channel]
+    return not others or any(not is_at_rest(run.table[name][rows], run.noise(name)) for name in others)

@@ -23,9 +23,9 @@ GROSS, DELAYED = 0.4, 0.2
 EXCHANGED, LEFT_BY_EXCHANGE = 0.002, 0.3
 """Residual of the coil from which currents may be exchanged, and largest share of it that undoing the exchange leaves.
 A coil follows its command so closely that the right assignment leaves almost nothing."""
-FITS, FITS_DELAYED = 0.5, 0.1
-"""Largest mean residual of the channels that a correction changed for them to fit, and for a delay; the latter is
-smaller since any lag resembles a delay."""
+FITS = 0.1
+"""Largest mean residual of the channels that a correction changed for them to fit. A fault of the data is exact: its
+correction leaves what the rig differs from its nominal. An effect that resembles one leaves more."""
 CHANGED = 0.05
 """Least change of a residual that counts as an influence of the correction."""
 AS_GOOD = 0.1
@@ -38,7 +38,7 @@ def check_exchanged_currents(run: RunUnderTest) -> Iterator[Issue]:
     if not set(fault.channels) <= set(run.table):
         return
     before = _coil_residual(run, run.table)
-    if before > EXCHANGED and _coil_residual(run, fault.correct(run.table)) < LEFT_BY_EXCHANGE * before:
+    if before > EXCHANGED and _coil_residual(run, fault.correct(run.table)) < min(LEFT_BY_EXCHANGE * before, FITS):
         yield _named(run, [fault])
 
 
@@ -76,9 +76,9 @@ def _possible(run: RunUnderTest, before: Mapping[str, float], outputs: Table | N
 def _explains(fault: DataFault, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
     """Say whether the correction of a fault lowers the residual by much and makes the changed channels fit."""
     changed = [name for name in before if abs(before[name] - after[name]) > CHANGED]
-    limit, left = (DELAYED, FITS_DELAYED) if fault.kind == "late" else (GROSS, FITS)
     fall = sum(before.values()) - sum(after.values())
-    return fall >= limit and float(np.mean([after[name] for name in changed])) <= left
+    is_large = fall >= (DELAYED if fault.kind == "late" else GROSS)
+    return is_large and float(np.mean([after[name] for name in changed])) <= FITS
 
 
 def _named(run: RunUnderTest, explanations: Sequence[DataFault]) -> Issue:
@@ -87,6 +87,7 @@ def _named(run: RunUnderTest, explanations: Sequence[DataFault]) -> Issue:
     said = [f"{' and '.join(first.channels)}: {first.says}"]
     said += [f"{' and '.join(d.channels)} {d.says}" for d in others if d.channels != first.channels]
     mend = "correct it, in an import by the keys sign, unit or delay of the map, and compare again"
-    text = f"{run.name}, {', or '.join(said)}; {mend}"
-    severity: Severity = "warning" if first.kind == "late" and first.channels == ("coil_current",) else "error"
-    return Issue(severity, first.kind, text, first.channels[0], run.name)
+    if any(fault.may_be_effect for fault in explanations):
+        mend = f"an effect may do this too; {mend} if it is none"
+    severity: Severity = "warning" if any(fault.may_be_effect for fault in explanations) else "error"
+    return Issue(severity, first.kind, f"{run.name}, {', or '.join(said)}; {mend}", first.channels[0], run.name)

@@ -20,6 +20,8 @@ MOST_CANDIDATES = 20_000
 """Rows that bend much, above which a channel is rough and has no spikes."""
 DROPOUT, JUMP = 10, 5.0
 """Least rows of a dropout, and the jump before or after it, in usual steps between rows."""
+REGULAR = 0.8
+"""Share of stretches of one length above which a channel is held, and not at rest here and there."""
 SMOOTH = 0.7
 """Ratio of the noise in fourth to that in third differences below which it is not white: a filter took it."""
 SILENT = 3e-5
@@ -60,7 +62,7 @@ def doubt_shape(doubter: Doubter, values: Array, lengths: NDArray[np.int_]) -> I
         return
     level, step = measure_level(values[:MOST_ROWS], doubter.rate), find_resolution(values[:MOST_ROWS])
     usual = float(np.median(lengths[:MOST_ROWS]))
-    if usual >= 2.0 and np.mean(lengths == usual) > 0.8:
+    if usual >= 2.0 and np.mean(lengths == usual) > REGULAR:
         yield doubter.say("warning", "held", f"holds each value for {usual:.0f} rows; its own rate is lower")
     if np.isfinite(level.fourth):
         yield from _floor(doubter, level, step, 0.5 * float(np.ptp(values)))

@@ -1,8 +1,8 @@
 """Examination of a recording for faults, before anything is fitted.
 
-An `error` would lead to a confident wrong verdict, so diagnosis and gap refuse the recording. A `warning` is stated and
-they continue. A `note` is for information. Thresholds are coarse, because a gap between a rig and its simulation is not
-a fault of the data.
+An `error` would lead to a confident wrong verdict, so diagnosis and gap refuse the recording, unless `recording.yaml`
+accepts it by its kind. A `warning` is stated and they continue. A `note` is for information. What an effect of the
+library or chance can produce is no error, because a gap between a rig and its simulation is not a fault of the data.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from seatsim.recordings.quality.channels import check_damage, check_ranges, chec
 from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
 from seatsim.recordings.quality.floor_sensor import check_floor_sensor
 from seatsim.recordings.quality.gravity import without_gravity
-from seatsim.recordings.quality.issue import Issue, place_in_run, select_errors
+from seatsim.recordings.quality.issue import Issue, place_in_run, select_errors, settle_refusals
 from seatsim.recordings.quality.relations import doubt_relations
 from seatsim.recordings.quality.rows import check_rows
 from seatsim.recordings.quality.run_under_test import RunUnderTest
@@ -57,7 +57,7 @@ def examine(recording: Recording) -> Examination:
     """
     runs, issues = _read(without_gravity(recording))
     if not select_errors(issues):
-        issues += check_all_runs(runs)
+        issues += settle_refusals(check_all_runs(runs), recording.header.accept)
     if not select_errors(issues):
         # Most of their time goes into simulations, which leave the interpreter free.
         with ThreadPoolExecutor() as pool:
@@ -89,7 +89,7 @@ def _read(recording: Recording) -> tuple[list[RunUnderTest], list[Issue]]:
             issues.append(Issue("error", "unreadable", str(error), run=name))
         else:
             runs.append(run)
-            issues += check_clock(run)
+            issues += settle_refusals(check_clock(run), recording.header.accept)
     return runs, issues
 
 
@@ -97,7 +97,7 @@ def _each(run: RunUnderTest) -> list[Issue]:
     """Return the issues of one run; later checks run only where the earlier ones found no error."""
     issues: list[Issue] = []
     for check in CHECKS:
-        issues += check(run)
+        issues += settle_refusals(check(run), run.recording.header.accept)
         if select_errors(issues):
             break
     return issues

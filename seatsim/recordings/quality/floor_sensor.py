@@ -28,6 +28,8 @@ STILL = 3.0
 """Stillness above which a sensor does not follow the floor; faultless ones have 0.9 to 2."""
 FINE = 32
 """Points between two rows at which slopes are taken, so that a sine is sampled at many phases."""
+FASTEST = 0.98
+"""Share of rises below the one that has to stand out from the noise, lest the floor is too slow to tell."""
 NEAR = 0.1
 """Share of its standard deviation within which a record is near zero."""
 BIN, BESIDE = 7.0, 3
@@ -83,6 +85,8 @@ def _stillness(values: Array, noise: float, rows: int) -> float:
     within = (means > np.min(values) + room) & (means < np.max(values) - room)
     counted = np.repeat(within & (np.abs(means) > NEAR * np.std(values)), FINE)
     unit = 2.0 * noise * np.sqrt(12.0 / rows)
+    if np.quantile(np.abs(rises), FASTEST) < 3.0 * unit:
+        return 0.0
     size = np.abs(np.interp(between, np.arange(len(rises)), rises))[counted]
     still, beside = np.sum(size < unit), np.sum((size >= unit) & (size < 3.0 * unit))
     return float(2.0 * still / max(beside, FINE))

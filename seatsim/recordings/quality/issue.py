@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
+
+from seatsim.recordings.header import Refusal
 
 Severity = Literal["error", "warning", "note"]
 
@@ -30,6 +32,17 @@ def issue_in_all_runs(severity: Severity, kind: str, text: str, channel: str | N
 def place_in_run(run: str, issues: Iterable[Issue]) -> list[Issue]:
     """Return issues of channels as those of a run."""
     return [issue._replace(sentence=f"{run}, {issue.sentence}", run=run) for issue in issues]
+
+
+def settle_refusals(issues: Iterable[Issue], accepted: Sequence[str]) -> list[Issue]:
+    """Return issues whose errors are notes where a recording accepts their kind, and say how to accept it elsewhere."""
+    return [
+        issue if issue.severity != "error" or issue.kind not in get_args(Refusal)
+        else issue._replace(severity="note", sentence=f"{issue.sentence}; accepted by its owner")
+        if issue.kind in accepted
+        else issue._replace(sentence=f"{issue.sentence}; if it is right as it is, write accept: [{issue.kind}]")
+        for issue in issues
+    ]  # fmt: skip
 
 
 def select_errors(issues: Sequence[Issue]) -> list[Issue]:

@@ -11,7 +11,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.channel_units import SEAT_CHANNELS
+from seatsim.recordings.quality.faults import is_within_reach
+from seatsim.recordings.quality.issue import Issue, Severity
 from seatsim.schema.units import USUAL, find_conversion
 
 Array = NDArray[np.float64]
@@ -22,8 +24,9 @@ MOST_ROWS = 120_000
 """Rows from which relations are computed."""
 TINY_FORCE, MOVED = 5.0, 1e-3
 """N that a damper exceeds once it is moved by so many m."""
-UNEXPLAINED = 0.2
-"""Share of the travel's second derivative that both accelerations leave, above which they are no balance."""
+OPEN, CLOSED, AS_GOOD = 0.05, 0.1, 2.0
+"""Difference of two sides of an equation from which they contradict each other, share of it that a correction leaves at
+most, and ratio to the least that is left up to which another correction does as well."""
 SURELY_ALIKE, FAR = 0.97, 0.3
 """Correlation of a coil with its command, and share by which a factor differs from one, that no effect gives."""
 NEAR = 0.25
@@ -78,44 +81,71 @@ def _force(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
 
 
 def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
-    """Compare the travel's second derivative with frame - floor acceleration, the shares of both apart.
+    """Name the signs and units with which the travel's second derivative is frame - floor acceleration.
 
-    No effect on a rig does what a swapped sign or a wrong unit does here: it is an error.
+    No effect on a rig does what a swapped sign or a unit beyond the reach of effects does here: it is an error.
     """
-    if not {"suspension_displacement", "frame_acceleration", "floor_acceleration"} <= set(part):
+    names = ("suspension_displacement", "frame_acceleration", "floor_acceleration")
+    if not set(names) <= set(part):
         return
-    slope = np.gradient(np.gradient(part["suspension_displacement"], 1.0 / rate), 1.0 / rate)
+    slope = np.gradient(np.gradient(part[names[0]], 1.0 / rate), 1.0 / rate)
     target, frame, floor = (
-        band_passed(each, rate, 0.7, min(8.0, 0.2 * rate))
-        for each in (slope, part["frame_acceleration"], part["floor_acceleration"])
+        band_passed(each, rate, 0.7, min(8.0, 0.2 * rate)) for each in (slope, part[names[1]], part[names[2]])
     )
-    shares, left, _, _ = np.linalg.lstsq(np.column_stack([frame, -floor]), target, rcond=None)
-    if not len(left) or left[0] > UNEXPLAINED * float(target @ target) or not shares.all():
-        return
-    gains = {"frame_acceleration": 1.0 / float(shares[0]), "floor_acceleration": 1.0 / float(shares[1])}
-    both = float(np.mean(list(gains.values())))
-    if abs(gains["frame_acceleration"] / gains["floor_acceleration"] - 1.0) < NEAR:
-        yield from _motion_of_both(both, rate)
-        return
-    for name, gain in gains.items():
-        if said := read_gain(gain, "m/s^2"):
-            text = f"{name}: is {gain:.3g} times what the travel and the other acceleration show: {said}"
-            yield Issue("error", kind_of(gain), text, name)
+    before = _unlike(target, frame - floor)
+    left = {
+        (channels, said, factor): _unlike(*_corrected(channels, factor, target, frame, floor))
+        for channels in ((names[0],), (names[1],), (names[2],), (names[2], names[1]))
+        for said, factor in _list_factors(channels[0])
+    }
+    least = min(left.values())
+    is_closed = before > OPEN and least < CLOSED * before
+    for channels, said, factor in left if is_closed else ():
+        if left[channels, said, factor] > AS_GOOD * least:
+            continue
+        severity: Severity = "warning" if is_within_reach(channels[0], factor) else "error"
+        of_both = ": of both" if len(channels) > 1 else ":"
+        exchanged = ", or the two are exchanged" if len(channels) > 1 and factor == -1.0 else ""
+        text = f"{' and '.join(channels)}{of_both} {said}{exchanged}; travel and accelerations contradict each other"
+        yield Issue(severity, kind_of(factor), text, channels[0])
+    if not is_closed:
+        yield from _scale(target, frame - floor, rate)
 
 
-def _motion_of_both(gain: float, rate: float) -> Iterator[Issue]:
-    """Yield what it means that both accelerations differ from the travel's by the same factor."""
-    if said := read_gain(gain, "m/s^2"):
-        exchanged = ", or the two are exchanged" if gain < 0.0 else ""
-        text = f"are {gain:.3g} times the travel's second derivative: of both {said}{exchanged}"
-        first = "floor_acceleration"
-        yield Issue("error", kind_of(gain), f"{first} and frame_acceleration: {text}", first)
-    if said := read_gain(1.0 / gain, "m"):
-        text = f"its second derivative is {1.0 / gain:.4g} times frame - floor acceleration: {said}"
-        yield Issue("error", kind_of(gain), f"suspension_displacement: {text}", "suspension_displacement")
-    elif gain > 0.0 and not 1.0 - FAR < gain < 1.0 / (1.0 - FAR):
-        text = f"its second derivative is {1.0 / gain:.3g} times frame - floor acceleration: its scale is wrong by that"
-        other = f", or the sample rate, which then is {rate * gain**0.5:.4g} Hz"
+def _list_factors(channel: str) -> Iterator[tuple[str, float]]:
+    """Yield what may be wrong with the scale of a channel, with the factor that corrects it."""
+    wanted = SEAT_CHANNELS[channel]
+    for unit in USUAL[wanted]:
+        found = find_conversion(unit, wanted)
+        if found is not None:
+            said = "" if unit == wanted else f"it reads as if in {unit}"
+            signed = " and ".join(filter(None, (said, "its sign is swapped")))
+            yield from ((text, factor) for text, factor in ((said, found.factor), (signed, -found.factor)) if text)
+
+
+def _corrected(
+    channels: tuple[str, ...], factor: float, target: Array, frame: Array, floor: Array
+) -> tuple[Array, Array]:
+    """Return the travel's second derivative and frame - floor acceleration once some channels are corrected."""
+    own = {"suspension_displacement": target, "frame_acceleration": frame, "floor_acceleration": floor}
+    travel, moved, base = (factor * values if name in channels else values for name, values in own.items())
+    return travel, moved - base
+
+
+def _unlike(first: Array, second: Array) -> float:
+    """Return the mean square difference over the sum of mean squares: 0 alike, 1 unrelated, 2 opposite."""
+    return float(np.sum((first - second) ** 2) / max(np.sum(first**2) + np.sum(second**2), 1e-300))
+
+
+def _scale(target: Array, relative: Array, rate: float) -> Iterator[Issue]:
+    """Yield that the travel's second derivative is frame - floor acceleration but for a factor, where it is."""
+    product, power = float(target @ relative), float(relative @ relative)
+    if product <= ALIKE * float(np.linalg.norm(target)) * power**0.5:
+        return
+    gain = product / power
+    if not 1.0 - FAR < gain < 1.0 / (1.0 - FAR):
+        text = f"its second derivative is {gain:.3g} times frame - floor acceleration: its scale is wrong by that"
+        other = f", or that of the accelerations, or the sample rate, which then is {rate / gain**0.5:.4g} Hz"
         yield Issue("warning", "scale", f"suspension_displacement: {text}{other}", "suspension_displacement")
 
 

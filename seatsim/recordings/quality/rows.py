@@ -6,16 +6,19 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
 from seatsim.recordings.quality.damage import ALONE, AROUND
 from seatsim.recordings.quality.issue import Issue, Severity, issue_in_all_runs
 from seatsim.recordings.quality.run_under_test import LATE, MOTION, RunUnderTest
-from seatsim.recordings.quality.shapes import Array, measure_level, quantum
+from seatsim.recordings.quality.shapes import Array, measure_level
 
 LEAST_FINE = 2
 """Channels with noise finer than their resolution from which on no two rows are alike by chance."""
 LEAST_REPEATED = 4
 """Rows written twice from which on they are said: fewer shift no signal by more than a few milliseconds."""
+BEYOND_CHANCE = 5.0
+"""Ratio to the number of rows that channels repeat together by chance from which rows were written twice."""
 NOISY = 1e-4
 """Noise as a share of the swing above which it is that of a sensor, and not of arithmetic."""
 NOTHING = np.empty(0)
@@ -38,30 +41,33 @@ def check_rows(run: RunUnderTest) -> Iterator[Issue]:
 
 
 def _doubled(run: RunUnderTest) -> Iterator[Issue]:
-    fine = [run.table[c] for c in MOTION if c in run.table and run.noise(c) > quantum(run.table[c])]
-    if len(fine) < LEAST_FINE:
+    if sum(run.is_fine(channel) for channel in MOTION if channel in run.table) < LEAST_FINE:
         return
-    # Equal rows have equal sums, and others differ, but for chances of one in 10^12.
-    marks = np.random.default_rng(0).random(len(fine)) @ [values / np.std(values) for values in fine]
-    again = find_repeated_rows(marks)
+    again = find_repeated_rows(np.array([values for values in run.table.values() if np.ptp(values) > 0.0]))
     if len(again):
         severity: Severity = "warning" if len(again) / run.rate <= LATE else "error"
         text = f"{len(again)} rows hold in every channel what a row before holds, the first is row {again[0] + 1}"
         yield run.issue(severity, "doubled", f"{text}; they were written twice: remove them")
 
 
-def find_repeated_rows(marks: Array) -> NDArray[np.intp]:
+def find_repeated_rows(channels: Array) -> NDArray[np.intp]:
     """Return the rows of blocks that follow themselves at once: single rows written twice, or a whole buffer.
 
-    Equal rows far apart are no fault: a periodic motion measured with coarse converters has them by chance. So has a
-    rig at rest, where rows equal the last but one as often as the last.
+    channels: shape (channels, N), or (N,). Equal rows far apart are no fault: a periodic motion measured with coarse
+    converters has them by chance. So has a rig at rest, where rows equal the last but one as often as the last, and
+    channels so coarse that each repeats itself often: they do so together as often as the product of their shares says.
     """
+    values = np.atleast_2d(channels)
+    # Equal rows have equal sums, and others differ, but for chances of one in 10^12.
+    marks = np.random.default_rng(0).random(len(values)) @ (values / np.std(values, axis=1, keepdims=True))
     order = np.argsort(marks, kind="stable")
     distances, counts = np.unique(np.diff(order)[np.diff(marks[order]) == 0.0], return_counts=True)
     found = [np.empty(0, dtype=np.intp)]
     for distance in distances[counts >= np.maximum(distances, LEAST_REPEATED)]:
         equal, by_chance = (marks[lag:] == marks[:-lag] for lag in (distance, distance + 1))
-        if np.sum(equal) >= LEAST_REPEATED + 2 * np.sum(by_chance):
+        alone = (values[:, distance:] == values[:, :-distance]) & ~equal
+        together = np.sum(np.prod(uniform_filter1d(alone.astype(float), AROUND, axis=1), axis=0))
+        if np.sum(equal) >= LEAST_REPEATED + 2 * np.sum(by_chance) + BEYOND_CHANCE * together:
             ends = np.flatnonzero(np.diff(np.concatenate([[False], equal, [False]])))
             blocks = zip(ends[::2], ends[1::2], strict=True)
             rows = [np.arange(first, end) + distance for first, end in blocks if end - first >= distance]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.recordings.quality.issue import Issue, Severity
+from seatsim.recordings.quality.shapes import flickers, quantum
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.scenario import Scenario
 
@@ -57,6 +58,13 @@ class RunUnderTest(NamedTuple):
         """Channel of the excitation."""
         return "floor_acceleration" if "floor_acceleration" in self.table else "displacement"
 
+    @property
+    def opposes_command(self) -> bool:
+        """Whether the coil current falls where its command rises."""
+        commands = [self.table[name] for name in ("current_command", "command_voltage") if name in self.table]
+        coil = self.table["coil_current"]
+        return any(float(np.cov(coil, each)[0, 1]) < -0.5 * np.std(coil) * np.std(each) for each in commands)
+
     def noise(self, channel: str) -> float:
         """Return the stated noise of a channel."""
         return self.recording.channels[channel].noise_rms
@@ -64,6 +72,11 @@ class RunUnderTest(NamedTuple):
     def is_still(self, channel: str) -> bool:
         """Say whether a channel shows hardly more than its noise."""
         return is_at_rest(self.table[channel], self.noise(channel))
+
+    def is_fine(self, channel: str) -> bool:
+        """Say whether the noise of a channel, stated and seen, exceeds its resolution: it then changes at each row."""
+        values = self.table[channel]
+        return self.noise(channel) > quantum(values) and flickers(values, self.rate)
 
     def issue(self, severity: Severity, kind: str, text: str, channel: str | None = None) -> Issue:
         """Return an issue of this run, or of one channel of it."""

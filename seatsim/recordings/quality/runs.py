@@ -101,7 +101,7 @@ def _at_rest(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
             text = f"does not move while {moving[0]} does; check its cable and its scale"
             yield run.issue("error", "still", text, run.driver)
         else:
-            yield run.issue(resting, "still", "nothing moves; remove the run")
+            yield run.issue(resting, "still", "nothing moves by more than three times its stated noise; remove the run")
 
 
 def _fahrenheit(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:

@@ -11,6 +11,11 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 WINDOW, FEWEST, LEAST_WINDOWS = 0.5, 50, 4
 """Seconds of a window in which noise is measured, its least rows, and least windows of a run."""
+PILED = 3.0
+"""Ratio of the rows at an extreme to those beside it from which they are piled up there."""
+FLICKER = 0.5
+"""Least share of rows that differ from the row before where noise exceeds the resolution: white noise of one step gives
+three quarters."""
 
 
 class Level(NamedTuple):
@@ -29,8 +34,11 @@ def plateaus(values: Array) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
 
 
 def flat_tops(values: Array) -> Iterator[tuple[float, int]]:
-    """Yield each extreme other than zero at which more rows stand than in the 2 % of the range beside it."""
-    near = 0.02 * float(np.ptp(values))
+    """Yield each extreme other than zero at which far more rows stand than in the 2 % of the range beside it.
+
+    Coarse values are compared with the next level: a sine has 2.4 times as many rows at the last one.
+    """
+    near = max(0.02 * float(np.ptp(values)), 1.5 * quantum(values))
     lengths, starts = plateaus(values)
     # With so many stretches most are one row long, and their median need not be sought.
     usual = 1.0 if 3 * len(starts) > 2 * len(values) else float(np.median(lengths))
@@ -40,13 +48,28 @@ def flat_tops(values: Array) -> Iterator[tuple[float, int]]:
         if rows < 5 * usual:
             continue
         beside = int(np.sum(np.abs(values - extreme) <= near)) - rows
-        if extreme != 0.0 and rows >= beside and np.max(lengths[at[starts]]) >= 3 * usual:
+        if extreme != 0.0 and rows >= PILED * beside and np.max(lengths[at[starts]]) >= 3 * usual:
             yield extreme, rows
 
 
 def quantum(values: Array) -> float:
     """Return the smallest step between two values."""
     return float(np.min(np.diff(np.unique(values)), initial=np.inf))
+
+
+def flickers(values: Array, rate: float) -> bool:
+    """Say whether values change from row to row, as noise makes them, in the calmest fifth of windows too.
+
+    The longest stretch of equal values is left out, as a sensor may be stuck there.
+    """
+    lengths, starts = plateaus(values)
+    longest = int(np.argmax(lengths))
+    rest = np.delete(values, slice(starts[longest], starts[longest] + lengths[longest]))
+    rows = max(round(WINDOW * rate), FEWEST)
+    pieces = rest[: len(rest) // rows * rows].reshape(-1, rows)
+    spread = np.std(pieces, axis=1)
+    calm = pieces[spread <= np.quantile(spread, 0.2)] if len(pieces) else pieces
+    return len(calm) > 0 and float(np.mean(np.diff(calm, axis=1) != 0.0)) > FLICKER
 
 
 def measure_level(values: Array, rate: float) -> Level:

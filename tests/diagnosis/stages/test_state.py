@@ -297,7 +297,7 @@ def test_an_unexplained_signal_is_shown_but_no_cause(objective):
 
 
 @pytest.mark.parametrize("bench", [False, True])
-def test_an_experiment_is_proposed_for_the_first_group_of_a_seat_alone(objective, monkeypatch, bench):
+def test_an_experiment_is_proposed_for_the_first_group_of_a_seat_or_a_bench(objective, monkeypatch, bench):
     asked = []
     monkeypatch.setattr(
         "seatsim.diagnosis.state.propose_experiment", lambda o, n, group: asked.append((n, group)) or "it"
@@ -309,8 +309,8 @@ def test_an_experiment_is_proposed_for_the_first_group_of_a_seat_alone(objective
         header = problem.recording.header._replace(rig="damper_bench")
         other = dataclasses.replace(problem, recording=dataclasses.replace(problem.recording, header=header))
         bench_solution = solution._replace(objective=dataclasses.replace(objective, problem=other))
-        assert _propose_experiment(bench_solution.objective, bench_solution.decision, None) is None
-        assert asked == []
+        assert _propose_experiment(bench_solution.objective, bench_solution.decision, None) == "it"
+        assert asked == [(None, groups[0])]
         return
     found, _ = state(solution)
     assert found.experiment == "it" and found.indistinguishable == groups

@@ -71,3 +71,23 @@ def test_held_values_are_told_with_their_rows_unless_they_are_coarser_than_the_n
     assert (issue.severity, issue.kind) == ("warning", "held") and "for 4 rows" in issue.sentence
     coarse = np.round(np.repeat(MOVING[::4], 4), 1)
     assert kinds(check_shapes, under_test({"frame_acceleration": coarse}, RATE, NOISE)) == []
+
+
+def test_a_travel_that_friction_holds_is_neither_stuck_nor_dead_nor_clipped(under_test):
+    """Of a coarse sensor with less noise than was stated of it."""
+    floor = MOVING
+    held = np.round(np.where(np.arange(2500) % 700 < 400, 1.0, MOVING), 1)
+    for travel, expected in ((held, "clipped"), (0.0 * MOVING, "constant")):
+        table = {"floor_acceleration": floor, "suspension_displacement": travel}
+        run = under_test(table, RATE, {"floor_acceleration": 0.01, "suspension_displacement": 0.2})
+        assert {(each.severity, each.kind) for check in (check_ranges, check_shapes) for each in check(run)} <= {
+            ("warning", expected)
+        }
+
+
+@pytest.mark.parametrize(("command", "severity"), [(1.0, "error"), (-1.0, "warning"), (0.0, "warning")])
+def test_a_negative_current_has_the_wrong_sign_only_where_it_opposes_its_command(under_test, command, severity):
+    swing = 0.2 + 0.1 * np.sin(np.arange(2500) / 50.0)
+    run = under_test({"coil_current": -swing - 0.2, "current_command": 0.3 + command * (swing - 0.2)}, RATE)
+    (issue,) = check_ranges(run)
+    assert (issue.severity, issue.kind) == (severity, "sign")

@@ -1,17 +1,20 @@
 """Faults of data are named in one sentence; a recording with a gap is not called faulty."""
 
 import shutil
+from typing import get_args
 
 import numpy as np
 import pandas as pd
 import pytest
 from ruamel.yaml import YAML
 
+from seatsim.recordings.header import Refusal
 from seatsim.recordings.quality.coverage import measure_coverage
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import load_recording
+from seatsim.schema.errors import InputError
 
-from ...faulty_recordings import SOUND_GAPS, WARNINGS, at_rest, edit, rewrite, scaled
+from ...faulty_recordings import FAULTS, SOUND_GAPS, WARNINGS, at_rest, edit, rewrite, scaled
 
 
 def found(folder):
@@ -51,6 +54,35 @@ def test_a_nominal_that_is_far_off_is_no_fault(copy, old, new):
     assert old in path.read_text()
     path.write_text(path.read_text().replace(old, new))
     assert errors(copy) == []
+
+
+def test_what_its_owner_accepts_is_a_note_and_the_later_checks_are_made(copy):
+    rewrite(copy, scaled("damper_force", -1.0))
+    (error,) = examine(load_recording(copy)).errors
+    assert error.sentence.endswith("if it is right as it is, write accept: [sign]")
+    edit(copy, lambda header: header.update(accept=["sign"]))
+    examination = examine(load_recording(copy))
+    assert examination.errors == [] and refuse(examination) is None
+    assert any(issue.severity == "note" and "accepted by its owner" in issue.sentence for issue in examination.issues)
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_refusal_names_the_check_that_may_be_overruled(copy, name):
+    rewrite(copy, FAULTS[name][0])
+    for issue in examine(load_recording(copy)).errors:
+        assert issue.kind == "unreadable" or f"write accept: [{issue.kind}]" in issue.sentence
+        assert issue.kind == "unreadable" or issue.kind in get_args(Refusal)
+
+
+@pytest.mark.parametrize(
+    ("stated", "said"), [(["lat"], "'lat' is not permitted (did you mean 'late'?); permitted: rate, jump"),
+                         ("late", "must be a list, such as [late]")],
+)  # fmt: skip
+def test_an_unknown_check_cannot_be_accepted(copy, stated, said):
+    edit(copy, lambda header: header.update(accept=stated))
+    with pytest.raises(InputError) as refused:
+        load_recording(copy)
+    assert said in str(refused.value)
 
 
 def test_a_fault_of_one_run_is_placed_there(copy):

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
+from scipy.signal import butter, lfilter, sosfiltfilt
 
 from seatsim.recordings.quality.noise_level import check_noise
 
@@ -65,3 +65,16 @@ def test_filtered_noise_is_not_taken_for_less_than_it_is_where_repeats_show_all_
     assert found(values, stated, is_repeat=True) == []
     assert [severity for severity, _ in found(values, stated)] == ["warning"]
     assert [severity for severity, _ in found(values, 10.0 * stated, is_repeat=True)] == ["warning"]
+
+
+@pytest.mark.parametrize("highest", [0.1, 0.4])
+def test_a_filter_that_took_the_noise_is_named_and_nothing_is_to_be_corrected(found, highest):
+    values = [sosfiltfilt(butter(6, highest, output="sos"), SWELL + white(seed)) for seed in (0, 1)]
+    [(severity, said)] = found(values, 1.0)
+    assert severity == "note" and "it was filtered" in said and "correct" not in said
+
+
+def test_repeats_show_what_the_noise_is_to_be_corrected_to(found):
+    motion = 9.0 * np.sin(9.0 * TIME)
+    [(_, said)] = found([motion + 0.1 * white(seed) for seed in (0, 1)], 1.0, is_repeat=True)
+    assert "repeats differ by 0.1 only; correct it" in said

@@ -1,8 +1,9 @@
 """Rows that were written twice, and rows that are equal by chance."""
 
 import numpy as np
+import pytest
 
-from seatsim.recordings.quality.rows import find_repeated_rows
+from seatsim.recordings.quality.rows import check_rows, find_repeated_rows
 
 NOISE = np.random.default_rng(0).standard_normal(2000)
 
@@ -26,3 +27,23 @@ def test_a_slow_sine_of_a_coarse_converter_repeats_itself_by_chance():
 
 def test_a_rig_at_rest_repeats_itself_by_chance():
     assert len(find_repeated_rows(np.round(NOISE, 0))) == 0
+
+
+def test_coarse_channels_repeat_each_other_by_chance():
+    time, generator = np.arange(6000) / 500.0, np.random.default_rng(2)
+    motion = np.array([10.0 * np.sin(np.pi * time), np.cos(np.pi * time)]) + [
+        [0.01],
+        [0.01],
+    ] * generator.standard_normal((2, 6000))
+    coarse = np.round(motion / 0.015) * 0.015
+    assert np.sum(np.all(coarse[:, 1:] == coarse[:, :-1], axis=0)) > 25
+    assert len(find_repeated_rows(coarse)) == 0
+
+
+@pytest.mark.parametrize(("others", "found"), [(NOISE[::-1], 0), (None, 5)])
+def test_rows_are_written_twice_only_if_every_channel_repeats(under_test, others, found):
+    rows = np.sort([*range(1995), *range(700, 705)])
+    table = {name: NOISE[rows] * size for name, size in (("driver_acceleration", 1.0), ("frame_acceleration", 2.0))}
+    table["coil_current"] = NOISE[rows] if others is None else others
+    run = under_test(table, 500.0, dict.fromkeys(table, 1.0))
+    assert [issue.sentence.split()[1] for issue in check_rows(run)] == ["5"] * (found > 0)

@@ -1,0 +1,157 @@
+"""What an effect of the library does to sound data is no fault of theirs, however large it is."""
+
+import dataclasses
+
+import numpy as np
+import pandas as pd
+import pytest
+from ruamel.yaml import YAML
+
+from seatsim.dampers.bouc_wen import BoucWen
+from seatsim.effects.base import EFFECTS
+from seatsim.recordings.inputs import recorded_inputs
+from seatsim.recordings.quality.examination import examine
+from seatsim.recordings.recording import load_recording
+from seatsim.scenario.loading import single
+from seatsim.simulation.augment import read_sensors
+from seatsim.simulation.damper_bench import bench_force
+from seatsim.simulation.respond import respond
+
+from ...faulty_recordings import late, rewrite, scaled, without_time
+
+LARGE = {
+    "damper.thermal_fade": ({"viscous": 0.02, "yielding": 0.02, "rise": 60.0}, {"viscous": -0.02, "rise": 60.0}),
+    "damper.gas_spring": ({"preload": 800.0}, {"preload": -300.0, "stiffness": 5000.0}),
+    "damper.asymmetry": ({"viscous": 0.9, "yielding": 0.9}, {"viscous": 0.0, "pulling": 0.9}),
+    "damper.preyield_hysteresis": ({"travel": 0.01}, {"travel": 0.0, "lag": 0.05}, {"travel": 0.0, "behind": 0.05}),
+    "damper.magnetic_saturation": ({"bend": 10.0},),
+    "damper.remanence": ({"width": 0.5}, {"width": 1.0}),
+    "damper.free_play": ({"gap": 0.002, "stiffness": 1e5}, {"gap": 0.005, "stiffness": 1e5}, {"gap": 0.005},
+                         {"gap": 0.01, "turning": 0.02}),
+    "damper.seal_friction": ({"force": 500.0}, {"force": 500.0, "presliding": 0.001}),
+    "coil.lag": ({"time": 0.2},), "coil.asymmetric_lag": ({"time": 0.2},), "coil.delay": ({"time": 0.2},),
+    "coil.current_limit": ({"limit": 0.1},),
+    "suspension.friction": ({"force": 300.0}, {"force": 100.0, "presliding": 0.001}),
+    "suspension.end_stop": ({"low": -0.005, "high": 0.005},),
+    "suspension.progressive_spring": ({"rise": 5000.0}, {"helper": 20.0, "reach": 0.01}),
+    "cushion.hardening": ({"rise": 2000.0},), "cushion.separation": ({"limit": 20.0},),
+    "driver.mass": ({"change": 70.0}, {"change": -60.0}),
+    "driver.biodynamics": ({"share": 0.9, "frequency": 4.0, "damping": 0.1},),
+    "floor.unmeasured_input": ({"rms": 400.0}, {"rms": 0.0, "tone": 1000.0, "frequency": 6.0}),
+    "sensor.clock_skew": ({"shift": 0.1}, {"shift": -0.1}),
+}  # fmt: skip
+"""Effects at the upper end of what is plausible, in several forms."""
+ON_A_CHANNEL = {
+    "sensor.gain": ({"error": 1.0}, {"error": -0.5}), "sensor.bias": ({"share": 5.0}, {"share": -5.0}),
+    "sensor.lag": ({"time": 0.03}, {"time": 0.1}),
+}  # fmt: skip
+OF_A_SEAT = ("suspension.", "cushion.", "driver.", "floor.")
+CHANNELS = {
+    "seat": ("floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement",
+             "damper_force", "coil_current"),
+    "bench": ("displacement", "damper_force", "coil_current"),
+}  # fmt: skip
+CASES = [
+    (rig, name, values) for rig in CHANNELS for name, several in LARGE.items() for values in several
+    if rig == "seat" or not name.startswith(OF_A_SEAT)
+] + [
+    (rig, name, {"channel": channel, **values}) for rig, channels in CHANNELS.items() for channel in channels
+    for name, several in ON_A_CHANNEL.items() for values in several
+]  # fmt: skip
+DAMPER = BoucWen(c_a=500.0, c_b=800.0, alpha_a=60.0, alpha_b=500.0, k0=900.0, f0=30.0, A=2000.0, beta=1300.0,
+                 gamma=900.0, n=2.0)  # fmt: skip
+RATE = 250.0
+
+
+def multisine(time, seed):
+    phases = np.random.default_rng(seed).uniform(0.0, 6.0, 8)
+    tones = sum(0.006 / k * np.sin(2 * np.pi * 0.6 * k * time + phases[k - 1]) for k in range(1, 9))
+    return (1.0 - np.exp(-(time**2))) * tones
+
+
+MOTIONS = {
+    "slow": (lambda t: 0.02 * np.sin(np.pi * t), 0.5), "fast": (lambda t: 0.01 * np.sin(4 * np.pi * t), 1.0),
+    "random": (lambda t: multisine(t, 1), 0.7),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory):
+    """The folder of a bench: two sines and a random motion, each at its current."""
+    folder, generator = tmp_path_factory.mktemp("bench"), np.random.default_rng(1)
+    for name, (motion, current) in MOTIONS.items():
+        time = 0.5 / RATE * np.arange(2 * round(12.0 * RATE) - 1)
+        stroke = motion(time)
+        force = bench_force(DAMPER, stroke, np.gradient(stroke, 0.5 / RATE), current, 20.0, 1.0 / RATE)
+        noise = generator.standard_normal((2, len(force)))
+        columns = {"displacement": stroke[::2] + 2e-5 * noise[0], "damper_force": force + 3.0 * noise[1]}
+        pd.DataFrame(columns | {"coil_current": current}).to_csv(folder / f"{name}.csv", index=False)
+    units = {"displacement": ("m", 2e-5), "damper_force": ("N", 3.0), "coil_current": ("A", 0.0)}
+    header = {"rig": "damper_bench", "sample_rate": RATE, "nominal": "nominal.yaml",
+              "runs": [{"name": name, "file": f"{name}.csv"} for name in MOTIONS],
+              "channels": {c: {"unit": u, "noise_rms": n} for c, (u, n) in units.items()}}  # fmt: skip
+    nominal = {"damper": {"model": "bouc_wen", "parameters": DAMPER._asdict()}, "temperature": 20.0,
+               "actuator": {"rate": 130.0, "max_current": 1.0}}  # fmt: skip
+    YAML(typ="safe").dump(header, folder / "recording.yaml")
+    YAML(typ="safe").dump(nominal, folder / "nominal.yaml")
+    return folder
+
+
+def with_effect(recording, name, values):
+    """Return the tables of a recording as a rig with an effect would have given them."""
+    effect, nominal = EFFECTS.find(name)(**values), single(recording.nominal)
+    on_sensor = (effect,) if name.startswith("sensor.") else ()
+    rig = dataclasses.replace(nominal, effects=() if on_sensor else (effect,))
+    interval, tables = 1.0 / recording.header.sample_rate, {}
+    for run in recording.runs:
+        table, generator = recording.table(run), np.random.default_rng(3)
+        outputs = respond(rig, recorded_inputs(recording, table, rig.solver.step), carry_all_effects=True)
+        driving = {} if "current_command" in table else {"coil_current": table["coil_current"]}
+        read = read_sensors(on_sensor, interval, {c: ({**table, **outputs} | driving)[c] for c in table})
+        noise = {c: e.noise_rms * (c in outputs and c not in driving) for c, e in recording.channels.items()}
+        tables[run] = {c: v + noise[c] * generator.standard_normal(len(v)) for c, v in read.items()}
+    return tables
+
+
+def refusals(recording, tables, monkeypatch):
+    monkeypatch.setattr(type(recording), "table", lambda _, run: tables[run])
+    return [issue.sentence for issue in examine(recording).errors]
+
+
+@pytest.mark.parametrize(("rig", "name", "values"), CASES)
+def test_an_effect_is_no_fault(sound, bench, monkeypatch, rig, name, values):
+    recording = load_recording(sound if rig == "seat" else bench)
+    assert refusals(recording, with_effect(recording, name, values), monkeypatch) == []
+
+
+@pytest.mark.parametrize("steps", [0.5, 1.5, 5.0])
+@pytest.mark.parametrize("rig", ["seat", "bench"])
+def test_coarse_converters_are_no_fault_though_more_noise_is_stated(sound, bench, monkeypatch, rig, steps):
+    recording = load_recording(sound if rig == "seat" else bench)
+    sizes = {name: steps * entry.noise_rms for name, entry in recording.channels.items()}
+    tables = {
+        run: {c: np.round(v / sizes[c]) * sizes[c] if sizes[c] else v for c, v in recording.table(run).items()}
+        for run in recording.runs
+    }
+    louder = {c: e._replace(noise_rms=2.0 * max(1.0, steps) * e.noise_rms) for c, e in recording.channels.items()}
+    assert refusals(dataclasses.replace(recording, channels=louder), tables, monkeypatch) == []
+
+
+def test_a_force_that_play_makes_late_is_a_doubt_that_says_so(bench, monkeypatch):
+    recording = load_recording(bench)
+    tables = with_effect(recording, "damper.free_play", {"gap": 0.002, "stiffness": 1e5})
+    monkeypatch.setattr(type(recording), "table", lambda _, run: tables[run])
+    (doubt,) = [issue for issue in examine(recording).issues if issue.kind == "late"]
+    assert doubt.severity == "warning" and "an effect may do this too" in doubt.sentence
+
+
+def test_a_delay_of_many_frequencies_is_a_fault_on_a_seat(copy):
+    rewrite(copy, without_time(late(0.1, "driver_acceleration")))
+    assert [issue.kind for issue in examine(load_recording(copy)).errors] == ["late"]
+
+
+@pytest.mark.parametrize(("factor", "severity"), [(1e-3, "error"), (0.1, "warning")])
+def test_a_unit_is_a_fault_where_it_is_beyond_what_a_lost_current_does_to_a_force(copy, factor, severity):
+    rewrite(copy, scaled("damper_force", factor))
+    found = [issue for issue in examine(load_recording(copy)).issues if issue.channel == "damper_force"]
+    assert {issue.severity for issue in found if issue.kind == "unit"} == {severity}
