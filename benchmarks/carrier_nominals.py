@@ -1,7 +1,7 @@
 """The best nominal of measured records: fitted with every mechanism that takes a share off its gap.
 
-Mechanisms are effects of the library, added one by one while the best of them takes WORTH off the gap. A nominal that
-holds them can be used in two ways: an effect is put into the records beside it, or a mechanism is taken out of it.
+Mechanisms are effects of the library, added one by one while the best of them takes WORTH off the gap. Further effects
+are put into the records beside them.
 """
 
 from __future__ import annotations

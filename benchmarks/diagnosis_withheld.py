@@ -27,7 +27,7 @@ from threadpoolctl import threadpool_limits
 
 from seatsim.blind.labels import Label
 from seatsim.blind.make.draw_case import CaseSpecification
-from seatsim.blind.make.make import make_case
+from seatsim.blind.make.make import draw_files, make_case
 from seatsim.blind.make.unfinished import case_name
 from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
@@ -61,7 +61,7 @@ class WithheldCase(NamedTuple):
 
 def make(k: int, effect: str, seed: int, out: Path) -> None:
     """Make one case; where the effect cannot be made material the makers take another, and its label says so."""
-    make_case(k, CaseSpecification("one", (effect,)), seed, out, out / "labels")
+    make_case(draw_files, k, CaseSpecification("one", (effect,)), seed, out, out / "labels")
 
 
 def diagnose_without(without: Sequence[str], case: Path) -> EncodedDiagnosis:

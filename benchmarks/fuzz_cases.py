@@ -74,7 +74,10 @@ def make_readers() -> dict[str, Reader]:
         "unit": Reader({"a.fmu": make_unit()}, ("a.fmu",), _read_unit),
         "import": Reader({"a.csv": table}, ("a.csv",), _read_import),
         "map": Reader({"a.csv": table, "map.yaml": make_map()}, ("map.yaml",), _read_map),
-        "formats": Reader(formats, tuple(formats), partial(_read_formats, formats)),
+        **{
+            f"format {name}": Reader({name: content}, (name,), partial(_read_format, name))
+            for name, content in formats.items()
+        },
         "synthesis": Reader({"design.yaml": make_design()}, ("design.yaml",), _read_design),
         "diagnosis": Reader({"diagnosis.json": make_diagnosis()}, ("diagnosis.json",), _read_diagnosis),
         "manifest": Reader({"manifest.json": make_manifest()}, ("manifest.json",), _read_manifest),
@@ -153,13 +156,10 @@ def _read_import(folder: Path) -> object:
     return inspect_file(folder / "a.csv")
 
 
-def _read_formats(valid: Mapping[str, bytes], folder: Path) -> object:
-    """Read the file that is not as it was; all where each is."""
+def _read_format(name: str, folder: Path) -> object:
     from seatsim.importing.inspection import inspect_file
 
-    paths = sorted(folder.iterdir())
-    changed = [path for path in paths if path.read_bytes() != valid[path.name]]
-    return [inspect_file(path) for path in changed or paths]
+    return inspect_file(folder / name)
 
 
 def _read_design(folder: Path) -> object:

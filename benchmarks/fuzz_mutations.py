@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import gzip
+import io
 import random
 import re
+import zipfile
 import zlib
+
+from seatsim.schema.tables import UNPACKING_ERRORS
 
 WORDS = (
     "~", "true", "-1", "0", "1e400", "-.inf", ".nan", "1e-320", "9" * 5000, "0x" + "f" * 300, "'" * 3, '"\\0"', "[]",
@@ -30,10 +34,12 @@ def mutate(content: bytes, generator: random.Random) -> bytes:
             return gzip.compress(mutate(gzip.decompress(content), generator), 1)
         except (OSError, EOFError, zlib.error):  # an earlier change has damaged it
             return _damage(content, generator)
+    if content.startswith(b"PK\x03\x04") and generator.random() < 0.5:
+        return _change_member(content, generator)
     try:
         text = content.decode()
     except UnicodeDecodeError:
-        return _damage(content, generator)
+        return generator.choice((_damage, _lie))(content, generator)
     choices = (_replace_word, _replace_word, _change_lines, _damage_text)
     return generator.choice(choices)(text, generator).encode("utf-8", "surrogateescape")
 
@@ -71,6 +77,34 @@ def _change_lines(text: str, generator: random.Random) -> str:
 
 def _damage_text(text: str, generator: random.Random) -> str:
     return _damage(text.encode(), generator).decode("utf-8", "surrogateescape")
+
+
+def _change_member(content: bytes, generator: random.Random) -> bytes:
+    """Change a file within a ZIP."""
+    changed = io.BytesIO()
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(changed, "w", zipfile.ZIP_DEFLATED) as new:
+            chosen = generator.choice(["", *old.namelist()])
+            for name in old.namelist():
+                new.writestr(name, mutate(old.read(name), generator) if name == chosen else old.read(name))
+    except (*UNPACKING_ERRORS, RuntimeError):  # an earlier change has damaged it
+        return _damage(content, generator)
+    return changed.getvalue()
+
+
+def _lie(content: bytes, generator: random.Random) -> bytes:
+    """Replace a whole number by an awkward one, or by another of the file: a size, a dimension, an address."""
+    size = generator.choice((1, 2, 4, 8))
+    # Most of a file is numbers that were measured; what describes them lies at its ends, in whole words.
+    reach = generator.choice((64, 1024, 16384, len(content)))
+    at = generator.randrange(max(1, min(reach, len(content))))
+    at = size * ((len(content) - at if generator.random() < 0.3 else at) // size)
+    other = size * (generator.randrange(len(content) + 1) // size)
+    number: int = generator.choice((0, 1, 2, 255, 2**15, 2**16 - 1, 2**24, 2**31 - 1, 2**32 - 1, 2**40, 2**63, other))
+    new = (number % (1 << 8 * size)).to_bytes(size, generator.choice(("little", "little", "big")))
+    if generator.random() < 0.3:
+        new = content[other : other + size]
+    return content[:at] + new + content[at + len(new) :]
 
 
 def _damage(content: bytes, generator: random.Random) -> bytes:

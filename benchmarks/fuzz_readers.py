@@ -3,16 +3,17 @@
     python benchmarks/fuzz_readers.py [--mutants 20000] [--only scenario recording] [--seed 0] [--limit 5]
 
 Valid files are changed at random, by the seed: bytes are flipped, cut out, doubled or put in; words are replaced by
-others that are awkward (numbers of 5000 digits, tags, aliases, deep lists, paths, null bytes); lines are dropped,
-doubled and exchanged; packed files are cut. Counted are tracebacks (any error that is not one of seatsim's), deaths of
-the process, mutants that took longer than the limit in seconds, and files that a reader left behind. The first of each
-kind is printed.
+others that are awkward (numbers of 5000 digits, tags, aliases, deep lists, paths, null bytes); sizes, dimensions and
+addresses of binary files by others; lines are dropped, doubled and exchanged; packed files are cut. Counted are
+tracebacks (any error that is not one of seatsim's), deaths of the process, mutants that took longer than the limit in
+seconds or more than 1 GiB of memory, and files that a reader left behind. The first of each kind is printed.
 """
 
 from __future__ import annotations
 
 import argparse
 import random
+import resource
 import shutil
 import signal
 import tempfile
@@ -29,6 +30,8 @@ from typing import NamedTuple
 
 from fuzz_cases import Reader, make_readers
 from fuzz_mutations import mutate
+
+MOST_MEMORY = 2**30
 
 
 class Found(NamedTuple):
@@ -106,9 +109,17 @@ def _read_mutants(reader: Reader, numbers: range, seed: int, limit: float, sendi
             for each, content in files.items():
                 (folder / each).parent.mkdir(parents=True, exist_ok=True)
                 (folder / each).write_bytes(content)
+            before = _peak_memory()
             kind, said = _read_mutant(reader, folder, limit)
+            if _peak_memory() > max(before, MOST_MEMORY):
+                kind = "more memory than 1 GiB"
             sending.send((kind, f"mutant {number} of {name}\n{said[-3000:]}"))
             shutil.rmtree(folder)
+
+
+def _peak_memory() -> int:
+    """Return the bytes that this process has taken at most so far."""
+    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
 def _read_mutant(reader: Reader, folder: Path, limit: float) -> tuple[str, str]:

@@ -1,7 +1,7 @@
 """Sealed cases on records of real rigs, and what finds the effect: `python benchmarks/measured_carriers.py --out DIR`.
 
 Out of `../shared/data` are written carriers with their best nominals (`carrier_nominals`), and on each of them cases of
-`seatsim blind make --carrier`: an effect put into the measured signals, or a mechanism taken out of the nominal. They
+`seatsim blind make --carrier`: an effect put into the measured signals. They
 are diagnosed by seatsim and, where `--methods` names them, by correlation and BIC (`diagnosis_baselines`) and a joint
 fit (`joint_fit`). A call broken off goes on where it stopped. Counted are, by carrier and by effect:
 

@@ -79,9 +79,11 @@ APART = ("recording", "table", "replay")
 
 
 def draw(rng: np.random.Generator, usual: Any, cls: type, name: str, anywhere: bool) -> Any:
-    """Return a random value of a field of a class with a `usual` value, of the same kind."""
+    """Return a random value of a field of a class with a `usual` value, of the same kind; lists of words stay."""
     if name == "duration":
         return round(float(rng.uniform(*DURATIONS)), 2)
+    if isinstance(usual, tuple) and usual and all(isinstance(each, str) for each in usual):
+        return usual
     if isinstance(usual, bool | str):
         return rng.choice(choices(cls, name) or (False, True)).item()
     if isinstance(usual, int | float):

@@ -24,7 +24,7 @@ import time
 start = time.perf_counter()
 import numpy as np
 import seatsim.simulation.simulate
-from seatsim.benchmark.seat_run import make_setup, prepare_run
+from seat_run import make_setup, prepare_run
 acceleration, parts = np.zeros(2), make_setup(1)
 imported = time.perf_counter()
 prepare_run(acceleration, parts)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -16,10 +18,19 @@ from controllers.linear_systems import (
     second_order_section,
 )
 from seatsim.rig.plant import Plant, state_space
+from seatsim.rig.sensors import Sensors
+from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 
 if TYPE_CHECKING:
     from controllers.synthesis import GeneralisedPlant
+
+
+Measure = Literal[
+    "displacement", "velocity", "frame_velocity", "driver_velocity", "frame_acceleration", "driver_acceleration"
+]
+"""What a feedback may measure: suspension x and v, absolute velocities and accelerations of frame and driver."""
+TRAVEL_AND_RATE: tuple[Measure, ...] = ("displacement", "velocity")
 
 
 class Weights(NamedTuple):
@@ -51,24 +62,29 @@ def build_generalised_plant(
     lag: ActuatorLag | None = None,
     displacement_gain: bool = True,
     force_factor: float = 1.0,
+    measures: Sequence[Measure] = TRAVEL_AND_RATE,
 ) -> GeneralisedPlant:
-    """Return the exact seat plant for synthesis: disturbance z0'', control Fd, output (x, v), z as in `Weights`.
+    """Return the exact seat plant for synthesis: disturbance z0'', control Fd, y as in `measures`, z as in `Weights`.
 
     With `lag` the control is the wanted force, and the delay is a Pade approximation of order 2, whose phase is right
     to 0.1 degrees up to `delay omega = 1`. The damper delivers `force_factor` of what is wanted, at every temperature.
+    An absolute velocity is the leaky integral of an acceleration, `1 / (s + wc)`, with the default corner of
+    `seatsim.rig.sensors.Sensors`.
+
+    Raises:
+        InputError: the frame's acceleration is measured without a `lag`: the force would act on it at once.
     """
     from controllers.synthesis import GeneralisedPlant
 
-    s = state_space(plant)
-    both = np.hstack([s.B1, s.B2])
-    seat = LinearSystem(s.A, both, np.vstack([s.C1, s.C2]), np.zeros((4, 2)))
+    if "frame_acceleration" in measures and lag is None:
+        raise InputError("frame_acceleration: the wanted force acts on it at once; state the coil's lag under lag")
+    seat = _seat(plant, measures)
     if lag is not None:
         seat = connect_in_series(connect_in_parallel(pass_through(1), build_actuator(lag)), seat)
-    scale = np.diag([weights.travel, weights.acceleration, 1.0, 1.0])
     if weights.weighting != "none":
-        seat = connect_in_series(
-            seat, connect_in_parallel(pass_through(1), frequency_weighting(weights.weighting), pass_through(2))
-        )
+        weighting = frequency_weighting(weights.weighting)
+        seat = connect_in_series(seat, connect_in_parallel(pass_through(1), weighting, pass_through(len(measures))))
+    scale = np.diag([weights.travel, weights.acceleration, *[1.0] * len(measures)])
     A, B, C = seat.A, seat.B * [1.0, force_factor], scale @ seat.C
     return GeneralisedPlant(
         A,
@@ -78,9 +94,30 @@ def build_generalised_plant(
         C[2:],
         np.zeros((2, 1)),
         np.zeros((2, 1)),
-        np.zeros((2, 1)),
-        None if displacement_gain else np.array([[False, True]]),
+        np.zeros((len(measures), 1)),
+        None if displacement_gain else np.array([[measure != "displacement" for measure in measures]]),
     )
+
+
+def _seat(plant: Plant, measures: Sequence[Measure]) -> LinearSystem:
+    """Return the seat from (z0'', Fd) to x, zc'' and what is measured."""
+    s = state_space(plant)
+    # Of the two accelerations only the frame's feels the force at once; z0'' acts on neither.
+    frame, at_once = s.A[1:2], np.array([[0.0, float(s.B2[1, 0])]])
+    driver, nothing = s.C1[1:2], np.zeros((1, 2))
+    paths = {
+        "displacement": (s.C2[:1], nothing), "velocity": (s.C2[1:], nothing),
+        "frame_velocity": (frame, at_once), "frame_acceleration": (frame, at_once),
+        "driver_velocity": (driver, nothing), "driver_acceleration": (driver, nothing),
+    }  # fmt: skip
+    measured = [paths[measure] for measure in measures]
+    C, D = (np.vstack(parts) for parts in zip((s.C1, np.zeros((2, 2))), *measured, strict=True))
+    seat = LinearSystem(s.A, np.hstack([s.B1, s.B2]), C, D)
+    if not any(measure.endswith("_velocity") for measure in measures):
+        return seat
+    leak = LinearSystem(*(np.array([[value]]) for value in (-math.tau * Sensors().corner, 1.0, 1.0, 0.0)))
+    behind = [leak if measure.endswith("_velocity") else pass_through(1) for measure in measures]
+    return connect_in_series(seat, connect_in_parallel(pass_through(2), *behind))
 
 
 def build_actuator(lag: ActuatorLag) -> LinearSystem:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
 
+# As in `seatsim.cli.begin`: type checkers know the name, and `typing` is not loaded for it.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from seatsim.diagnosis.diagnose import diagnose
     from seatsim.diagnosis.result import Diagnosis
     from seatsim.identification.identify import Identification, identify

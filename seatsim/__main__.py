@@ -7,6 +7,6 @@ import sys
 if not sys.flags.safe_path:
     del sys.path[0]
 
-from seatsim.cli.start import start
+from seatsim.cli.begin import begin
 
-start()
+begin()

@@ -1,8 +1,9 @@
-"""H-infinity static output feedback of suspension displacement and velocity."""
+"""H-infinity static output feedback of what a seat measures."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
@@ -10,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from controllers.analysis.margins import compute_margins, compute_sampled_radius
-from controllers.seat_plant import ActuatorLag, Weights, build_generalised_plant
+from controllers.analysis.margins import compute_margins
+from controllers.analysis.sampled_loop import build_sampled_loop
+from controllers.linear_systems import LinearSystem
+from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weights, build_generalised_plant
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
@@ -28,34 +31,49 @@ Array = NDArray[np.float64]
 _UNBOUNDED = 1e6
 SOURCE = "Yu et al. 2019, eqs 15-19, on the exact plant and with u = +K y for the damper force"
 
-Gain = Annotated[float, param("N/m or N s/m", "one entry of the gain", low=-1e9, high=1e9)]
+Gain = Annotated[float, param("N/m, N s/m or kg", "one entry of the gain", low=-1e9, high=1e9)]
 Mass = Annotated[float, param("kg", "mass of a driver", above=0, high=1e4)]
 Factor = Annotated[float, param("-", "delivered over wanted force", above=0, high=10)]
 
 
 class OutputFeedback(NamedTuple):
-    """Compiled form of the law: `Fd = k1 x + k2 v`."""
+    """Compiled form of the law: the sum of what is measured, each times its gain, 0 where it is not measured."""
 
-    k1: float
-    k2: float
+    displacement: float
+    velocity: float
+    frame_velocity: float = 0.0
+    driver_velocity: float = 0.0
+    frame_acceleration: float = 0.0
+    driver_acceleration: float = 0.0
 
     def wanted_force(self, y: Measurement, state: State) -> float:
         """Return the wanted damper force in N."""
-        return self.k1 * y.displacement + self.k2 * y.velocity
+        return (
+            self.displacement * y.displacement
+            + self.velocity * y.velocity
+            + self.frame_velocity * y.frame_velocity
+            + self.driver_velocity * y.driver_velocity
+            + self.frame_acceleration * y.frame_acceleration
+            + self.driver_acceleration * y.driver_acceleration
+        )
 
 
 @law("static_output_feedback", source=SOURCE)
 class StaticOutputFeedback(NamedTuple):
-    """Wanted force `Fd = gain . (x, v)`; the gain is stated, read from a saved design, or synthesised from weights.
+    """Wanted force `Fd = gain . measures`; the gain is stated, read from a saved design, or synthesised from weights.
 
-    Exactly one of `gain` ([N/m, N s/m]), `design` (a file that `seatsim synthesise` wrote) and `weights` is given; the
-    other keys belong to `weights`. One gain serves every driver of `masses` with every one of `force_factors`: the
-    worst case is minimised.
+    Exactly one of `gain` (one entry a measure; N/m, N s/m, or kg for an acceleration), `design` (a file that `seatsim
+    synthesise` wrote) and `weights` is given; the keys behind `measures` belong to `weights`. One gain serves every
+    driver of `masses` with every one of `force_factors`: the worst case is minimised.
     """
 
-    gain: Annotated[tuple[Gain, Gain] | None, Field(description="gain on (x, v) in N/m and N s/m")] = None
+    gain: Annotated[tuple[Gain, ...] | None, Field(description="gain on what is measured, one entry each")] = None
     design: Annotated[str | None, Field(description="path of a saved design")] = None
     weights: Annotated[Weights | None, Field(description="weights of a synthesis at the start of the run")] = None
+    measures: Annotated[
+        tuple[Measure, ...],
+        Field(min_length=1, description="what is measured: travel and its rate, absolute motion of frame and driver"),
+    ] = TRAVEL_AND_RATE
     masses: Annotated[
         tuple[Mass, ...] | None, Field(description="drivers to design for in kg; default: the scenario's own")
     ] = None
@@ -73,37 +91,50 @@ class StaticOutputFeedback(NamedTuple):
         """Return the compiled form for a plant, after synthesis where weights are given."""
         if [self.gain, self.design, self.weights].count(None) != 2:
             raise InputError("give exactly one of 'gain', 'design' and 'weights'")
+        if len(set(self.measures)) < len(self.measures):
+            raise InputError(f"measures names one signal twice: {', '.join(self.measures)}")
         if self.gain is not None:
-            return OutputFeedback(float(self.gain[0]), float(self.gain[1]))
+            return self._compile(np.array([self.gain]))
+        if self.design is None:
+            return self._compile(self.synthesis(plant).gain)
         from controllers.synthesis import Design
 
-        gain = (Design.load(Path(self.design)) if self.design else self.synthesis(plant)).gain
-        if gain.shape != (1, 2):
+        design = Design.load(Path(self.design))
+        if design.measures and design.measures != self.measures:
+            raise InputError(f"{self.design} was designed for measures: [{', '.join(design.measures)}]; state the same")
+        return self._compile(design.gain)
+
+    def _compile(self, gain: Array) -> OutputFeedback:
+        if gain.shape != (1, len(self.measures)):
             raise InputError(
-                f"{self.design}: a gain of shape {gain.shape}; this law takes (1, 2), for one damper on (x, v)"
+                f"{self.design or 'gain'}: a gain of shape {gain.shape}; {', '.join(self.measures)} take one entry each"
             )
-        return OutputFeedback(float(gain[0, 0]), float(gain[0, 1]))
+        return OutputFeedback(
+            **{"displacement": 0.0, "velocity": 0.0} | dict(zip(self.measures, gain[0].tolist(), strict=True))
+        )
 
     def synthesis(self, plant: Plant, progress: Callable[[str], object] = lambda text: None) -> Design:
         """Return the H-infinity design for a plant with this law's weights (the default ones where none are given)."""
         from controllers.synthesis import synthesise
 
-        return synthesise(self.plants(plant), progress=progress)
+        return replace(synthesise(self.plants(plant), progress=progress), measures=self.measures)
 
     def plants(self, plant: Plant) -> list[GeneralisedPlant]:
         """Return the generalised plant of every driver with every force factor."""
         drivers = [plant._replace(driver_mass=mass) for mass in self.masses or [plant.driver_mass]]
         weights = self.weights or Weights()
         return [
-            build_generalised_plant(driver, weights, self.lag, self.displacement_gain, factor)
+            build_generalised_plant(driver, weights, self.lag, self.displacement_gain, factor, self.measures)
             for driver in drivers
             for factor in self.force_factors
         ]
 
     def checks(self, plant: Plant, coil: Coil, sample_time: float, gain: Array) -> dict[str, str]:
         """Return, in words, the margins of the scenario's own loop with coil and delay, and of its sampled loop."""
-        found = compute_margins(plant, gain, coil)
-        radius = compute_sampled_radius(plant, gain, coil, sample_time, round(coil.delay / sample_time))
+        seat = build_generalised_plant(plant, Weights(), ActuatorLag(coil.rate), measures=self.measures)
+        found = compute_margins(LinearSystem(seat.A, seat.B2, seat.C2, np.zeros((len(seat.C2), 1))), gain)
+        loop = build_sampled_loop(self._compile(gain), (), plant, coil, sample_time, step=sample_time)
+        radius = loop.radius(round(coil.delay / sample_time))
         rises = "any" if found.gain > _UNBOUNDED else f"{found.gain:.3g}"
         turns = "any" if math.isinf(found.phase) else f"{found.phase:.3g} degrees"
         waits = "any" if math.isinf(found.delay) else f"{1000 * found.delay:.3g} ms"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypedDict, cast
+from typing import NotRequired, TypedDict, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,13 +45,14 @@ class Design:
 
     `gain` (nu, ny) is in the user's units, every entry at most `max_gain` in magnitude. `lower_bound` is what no linear
     controller of any order can go below. `gamma`, `certificate`, `peak_frequency`, `poles` and `plant` are those of
-    the worst loop.
+    the worst loop. `measures` names what is measured, where its user has names for it.
     """
 
     gain: Array
     max_gain: float
     lower_bound: float
     loops: tuple[ClosedLoop, ...]
+    measures: tuple[str, ...] = ()
 
     @property
     def worst(self) -> ClosedLoop:
@@ -137,6 +138,7 @@ class _PlainLoop(TypedDict):
 class _PlainDesign(TypedDict):
     """A design as it stands in the file."""
 
+    measures: NotRequired[list[str]]
     gain: list[list[float]]
     gamma: float
     max_gain: float
@@ -147,6 +149,7 @@ class _PlainDesign(TypedDict):
 
 def _to_plain(design: Design) -> _PlainDesign:
     return {
+        "measures": list(design.measures),
         "gain": design.gain.tolist(),
         "gamma": design.gamma,
         "max_gain": design.max_gain,
@@ -193,7 +196,8 @@ def _from_plain(plain: _PlainDesign) -> Design:
     wanted = (loops[0].plant.B2.shape[1], loops[0].plant.C2.shape[0])
     if gain.shape != wanted:
         raise ValueError(f"gain has the shape {gain.shape}; the plant of its loop has {wanted}, a row for each control")
-    return Design(gain, float(plain["max_gain"]), float(plain["lower_bound"]), loops)
+    measures = tuple(map(str, plain.get("measures", ())))
+    return Design(gain, float(plain["max_gain"]), float(plain["lower_bound"]), loops, measures)
 
 
 def _from_plain_loop(plain: _PlainLoop) -> ClosedLoop:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shlex
 import sys
@@ -13,7 +14,6 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from seatsim.cli.commands.bench import bench
 from seatsim.cli.commands.blind import blind
 from seatsim.cli.commands.dampers import characterise, identify
 from seatsim.cli.commands.describe import describe
@@ -84,7 +84,7 @@ app = typer.Typer(
 )  # fmt: skip
 for command in (
     run, compare, sweep, sweep_report, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test,
-    export, new, check, schema, bench, explore, reproduce,
+    export, new, check, schema, explore, reproduce,
 ):  # fmt: skip
     app.command(cls=_Command)(command)
 app.command("import", cls=_Command)(import_data)
@@ -128,7 +128,8 @@ def main() -> None:
         sys.exit(1)
     except OSError as error:
         fail(f"{error.filename or 'a file'}: {error.strerror or error}")
-        sys.exit(1)
+        # A name that no file can have is bad input, wherever it was tried first.
+        sys.exit(2 if error.errno == errno.ENAMETOOLONG else 1)
     except Exception as error:
         if os.environ.get(TRACEBACK):
             raise

@@ -11,6 +11,9 @@ from seatsim.rig.designs import CheckedLaw, DesignedLoop, SynthesisedDesign
 from seatsim.scenario.scenario import Scenario
 from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME
 
+_UNITS = {"displacement": "N/m", "velocity": "N s/m", "acceleration": "kg"}
+"""Unit of the gain on a measured quantity, by the last word of its name."""
+
 
 def design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
     """Return a design as a table: gain, norm and what no controller can go below, certificate, margins, poles.
@@ -20,7 +23,8 @@ def design_table(design: SynthesisedDesign, scenario: Scenario) -> Table:
     table = Table(title="H-infinity static output feedback", title_justify="left", show_header=False, box=None)
     proof = design.certificate
     rows = {
-        "gain on (x, v)": ", ".join(f"{value:.6g}" for value in design.gain.ravel()) + "  [N/m, N s/m]",
+        f"gain on {', '.join(design.measures)}": ", ".join(f"{value:.6g}" for value in design.gain.ravel())
+        + f"  [{', '.join(_UNITS[measure.rpartition('_')[2]] for measure in design.measures)}]",
         "gamma": f"{design.gamma:.6g} (largest gain permitted {design.max_gain:g})",
         "lower bound": f"{design.lower_bound:.6g}, of any linear controller of any order",
         "certificate": f"bounded-real lemma at gamma {proof.gamma:.6g}" if proof else "none in double precision",

@@ -14,10 +14,15 @@ def gap_table(found: Gap) -> Table:
     for heading in ("channel", "gap", "noise floor"):
         table.add_column(heading, justify="left" if heading == "channel" else "right")
     for name, value in found.channels.items():
-        table.add_row(name, f"{value:.4f}", f"{found.floor['channels'][name]:.4f}")
+        table.add_row(name, f"{value:.4f}", show_floor(found.floor["channels"][name]))
     table.add_section()
-    table.add_row("overall", f"{found.overall:.4f}", f"{found.floor['overall']:.4f}")
+    table.add_row("overall", f"{found.overall:.4f}", show_floor(found.floor["overall"]))
     return table
+
+
+def show_floor(floor: float) -> str:
+    """Return a noise floor as a table shows it; one of 0 is that of a sensor whose noise nobody stated."""
+    return f"{floor:.4f}" if floor else "not stated"
 
 
 def forecast_table(found: Forecast) -> Table:

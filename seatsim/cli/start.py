@@ -17,13 +17,13 @@ from threading import Event, Thread
 from types import FrameType
 from typing import NoReturn
 
+from seatsim.cli.begin import SIGNALS, say_interrupted
 from seatsim.schema.leftovers import remove_leftovers
 
 GRACE = 1.2
 """Seconds from a signal to the end of a process that does not end by itself."""
 PATIENCE = 10.0
 """Seconds for which that end waits for files that are being put in place."""
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _received: list[int] = []
 _answered = Event()
 
@@ -37,7 +37,7 @@ def start() -> NoReturn:
 
         main()
     except KeyboardInterrupt:
-        _say_interrupted()
+        say_interrupted()
     except SystemExit as ended:
         if isinstance(ended.code, str):
             raise
@@ -86,16 +86,6 @@ def _end_in_time(wakeups: socket.socket) -> None:
             _answered.clear()
     try:
         remove_leftovers(PATIENCE)
-        _say_interrupted()
+        say_interrupted()
     finally:
         os._exit(128 + number)
-
-
-def _say_interrupted() -> None:
-    """Say why the command ends, by system calls alone, as what it prints with may be locked or not be loaded."""
-    with suppress(OSError):  # whoever read the output may have closed it
-        if os.isatty(2):
-            os.write(2, b"\x1b[?25h")  # a progress bar hides the cursor
-        os.write(2, b"error: interrupted\n")
-        if "--json" in sys.argv:
-            os.write(1, b'{"error": "interrupted"}\n')

@@ -12,6 +12,7 @@ from rich.table import Table
 
 from seatsim.metrics.arrays import ratio
 from seatsim.metrics.table import SHORT
+from seatsim.scenario.conditions import group_by_condition
 from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Run
 
@@ -37,6 +38,8 @@ COLUMNS = (
     Column("seat_factor", "-", 1.0, 2),
     Column("suspension_displacement_rms", "mm", 1e3, 2),
     Column("suspension_displacement_peak", "mm", 1e3, 1),
+    Column("end_stop_hits", "-", 1.0, 0),
+    Column("driver_jerk_rms", "m/s³", 1.0, 1),
     Column("current_rms", "A", 1.0, 2),
 )
 COMPARED = COLUMNS[:-1]
@@ -46,24 +49,33 @@ UNVERIFIED_NOTE = "* not verified, and never the best: a warning says why"
 
 
 def comparison(runs: Sequence[Run], title: str) -> Table:
-    """Return the table of runs: what sets them apart, then comfort, travel and effort; best comfort and travel bold.
+    """Return the table of runs: what sets them apart, then comfort, travel and effort.
 
-    Runs whose figures are unverified are marked, and never the best.
+    Of several runs under one condition the best comfort and travel are bold. Runs whose figures are unverified are
+    marked, and never the best. End-stop hits have a column where there are any.
     """
-    labels = _label_keys(runs)
+    labels, columns = _label_keys(runs), [column for column in COLUMNS if _is_shown(runs, column)]
     table = _headed(title, labels)
-    for column in COLUMNS:
+    for column in columns:
         table.add_column(column.heading, justify="right", vertical="bottom", no_wrap=True)
-    verified = [run for run in runs if not run.unverified]
-    best = {column.metric: _best(verified, column.metric) for column in COMPARED}
-    if len(verified) < len(runs):
+    if any(run.unverified for run in runs):
         table.caption, table.caption_justify = UNVERIFIED_NOTE, "left"
+    groups = group_by_condition((run.scenario, run) for run in runs if not run.unverified)
+    best = {id(run): group for group in groups for run in group if len(group) > 1}
     for run in runs:
         cells = [escape(_label(run, key)) for key in labels]
         cells[0] += UNVERIFIED_MARK if run.unverified else ""
-        cells += [_cell(run, column, None if run.unverified else best.get(column.metric)) for column in COLUMNS]
+        rivals = best.get(id(run), [])
+        cells += [
+            _cell(run, column, _best(rivals, column.metric) if column in COMPARED else None) for column in columns
+        ]
         table.add_row(*cells)
     return table
+
+
+def _is_shown(runs: Sequence[Run], column: Column) -> bool:
+    hits = (run.metrics[column.metric].value for run in runs if column.metric in run.metrics)
+    return column.metric != "end_stop_hits" or any(value > 0 for value in hits)
 
 
 def distances(runs: Sequence[Run], brackets: Mapping[str, Any]) -> Table:

@@ -14,7 +14,7 @@ from typing import TextIO
 from rich.console import Console
 
 from seatsim.compilation.watch import watch_compilation
-from seatsim.schema.text import make_printable
+from seatsim.schema.text import cut_words, make_printable
 
 
 class _Terminal(Console):
@@ -103,6 +103,7 @@ def complain(text: str) -> None:
 
 def fail(text: str) -> None:
     """Print why a command came to its end: on standard error, and as the one object where `--json` asks for it."""
+    text = cut_words(text)
     complain(f"error: {text}")
     answer_error(text)
 

@@ -8,6 +8,7 @@ what is loaded of them, since a file may be edited after its import.
 from __future__ import annotations
 
 import ast
+import atexit
 import gc
 import hashlib
 import os
@@ -16,6 +17,7 @@ import sysconfig
 import threading
 import warnings
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack
 from functools import cache
 from importlib.util import resolve_name
 from pathlib import Path
@@ -27,9 +29,10 @@ import numpy as np
 import platformdirs
 from numba.core import event
 
-from seatsim.compilation.checked_cache import CheckedCache, is_own
+from seatsim.compilation.checked_cache import CheckedCache, find_foreign
 from seatsim.compilation.jit import ARITHMETIC
 from seatsim.compilation.watch import report
+from seatsim.schema.leftovers import temporary_folder
 
 F = TypeVar("F", bound=Callable[..., object])
 
@@ -85,35 +88,67 @@ def compiled(function: F, plugged: Iterable[type]) -> F:
 @cache
 def _compiled(function: Callable[..., object], plugged: frozenset[type]) -> Callable[..., object]:
     modules = {sys.modules[part.__module__] for part in (function, *plugged)}
-    folder = cache_folder() / digest(modules)
-    # Without the folder numba would cache beside the source, where it may find stale code; a notebook has no source.
-    on_disk = all(map(_source, modules)) and _usable(folder)
+    # A notebook has no source.
+    folder = _find_folder(digest(modules)) if all(map(_source, modules)) else None
     previous = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)
+    # Without a folder numba would cache beside the source, where it may find stale code.
+    numba.config.CACHE_DIR = str(folder or cache_folder())
     try:
         dispatcher: Callable[..., object] = numba.njit(nogil=True, **ARITHMETIC)(function)
-        if on_disk:
+        if folder is not None:
             vars(dispatcher)["_cache"] = CheckedCache(function)
     finally:
         numba.config.CACHE_DIR = previous
     return dispatcher
 
 
-def _usable(folder: Path) -> bool:
+def _find_folder(name: str) -> Path | None:
+    """Return a folder in the cache that this user alone may write, or a private one; None where none can be written."""
+    folder = cache_folder() / name
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if not is_own(folder.parent):
-            warnings.warn(f"{folder.parent} may be written by others; compiled code is not taken from it", stacklevel=2)
-            return False
+        _make_private(folder)
+        foreign = find_foreign(folder)
+        if foreign is not None:
+            folder = _private_cache(cache_folder(), foreign) / name
+            _make_private(folder)
     except OSError:
-        return False
-    return os.access(folder, os.W_OK | os.X_OK)
+        return None
+    return folder if os.access(folder, os.W_OK | os.X_OK) else None
+
+
+def _make_private(folder: Path) -> None:
+    """Make a folder with those above it; nobody else may enter those that were missing."""
+    for level in reversed([folder, *folder.parents]):
+        if not level.is_dir():
+            level.mkdir(mode=0o700, exist_ok=True)
+
+
+@cache
+def _private_cache(wanted: Path, foreign: Path) -> Path:
+    """Return the user's own cache in place of one that others may write, or one for this process; say so once."""
+    place = _user_cache()
+    _make_private(place)
+    if find_foreign(place) is not None:
+        kept = ExitStack()
+        atexit.register(kept.close)
+        place = kept.enter_context(temporary_folder("seatsim-compiled-"))
+    warnings.warn(
+        f"{foreign} may be written by other users, whose code could be run in place of what is kept in {wanted};"
+        f" compiled code is kept in {place}. Take the right to write from them (chmod go-w {foreign}), or state a"
+        " folder of your own in SEATSIM_CACHE_DIR",
+        stacklevel=2,
+    )
+    return place
 
 
 def cache_folder() -> Path:
     """Return the folder of compiled runs: `SEATSIM_CACHE_DIR`, or the user's cache folder."""
     chosen = os.environ.get("SEATSIM_CACHE_DIR")
-    return Path(chosen) if chosen else Path(platformdirs.user_cache_dir("seatsim")) / "compiled"
+    return Path(chosen) if chosen else _user_cache()
+
+
+def _user_cache() -> Path:
+    return Path(platformdirs.user_cache_dir("seatsim")) / "compiled"
 
 
 def digest(modules: Iterable[ModuleType]) -> str:

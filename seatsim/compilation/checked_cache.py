@@ -2,7 +2,7 @@
 
 numba unpickles what it finds, and hands the code in it to the processor: a truncated entry is a traceback, a damaged
 one may end the process. Here every file begins with the SHA-256 of the rest. What an entry holds is as trustworthy as
-whoever may write it, so a folder that other users may write into is not used at all.
+whoever may write it, so that neither a folder nor a file is used that another user may have written.
 """
 
 from __future__ import annotations
@@ -64,9 +64,12 @@ class _CheckedFile(IndexDataCacheFile):  # type: ignore[misc]  # numba has no ty
 
 
 def _read(path: Path) -> bytes | None:
-    """Return the content of an entry, None where there is none or where it is not as it was written."""
+    """Return the content of an entry, None where there is none, where it is another's, or not as it was written."""
     try:
-        content = path.read_bytes()
+        with path.open("rb") as file:
+            if not _is_own(os.fstat(file.fileno())):
+                return None
+            content = file.read()
     except OSError:
         return None
     if hashlib.sha256(content[DIGEST:]).digest() == content[:DIGEST]:
@@ -75,9 +78,22 @@ def _read(path: Path) -> bytes | None:
     return None
 
 
-def is_own(folder: Path) -> bool:
-    """Return whether only this user, or the system's, may have written what lies in a folder."""
+def find_foreign(folder: Path) -> Path | None:
+    """Return a folder, of one and those above it, in which another user may exchange files; None where there is none.
+
+    It must belong to this user or the system, and neither its group nor all may write in it. Above the innermost one
+    they may where each can remove only what is his own, as in `/tmp`.
+    """
     if not hasattr(os, "getuid"):
-        return True
-    status = folder.stat()
-    return status.st_uid in (os.getuid(), 0) and not status.st_mode & stat.S_IWOTH
+        return None
+    for innermost in (folder.absolute(), folder.resolve()):
+        for level in (innermost, *innermost.parents):
+            status = level.stat()
+            shared = status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+            if not _is_own(status) or (shared and (level == innermost or not status.st_mode & stat.S_ISVTX)):
+                return level
+    return None
+
+
+def _is_own(status: os.stat_result) -> bool:
+    return not hasattr(os, "getuid") or status.st_uid in (os.getuid(), 0)

@@ -8,6 +8,7 @@ from seatsim.diagnosis.nuisance import SECTIONS
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.effects.base import same_place
+from seatsim.scenario.loading import FILES
 
 
 def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[str, object]:
@@ -22,10 +23,11 @@ def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[s
             assert isinstance(inner, dict)
             section = inner
         section[parameter.name] = parameter.at(deviation)
-    controller = content.get("controller")
-    if isinstance(controller, dict) and isinstance(controller.get("design"), str):
-        # A saved design is named from the folder of the nominal scenario, while this file goes to another one.
-        controller["design"] = str((source.path.parent / controller["design"]).resolve())
+    for name, key in FILES:
+        stated = content.get(name)
+        if isinstance(stated, dict) and isinstance(stated.get(key), str):
+            # A file is named from the folder of the nominal scenario, while this content goes to another one.
+            stated[key] = str((source.path.parent / stated[key]).resolve())
     present = content.get("effects", [])
     assert isinstance(present, list)
     # An effect found replaces the one that the nominal scenario has at its place, as in the rig that was fitted.

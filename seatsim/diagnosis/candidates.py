@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.effects.base import EFFECTS, ON_SEAT, Form, acts_on, same_place
+from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.schema.fields import bounds, choices, describe, field_names
 from seatsim.schema.registry import Record
 
@@ -74,8 +75,12 @@ class Candidate(NamedTuple):
     @property
     def limits(self) -> list[bool]:
         """Which free parameters are such limits: larger where the effect is off."""
-        off = EFFECTS.specification_of(self.cls).off
-        return [abs(off.get(name, 0.0)) > abs(start) for name, start in zip(self.free, self.start, strict=True)]
+        return [abs(self.off.get(name, 0.0)) > abs(start) for name, start in zip(self.free, self.start, strict=True)]
+
+    @property
+    def off(self) -> Mapping[str, float]:
+        """The parameters at which the effect leaves the rig as it is, where that is not zero."""
+        return EFFECTS.specification_of(self.cls).off
 
     @property
     def structure(self) -> Hashable:
@@ -168,6 +173,8 @@ def _starts(candidate: Candidate, limit_starts: Sequence[float], reached: float)
 def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
     """Whether the effect has something to act on in this recording."""
     if problem.bench and acts_on(cls, (*ON_SEAT, "plant", "frame_force")):
+        return False
+    if acts_on(cls, ("inner_mass",)) and problem.scenario.driver.model != SINGLE_MASS:
         return False
     recorded = problem.recording.channels
     commanded = "current_command" in recorded or "command_voltage" in recorded

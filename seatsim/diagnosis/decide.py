@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
+from itertools import takewhile
 from typing import Literal
 
 import numpy as np
@@ -44,6 +45,7 @@ def decide_verdict(problem: DiagnosisProblem, selection: Selection, effects: Seq
         sure = max(_logistic(settings.none_offset - excess / settings.none_width), settings.none_least)
         probabilities = dict.fromkeys(effects, settings.effect_if_none)
         return Decision("none", selection.calibrated, [], probabilities, sure, settings.unknown_if_none)
+    selection = _drop_immaterial(problem, selection)
     chosen = _choose_set(problem, selection)
     # Of a gap that hardly shows in the excess of all frequencies, sets differ by as little.
     scale = min(1.0, before / problem.settings.selection.nothing_left)
@@ -106,7 +108,27 @@ def decide_beside_unknown(
     return call_unknown(settings, stated)
 
 
-def doubt_single(settings: DecisionSettings, decision: Decision, causes: Sequence[Cause]) -> Decision:
+def decide_without(problem: DiagnosisProblem, decision: Decision, rig: Evaluation, given_up: Sequence[str]) -> Decision:
+    """Return the decision without effects that were given up; `rig` is the chosen set refitted without them.
+
+    Where no effect is left the verdict is `unknown`, or `none` where the rig leaves no channel a material gap.
+    """
+    settings = problem.settings.decision
+    least = settings.effect_bounds[0]
+    probabilities = {name: least if name in given_up else value for name, value in decision.probabilities.items()}
+    groups = [group for group in decision.groups if not set(group) & set(given_up)]
+    left = dataclasses.replace(decision, chosen=rig, groups=groups, probabilities=probabilities)
+    if not rig.parameters.terms:
+        if np.any(measure_remainders(problem, rig) >= settings.material):
+            return call_unknown(settings, left)
+        return dataclasses.replace(left, verdict="none", none=settings.none_least, unknown=settings.unknown_if_none)
+    verdict: Verdict = "known" if decision.verdict == "ambiguous" and not groups else decision.verdict
+    return dataclasses.replace(left, verdict=verdict)
+
+
+def doubt_single(
+    problem: DiagnosisProblem, selection: Selection, decision: Decision, causes: Sequence[Cause]
+) -> Decision:
     """Return the decision on a single effect, in one group with those of which the held-out run speaks more highly.
 
     The evidence charges an effect for its parameters, a run left out of the fit does not. Where the evidence is not
@@ -114,15 +136,17 @@ def doubt_single(settings: DecisionSettings, decision: Decision, causes: Sequenc
     """
     if len(decision.chosen.parameters.terms) != 1:
         return decision
-    (name,) = decision.chosen.parameters.names
+    settings, (name,) = problem.settings.decision, decision.chosen.parameters.names
     first = next(cause for cause in causes if cause.effect == name)
     group = next((group for group in decision.groups if name in group), [name])
     rivals = [
         cause.effect
         for cause in causes
         if cause.effect not in group
+        and cause.effect in selection.singles
         and cause.probability * settings.strong_evidence > first.probability
         and cause.shrink > first.shrink + settings.contradicted
+        and is_material(problem, selection.singles[cause.effect])
     ]
     if not rivals:
         return decision
@@ -136,10 +160,16 @@ def shows_effect(problem: DiagnosisProblem, selection: Selection) -> bool:
 
     An effect at a few frequencies, such as a preload that shifts the travel, hardly changes the excess of all.
     """
-    settings, before = problem.settings.decision, selection.calibrated
-    singles = selection.sets[1][: settings.sets_compared] if len(selection.sets) > 1 else ()
-    needed = settings.least_lowered * before.rows
+    before = selection.calibrated
+    needed = problem.settings.decision.least_lowered * before.rows
+    singles = selection.singles.values()
     return any(before.cost - each.cost > needed and is_material(problem, each) for each in singles)
+
+
+def _drop_immaterial(problem: DiagnosisProblem, selection: Selection) -> Selection:
+    """Return the selection with those sets alone that hold no immaterial effect, up to the first size that has none."""
+    sets = ([each for each in sets if is_material(problem, each)] for sets in selection.sets[1:])
+    return dataclasses.replace(selection, sets=(selection.sets[0], *map(tuple, takewhile(bool, sets))))
 
 
 def _shows_no_gap(problem: DiagnosisProblem, selection: Selection) -> bool:
@@ -177,13 +207,11 @@ def _explains(
 
 
 def _choose_set(problem: DiagnosisProblem, selection: Selection) -> Evaluation:
-    """Return the smallest set that no enlargement beats by enough, with every effect of it material."""
+    """Return the smallest set that no enlargement beats by enough."""
     settings, chosen = problem.settings, selection.calibrated
-    for sets in selection.sets[1:]:
-        compared = sets[: settings.decision.sets_compared]
-        better = next((evaluation for evaluation in compared if is_material(problem, evaluation)), None)
-        if better is None or not _enlarges(problem, selection.calibrated, chosen, better):
-            if chosen.parameters.terms or better is None:
+    for better, *_ in selection.sets[1:]:
+        if not _enlarges(problem, selection.calibrated, chosen, better):
+            if chosen.parameters.terms:
                 break
             # Two effects may explain together what neither does alone, so a first one that helps only a little is kept.
             if better.excess > settings.decision.first_effect_helps * chosen.excess:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,34 +50,41 @@ def estimate_causes(
     """
     problem = objective.problem
     base = measure_gap(make_scenario(problem, nominal, calibrated.parameters), problem.recording, [run]).overall
-    singles = {each.parameters.terms[0].effect: each for each in selection.sets[1]} if len(selection.sets) > 1 else {}
     # Single effects share one linearisation of the nuisances, about the calibrated rig: one each would take longer than
     # the fits. The chosen effects, whose figures the user acts on, have their own.
     about_calibrated = selection.linearise_nuisances(objective, selection.calibrated)
-    chosen = dict[str, dict[str, Estimate | str]]()
+    chosen = dict[str, FoundEffect]()
     if augmented.parameters.terms:
         fitted = objective.on_runs(list(augmented.whitened))
         chosen = _estimate_parameters(fitted, augmented, selection.linearise_nuisances(fitted, augmented))
     causes = []
     for effect, probability in decision.probabilities.items():
-        shrink, estimates = 0.0, dict[str, Estimate | str]()
-        single = singles.get(effect)
+        shrink, found = 0.0, chosen.get(effect, FoundEffect({}, False))
+        single = selection.singles.get(effect)
         if single is not None:
             with_it = make_scenario(problem, nominal, single.parameters)
             shrink = 1.0 - measure_gap(with_it, problem.recording, [run]).overall / base
             if effect not in chosen:
-                estimates = _estimate_parameters(objective, single, about_calibrated)[effect]
+                found = _estimate_parameters(objective, single, about_calibrated)[effect]
         # Effects of one set differ in probability by what no evidence can tell; the larger shrink then comes first.
         stated = float(f"{probability:.{STATED_DIGITS}g}")
-        causes.append(Cause(effect, stated, shrink, chosen.get(effect, estimates)))
+        causes.append(Cause(effect, stated, shrink, *found))
     return sorted(causes, key=lambda cause: (-cause.probability, -cause.shrink))
+
+
+class FoundEffect(NamedTuple):
+    """The fitted parameters of an effect, with the channel it acts on, and whether all of its size is at a bound."""
+
+    parameters: dict[str, Estimate | str]
+    at_bound: bool
 
 
 def _estimate_parameters(
     objective: Objective, evaluation: Evaluation, nuisances: Linearisation
-) -> dict[str, dict[str, Estimate | str]]:
-    """Return by effect its free parameters with their standard deviations, and the channel that it acts on."""
+) -> dict[str, FoundEffect]:
+    """Return what was found of each effect."""
     parameters, found = evaluation.parameters, {}
+    ends = parameters.find_at_bound(1.0 - objective.settings.widening.at_bound)
     deviations = estimate_standard_deviations(objective, evaluation, nuisances)
     start, shortest = len(parameters.deviations), objective.settings.validation.least_time / objective.problem.rate
     for term, values in zip(parameters.terms, parameters.values, strict=True):
@@ -86,8 +94,9 @@ def _estimate_parameters(
             estimates["channel"] = str(term.fixed["channel"])
         for k, (name, value) in enumerate(zip(term.free, values, strict=True)):
             std = max(float(deviations[start + k] * term.scale[k]), shortest if units[name] == "s" else 0.0)
-            estimates[name] = Estimate(float(value), std, units[name])
-        found[term.effect] = estimates
+            bound = float(term.low[k]), float(term.high[k])
+            estimates[name] = Estimate(float(value), std, units[name], bound, bool(ends[start + k]))
+        found[term.effect] = FoundEffect(estimates, bool(np.all(ends[start : start + term.sizes])))
         start += len(term.free)
     return found
 

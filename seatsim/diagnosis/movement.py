@@ -30,10 +30,16 @@ def measure_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list
 
 def is_material(problem: DiagnosisProblem, evaluation: Evaluation) -> bool:
     """Whether every effect of a set moves some channel by a material size and by more than its noise."""
-    settings = problem.settings.decision
-    noise = settings.above_noise * (problem.noise / problem.spread)
+    return not name_immaterial(problem, evaluation)
+
+
+def name_immaterial(problem: DiagnosisProblem, evaluation: Evaluation) -> list[str]:
+    """Return the names of the effects of a set that move no channel by a material size and by more than its noise."""
+    least = np.maximum(problem.settings.decision.material, problem.noise / problem.spread)
     moves = measure_movements(problem, evaluation)
-    return all(bool(np.any((move > settings.material) & (move > noise))) for move in moves)
+    return [
+        term.effect for term, move in zip(evaluation.parameters.terms, moves, strict=True) if not np.any(move > least)
+    ]
 
 
 def measure_remainders(problem: DiagnosisProblem, evaluation: Evaluation) -> Array:

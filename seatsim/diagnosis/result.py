@@ -18,20 +18,34 @@ Content = Mapping[str, object]
 
 
 class Estimate(NamedTuple):
-    """A fitted parameter with its standard deviation and unit."""
+    """A fitted parameter with its standard deviation and unit, the range of its fit, and whether it is at an end of it.
+
+    A parameter that is off, such as a drift of 0, is at no end.
+    """
 
     value: float
     std: float
     unit: str
+    bound: tuple[float, float] | None = None
+    at_bound: bool = False
 
 
 class Cause(NamedTuple):
-    """An effect: its probability, and the share by which it alone reduces the calibrated gap on held-out runs."""
+    """An effect: its probability, and the share by which it alone reduces the calibrated gap on held-out runs.
+
+    `at_bound` says whether all of its size lies at an end of its range.
+    """
 
     effect: str
     probability: float
     shrink: float
     parameters: dict[str, Estimate | str]
+    at_bound: bool = False
+
+    @property
+    def ends(self) -> list[str]:
+        """Names of the parameters that lie at an end of their range."""
+        return [name for name, found in self.parameters.items() if isinstance(found, Estimate) and found.at_bound]
 
 
 class Share(NamedTuple):

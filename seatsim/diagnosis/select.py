@@ -52,6 +52,11 @@ class Selection:
         """The nominal scenario with its nuisance parameters refitted."""
         return self.sets[0][0]
 
+    @property
+    def singles(self) -> dict[str, Evaluation]:
+        """The fitted sets of one effect by its name, the best first."""
+        return {each.parameters.terms[0].effect: each for sets in self.sets[1:2] for each in sets}
+
     def linearise_nuisances(self, objective: Objective, evaluation: Evaluation) -> Linearisation:
         """Return the sensitivities to the nuisance parameters about a set, computed only where none are at hand.
 

@@ -14,11 +14,11 @@ def write_answer(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return (
             f"There is no gap beyond noise and the stated tolerance of the parameters: {size} nominal,"
-            f" {gap.calibrated.overall:.3f} refitted, noise {gap.floor.overall:.3f} (in standard deviations)."
+            f" {gap.calibrated.overall:.3f} refitted, {_noise(gap)} (in standard deviations)."
         )
     if diagnosis.verdict == "unknown" and not diagnosis.selected:
         where = f"Something in the {_unexplained(diagnosis)} that no effect of the library explains makes the gap"
-        return f"{where}: {size} nominal, noise {gap.floor.overall:.3f} (in standard deviations)."
+        return f"{where}: {size} nominal, {_noise(gap)} (in standard deviations)."
     # What was found stands first, also where something stays unexplained: it is what the reader can act on.
     named = "; ".join(_cause(diagnosis, name) for name in diagnosis.selected)
     sentence = f"{named}: {_taken(gap)}"
@@ -33,12 +33,16 @@ def write_answer(diagnosis: Diagnosis) -> str:
 
 def _taken(gap: Gaps) -> str:
     """Return a clause on how much of the gap the effects and the refitted parameters take off."""
-    figures = f"{gap.before.overall:.3f} to {gap.after.overall:.3f}, noise {gap.floor.overall:.3f}"
+    figures = f"{gap.before.overall:.3f} to {gap.after.overall:.3f}, {_noise(gap)}"
     removable = gap.before.overall - gap.floor.overall
     if gap.after.overall >= gap.before.overall or removable <= 0.0:
         return f"that takes nothing off the gap of the run held out ({figures})"
     share = min((gap.before.overall - gap.after.overall) / removable, 1.0)
     return f"that takes {share:.0%} of the gap that can be removed ({figures}, in standard deviations)"
+
+
+def _noise(gap: Gaps) -> str:
+    return f"noise {gap.floor.overall:.3f}" if gap.floor.overall else "noise not stated"
 
 
 def _alike(diagnosis: Diagnosis) -> str:
@@ -62,6 +66,8 @@ def _cause(diagnosis: Diagnosis, name: str) -> str:
     cause = next(cause for cause in diagnosis.causes if cause.effect == name)
     meaning = (EFFECTS.find(name).__doc__ or name).split("\n")[0].split(":")[0].rstrip(".")
     values = _values(cause)
+    if cause.at_bound:
+        values += "; all of its size lies at the end of its range, so that it may stand for another cause"
     return f"{name} ({meaning[0].lower()}{meaning[1:]}{'; ' + values if values else ''})"
 
 
@@ -69,7 +75,8 @@ def _values(cause: Cause) -> str:
     parts = []
     for name, found in cause.parameters.items():
         if isinstance(found, Estimate):
-            parts.append(f"{name} {found.value:.3g} {found.unit}".rstrip(" -"))
+            end = ", the end of its range" if found.at_bound else ""
+            parts.append(f"{name} {found.value:.3g} {found.unit}".rstrip(" -") + end)
         else:
             parts.append(str(found))
     return ", ".join(parts)

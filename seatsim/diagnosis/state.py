@@ -9,16 +9,17 @@ import numpy as np
 
 from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
 from seatsim.diagnosis.augmented import write_augmented
-from seatsim.diagnosis.decide import Decision, call_unknown, decide_beside_unknown, doubt_single
+from seatsim.diagnosis.decide import Decision, call_unknown, decide_without, doubt_single
 from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
 from seatsim.diagnosis.error_budget import budget_errors
 from seatsim.diagnosis.estimates import compare_comfort, estimate_causes, trace_motion, trace_replayed, trace_run
 from seatsim.diagnosis.every_run import ReplayedRun, list_gaps, measure_gaps, replay_runs, state_model_error
+from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.localise.discrepancy import show_discrepancy
 from seatsim.diagnosis.localise.stochastic import add_strength
-from seatsim.diagnosis.movement import share_removable
+from seatsim.diagnosis.movement import name_immaterial, share_removable
 from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
@@ -90,6 +91,9 @@ def validate_on_held_out(solution: Solution) -> Validation:
         if not chosen.parameters.terms:
             raise
         return validate_on_held_out(_give_up(solution, f"cannot be simulated as fitted without {run}"))
+    if weak := name_immaterial(problem, objective.evaluate([augmented.parameters])[0]):
+        reason = f"moves no channel by a material size as fitted without {run}"
+        return validate_on_held_out(_give_up(solution, reason, weak))
     # A single run has no spread: its standard deviation with n - 1 degrees of freedom would be NaN.
     spread = float(np.std(shrink, ddof=min(1, len(shrink) - 1)))
     gaps = measure_gaps(problem, next(each for each in runs if each.name == run), spread)
@@ -112,13 +116,18 @@ def _name_raised_gap(gaps: Gaps, held_out: str, runs: Sequence[RunGaps]) -> str:
     return "the gap of all runs" if raised else ""
 
 
-def _give_up(solution: Solution, reason: str) -> Solution:
-    """Return the solution without its effects, which are named in a note with the reason."""
-    problem, decision, selection = solution.objective.problem, solution.decision, solution.selection
-    names = " with ".join(sorted(decision.chosen.parameters.names))
-    noted = dataclasses.replace(selection, notes=(*selection.notes, f"{names} was given up, since it {reason}"))
-    alone = decide_beside_unknown(problem.settings.decision, decision, selection.calibrated)
-    return solution._replace(selection=noted, decision=alone)
+def _give_up(solution: Solution, reason: str, given_up: Sequence[str] = ()) -> Solution:
+    """Return the solution without some of its effects, all where none is named; a note names them with the reason."""
+    objective, decision, selection = solution.objective, solution.decision, solution.selection
+    given_up = given_up or sorted(decision.chosen.parameters.names)
+    noted = dataclasses.replace(
+        selection, notes=(*selection.notes, f"{' with '.join(given_up)} was given up, since it {reason}")
+    )
+    kept = decision.chosen.parameters.remove(*given_up)
+    rig = refit(objective, kept) if kept.terms else selection.calibrated
+    left = decide_without(objective.problem, decision, rig, given_up)
+    where = () if left.verdict == "none" else solution.where
+    return solution._replace(selection=noted, decision=left, where=where)
 
 
 def state_diagnosis(
@@ -136,7 +145,7 @@ def state_diagnosis(
     rig, channels = recording.header.rig, recording.channels
     decision = solution.decision
     if not solution.stochastic:
-        decision = doubt_single(problem.settings.decision, decision, causes)
+        decision = doubt_single(problem, solution.selection, decision, causes)
     nuisances = solution.selection.linearise_nuisances(objective, decision.chosen)
     forms = _list_alternatives(validation, damper_forms, progress)
     none = describe_obstacle(problem) or "No other form of the damper was found to fit its force better."

@@ -79,7 +79,7 @@ class ProgressiveSpring(NamedTuple):
     off={"low": -1.0, "high": 1.0, "power": 1.0},
     forms=(
         Form(
-            {"low": -0.012, "high": 0.012, "stiffness": 10000.0, "damping": 0.5},
+            {"low": -0.012, "high": 0.012, "stiffness": 10000.0, "damping": 0.5, "power": 1.0},
             within={"stiffness": (5000.0, 1e6)},
         ),
     ),
@@ -96,6 +96,10 @@ class EndStop(NamedTuple):
     stiffness: Annotated[float, param("N/m", "stiffness of a buffer", low=0, high=1e7)] = 60000.0
     damping: Annotated[float, param("s/m", "Hunt-Crossley damping", low=0, high=100)] = 0.5
     power: Annotated[float, param("-", "exponent of the buffer's law", low=1, high=3)] = 1.0
+
+    def plant(self, plant: Plant) -> Plant:
+        """Return the seat with its travel between the buffers, beyond which its end stops are met."""
+        return plant._replace(travel=(self.low, self.high)) if self.stiffness > 0.0 else plant
 
     def suspension_force(self, plant: Plant, x: float, v: float, z: State) -> float:
         """Return the force of the buffers in N, positive against extension."""

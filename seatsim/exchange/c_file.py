@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from seatsim.exchange.blocks.base import Block
-from seatsim.exchange.model_source import print_model, resource
+from seatsim.exchange.model_source import fill, print_model
 from seatsim.exchange.variables import Variable, list_variables
 from seatsim.schema.files import write_text
 
@@ -39,7 +39,8 @@ def print_c(block: Block) -> str:
     outputs = [v for v in variables if v.causality == "output"]
     fed, expected = zip(*_test_vector(block, inputs, outputs), strict=True)
     words = {
-        "TITLE": f"{block.name}: {block.summary}",
+        # A name must not end the comment in which it stands.
+        "TITLE": f"{block.name}: {block.summary}".replace("*/", "* /").replace("/*", "/ *"),
         "NOTES": "".join(f"\n   Note: {note}." for note in block.notes),
         "INPUTS": _list_of(inputs),
         "OUTPUTS": _list_of(outputs),
@@ -53,10 +54,7 @@ def print_c(block: Block) -> str:
         "INPUT_COUNT": str(len(inputs)),
         "OUTPUT_COUNT": str(len(outputs)),
     }
-    text = resource("file.c")
-    for word, value in words.items():
-        text = text.replace(f"@{word}@", value)
-    return text.replace("@MODEL@", print_model(block))
+    return fill("file.c", words | {"MODEL": print_model(block)})
 
 
 def _list_of(variables: list[Variable]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import shutil
 import subprocess
 from pathlib import Path
@@ -27,7 +28,7 @@ def find_compiler() -> str:
     Raises:
         InputError: there is none, or not the one that CC names.
     """
-    chosen = os.environ.get("CC", "").split()[:1]
+    chosen = _read_choice()[:1]
     for name in chosen or ("cc", "gcc", "clang"):
         found = shutil.which(name)
         if found:
@@ -42,6 +43,15 @@ def find_compiler() -> str:
     )
 
 
+def _read_choice() -> list[str]:
+    """Return the words of the variable CC: a compiler, and flags that every use of it has."""
+    stated = os.environ.get("CC", "")
+    try:
+        return shlex.split(stated)
+    except ValueError as error:
+        raise InputError(f"the variable CC is {stated!r}: {error}; state a compiler and its flags") from error
+
+
 def compile_library(source: Path, library: Path) -> None:
     """Compile a C file into a shared library.
 
@@ -49,7 +59,7 @@ def compile_library(source: Path, library: Path) -> None:
         InputError: there is no compiler.
         RunError: it refused the source, or the library would need more than C's own library.
     """
-    command = [find_compiler(), *FLAGS, *QUICK, "-o", str(library), str(source), "-lm", "-s"]
+    command = [find_compiler(), *_read_choice()[1:], *FLAGS, *QUICK, "-o", str(library), str(source), "-lm", "-s"]
     # Its own temporary files stand beside the library, whose folder is removed also where the export is interrupted.
     own = os.environ | dict.fromkeys(("TMPDIR", "TMP", "TEMP"), str(library.parent))
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=own)

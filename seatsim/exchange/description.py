@@ -34,7 +34,8 @@ def describe_fmi2(unit: Unit) -> bytes:
     root.set("numberOfEventIndicators", "0")
     model = ElementTree.SubElement(root, "CoSimulation", {
         "modelIdentifier": unit.identifier, "canHandleVariableCommunicationStepSize": "true",
-        "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true", "canNotUseMemoryManagementFunctions": "true",
+        "canInterpolateInputs": "true", "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true",
+        "canNotUseMemoryManagementFunctions": "true",
     })  # fmt: skip
     ElementTree.SubElement(ElementTree.SubElement(model, "SourceFiles"), "File", {"name": "fmi2.c"})
     _add_units(root, unit)

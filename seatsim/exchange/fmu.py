@@ -21,6 +21,8 @@ from seatsim.schema.leftovers import temporary_folder
 
 FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 """The date of the files in the archive, so that the same model gives the same archive."""
+LONGEST_NAME = 60
+"""Letters of a block's name that its files are called by, from its end."""
 FOLDERS = {"Linux": "linux", "Darwin": "darwin", "Windows": "win"}
 ENDINGS = {"Linux": ".so", "Darwin": ".dylib", "Windows": ".dll"}
 
@@ -64,8 +66,9 @@ def make_files(block: Block, version: int) -> dict[str, bytes]:
 
 
 def identifier(block: Block) -> str:
-    """Return the name of a block as C permits it."""
-    return re.sub(r"\W+", "_", block.name).strip("_")
+    """Return the name of a block as C permits it, and as a part of a file's name."""
+    name = re.sub(r"\W+", "_", block.name, flags=re.ASCII).strip("_")[-LONGEST_NAME:]
+    return f"m_{name}" if name[:1].isdigit() else name
 
 
 def platform_folder(version: int) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from importlib.resources import files
 from typing import cast
 
@@ -15,7 +16,7 @@ from seatsim.exchange.printing.declarations import is_row
 from seatsim.exchange.printing.functions import new_program
 from seatsim.exchange.printing.program import Program
 from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, is_tuple, number
-from seatsim.exchange.variables import Variable
+from seatsim.exchange.variables import RATES, Variable
 
 KINDS = {bool: "BOOLEAN_VARIABLE", int: "INTEGER_VARIABLE", float: "REAL_VARIABLE"}
 
@@ -23,6 +24,11 @@ KINDS = {bool: "BOOLEAN_VARIABLE", int: "INTEGER_VARIABLE", float: "REAL_VARIABL
 def resource(name: str) -> str:
     """Return the text of a file of C that comes with this package."""
     return (files("seatsim.exchange") / "c" / name).read_text(encoding="utf-8")
+
+
+def fill(name: str, words: Mapping[str, str]) -> str:
+    """Return the text of such a file with its `@WORD@`s replaced, those that are in the words themselves left alone."""
+    return re.sub(r"@(\w+)@", lambda found: words[found[1]], resource(name))
 
 
 def print_model(block: Block) -> str:
@@ -53,20 +59,20 @@ def print_model(block: Block) -> str:
     ]
     words = {"START": start, "OBSERVE": observe, "ADVANCE": advance}
     words |= {"FIXED_STEP": str(int(block.fixed_step)), "STEP": repr(block.step)}
-    model = resource("model.h")
-    for word, text in (names | words).items():
-        model = model.replace(f"@{word}@", text)
+    model = fill("model.h", names | words)
     return "\n".join([resource("prelude.h"), program.source(), *constants, "", model])
 
 
 def print_variables(variables: Sequence[Variable]) -> str:
     """Return the table of a model's variables, by which a wrapper finds them."""
+    names = [v.name for v in variables]
+    rates = [names.index(RATES[v.name]) if RATES.get(v.name) in names else -1 for v in variables]
     rows = [
         f'    {{"{v.name}", {KINDS[type(v.value)]}, {v.causality.upper()}, offsetof(Model, {v.place}),'
-        f" {_limit(v.low)}, {_limit(v.high)}}},"
-        for v in variables
+        f" {_limit(v.low)}, {_limit(v.high)}, {rate}}},"
+        for v, rate in zip(variables, rates, strict=True)
     ]
-    return resource("variables.h").replace("@ROWS@", "\n".join(rows))
+    return fill("variables.h", {"ROWS": "\n".join(rows)})
 
 
 def _call(

@@ -19,6 +19,9 @@ from seatsim.kernel.rig import Rig
 from seatsim.kernel.seated_body import SeatedBody
 from seatsim.schema.fields import bounds, describe
 
+RATES = {"floor_acceleration": "floor_jerk", "velocity": "acceleration"}
+"""Inputs that are the rate of change of another one, by the name of that."""
+
 
 class Variable(NamedTuple):
     """A number of a block: its name, what it is, and where C finds it in the model."""

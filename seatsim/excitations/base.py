@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import wraps
 from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.schema.errors import RunError
 from seatsim.schema.registry import Record, Registry
+from seatsim.schema.samples import require_samples
 
 Array = NDArray[np.float64]
+FEWEST = 2
+"""Samples of a floor that make a step."""
 T = TypeVar("T", bound=type)
 
 
@@ -53,5 +58,34 @@ EXCITATIONS: Registry[Excitation, ExcitationSpecification] = Registry("excitatio
 
 
 def excitation(name: str, source: str = "") -> Callable[[T], T]:
-    """Register a record class as the excitation `kind: name`."""
-    return EXCITATIONS.register(name, ExcitationSpecification(source))
+    """Register a record class as the excitation `kind: name`; what its method `floor` gives is checked from then on."""
+    enter = EXCITATIONS.register(name, ExcitationSpecification(source))
+
+    def check(cls: T) -> T:
+        cls.floor = _checked(cls.floor)  # type: ignore[attr-defined]
+        return enter(cls)
+
+    return check
+
+
+def _checked(make: Callable[[Excitation, float, int], Floor]) -> Callable[[Excitation, float, int], Floor]:
+    """Return a method `floor` that raises RunError where its motion is none that compiled code can read."""
+
+    @wraps(make)
+    def floor(self: Excitation, step: float, seed: int) -> Floor:
+        made, giver = make(self, step, seed), f"the excitation {type(self).__module__}:{type(self).__qualname__}"
+        if not isinstance(made, Floor):
+            raise RunError(f"{giver} gives {type(made).__name__}; its method floor must return a Floor")
+        count = np.size(made.acceleration)
+        if made.step != step or count < FEWEST:
+            raise RunError(
+                f"{giver} gives {count} samples every {made.step} s; asked for: {FEWEST} or more every {step} s"
+            )
+        read = {
+            name: require_samples(values, f"the {name} of {giver}", count, step)
+            for name, values in made._asdict().items()
+            if name != "step" and values is not None
+        }
+        return Floor(step, **read)
+
+    return floor

@@ -17,4 +17,6 @@ def need(module: str, kind: str) -> ModuleType:
     try:
         return import_module(module)
     except ImportError as error:
-        raise InputError(f'{kind} is read by {module}; install it with: pip install "seatsim[formats]"') from error
+        raise InputError(
+            f'{kind} is read by {module.partition(".")[0]}; install it with: pip install "seatsim[formats]"'
+        ) from error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,6 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+
+TIME = "time"
+"""Name of a channel of times, where its file has no other for it."""
 
 
 class Signal(NamedTuple):
@@ -58,3 +63,12 @@ def groups_by_length(name: str, signals: list[Signal], rate: float | None = None
     if len(parts) == 1:
         return [Group(name, parts[0], rate)]
     return [Group(f"{name}, {part[0].name}" if name else part[0].name, part, rate) for part in parts]
+
+
+def add_channels(groups: list[Group], name: str, time: Array, signals: Sequence[Signal]) -> None:
+    """Add channels to the group of `groups` that has the same times in s, or as a group of their own."""
+    for number, group in enumerate(groups):
+        if len(time) == group.rows and np.array_equal(group.signals[0].values, time):
+            groups[number] = group._replace(signals=(*group.signals, *signals))
+            return
+    groups.append(Group(name, (Signal(TIME, "s", time), *signals)))

@@ -19,9 +19,11 @@ from numpy.typing import NDArray
 from seatsim.compilation.jit import define, jit
 from seatsim.compilation.watch import report
 from seatsim.kernel.inverse import CELLS
-from seatsim.kernel.lane_records import SHARED, numbers
-from seatsim.kernel.lane_run import NO_STROKES, NO_SUMS, LaneEnd, LaneLimits, LaneSignals, LaneStart, Strokes, run_lane
-from seatsim.kernel.lane_state import Sums
+from seatsim.kernel.loop import run_loop
+from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup
+from seatsim.kernel.numbers import SHARED, numbers
+from seatsim.kernel.sums import NO_SUMS, LaneLimits, Summed, Sums
+from seatsim.rig.state import State
 
 Array = NDArray[np.float64]
 Form = tuple[str, tuple[tuple[str, type], ...]]
@@ -31,9 +33,8 @@ POINTS = CELLS + 1
 """Points of the grid of `seatsim.kernel.inverse.invert`, as a number that the compiler takes for a constant."""
 THREADS = 64
 """Threads of a block: a lane takes so many registers that larger blocks leave some of them unused."""
-END = LaneEnd(NO_SUMS, NO_STROKES, 0.0, 0.0, 0.0, 0.0)
 ROWS = float64[:, ::1]
-SIGNATURE = void(float64, float64, ROWS, ROWS, ROWS, int64[::1], float64[:, :, ::1], ROWS, ROWS, ROWS)
+SIGNATURE = void(*(float64,) * 4, ROWS, ROWS, ROWS, int64[::1], float64[:, :, ::1], ROWS, ROWS, ROWS)
 """Types of the arguments of a kernel."""
 
 
@@ -50,6 +51,34 @@ def has_device() -> bool:
 def free_memory() -> float:
     """Return the bytes that are free on the device; infinity where it is simulated."""
     return float(cuda.current_context().get_memory_info()[0])
+
+
+class LaneStart(NamedTuple):
+    """What a lane begins with: its constant parts, states, temperature in degC, suspension in m and m/s.
+
+    `rig`, `followed`, `law` and `sensed` are the states of the rig, of the inverse's damper, of the law and of its
+    sensors.
+    """
+
+    setup: LoopSetup
+    rig: State
+    followed: State
+    law: State
+    sensed: State
+    temperature: float
+    displacement: float
+    velocity: float
+
+
+class LaneEnd(NamedTuple):
+    """A lane after its run: its sums, the temperature of its damper in degC, the number of samples that it reached."""
+
+    sums: Sums
+    temperature: float
+    reached: float
+
+
+END = LaneEnd(NO_SUMS, 0.0, 0.0)
 
 
 class KernelError(Exception):
@@ -75,7 +104,7 @@ def run_on_device(
 ) -> tuple[list[LaneEnd], Any]:
     """Simulate L lanes and return their ends, and their drivers' accelerations in m/s^2, shape (N, L), on the device.
 
-    `template` gives the form of the lanes (see `lane_records.template_of`); `depth` is above the greatest delay in
+    `template` gives the form of the lanes (see `numbers.template_of`); `depth` is above the greatest delay in
     steps by two.
 
     Raises:
@@ -95,7 +124,7 @@ def run_on_device(
 
 def _end_of(row: list[float]) -> LaneEnd:
     values = iter(row)
-    return LaneEnd(Sums(*islice(values, len(NO_SUMS))), Strokes(*islice(values, len(NO_STROKES))), *values)
+    return LaneEnd(Sums(*islice(values, len(NO_SUMS))), *values)
 
 
 @cache
@@ -116,11 +145,13 @@ def make_kernel(template: LaneStart) -> Callable[..., None]:
 
 
 def _define_kernel(form: Form) -> Callable[..., None]:
-    gather, scatter = jit(_define_gather(form)), jit(_define_scatter(END))
+    gather, scatter, simulate = jit(_define_gather(form)), jit(_define_scatter(END)), jit(run_loop)
 
     def run(
         most_speed: float,
         most_current: float,
+        coldest: float,
+        hottest: float,
         starts: Array,
         floors: Array,
         speeds: Array,
@@ -132,11 +163,17 @@ def _define_kernel(form: Form) -> Callable[..., None]:
     ) -> None:
         lane = cuda.grid(1)
         if lane < len(floor_of):
-            grid = cuda.local.array(POINTS, float64)
-            own = floor_of[lane]
-            signals = LaneSignals(floors[:, own], speeds[:, own], noise[:, :, lane], commands[:, lane], driver[:, lane])
-            end = run_lane(gather(starts, lane), LaneLimits(most_speed, most_current), signals, grid)
-            scatter(end, ends, lane)
+            room = cuda.local.array(POINTS, float64)
+            own, start = floor_of[lane], gather(starts, lane)
+            none = floors[:0, own]
+            inputs = LoopInputs(
+                floors[:, own], speeds[:, own], none, none, none, none, none, 0.0, start.displacement, start.velocity,
+                start.sensed, noise[:, :, lane], start.temperature,
+            )  # fmt: skip
+            limits = LaneLimits(most_speed, most_current, coldest, hottest)
+            recorder: Any = Summed(driver[:, lane], commands[:, lane], room, limits)
+            reached, sums, temperature = simulate(start.setup, inputs, start.rig, start.followed, start.law, recorder)
+            scatter((sums, temperature, float(reached)), ends, lane)
 
     return run
 

@@ -115,10 +115,10 @@ def _closed_form(
     rise, a, c = f2 - f0, 0.0, f0 - target
     if order > 1:
         a = 2.0 * (rise - 2.0 * (total_force(damper, x, v, 0.5 * top, scaling, z) - f0))
-    b = rise - a
     # A square term of zero leaves a rounding error in a, whose second root would be far away or, by chance, near.
     if abs(a) <= STRAIGHT * (abs(f0) + abs(f2)):
         a = 0.0
+    b = rise - a
     # Where no root lies within 0 to 1, the closest force is that of an end or of the turning point.
     best = 0.0 if abs(c) <= abs(f2 - target) else 1.0
     turn = -0.5 * b / a if a != 0.0 else -1.0

@@ -8,28 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
-from seatsim.kernel import channels
 from seatsim.kernel.assumed_model import InverseModel, follow_state, model_scaling, model_state
 from seatsim.kernel.chain import leading_state
 from seatsim.kernel.generic import advance_filters, evaluate_law, read, scaling_at, update, wants_force
-from seatsim.kernel.inverse import CELLS, invert
+from seatsim.kernel.inverse import invert
 from seatsim.kernel.loop_inputs import ControlledRig, LoopInputs, LoopSetup, sample_of, step_inputs
+from seatsim.kernel.recorders import Recorder, Sample, keep, nothing
 from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import IntegratorState, advance, relaxed, start
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import CompiledLaw, Measurement
-from seatsim.rig.state import (
-    CUSHION_DISPLACEMENT,
-    CUSHION_VELOCITY,
-    CUSHION_WORK,
-    DAMPER_WORK,
-    DISPLACEMENT,
-    FLOOR_WORK,
-    MECHANICAL,
-    SUSPENSION_WORK,
-    VELOCITY,
-    State,
-)
+from seatsim.rig.state import CUSHION_VELOCITY, DAMPER_WORK, DISPLACEMENT, MECHANICAL, VELOCITY, State
 from seatsim.rig.temperature import TemperatureScaling, Thermal
 
 Array = NDArray[np.float64]
@@ -39,19 +28,20 @@ ROUNDING = 1e-9
 
 
 def run_loop(
-    setup: LoopSetup, inputs: LoopInputs, rig_state: State, followed: State, law_state: State, out: Array
-) -> int:
-    """Simulate from rest and fill `out`, shape (N, len(CHANNELS)); return the number of samples reached (N if all).
+    setup: LoopSetup, inputs: LoopInputs, rig_state: State, followed: State, law_state: State, recorder: Recorder
+) -> tuple[int, State, float]:
+    """Simulate N samples from rest; return how many were reached, what was kept, and the damper's temperature in degC.
 
     `rig_state` is that of damper and effects at rest, `followed` that of the inverse's damper, `law_state` the law's
-    initial one. To be compiled by `compiled`, with the classes of every record in `setup`. Nothing is raised: a run
-    that diverges returns the sample at which it did, and later rows are not written.
+    initial one. To be compiled by `compiled`, with the classes of every record in `setup` and of the recorder. Nothing
+    is raised: a run that diverges returns the sample at which it did, and later ones are not kept.
     """
     rig, coil, law, model, timing = setup.rig, setup.coil, setup.law, setup.inverse_model, setup.timing
-    step, samples = timing.step, len(out)
+    step, samples = timing.step, len(inputs.floor_acceleration)
     late, split, kept = delay_of(coil, step)
     current = inputs.start_current
-    temperature = inputs.temperature[0]
+    follows = len(inputs.temperature) > 0
+    temperature = inputs.temperature[0] if follows else inputs.start_temperature
     factors = scaling_at(setup.factors, temperature)
     mechanical = (inputs.start_displacement, inputs.start_velocity, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     disturbance = Disturbance(
@@ -59,7 +49,7 @@ def run_loop(
     )
     now = start(rig, mechanical + rig_state, disturbance, current, factors, step)
     command, wanted, served, sensed = 0.0, math.nan, math.nan, inputs.sensed
-    grid = np.empty(CELLS + 1)
+    room, kept_of_run = recorder.room, nothing(recorder)
 
     for k in range(samples):
         floor = inputs.floor_acceleration[k]
@@ -70,16 +60,17 @@ def run_loop(
             speed, replayed = inputs.floor_velocity[k], inputs.replayed[k] if len(inputs.replayed) > 0 else math.nan
             true = measure(now, k * step, floor, speed, current, temperature, replayed)
             y, sensed = read(setup.sensors, true, inputs.noise, k // timing.sample_every, sensed)
-            command, wanted, served = decide(setup, y, now, factors, followed, law_state, grid)
+            command, wanted, served = decide(setup, y, now, factors, followed, law_state, room)
             law_state = update(law, y, law_state)
-        record_sample(out, k, now, floor, wanted, served, current, command, temperature)
+        sample = Sample(floor, wanted, served, current, command, temperature)
+        kept_of_run = keep(recorder, kept_of_run, setup.rig, k, now, sample)
         if k == samples - 1:
             break
-        acting = step_inputs(setup, inputs, out, k, current, late, split, kept)
+        acting = step_inputs(setup, inputs, recorder, k, current, late, split, kept)
         x, v, work = now.state[DISPLACEMENT], now.state[VELOCITY], now.state[DAMPER_WORK]
         now, next_current, good = advance(rig, coil, acting, factors, now, timing.tolerance)
         if not good:
-            return k
+            return k, kept_of_run, temperature
         ratio = rig.plant.damper_ratio
         followed = follow_state(
             model.damper,
@@ -97,11 +88,11 @@ def run_loop(
             work = now.state[DAMPER_WORK] - work
             temperature += warm_up(setup.thermal, coil, temperature, work, current, next_current, step)
             factors = scaling_at(setup.factors, temperature)
-        elif inputs.temperature[k + 1] != temperature:
+        elif follows and inputs.temperature[k + 1] != temperature:
             temperature = inputs.temperature[k + 1]
             factors = scaling_at(setup.factors, temperature)
         current = next_current
-    return samples
+    return samples, kept_of_run, temperature
 
 
 @jit
@@ -142,14 +133,19 @@ def command_current(
     law_state: State,
     grid: Array,
 ) -> tuple[float, float, float]:
-    """Return the same for an inverse whose damper is in the state z; `ratio` is the damper's stroke per travel."""
+    """Return the same for an inverse whose damper is in the state z; `ratio` is the damper's stroke per travel.
+
+    The command of a law that gives no finite number is NaN.
+    """
     answer = evaluate_law(law, y, law_state)
+    # What is no finite number must not become a current by being clipped: the command is NaN, at which the run ends.
+    is_number = math.isfinite(answer)
     if not wants_force(law):
-        return min(max(answer, 0.0), top), math.nan, math.nan
+        return min(max(answer, 0.0), top) if is_number else math.nan, math.nan, math.nan
     scaling = model_scaling(model, factors, y.temperature)
     x, v = ratio * y.displacement, ratio * y.velocity
     found = invert(model.damper, model.order, answer, x, v, scaling, z, top, grid)
-    return found.current, answer, found.served
+    return found.current if is_number else math.nan, answer, found.served
 
 
 @jit
@@ -179,39 +175,6 @@ def measure(
         temperature,
         replayed,
     )
-
-
-@jit
-def record_sample(
-    out: Array,
-    k: int,
-    now: IntegratorState,
-    floor: float,
-    wanted: float,
-    served: float,
-    current: float,
-    command: float,
-    temperature: float,
-) -> None:
-    """Write sample `k` into its row."""
-    s, row = now.state, out[k]
-    row[channels.FLOOR_ACCELERATION] = floor
-    row[channels.FRAME_ACCELERATION] = now.rates[VELOCITY] + floor
-    row[channels.DRIVER_ACCELERATION] = now.rates[VELOCITY] + floor + now.rates[CUSHION_VELOCITY]
-    row[channels.SUSPENSION_DISPLACEMENT] = s[DISPLACEMENT]
-    row[channels.SUSPENSION_VELOCITY] = s[VELOCITY]
-    row[channels.CUSHION_DISPLACEMENT] = s[CUSHION_DISPLACEMENT]
-    row[channels.CUSHION_VELOCITY] = s[CUSHION_VELOCITY]
-    row[channels.DAMPER_FORCE] = now.forces.damper_force
-    row[channels.WANTED_FORCE] = wanted
-    row[channels.FORCE_SERVED] = served
-    row[channels.COIL_CURRENT] = current
-    row[channels.CURRENT_COMMAND] = command
-    row[channels.DAMPER_TEMPERATURE] = temperature
-    row[channels.ENERGY_FLOOR] = s[FLOOR_WORK]
-    row[channels.ENERGY_DAMPER] = s[DAMPER_WORK]
-    row[channels.ENERGY_SUSPENSION] = s[SUSPENSION_WORK]
-    row[channels.ENERGY_CUSHION] = s[CUSHION_WORK]
 
 
 @jit

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
 from seatsim.kernel.assumed_model import InverseModel
-from seatsim.kernel.channels import CURRENT_COMMAND
+from seatsim.kernel.recorders import Recorder, command_at
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.step import StepInputs
 from seatsim.rig.coil import Coil
@@ -27,7 +27,8 @@ class LoopInputs(NamedTuple):
     `replayed` is a recorded command for laws that replay it, `prescribed` a coil current that bypasses the coil,
     `temperature` the damper's temperature in degC, `frame_force` and `driver_force` forces in N; the coil starts at
     `start_current`, the suspension at `start_displacement` and `start_velocity`, the cushion at rest, the sensors at
-    `sensed`. `noise`, shape (M, READINGS), is that of the readings at the law's samples.
+    `sensed`. `noise`, shape (M, READINGS), is that of the readings at the law's samples. Where no `temperature` is
+    given, the damper is at `start_temperature`.
     """
 
     floor_acceleration: Array
@@ -42,6 +43,7 @@ class LoopInputs(NamedTuple):
     start_velocity: float = 0.0
     sensed: State = ()
     noise: Array = np.zeros((0, READINGS))
+    start_temperature: float = 20.0
 
 
 class Timing(NamedTuple):
@@ -72,7 +74,7 @@ class LoopSetup(NamedTuple):
 
 
 class ControlledRig(Protocol):
-    """What a decision of the law depends on beside what is measured: a `LoopSetup`, or the setup of a lane."""
+    """What a decision of the law depends on beside what is measured: a `LoopSetup`, or that of an exported rig."""
 
     @property
     def rig(self) -> Rig:
@@ -101,7 +103,7 @@ def sample_of(values: Array, k: int) -> float:
 def step_inputs(
     setup: LoopSetup,
     inputs: LoopInputs,
-    out: Array,
+    recorder: Recorder,
     k: int,
     current: float,
     late: int,
@@ -110,12 +112,12 @@ def step_inputs(
 ) -> StepInputs:
     """Return the inputs of the rig from sample `k` to the next.
 
-    `out` holds the commands until sample k, which act `late` steps and `split` seconds later, no more than the coil's
-    driver can give; before the first of them acts, the coil's `start_current` stands. `kept` as in `StepInputs`.
+    `recorder` holds the commands until sample k, which act `late` steps and `split` seconds later, no more than the
+    coil's driver can give; before the first of them acts, the coil's `start_current` stands. `kept` as in `StepInputs`.
     """
     first, most, prescribed = inputs.start_current, setup.coil.max_current, len(inputs.prescribed) > 0
-    before = min(out[k - late - 1, CURRENT_COMMAND] if k > late else first, most)
-    after = min(out[k - late, CURRENT_COMMAND] if k >= late else first, most)
+    before = min(command_at(recorder, k - late - 1) if k > late else first, most)
+    after = min(command_at(recorder, k - late) if k >= late else first, most)
     if prescribed:
         after = inputs.prescribed[k + 1]
     floor = inputs.floor_acceleration[k]

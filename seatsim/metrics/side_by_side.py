@@ -25,6 +25,8 @@ def measure_drivers(acceleration: Any, step: float, arrays: ModuleType = np) -> 
     a = arrays.ascontiguousarray(acceleration.T)
     rate, samples = 1.0 / step, a.shape[1]
     found = {"driver_acceleration_rms": _rms(a, arrays), "driver_acceleration_peak": arrays.abs(a).max(axis=1)}
+    if samples > 1:
+        found["driver_jerk_rms"] = _rms(arrays.diff(a, axis=1) * rate, arrays)
     if not can_weight(rate):
         return found
     response, size = transform_of(samples, rate)

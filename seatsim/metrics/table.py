@@ -60,13 +60,13 @@ def summarise(
     """Return the metrics of one run by name, in the order of `METRICS`.
 
     A metric whose input is absent is left out: no such channel, a channel of NaN only (no force was wanted),
-    no travel or resistance stated, or a sample rate below 200 Hz where the signal must be weighted. A ratio
+    no end stops or resistance stated, or a sample rate below 200 Hz where the signal must be weighted. A ratio
     over nothing (the SEAT factor on a floor at rest) is NaN. Further channels are not used.
 
     Args:
         history: channels by name, SI units, shape (N,) each.
         step: time between samples in s.
-        travel: (low, high) of the suspension in m, for the end-stop hits.
+        travel: (low, high) of the suspension in m, where it meets its end stops, for the hits.
         coil_resistance: in ohm, for the electrical energy.
         settle: start of the record in s that RMS, peak, dose and share leave out, after the weighting went
             over it. Hits, energies and the final temperature cover the whole record.
@@ -91,6 +91,13 @@ def _rms_of(channel: str) -> Callable[[MetricInputs], float]:
 
 def _peak_of(channel: str) -> Callable[[MetricInputs], float]:
     return lambda inputs: peak(inputs.channels.settled(channel))
+
+
+def _jerk(inputs: MetricInputs) -> float:
+    acceleration = inputs.channels.settled("driver_acceleration")
+    if acceleration.size < 2:
+        raise MissingInput("driver_acceleration")
+    return rms(np.diff(acceleration) * inputs.channels.sample_rate)
 
 
 def _weighted_rms(inputs: MetricInputs) -> float:
@@ -171,6 +178,9 @@ METRICS: Mapping[str, MetricSpecification] = {
     "driver_crest_factor": MetricSpecification(
         "-", "peak over RMS of the driver's Wk-weighted acceleration", _crest_factor
     ),
+    "driver_jerk_rms": MetricSpecification(
+        "m/s^3", "RMS jerk of the driver: differences of successive samples over the step", _jerk
+    ),
     "seat_factor": MetricSpecification(
         "-", "Wk-weighted RMS of the driver over that of the floor (SEAT)", _seat_factor
     ),
@@ -186,7 +196,7 @@ METRICS: Mapping[str, MetricSpecification] = {
     "suspension_displacement_peak": MetricSpecification(
         "m", "largest suspension travel", _peak_of("suspension_displacement")
     ),
-    "end_stop_hits": MetricSpecification("-", "separate excursions beyond the travel", _end_stop_hits),
+    "end_stop_hits": MetricSpecification("-", "separate excursions beyond the end stops", _end_stop_hits),
     "force_tracking_error": MetricSpecification("N", "RMS of wanted less delivered force", _tracking_error),
     "force_tracking_error_relative": MetricSpecification(
         "-", "the same over the RMS of the wanted force", _tracking_relative
@@ -202,6 +212,7 @@ METRICS: Mapping[str, MetricSpecification] = {
 SHORT: Mapping[str, str] = {
     "driver_acceleration_rms": "driver RMS", "driver_acceleration_weighted": "driver Wk RMS",
     "driver_vdv": "driver VDV", "seat_factor": "SEAT factor", "suspension_displacement_rms": "travel RMS",
-    "suspension_displacement_peak": "travel peak", "end_stop_hits": "end-stop hits", "current_rms": "current RMS",
+    "suspension_displacement_peak": "travel peak", "end_stop_hits": "end-stop hits", "driver_jerk_rms": "driver jerk",
+    "current_rms": "current RMS",
 }  # fmt: skip
 """What metrics are called where there is little room: in tables, pictures and sentences, on paper and on a screen."""

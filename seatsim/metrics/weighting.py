@@ -187,9 +187,14 @@ def transform_of(samples: int, sample_rate: float, weighting: str = "Wk") -> tup
     return _response_at_bins(size, float(sample_rate), weighting), size
 
 
+def least_rate(weighting: str = "Wk") -> float:
+    """Return the lowest sample rate in Hz at which a record can be weighted."""
+    return _constants(weighting).minimum_rate
+
+
 def can_weight(sample_rate: float, weighting: str = "Wk") -> bool:
     """Tell whether a record at this `sample_rate` (Hz) can be weighted; rounding of the rate is forgiven."""
-    return require_positive(sample_rate, "sample_rate") >= _constants(weighting).minimum_rate * (1 - 1e-6)
+    return require_positive(sample_rate, "sample_rate") >= least_rate(weighting) * (1 - 1e-6)
 
 
 @lru_cache(maxsize=4)

@@ -10,7 +10,10 @@ from seatsim.schema.validation import is_finite_number
 
 
 class Slider(NamedTuple):
-    """A number: its name in a request, what it is called, its unit, its range and where it starts."""
+    """A number: its name in a request, what it is called, its unit, its range and where it starts, in that unit.
+
+    `factor` leads from SI units to the unit shown.
+    """
 
     name: str
     label: str
@@ -18,6 +21,7 @@ class Slider(NamedTuple):
     low: float
     high: float
     value: float
+    factor: float = 1.0
 
 
 class Choice(NamedTuple):
@@ -38,7 +42,7 @@ class Switch(NamedTuple):
 
 
 def read_number(request: Mapping[str, Any], slider: Slider) -> float:
-    """Return the value of a slider in a request, that at which it starts where the request has none.
+    """Return the value of a slider in a request in SI units, that at which it starts where the request has none.
 
     Raises:
         InputError: it is no number, or outside the range.
@@ -46,7 +50,7 @@ def read_number(request: Mapping[str, Any], slider: Slider) -> float:
     value = request.get(slider.name, slider.value)
     if not is_finite_number(value) or not slider.low <= value <= slider.high:
         raise InputError(f"{slider.label}: {value!r} is not permitted; {slider.low:g} to {slider.high:g} {slider.unit}")
-    return float(value)
+    return float(value) / slider.factor
 
 
 def read_choice(request: Mapping[str, Any], choice: Choice) -> str:

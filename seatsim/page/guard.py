@@ -10,7 +10,6 @@ from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse, RedirectResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-COOKIE = "seatsim"
 POLICY = (
     "default-src 'none'; script-src {script}; style-src {style}; connect-src 'self'; form-action 'none';"
     " frame-ancestors 'none'; base-uri 'none'"
@@ -29,6 +28,8 @@ class Guard:
     def __init__(self, app: ASGIApp, token: str, port: int) -> None:
         """Guard `app`, which is served at `port` of loopback."""
         self._app, self._token = app, token
+        # Cookies of one host are shared by all of its ports, on which other pages may be open.
+        self._cookie = f"seatsim-{port}"
         self._hosts = {f"{name}:{port}" for name in ("127.0.0.1", "localhost")}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -43,9 +44,9 @@ class Guard:
         elif self._has_token(_first(parse_qs(scope["query_string"].decode("latin-1")).get("token"))):
             # The token leaves the address, which stays in the browser's history.
             answer = RedirectResponse("/", status_code=303)
-            answer.set_cookie(COOKIE, self._token, httponly=True, samesite="strict")
+            answer.set_cookie(self._cookie, self._token, httponly=True, samesite="strict")
             await answer(scope, receive, send)
-        elif self._has_token(_read_cookie(headers.get("cookie", ""))):
+        elif self._has_token(_read_cookie(headers.get("cookie", ""), self._cookie)):
             await self._app(scope, receive, send)
         else:
             text = "Open the address that seatsim explore printed: it holds the token of this page.\n"
@@ -69,9 +70,9 @@ def _first(values: list[str] | None) -> str:
     return values[0] if values else ""
 
 
-def _read_cookie(text: str) -> str:
+def _read_cookie(text: str, name: str) -> str:
     try:
-        found = SimpleCookie(text).get(COOKIE)
+        found = SimpleCookie(text).get(name)
     except CookieError:
         return ""
     return found.value if found is not None else ""

@@ -20,7 +20,14 @@ from seatsim.page.scenario_view import View
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import load_recording
 from seatsim.report.blocks import Bar, Bars, Table
-from seatsim.report.formatting import describe_channel, describe_effect, format_percent, format_sentence
+from seatsim.report.formatting import (
+    describe_channel,
+    describe_effect,
+    format_noise,
+    format_percent,
+    format_sentence,
+    say_noise,
+)
 from seatsim.report.packing import Axis, Panel, pack_signals
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import describe
@@ -100,13 +107,13 @@ class RecordingView:
 
     def _say(self, parameters: Parameters, after: Mapping[str, Array]) -> str:
         before, now = (float(np.sqrt(np.mean(self._measure(each) ** 2))) for each in (self.nominal, after))
-        noise = format_percent(float(np.sqrt(np.mean((self.problem.noise / self.problem.spread) ** 2))))
+        noise = say_noise(float(np.sqrt(np.mean((self.problem.noise / self.problem.spread) ** 2))))
         if not parameters.terms:
-            return f"The nominal simulation is off by {format_percent(before)}; noise alone makes {noise}."
+            return f"The nominal simulation is off by {format_percent(before)}; {noise}."
         change = "shrinks" if now < before else "grows"
         return (
             f"With {len(parameters.terms)} effect{'s' * (len(parameters.terms) > 1)} the gap {change} from"
-            f" {format_percent(before)} to {format_percent(now)}; noise alone makes {noise}."
+            f" {format_percent(before)} to {format_percent(now)}; {noise}."
         )
 
     def _draw_gaps(self, after: Mapping[str, Array]) -> Bars:
@@ -124,7 +131,12 @@ class RecordingView:
     def _tabulate(self, after: Mapping[str, Array]) -> Table:
         before, now, floor = self._measure(self.nominal), self._measure(after), self.problem.noise / self.problem.spread
         rows = [
-            [channel.replace("_", " "), *map(format_percent, map(float, (old, new, noise, 1 - new / old)))]
+            [
+                channel.replace("_", " "),
+                *map(format_percent, (old, new)),
+                format_noise(noise),
+                format_percent(1 - new / old),
+            ]
             for channel, old, new, noise in zip(self.problem.channels, before, now, floor, strict=True)
         ]
         return Table("The same as a table", ["channel", "nominal", "with effects", "noise floor", "shrinks by"], rows)
@@ -147,10 +159,11 @@ def _name(candidate: Candidate) -> str:
 
 
 def _make_switch(name: str, candidate: Candidate) -> Switch:
-    units = {field.name: field for field in describe(candidate.cls)}
+    fields = {field.name: field for field in describe(candidate.cls)}
+    shown = {name: describe_channel(fields[name].meaning, fields[name].unit) for name in candidate.free}
     sliders = [
-        Slider(free, units[free].meaning, describe_channel("", units[free].unit).unit, *ends, start)
-        for free, start, ends in zip(candidate.free, candidate.start, _reach(candidate), strict=True)
+        Slider(name, own.words, own.unit, own.factor * low, own.factor * high, own.factor * start, own.factor)
+        for (name, own), start, (low, high) in zip(shown.items(), candidate.start, _reach(candidate), strict=True)
     ]
     return Switch(name, name.replace(":", ", "), format_sentence(describe_effect(candidate.effect)), sliders)
 

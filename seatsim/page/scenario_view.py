@@ -11,8 +11,8 @@ from seatsim.metrics.table import SHORT
 from seatsim.page.controls import Choice, Slider, read_choice, read_number
 from seatsim.report.blocks import Block, Table
 from seatsim.report.formatting import format_quantity
+from seatsim.report.headline import describe_run
 from seatsim.report.run_pictures import show_signals
-from seatsim.report.runs import describe_run
 from seatsim.scenario.loading import load, read_scenario
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError

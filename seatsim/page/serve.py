@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import secrets
 import socket
 import threading
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from seatsim.page.app import make_app
 from seatsim.page.folder import LARGEST, Folder
@@ -23,6 +25,27 @@ if TYPE_CHECKING:
     from seatsim.page.scenario_view import ScenarioView
 
 HOST = "127.0.0.1"
+
+
+class Impatient(H11Protocol):
+    """A connection that is closed where no whole request comes, so that none who is silent can hold it open."""
+
+    idle = 30.0
+    """s; after twice this time at the latest it is closed."""
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in uvicorn
+        """Begin to look after the connection."""
+        super().connection_made(transport)
+        self.loop.call_later(self.idle, self._look, None)
+
+    def _look(self, before: object) -> None:
+        """Close the connection if it waits for the rest of the same request as at the last look, or for a first one."""
+        cycle = self.cycle
+        waits = cycle is None or cycle.response_complete or cycle.more_body
+        if waits and cycle is before:
+            self.transport.close()
+        elif not self.transport.is_closing():
+            self.loop.call_later(self.idle, self._look, cycle)
 
 
 def find_target(path: Path) -> Path:
@@ -78,7 +101,9 @@ def serve(path: Path, folder: Path, port: int, browser: bool, say: Callable[[str
     address = f"http://{HOST}:{taken}/?token={token}"
     target = ThreadPoolExecutor(1).submit(open_target, path)
     app = make_app(target, Folder(folder), token, taken)
-    server = uvicorn.Server(uvicorn.Config(app, log_level="warning", access_log=False, server_header=False))
+    server = uvicorn.Server(
+        uvicorn.Config(app, http=Impatient, log_level="warning", access_log=False, server_header=False)
+    )
 
     def end_where_failed(loaded: Future[ScenarioView | RecordingView]) -> None:
         server.should_exit = loaded.exception() is not None

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
+from seatsim.provenance.crate import CRATE
 from seatsim.provenance.differences import LARGEST, Difference, compare_outputs
 from seatsim.provenance.invocation import REPEATABLE, digest
 from seatsim.provenance.manifest import EXAMPLE, MANIFEST
@@ -28,17 +29,23 @@ FIELDS = {
     "command": str, "arguments": list, "directory": str, "folder": str, "own_code": list, "versions": dict,
     "platform": dict, "inputs": list, "outputs": list, "measured": dict,
 }  # fmt: skip
+ANSWER = "reproduce.json"
+"""File in which the command `reproduce` keeps what came of it."""
 KIND = "manifest of a command of seatsim"
 
 
 class Reproduction(NamedTuple):
-    """What came of running a command again. `versions` says what differs of versions and platform."""
+    """What came of running a command again.
+
+    `versions` says what differs of versions and platform, `unnamed` are files of the folder that no manifest names.
+    """
 
     command: str
     identical: bool
     compared: list[str]
     differences: list[Difference]
     versions: list[str]
+    unnamed: list[str]
 
 
 def reproduce(
@@ -62,16 +69,16 @@ def reproduce(
     arguments, directory = _check_arguments(manifest, folder), _find_directory(manifest, folder)
     _check_files(manifest, folder, directory)
     changed = [*_compare_inputs(manifest, folder), *_compare_code(manifest, own_code)]
-    command = manifest["command"]
+    command, unnamed = manifest["command"], _list_unnamed(manifest, folder)
     if changed:
-        return Reproduction(command, False, [], changed, versions)
+        return Reproduction(command, False, [], changed, versions, unnamed)
     with temporary_folder() as place:
         again = Path(place) / manifest["folder"]
         tell(f"running {command} again{_count_runs(manifest)}")
         again = _run(command, arguments, own_code, directory, again)
         differences = list(compare_outputs(manifest, folder, read_manifest(again), again))
     compared = [each["path"] for each in manifest["outputs"]]
-    return Reproduction(command, not differences, compared, differences, versions)
+    return Reproduction(command, not differences, compared, differences, versions, unnamed)
 
 
 def read_manifest(folder: Path) -> dict[str, Any]:
@@ -188,6 +195,18 @@ def _compare_versions(manifest: Mapping[str, Any]) -> Iterator[str]:
         # The own code of a sweep is among its sources.
         if name in now and was != now[name] and not (name == "sources" and manifest["own_code"]):
             yield f"{name} was {was} and is {now[name]}"
+
+
+def _list_unnamed(manifest: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return the files of a folder, but for folders with a manifest of their own, of which nothing is known."""
+    known = {MANIFEST, CRATE, ANSWER, *(each["path"] for each in manifest["outputs"])}
+    others = [path.parent for path in folder.glob(f"*/**/{MANIFEST}")]
+    found = [
+        path.relative_to(folder).as_posix()
+        for path in folder.rglob("*")
+        if path.is_file() and not any(path.is_relative_to(other) for other in others)
+    ]
+    return sorted(set(found) - known)
 
 
 def _run(command: str, arguments: Sequence[str], own_code: Sequence[Path], directory: Path, out: Path) -> Path:

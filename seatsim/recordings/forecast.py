@@ -11,6 +11,8 @@ from seatsim.recordings.gap import Gap, measure_gap
 from seatsim.recordings.prediction import Prediction, predict_gap
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
+from seatsim.recordings.replay import note_unused_log
+from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 
 
@@ -56,13 +58,15 @@ def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Record
         RunError: a simulation could not be carried to its end.
     """
     recording = recording if isinstance(recording, Recording) else load_recording(recording)
+    scenario = scenario if isinstance(scenario, Scenario) else single(scenario)
     examination = examine(recording)
     refuse(examination)
     predicted = predict_gap(scenario, recording, diagnosis)
     measured = None
     if has_outputs(recording):
         measured = MeasuredGaps(measure_gap(recording.nominal, recording), measure_gap(scenario, recording))
-    return Forecast(predicted, measured, tuple(examination.sentences))
+    notes = dict.fromkeys([*note_unused_log(scenario, recording), *examination.sentences])
+    return Forecast(predicted, measured, tuple(notes))
 
 
 def has_outputs(recording: Recording) -> bool:

@@ -15,7 +15,7 @@ from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording, load_recording
-from seatsim.recordings.replay import replay
+from seatsim.recordings.replay import note_unused_log, replay
 from seatsim.scenario.loading import single
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
@@ -55,8 +55,8 @@ class Gap:
         return draw(self, names)
 
     def _repr_html_(self) -> str:
-        rows = [(name, value, self.floor["channels"][name]) for name, value in self.channels.items()]
-        overall = ("overall", self.overall, self.floor["overall"])
+        rows = [(name, value, self.floor["channels"][name] or "not stated") for name, value in self.channels.items()]
+        overall = ("overall", self.overall, self.floor["overall"] or "not stated")
         return html_table("Gap in standard deviations", ("channel", "gap", "noise floor"), [*rows, overall])
 
 
@@ -102,7 +102,7 @@ def gap(scenario: str | Path | Scenario, recording: str | Path | Recording, runs
     scenario, recording = _load(scenario, recording)
     examination = examine(recording)
     refuse(examination)
-    notes = dict.fromkeys([*list_doubts(scenario), *examination.sentences])
+    notes = dict.fromkeys([*list_doubts(scenario), *note_unused_log(scenario, recording), *examination.sentences])
     return replace(measure_gap(scenario, without_gravity(recording), runs), notes=tuple(notes))
 
 

@@ -94,13 +94,18 @@ def read_runs(entries: object, source: Source) -> dict[str, RunEntry]:
     """Return the runs of a recording by name, at least one.
 
     Raises:
-        InputError: a key is wrong, a name is given twice, or a run repeats one that is not there or was set otherwise.
+        InputError: a key is wrong, a name is given twice, a file lies elsewhere, or a run repeats one that is not there
+            or was set otherwise.
     """
     if not isinstance(entries, list) or not entries:
         raise source.error(("runs",), "a recording has at least one run; write '- {name: run-a, file: run-a.csv.gz}'")
     runs: dict[str, RunEntry] = {}
+    folder = source.path.parent.resolve()
     for index, entry in enumerate(entries):
         run: RunEntry = build(RunEntry, entry, source, ("runs", index))
+        if not (folder / run.file).resolve().is_relative_to(folder):
+            problem = "leads out of the folder of the recording, so that any file could be taken for a run"
+            raise source.error(("runs", index, "file"), f"{run.file!r} {problem}; copy the file into the folder")
         problem = explain_bad_name(run.name)
         if problem:
             raise source.error(("runs", index, "name"), f"{run.name!r} {problem}")

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from seatsim.recordings.compared import LEAST_ROWS, LEFT_OUT, select_compared
 from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import Recording
+from seatsim.rig.control import LAWS
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError
+from seatsim.schema.registry import specification_of
 from seatsim.simulation.respond import respond
 
 Array = NDArray[np.float64]
@@ -30,6 +32,18 @@ def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str
         raise InputError(f"{recording.folder}, run {run}: {rows} rows are too short; its first second is left out")
     simulated = replay_table(recording.scenario_of(run, scenario), recording, table)
     return select_compared(table, recording.header.rig, rate), simulated
+
+
+def note_unused_log(scenario: Scenario, recording: Recording) -> list[str]:
+    """Return a sentence where the scenario's own law drives the coil and the recorded command or current does not."""
+    logged = [name for name in ("current_command", "coil_current") if name in recording.channels]
+    if scenario.control is None or not logged or specification_of(type(scenario.control.law)).replays:
+        return []
+    law = LAWS.name_of(type(scenario.control.law))
+    return [
+        f"{scenario.name}: its law '{law}' drives the coil, and the recorded {' and '.join(logged)} do not; to drive it"
+        " with what was recorded, state 'controller: {law: replay}' in the scenario"
+    ]
 
 
 def replay_table(scenario: Scenario, recording: Recording, table: Mapping[str, Array]) -> dict[str, Array]:

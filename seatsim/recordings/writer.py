@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
@@ -17,15 +18,18 @@ from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.files import write_packed, write_together, write_whole
 from seatsim.simulation.result import Result, Run
 
+WITHOUT_NOISE: Mapping[str, float] = MappingProxyType({})
+
 
 def save_recording(
     result: Result, folder: str | Path, channels: Sequence[str], tolerance: Tolerances = USUAL,
-    model_error: float | None = None,
+    model_error: float | None = None, noise: Mapping[str, float] = WITHOUT_NOISE,
 ) -> Path:  # fmt: skip
-    """Write the runs of one simulated seat as a recording without noise, one row a step, and return its folder.
+    """Write the runs of one simulated seat as a recording, one row a step, and return its folder.
 
     The nominal scenario is the first run's, driven by `law: replay` and `kind: recording`. Parameters and
-    temperature of another run that differ from it stand in that run's entry under `set`.
+    temperature of another run that differ from it stand in that run's entry under `set`. White `noise` of an RMS by
+    channel, in the channel's unit, is added and stated; it is drawn from the first run's seed.
 
     Raises:
         InputError: a channel is none that a seat recording has.
@@ -47,12 +51,21 @@ def save_recording(
         "parameter_tolerance": dict(tolerance) if isinstance(tolerance, Mapping) else tolerance,
         "nominal": "nominal.yaml",
         "runs": [{"name": name, "file": f"{name}.csv.gz"} | _changes(first, run) for name, run in files.items()],
-        "channels": {name: {"unit": SEAT_CHANNELS[name]} for name in channels},
+        "channels": {
+            name: {"unit": SEAT_CHANNELS[name]} | ({"noise_rms": noise[name]} if name in noise else {})
+            for name in channels
+        },
     }
     if model_error is not None:
         header["model_error"] = model_error
-    tables = {f"{name}.csv.gz": pd.DataFrame({key: np.asarray(run[key]) for key in ("time", *channels)})
-              for name, run in files.items()}  # fmt: skip
+    rng = np.random.default_rng(first.scenario.seed)
+    tables = {
+        f"{name}.csv.gz": pd.DataFrame(
+            {"time": np.asarray(run["time"])}
+            | {key: run[key] + noise.get(key, 0.0) * rng.standard_normal(len(run[key])) for key in channels}
+        )
+        for name, run in files.items()
+    }
     scenarios = {"nominal.yaml": nominal, "recording.yaml": header}
     write_together(
         folder,

@@ -19,7 +19,7 @@ from seatsim.report.evidence import (
     show_signals,
     show_spectra,
 )
-from seatsim.report.formatting import format_percent, format_sentence
+from seatsim.report.formatting import format_percent, format_sentence, say_noise
 from seatsim.report.gap_stages import show_gaps
 from seatsim.report.method import describe_method
 from seatsim.report.rendering import write_html
@@ -85,16 +85,16 @@ def report_diagnosis(diagnosis: Diagnosis) -> Report:
 def say_diagnosis(diagnosis: Diagnosis) -> str:
     """Return the answer as an engineer says it: what is the matter, and how much of the gap that explains."""
     gap = diagnosis.gap
-    size, noise = format_percent(gap.before.overall), format_percent(gap.floor.overall)
+    size, noise = format_percent(gap.before.overall), say_noise(gap.floor.overall)
     if diagnosis.verdict == "none":
         return (
-            f"The simulation fits the recording: it is off by {size} of the signals' spread, of which noise alone makes"
-            f" {noise} and the tolerance of the parameters the rest."
+            f"The simulation fits the recording: it is off by {size} of the signals' spread; {noise}, and the tolerance"
+            " of the parameters allows the rest."
         )
     causes = _select(diagnosis)
     if not causes:
         where = f", in the {diagnosis.where[0].block}" if diagnosis.where else ""
-        return f"Something that no known effect explains makes the gap of {size}{where}; noise alone makes {noise}."
+        return f"Something that no known effect explains makes the gap of {size}{where}; {noise}."
     clauses = join_names([say_cause(cause) for cause in causes])
     if diagnosis.verdict == "ambiguous":
         others = [name for group in diagnosis.indistinguishable for name in group if name not in diagnosis.selected]
@@ -123,6 +123,9 @@ def advise(diagnosis: Diagnosis) -> list[str]:
     at_bound = [each.name for each in diagnosis.parameters if each.at_bound]
     if at_bound:
         found.append(f"Measure {join_names(at_bound)}: the refit stops at the bound of its tolerance.")
+    at_bound = [cause.effect for cause in _select(diagnosis) if cause.at_bound]
+    if at_bound:
+        found.append(f"Confirm {join_names(at_bound)} first: all of its size lies at the end of its range.")
     what = "the refitted parameters and the effects found" if diagnosis.selected else "the refitted parameters"
     found.append(f"Check the result on another recording: seatsim gap augmented.yaml OTHER_RECORDING (the nominal"
                  f" scenario with {what}).")  # fmt: skip

@@ -53,15 +53,27 @@ def format_percent(share: float | None) -> str:
     return text.replace("-0.0", "0.0").replace("-", MINUS)
 
 
+def format_noise(share: float | None) -> str:
+    """Return the gap that the stated noise alone makes; one of 0 is that of sensors whose noise nobody stated."""
+    return "not stated" if share == 0 else format_percent(share)
+
+
+def say_noise(share: float) -> str:
+    """Return the same as a clause."""
+    return "no sensor noise is stated" if share == 0 else f"sensor noise alone makes {format_percent(share)}"
+
+
 def format_setting(value: float) -> str:
     """Return a number that somebody chose, with no more digits than it has."""
     return f"{value:.6g}".replace("-", MINUS)
 
 
 def format_estimate(value: Estimate | str) -> str:
-    """Return a parameter with its standard deviation, rounded to two digits of that, and its unit."""
+    """Return a parameter with its standard deviation, rounded to two digits of that, its unit, and whether it ends."""
     if isinstance(value, str):
         return value
+    if value.at_bound:
+        return f"{format_estimate(value._replace(at_bound=False))} (the end of its range)"
     shown = describe_channel("", value.unit)
     unit = "" if shown.unit == "-" else f" {shown.unit}"
     value = value._replace(value=shown.factor * value.value, std=shown.factor * value.std)

@@ -12,7 +12,7 @@ from seatsim.recordings.gap import Gap, ReplayedPair
 from seatsim.report.blocks import Block, Items, Matrix, Report, Section, Signals, Table, Text
 from seatsim.report.credibility.card import show_card
 from seatsim.report.credibility.evidence import Evidence
-from seatsim.report.formatting import format_percent, format_sentence
+from seatsim.report.formatting import format_noise, format_percent, format_sentence, say_noise
 from seatsim.report.method import describe_method
 from seatsim.report.packing import Axis, Panel, make_density, pack_signals
 from seatsim.report.spectra import METHOD as SPECTRA
@@ -60,9 +60,9 @@ def say_gap(found: Gap) -> str:
     worst = max(found.channels, key=lambda name: found.channels[name])
     size = f"The simulation is off by {format_percent(found.overall)} of the recorded signals' spread"
     if found.overall <= NEAR_NOISE * floor:
-        return f"{size}; the sensors' noise alone makes {format_percent(floor)}: there is nothing left to explain."
+        return f"{size}; {say_noise(floor)}: there is nothing left to explain."
     return (
-        f"{size}; the sensors' noise alone makes {format_percent(floor)}. It is furthest off in the"
+        f"{size}; {say_noise(floor)}. It is furthest off in the"
         f" {worst.replace('_', ' ')}, by {format_percent(found.channels[worst])}."
     )
 
@@ -87,9 +87,9 @@ def show_pairs(channels: Sequence[str], pairs: Mapping[str, ReplayedPair]) -> Si
 
 
 def _make_table(found: Gap) -> Table:
-    rows = [["overall", format_percent(found.overall), format_percent(found.floor["overall"])]]
+    rows = [["overall", format_percent(found.overall), format_noise(found.floor["overall"])]]
     rows += [
-        [name.replace("_", " "), format_percent(value), format_percent(found.floor["channels"][name])]
+        [name.replace("_", " "), format_percent(value), format_noise(found.floor["channels"][name])]
         for name, value in found.channels.items()
     ]
     caption = "Gap over all runs, in per cent of the standard deviation of the measured signal"

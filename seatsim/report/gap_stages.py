@@ -9,7 +9,7 @@ from typing import Literal
 from seatsim.diagnosis.result import CalibratedParameter, Diagnosis, Gaps
 from seatsim.plots.labels import format_unit
 from seatsim.report.blocks import Bar, Bars, Block, Table, Text
-from seatsim.report.formatting import format_number, format_percent, format_setting
+from seatsim.report.formatting import format_noise, format_number, format_percent, format_setting, say_noise
 
 Stage = Literal["before", "calibrated", "after", "floor"]
 HEADINGS: dict[Stage, str] = {
@@ -33,7 +33,7 @@ def show_gaps(diagnosis: Diagnosis) -> list[Block]:
     blocks += [Table(f"Gaps on {held}", head, rows, 1, [0]), _draw_stages(diagnosis, keys)]
     if len(diagnosis.by_run) > 1:
         lines = [
-            [each.run, *(format_percent(getattr(each, key).overall) for key in keys), format_percent(each.shrink)]
+            [each.run, *(_format_gap(key, getattr(each, key).overall) for key in keys), format_percent(each.shrink)]
             for each in diagnosis.by_run
         ]
         strong = [k for k, each in enumerate(diagnosis.by_run) if each.run in diagnosis.held_out]
@@ -60,16 +60,22 @@ def _make_row(diagnosis: Diagnosis, name: str, keys: Sequence[Stage]) -> list[st
     change = 1 - after / before if after is not None and before else None
     if name == "overall" and math.isfinite(gap.shrink):
         change = gap.shrink
-    return [name.replace("_", " "), *(format_percent(read_gap(gap, key, name)) for key in keys), format_percent(change)]
+    return [
+        name.replace("_", " "),
+        *(_format_gap(key, read_gap(gap, key, name)) for key in keys),
+        format_percent(change),
+    ]
+
+
+def _format_gap(key: Stage, gap: float | None) -> str:
+    return format_noise(gap) if key == "floor" else format_percent(gap)
 
 
 def _describe_shrink(diagnosis: Diagnosis) -> str:
     gap = diagnosis.gap
     if not diagnosis.selected or not math.isfinite(gap.shrink):
-        before, after, floor = (
-            format_percent(read_gap(gap, key, "overall")) for key in ("before", "calibrated", "floor")
-        )
-        return f"Refitting alone takes the gap from {before} to {after}; noise alone makes {floor}."
+        before, after = format_percent(gap.before.overall), format_percent(gap.calibrated.overall)
+        return f"Refitting alone takes the gap from {before} to {after}; {say_noise(gap.floor.overall)}."
     low, high = gap.shrink_interval
     known = math.isfinite(low + high)
     between = f" (90 % interval on other runs of the kind: {format_percent(low)} to {format_percent(high)})" * known
@@ -83,7 +89,8 @@ def _draw_stages(diagnosis: Diagnosis, keys: Sequence[Stage]) -> Bars:
     most = max((value for _, value in known), default=0.0) or 1.0
     looks = {"before": "high", "after": "chosen", "calibrated": "alike", "floor": "plain"}
     bars = [
-        Bar(HEADINGS[key], 0.0, round(100 * value / most, 2), format_percent(value), looks[key]) for key, value in known
+        Bar(HEADINGS[key], 0.0, round(100 * value / most, 2), _format_gap(key, value), looks[key])
+        for key, value in known
     ]
     return Bars("Overall gap, step by step", "On the run held out; shorter is better.", "scenario", "gap", bars)
 

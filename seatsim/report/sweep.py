@@ -12,9 +12,11 @@ from seatsim.report.credibility.evidence import collect_sweep
 from seatsim.report.formatting import format_number, format_percent
 from seatsim.report.method import describe_method
 from seatsim.report.rendering import write_html
+from seatsim.report.sweep_choices import advise_on_keys, choose_choice, tabulate_best
 from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
 from seatsim.report.sweep_pictures import draw_pareto, tabulate_maps
 from seatsim.report.sweep_sensitivity import choose_metric, show_sensitivity
+from seatsim.scenario.conditions import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
 from seatsim.sweeps.statistics.exceedance import Exceedance
 from seatsim.sweeps.statistics.inputs import SweepRows
@@ -55,6 +57,7 @@ def report_sweep(
     settings = [Text(_say_seeds(rows)), Text(f"Identity of the sweep: {rows.manifest['identity']}")]
     sections = [
         Section("limits", "How often limits are exceeded", _show_limits(exceeded, rows)),
+        Section("choices", "Best choice under each condition", tabulate_best(rows)),
         Section("sensitivity", "What matters most", show_sensitivity(found, rows)),
         Section("pareto", "Comfort and travel", draw_pareto(rows, _order(found, rows))),
         Section("maps", "Means over two keys", tabulate_maps(rows, _order(found, rows))),
@@ -74,7 +77,7 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> str:
     if chosen is None:
         return f"Which key matters most cannot be said: {found.problem or 'no key but the variant varies'}."
     words = describe_column(chosen.metric, rows.units).words
-    what = "tolerances" if rows.drawn else "varied keys"
+    what = "tolerances" if rows.drawn and not any(map(is_condition, rows.drawn)) else "varied keys"
     many = len(rows.drawn or [row for row in here if row.key != "variant"])
     first = max(here, key=lambda row: row.total)
     lead = "" if first is chosen else (
@@ -86,7 +89,11 @@ def state_importance(found: Sensitivities, rows: SweepRows) -> str:
         said = f"Of {many} {what} {chosen.key} matters most to the {words}: it explains {total} of the variance"
     else:
         said = f"{chosen.key}, the only one of the {what}, explains {total} of the variance of the {words}"
-    return f"{lead}{said} together with its interactions ({interval})."
+    choice = choose_choice(here, rows) if is_condition(chosen.key) else None
+    rest = "" if choice is None else (
+        f" It is a condition; of the choices {choice.key} matters most and explains {format_percent(choice.total)}."
+    )  # fmt: skip
+    return f"{lead}{said} together with its interactions ({interval}).{rest}"
 
 
 def _say_seeds(rows: SweepRows) -> str:
@@ -114,10 +121,8 @@ def _advise(found: Sensitivities, exceeded: Sequence[Exceedance], rows: SweepRow
         limit = f"{format_number(shown.factor * worst.limit)} {shown.unit}".removesuffix(" -")
         texts.append(f"Begin with the {shown.words}{f' of {where}' * bool(where)}: {worst.exceeding} of {worst.runs}"
                      f" runs are above the limit of {limit}.")  # fmt: skip
-    chosen = choose_key(found.of(choose_metric(found)), rows) if found.rows else None
-    if chosen is not None:
-        verb, what = ("Tighten the tolerance of", "tolerance") if rows.drawn else ("Settle", "key")
-        texts.append(f"{verb} {chosen.key} first: no other {what} changes as much.")
+    if found.rows:
+        texts += advise_on_keys(found.of(choose_metric(found)), rows)
     if len(rows.every) < rows.manifest["counts"]["runs"]:
         texts.append("Go on with the sweep: seatsim sweep with --resume.")
     return texts

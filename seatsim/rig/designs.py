@@ -56,6 +56,10 @@ class SynthesisedDesign(Protocol):
         """Gain (controls, measurements) in the user's units."""
 
     @property
+    def measures(self) -> Sequence[str]:
+        """Names of what is measured, in the order of the gain's columns; empty where the plant has none."""
+
+    @property
     def max_gain(self) -> float:
         """Largest magnitude that an entry of the gain may have."""
 

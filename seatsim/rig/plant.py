@@ -44,11 +44,16 @@ class Plant(NamedTuple):
             Annotated[float, param("m", "lower stop", high=0, low=-10, usual=USUAL_TRAVEL)],
             Annotated[float, param("m", "upper stop", low=0, high=10, usual=USUAL_TRAVEL)],
         ],
-        param("m", "travel between the end stops; excursions beyond it are counted", usual=USUAL_TRAVEL),
+        param("m", "travel between the end stops, where suspension.end_stop states none", usual=USUAL_TRAVEL),
     ] = (-10.0, 10.0)
     damper_ratio: Annotated[
         float, param("-", "damper stroke per suspension displacement", above=0, high=10, usual=(0.1, 3))
     ] = 1.0
+
+    @property
+    def end_stops(self) -> tuple[float, float] | None:
+        """Displacements in m, (low, high), at which the suspension meets its end stops; None where none are stated."""
+        return None if self.travel == Plant._field_defaults["travel"] else self.travel
 
 
 class PlantMatrices(NamedTuple):

@@ -11,11 +11,15 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 from collections.abc import Iterator, Mapping
 
 from seatsim.schema.validation import mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
+
+MOST_RUNS = 10_000
+"""Runs of one scenario file, whose histories are all held at once."""
 
 
 def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Source, dict[str, object]]]:
@@ -29,6 +33,11 @@ def expand(source: Source, settings: Mapping[str, object]) -> Iterator[tuple[Sou
     if isinstance(base.data.get("temperature"), list):
         sweep["temperature"] = base.data["temperature"]
     lists = {key: _swept_values(values, base, key) for key, values in sweep.items()}
+    runs = math.prod(map(len, lists.values())) * max(len(variants), 1)
+    if runs > MOST_RUNS:
+        raise base.error(
+            ("sweep",), f"makes {runs} runs; a scenario has at most {MOST_RUNS}, and 'seatsim sweep' takes more"
+        )
     for name, changes in variants.items() or [(None, {})]:
         for chosen in itertools.product(*lists.values()):
             run = base.with_changes()

@@ -33,6 +33,8 @@ LARGEST_SEED = 2**63 - 1
 """The largest whole number that a column of a table holds."""
 BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
 SEAT_KEYS = (*BENCH_KEYS, "plant", "driver", "controller", "excitation", "start", "sweep", "variants", "published")
+FILES = (("controller", "design"), ("excitation", "path"))
+"""Section and key under which a scenario names a file, from its own folder."""
 CONTROL_KEYS = ("law", "sample_time", "inverse", "sensors")
 # An excitation may read a recording, whose nominal is a scenario: their package builds on this one.
 EXCITATIONS: Registry[Excitation, object] = Registry("excitation")

@@ -13,7 +13,7 @@ from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import nearest
-from seatsim.schema.fields import field_names, replace_fields
+from seatsim.schema.fields import bounds, field_names, replace_fields
 from seatsim.schema.registry import Record
 from seatsim.schema.validation import check_value
 from seatsim.schema.yaml_source import Source
@@ -33,6 +33,13 @@ def list_numbers(scenario: Scenario) -> dict[str, float]:
         if isinstance(value := getattr(record, name), int | float) and not isinstance(value, bool)
     }
     return found if isinstance(scenario.temperature, Thermal) else found | {TEMPERATURE: scenario.temperature}
+
+
+def is_permitted(scenario: Scenario, key: str, value: float) -> bool:
+    """Return whether a number of a section that `list_numbers` names may have a value."""
+    section, _, name = key.rpartition(".")
+    low, high = bounds(type(_records(scenario)[section]), name)
+    return low <= value <= high
 
 
 def set_number(scenario: Scenario, key: str, value: float) -> Scenario:

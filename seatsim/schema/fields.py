@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Annotated, Any, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le
 from pydantic import Field, JsonValue, TypeAdapter
@@ -115,7 +115,7 @@ def bounds(record: type, name: str) -> tuple[float, float]:
 def choices(record: type, name: str) -> tuple[str, ...]:
     """Return the permitted values of a field that is one of several words, nothing for any other field."""
     parts = get_args(_hints(record)[name])
-    return get_args(parts[0]) if parts else ()
+    return get_args(parts[0]) if parts and get_origin(parts[0]) is Literal else ()
 
 
 @cache

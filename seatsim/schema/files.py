@@ -14,15 +14,19 @@ import re
 import secrets
 import shutil
 import socket
+import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from seatsim.schema.errors import InputError, OutputError
 from seatsim.schema.leftovers import noted, uncut
+from seatsim.schema.links import check_links_on, check_no_link
 
 _HOST = re.sub(r"[^0-9A-Za-z]", "_", socket.gethostname())[:40]
-_PART = re.compile(rf"\..+\.{_HOST}-(\d+)-[0-9a-f]{{8}}\.part(\..*)?")
+_PART = re.compile(r"\..+\.(\w+)-(\d+)-[0-9a-f]{8}\.part(\..*)?")
+_ABANDONED = 86_400.0
+"""Seconds without a change after which what a process of another machine writes counts as left."""
 
 
 @runtime_checkable
@@ -110,6 +114,7 @@ def _put_in_place(part: Path, folder: Path, names: Iterable[Path]) -> None:
     try:
         for number, name in enumerate(names):
             place, kept = folder / name, before / str(number)
+            check_no_link(folder, place.parent)
             if place.is_dir():
                 raise IsADirectoryError(f"{place} is a folder")
             place.parent.mkdir(parents=True, exist_ok=True)
@@ -148,11 +153,13 @@ def check_folder(folder: Path) -> None:
     """Refuse a folder that could not be written, before anything is done.
 
     Raises:
-        InputError: it is a file or lies in one, may not be written, or its name cannot be used.
+        InputError: it is a file or lies in one, may not be written, its name cannot be used, or another user's link
+            leads to it.
     """
     try:
         if "\0" in str(folder):
             raise ValueError("it holds a zero byte")
+        check_links_on(folder)
         there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
     except (OSError, ValueError) as error:
         raise InputError(f"{str(folder)!r}: cannot be written: {error}; give another --out") from error
@@ -184,14 +191,24 @@ def _name_part(path: Path) -> Path:
 
 
 def remove_left(folder: Path) -> None:
-    """Remove from a folder what processes of this machine that are no more have left there half-written."""
+    """Remove from a folder what processes that are no more have left there half-written.
+
+    Whether one of another machine still runs is not seen from here; what it has not changed for a day is left, too.
+    """
     for each in folder.iterdir() if folder.is_dir() else ():
         found = _PART.fullmatch(each.name)
-        if found and not _is_running(int(found[1])):
+        if found and (_is_abandoned(each) if found[1] != _HOST else not _is_running(int(found[2]))):
             if each.is_dir():
                 shutil.rmtree(each, ignore_errors=True)
             else:
                 each.unlink(missing_ok=True)
+
+
+def _is_abandoned(part: Path) -> bool:
+    try:
+        return time.time() - part.lstat().st_mtime > _ABANDONED
+    except OSError:  # it was put in place meanwhile
+        return False
 
 
 def _is_running(process: int) -> bool:

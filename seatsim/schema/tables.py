@@ -20,6 +20,7 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import in_mib, read_bytes
 from seatsim.schema.memory import check_memory
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from pyarrow import csv as arrow_csv
 
 LARGEST_FILE = 2**30
-LARGEST_UNPACKED = 2**30
 """Bytes of a table: eight hours of eight channels at 500 Hz."""
 LONGEST_LINE = 2**20
 """Bytes of a table in which its first line must end."""
@@ -110,9 +110,10 @@ def unpack(content: bytes, path: Path) -> bytes:
         with opened(io.BytesIO(content)) as file:
             while part := file.read(CHUNK):
                 size += len(part)
-                if size > LARGEST_UNPACKED:
-                    raise InputError(f"{path}: unpacks to more than {in_mib(LARGEST_UNPACKED)}, the largest permitted")
+                check_made(size, len(content), "what it unpacks to")
                 parts.append(part)
+    except TooMuchError as error:
+        raise InputError(f"{path}: {error}") from error
     except UNPACKING_ERRORS as error:
         raise InputError(f"{path}: cannot be unpacked ({error}); it is truncated: copy it again") from error
     return b"".join(parts)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 LONGEST_NAME = 100
+LONGEST_WORD = 1000
 FORMULA = re.compile(r"[=@\t\r]|[+-](?!\d[\d.,]*\s?[^\W\d]*$)")
 """How a text begins that a spreadsheet computes; a size with a sign and a unit, such as `-10 degC`, is none."""
 
@@ -23,10 +24,22 @@ def explain_bad_name(name: str) -> str:
     return f"{problem}; it names files: write letters, digits, spaces, - and _, such as rough-track-80C"
 
 
+def cut_words(text: str) -> str:
+    """Return a text without the middle of words of `LONGEST_WORD` letters or more, such as a path made of noise."""
+    return re.sub(rf"\S{{{LONGEST_WORD},}}", lambda found: f"{found[0][:100]}...{found[0][-50:]}", text)
+
+
 def join_names(names: Collection[str], last: str = "and") -> str:
     """Return one or more names as they stand in a sentence: `a, b and c`."""
     *first, end = names
     return f"{', '.join(first)} {last} {end}" if first else end
+
+
+def name_some(names: Sequence[str], most: int = 3, last: str = "and") -> str:
+    """Return the first names as they stand in a sentence, and how many others there are: `a, b, c and 2 others`."""
+    left = len(names) - most
+    others = [f"{left} other{'s' * (left > 1)}"] if left > 0 else []
+    return join_names([*names[:most], *others], last)
 
 
 def make_printable(text: str) -> str:

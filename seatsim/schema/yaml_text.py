@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple, TypeAlias
 
 import yaml
@@ -53,11 +53,15 @@ class Content(NamedTuple):
 
 
 class _Node(NamedTuple):
-    """A value with its line; mappings hold (line of the key, value), and `merged` the mappings of their `<<`."""
+    """A value with its line; mappings hold (line of the key, value), and `merged` the mappings of their `<<`.
+
+    `size` counts the values in it once every alias and every `<<` stands for what it refers to.
+    """
 
     line: int
     value: Scalar | list[_Node] | dict[str, tuple[int, _Node]]
     merged: tuple[_Node, ...] = ()
+    size: int = 1
 
 
 def parse(text: str) -> Content:
@@ -77,8 +81,6 @@ def parse_value(text: str) -> object:
 
 def _plain(node: _Node, keys: KeyPath, lines: dict[KeyPath, int]) -> object:
     """Return the plain value of a node, a new one for every alias, and note the lines of what is in it."""
-    if len(lines) > MOST_VALUES:
-        raise YamlError(f"more than {MOST_VALUES} values once its aliases are put in", node.line)
     if isinstance(node.value, list):
         for index, entry in enumerate(node.value):
             lines[(*keys, index)] = entry.line
@@ -139,7 +141,8 @@ class _Composer:
         elif depth >= DEEPEST:
             raise YamlError(_TOO_DEEP, line)
         elif isinstance(event, yaml.SequenceStartEvent):
-            node = _Node(line, list(self._entries(depth)))
+            entries = list(self._entries(depth))
+            node = _Node(line, entries, size=_sum_sizes(line, entries))
         else:
             node = self._mapping(line, depth)
         if event.anchor is not None:
@@ -165,7 +168,15 @@ class _Composer:
                 raise YamlError(f"found duplicate key '{_short(key)}'; write each key once, as 'key: value'", at)
             else:
                 entries[key] = (at, value)
-        return _Node(line, entries, tuple(merged))
+        return _Node(line, entries, tuple(merged), _sum_sizes(line, [*merged, *(each for _, each in entries.values())]))
+
+
+def _sum_sizes(line: int, nodes: Iterable[_Node]) -> int:
+    """Return the size of a node that holds others."""
+    size = 1 + sum(node.size for node in nodes)
+    if size > MOST_VALUES:
+        raise YamlError(f"more than {MOST_VALUES} values once its aliases are put in", line)
+    return size
 
 
 def _mappings(node: _Node) -> list[_Node]:

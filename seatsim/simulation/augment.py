@@ -21,6 +21,7 @@ from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
+from seatsim.schema.samples import require_samples
 from seatsim.simulation.effect_hooks import COIL, FACTORS, FRAME_FORCE, PLANT, READING, TEMPERATURE, TRUTH
 
 Array = NDArray[np.float64]
@@ -51,21 +52,21 @@ def augment_factors(effects: Sequence[object], factors: TemperatureFactors) -> T
 def augment_temperature(effects: Sequence[object], step: float, temperature: Array) -> Array:
     """Return the temperature of the fluid in degC out of that of the thermocouple, shape (N,), every `step` seconds."""
     for effect in TEMPERATURE.of(effects):
-        temperature = effect.temperature(step, temperature)
+        temperature = _checked(effect, "temperature", effect.temperature(step, temperature), temperature, step)
     return temperature
 
 
 def undo_reading(effects: Sequence[object], values: Array, channel: str, step: float) -> Array:
     """Return what is true out of what a sensor says, shape (N,): the effects on it undone, the last one first."""
     for effect in TRUTH.of(effects[::-1]):
-        values = effect.truth(channel, step, values)
+        values = _checked(effect, f"truth of {channel}", effect.truth(channel, step, values), values, step)
     return values
 
 
 def read_sensor(effects: Sequence[object], values: Array, channel: str, step: float) -> Array:
     """Return what a sensor says out of what is true, shape (N,), sampled every `step` seconds."""
     for effect in READING.of(effects):
-        values = effect.reading(channel, step, values)
+        values = _checked(effect, f"reading of {channel}", effect.reading(channel, step, values), values, step)
     return values
 
 
@@ -76,8 +77,24 @@ def read_sensors(effects: Sequence[object], step: float, true: Mapping[str, Arra
 
 def sum_frame_forces(effects: Sequence[object], time: Array, seed: int) -> Array:
     """Return the force on the frame in N that effects add, shape (N,), or of length 0 where none does."""
-    forces = [effect.frame_force(time, seed) for effect in FRAME_FORCE.of(effects)]
+    step = float(time[1]) if len(time) > 1 else 0.0
+    forces = [
+        _checked(effect, "frame_force", effect.frame_force(time, seed), time, step)
+        for effect in FRAME_FORCE.of(effects)
+    ]
     return np.asarray(np.sum(forces, axis=0)) if forces else NONE
+
+
+def _checked(effect: object, method: str, found: object, like: Array, step: float) -> Array:
+    """Return what a method of an effect gives, which must be as many finite samples as in `like`.
+
+    Raises:
+        RunError: it is anything else.
+    """
+    if found is like:
+        return like
+    giver = f"the {method} of the effect '{EFFECTS.name_of(type(effect))}'"
+    return require_samples(found, giver, len(like), step)
 
 
 def select_in_loop(effects: Sequence[object], carry_all: bool | None = None) -> tuple[Effects, Effects]:

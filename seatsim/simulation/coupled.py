@@ -28,8 +28,9 @@ from seatsim.kernel import step as kernel_step
 from seatsim.kernel.assumed_model import follow_state, model_scaling
 from seatsim.kernel.generic import advance_filters, read, scaling_at, update, wants_force
 from seatsim.kernel.inverse import CELLS
-from seatsim.kernel.loop import ROUNDING, decide, measure, record_sample, warm_up
+from seatsim.kernel.loop import ROUNDING, decide, measure, warm_up
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, sample_of, step_inputs
+from seatsim.kernel.recorders import Sample, keep_rows
 from seatsim.kernel.rig import Disturbance
 from seatsim.kernel.step import IntegratorState, StepInputs, relaxed
 from seatsim.rig.state import DAMPER_WORK, DISPLACEMENT, VELOCITY, State
@@ -92,7 +93,7 @@ class _Loop:
         setup, inputs, timing, coil, model = (
             self.setup, self.inputs, self.setup.timing, self.setup.coil, self.setup.inverse_model
         )  # fmt: skip
-        step, samples, ratio = timing.step, len(out), setup.rig.plant.damper_ratio
+        step, samples, ratio, recorder = timing.step, len(out), setup.rig.plant.damper_ratio, keep_rows(out)
         late = math.floor(coil.delay / step + ROUNDING)
         split = coil.delay - late * step
         split = split if split >= ROUNDING * step else 0.0
@@ -115,10 +116,11 @@ class _Loop:
                 y, sensed = read(setup.sensors, true, inputs.noise, k // timing.sample_every, sensed)
                 command, wanted, served = decide(setup, y, now, factors, followed, law_state, grid)
                 law_state = update(setup.law, y, law_state)
-            record_sample(out, k, now, floor, wanted, served, current, command, temperature)
+            sample = Sample(floor, wanted, served, current, command, temperature)
+            recorder.keep((), setup.rig, k, now, sample)
             if k == samples - 1:
                 break
-            acting = step_inputs(setup, inputs, out, k, current, late, split, kept)
+            acting = step_inputs(setup, inputs, recorder, k, current, late, split, kept)
             found = self._step(acting, k, now, force, before, temperature, factors)
             if found is None:
                 return k

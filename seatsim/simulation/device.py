@@ -20,9 +20,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.excitations.base import Floor
-from seatsim.kernel.cuda_lanes import DeviceInputs, KernelError, free_memory, is_simulated, run_on_device
-from seatsim.kernel.lane_records import template_of
-from seatsim.kernel.lane_run import LaneEnd, LaneLimits
+from seatsim.kernel.cuda_lanes import (
+    DeviceInputs,
+    KernelError,
+    LaneEnd,
+    free_memory,
+    is_simulated,
+    run_on_device,
+)
+from seatsim.kernel.numbers import template_of
+from seatsim.kernel.sums import LaneLimits
 from seatsim.metrics import METRICS, Metric, rms, weight
 from seatsim.metrics.arrays import ratio
 from seatsim.metrics.side_by_side import measure_drivers
@@ -116,7 +123,11 @@ def _run_lanes(group: Sequence[_Driven]) -> Iterator[tuple[int, LaneRow]]:
         floor_of,
         _side_by_side([each.noise for each in group]),
     )
-    limits = LaneLimits(float(specification.max_speed), float(highest_current(specification.max_current)))
+    limits = LaneLimits(
+        float(specification.max_speed),
+        float(highest_current(specification.max_current)),
+        *map(float, specification.temperatures),
+    )
     try:
         ends, driver = run_on_device(template_of(starts), limits, inputs, max(lane.depth for lane in lanes))
     except KernelError as error:
@@ -142,10 +153,14 @@ def _side_by_side(columns: Sequence[Array]) -> Array:
 def _row(lane: DeviceLane, end: LaneEnd, samples: int, found: dict[str, float]) -> LaneRow:
     rig = RigOfSums(lane.start.setup.timing.step, lane.scenario.coil.resistance, end.temperature)
     found |= metrics_of_sums(end.sums, samples, rig)
+    if lane.start.setup.rig.plant.end_stops is None:
+        del found["end_stop_hits"]
     metrics = {name: Metric(found[name], known.unit, known.meaning) for name, known in METRICS.items() if name in found}
     is_centred = specification_of(type(lane.scenario.damper.record)).centred
-    drift = judge_centring(end.strokes.lengths, end.strokes.middles) if is_centred else ""
-    return LaneRow(metrics, Excursions(end.fast / samples, end.strong / samples, end.sums.displacement_peak, drift))
+    sums = end.sums
+    drift = judge_centring(sums.lengths, sums.middles) if is_centred else ""
+    fast, strong, foreign = (count / samples for count in (sums.fast, sums.strong, sums.foreign))
+    return LaneRow(metrics, Excursions(fast, strong, foreign, sums.displacement_peak, drift))
 
 
 def _weighted_rms(floor: Array, step: float) -> float:

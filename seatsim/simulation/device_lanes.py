@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.excitations.base import Floor
-from seatsim.kernel.lane_records import numbers
-from seatsim.kernel.lane_run import LaneStart
+from seatsim.kernel.cuda_lanes import LaneStart
 from seatsim.kernel.loop import delay_of
+from seatsim.kernel.numbers import numbers
 from seatsim.rig.sensors import READINGS, Direct, at_rest
-from seatsim.rig.state import MECHANICAL
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.registry import specification_of
@@ -62,16 +61,17 @@ def as_device_lane(place: int, scenario: Scenario) -> DeviceLane | None:
         return None
     setup, initial = set_up(scenario, plant, control, is_recorded=False, carry_all_effects=False)
     changed = setup.rig.plant
-    # Hits and excursions are counted by what the scenario states of the seat.
-    if (changed.travel, changed.damper_ratio) != (plant.travel, plant.damper_ratio):
+    # Excursions are counted by what the scenario states of the seat.
+    if changed.damper_ratio != plant.damper_ratio:
         return None
     start = LaneStart(
         setup,
-        (*scenario.start, *(0.0,) * (MECHANICAL - len(scenario.start)), *initial),
+        initial,
         specification_of(type(setup.inverse_model.damper)).initial,
         specification_of(type(control.law)).initial,
         () if isinstance(setup.sensors, Direct) else at_rest(scenario.start.displacement),
         temperature.start if isinstance(temperature, Thermal) else temperature,
+        *scenario.start,
     )
     try:
         return DeviceLane(place, scenario, start, numbers(start))

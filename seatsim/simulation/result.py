@@ -42,7 +42,11 @@ UNITS = {
 
 
 class Channel(np.ndarray[tuple[int, ...], np.dtype[np.float64]]):
-    """A channel of a run: an array of shape (N,) with its `name` and `unit`."""
+    """A channel of a run: an array of shape (N,) with its `name` and `unit`, not to be written into.
+
+    Name and unit are those of the channel and of parts of it, as `channel[100:]`; of what is computed from it, as
+    `channel**2`, both are empty.
+    """
 
     name: str
     unit: str
@@ -51,12 +55,19 @@ class Channel(np.ndarray[tuple[int, ...], np.dtype[np.float64]]):
         """Return a view of the values with a name and a unit."""
         channel = np.asarray(values, dtype=np.float64).view(cls)
         channel.name, channel.unit = name, unit
+        channel.flags.writeable = False
         return channel
 
     def __array_finalize__(self, other: object) -> None:
-        """Carry name and unit over to what is made from the channel."""
-        self.name = getattr(other, "name", "")
-        self.unit = getattr(other, "unit", "")
+        """Give what is made from a channel no name and no unit: numpy does not say what was done to it."""
+        self.name = self.unit = ""
+
+    def __getitem__(self, key: Any) -> Any:
+        """Return a part of the channel, with its name and unit, or a number."""
+        part = super().__getitem__(key)
+        if isinstance(part, Channel):
+            part.name, part.unit = self.name, self.unit
+        return part
 
 
 @dataclass(frozen=True)
@@ -80,10 +91,14 @@ class Run:
 
 @dataclass(frozen=True)
 class Result:
-    """The runs of one or several scenarios, and performance bounds by rig (`Scenario.rig`) where asked for."""
+    """The runs of one or several scenarios, performance bounds by rig (`Scenario.rig`) where asked for, and failures.
+
+    `failures` says why other runs of the scenarios were not carried to their end.
+    """
 
     runs: Sequence[Run]
     brackets: Mapping[str, Any] = field(default_factory=dict)
+    failures: Sequence[str] = ()
 
     def __getitem__(self, name: str) -> Channel:
         """Return a channel of the first run with its unit."""

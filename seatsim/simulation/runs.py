@@ -15,9 +15,10 @@ from seatsim.scenario.loading import load
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, RunError, SynthesisError
+from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.result import Result, Run
 from seatsim.simulation.simulate import History, simulate
-from seatsim.simulation.validity import list_reasons
+from seatsim.simulation.validity import explain_unweighted, list_reasons
 
 R = TypeVar("R")
 
@@ -56,7 +57,8 @@ def run_one(scenario: Scenario, carry_all_effects: bool | None = False) -> Run:
     history = simulate(scenario, carry_all_effects=carry_all_effects)
     metrics = measure_run(scenario, history)
     reasons = list_reasons(scenario, history, metrics)
-    return Run(scenario, history, metrics, (*list_doubts(scenario), *reasons), reasons)
+    warnings = (*list_doubts(scenario), *reasons, *explain_unweighted(history.step, metrics))
+    return Run(scenario, history, metrics, warnings, reasons)
 
 
 def measure_run(scenario: Scenario, history: History) -> dict[str, Metric]:
@@ -65,7 +67,7 @@ def measure_run(scenario: Scenario, history: History) -> dict[str, Metric]:
     return summarise(
         history.channels,
         history.step,
-        travel=plant.travel if plant else None,
+        travel=augment_plant(scenario.effects, plant).end_stops if plant else None,
         coil_resistance=scenario.coil.resistance,
     )
 

@@ -15,17 +15,17 @@ from seatsim.excitations.base import Floor
 from seatsim.kernel.assumed_model import AssumedModel, InverseModel, TrueModel
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.chain import state_at_rest
-from seatsim.kernel.channels import CHANNELS
+from seatsim.kernel.channels import CHANNELS, CURRENT_COMMAND
 from seatsim.kernel.loop import run_loop
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
+from seatsim.kernel.recorders import keep_rows
 from seatsim.kernel.rig import Rig
-from seatsim.kernel.work import MOST_WORK
 from seatsim.rig.control import LawWithNotes, prepare_law
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, at_rest
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Control, Scenario
-from seatsim.schema.errors import InputError, RunError
+from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.augment import (
     augment_coil,
@@ -40,6 +40,7 @@ from seatsim.simulation.augment import (
     undo_reading,
 )
 from seatsim.simulation.coupled import run_coupled, stand_in
+from seatsim.simulation.divergence import explain_divergence
 from seatsim.simulation.inputs import NONE, Forces
 
 Array = NDArray[np.float64]
@@ -96,27 +97,19 @@ def simulate(
         inputs = inputs._replace(sensed=at_rest(scenario.start.displacement), noise=noise)
     # Each channel lies in one piece, as it is read afterwards: a transpose would take a third of the run's time.
     out = np.empty((len(CHANNELS), len(floor.acceleration))).T
-    variable = setup.law, setup.inverse_model.damper, setup.sensors
+    recorder = keep_rows(out)
+    variable = setup.law, setup.inverse_model.damper, setup.sensors, recorder
     parts = (*classes_of(setup.rig.damper), *map(type, setup.rig.effects), *map(type, variable))
     states = (initial, _initial_state(setup.inverse_model), specification_of(type(scenario.control.law)).initial)
     if isinstance(unit, FmuDamper):
         reached = run_coupled(unit, setup, inputs, states, out)
     else:
-        reached = compiled(run_loop, parts)(setup, inputs, *states, out)
-    if reached < len(out):
-        raise diverged(scenario, reached)
+        reached, *_ = compiled(run_loop, parts)(setup, inputs, *states, recorder)
+    if reached < len(out) or np.isnan(out[:, CURRENT_COMMAND]).any():
+        raise explain_divergence(scenario, out[: reached + 1], setup.rig.plant.damper_ratio)
     notes = setup.law.notes() if isinstance(setup.law, LawWithNotes) else ()
     history = _history(setup.rig.plant, step, out, notes)
     return _without_balance(history) if has_inner_masses(scenario.driver, scenario.effects) else history
-
-
-def diverged(scenario: Scenario, reached: int) -> RunError:
-    """Return the error of a run that leaves all bounds, or takes too much work, after the samples `reached`."""
-    return RunError(
-        f"{scenario.title}: no solution beyond {reached * scenario.solver.step:.3f} s, where it leaves all bounds"
-        f" or is too stiff (on average more than {MOST_WORK} parts of a step);"
-        " check the signs of gains and stiffnesses, and the damper's parameters"
-    )
 
 
 def set_up(

@@ -1,11 +1,11 @@
-"""The metrics that the sums of a lane give, as `seatsim.metrics` defines them."""
+"""The metrics that the sums of a run give, as `seatsim.metrics` defines them."""
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
 
-from seatsim.kernel.lane_state import Sums
+from seatsim.kernel.sums import Sums
 from seatsim.metrics.arrays import ratio
 
 

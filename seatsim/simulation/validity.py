@@ -10,10 +10,11 @@ import numpy as np
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.metrics import Metric
-from seatsim.rig.plant import USUAL_TRAVEL, Plant
+from seatsim.metrics.weighting import least_rate
+from seatsim.rig.plant import USUAL_TRAVEL
 from seatsim.scenario.scenario import Scenario
-from seatsim.schema.fields import default_values
 from seatsim.schema.registry import name_of, specification_of
+from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.damper_bench import centring
 from seatsim.simulation.simulate import History
 
@@ -26,12 +27,14 @@ LARGEST_RESIDUAL = 1e-3
 class Excursions(NamedTuple):
     """How far a run goes from what its models are made for.
 
-    fast, strong: shares of the samples above the speed and above the current of the damper's data. travel: largest
-    distance of the suspension from its mid-stroke in m. drift: what there is to say of its strokes, mostly nothing.
+    fast, strong, foreign: shares of the samples above the speed, above the current and outside the temperatures of the
+    damper's data. travel: largest distance of the suspension from its mid-stroke in m. drift: what there is to say of
+    its strokes, mostly nothing.
     """
 
     fast: float
     strong: float
+    foreign: float
     travel: float
     drift: str = ""
 
@@ -55,6 +58,17 @@ def judge_run(scenario: Scenario, excursions: Excursions, metrics: Mapping[str, 
     return tuple(found)
 
 
+def explain_unweighted(step: float, metrics: Mapping[str, Metric]) -> tuple[str, ...]:
+    """Return why the figures of a run that the weighting by Wk needs are left out; nothing where they are there."""
+    if "driver_acceleration_weighted" in metrics or "driver_acceleration_rms" not in metrics:
+        return ()
+    return (
+        f"weighted figures (Wk RMS, VDV, SEAT factor) are left out: with solver.step {1e3 * step:g} ms there are"
+        f" {1 / step:.4g} samples a second, and Wk needs {least_rate():g}; choose a step of"
+        f" {1e3 / least_rate():g} ms or less",
+    )
+
+
 def list_ranges_left(scenario: Scenario, history: History) -> tuple[str, ...]:
     """Return a sentence for every range that a run leaves; those of the damper for more than 1 % of the time."""
     return _list_ranges_left(scenario, _measure_excursions(scenario, history))
@@ -70,12 +84,14 @@ def _measure_excursions(scenario: Scenario, history: History) -> Excursions:
     travel = float(np.max(np.abs(displacement)))
     record: object = scenario.damper.record
     if isinstance(record, FmuDamper):  # which states no ranges
-        return Excursions(0.0, 0.0, travel)
+        return Excursions(0.0, 0.0, 0.0, travel)
     specification = specification_of(type(record))
     ratio = scenario.plant.damper_ratio if scenario.plant else 1.0
+    temperature, (coldest, hottest) = history["damper_temperature"], specification.temperatures
     return Excursions(
         float(np.mean(ratio * np.abs(velocity) > specification.max_speed)),
         float(np.mean(history["coil_current"] > highest_current(specification.max_current))),
+        float(np.mean((temperature < coldest) | (temperature > hottest))),
         travel,
         centring(displacement, velocity) if specification.centred else "",
     )
@@ -84,9 +100,10 @@ def _measure_excursions(scenario: Scenario, history: History) -> Excursions:
 def _list_ranges_left(scenario: Scenario, excursions: Excursions) -> tuple[str, ...]:
     record: object = scenario.damper.record
     if isinstance(record, FmuDamper):
-        return _doubt_travel(scenario.plant, excursions.travel)
+        return _doubt_travel(scenario, excursions.travel)
     cls = type(scenario.damper.record)
     specification, model = specification_of(cls), name_of("damper", cls)
+    coldest, hottest = specification.temperatures
     checks = [
         (
             excursions.fast,
@@ -98,6 +115,11 @@ def _list_ranges_left(scenario: Scenario, excursions: Excursions) -> tuple[str, 
             f"above {specification.max_current:g} A",
             "its laws end there",
         ),
+        (
+            excursions.foreign,
+            f"not at {coldest:g} degC" if coldest == hottest else f"outside {coldest:g} to {hottest:g} degC",
+            "the force there is an extrapolation",
+        ),
     ]
     found = [
         f"{model}: more than {SHARE:.0%} of a run is {what}, beyond the data behind the model; {consequence}"
@@ -105,12 +127,13 @@ def _list_ranges_left(scenario: Scenario, excursions: Excursions) -> tuple[str, 
         if share > SHARE
     ]
     found += [f"{model}: {excursions.drift}"] if excursions.drift else []
-    return (*_doubt_travel(scenario.plant, excursions.travel), *found)
+    return (*_doubt_travel(scenario, excursions.travel), *found)
 
 
-def _doubt_travel(plant: Plant | None, peak: float) -> tuple[str, ...]:
+def _doubt_travel(scenario: Scenario, peak: float) -> tuple[str, ...]:
     """Return what is to be said where the suspension moves further than any seat does and no end stop is stated."""
-    if plant is None or plant.travel != default_values(Plant)["travel"] or peak <= USUAL_TRAVEL[1]:
+    plant = scenario.plant
+    if plant is None or augment_plant(scenario.effects, plant).end_stops or peak <= USUAL_TRAVEL[1]:
         return ()
     return (
         f"the suspension moves {1e3 * peak:.0f} mm from its mid-stroke, and seats have {1e3 * USUAL_TRAVEL[1]:.0f} mm"

@@ -17,8 +17,9 @@ from seatsim.rig.plant import Plant
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import InputError
 from seatsim.schema.text import join_names
+from seatsim.simulation.augment import augment_plant
 from seatsim.standards.iso7096 import PERSONS, RECALLED, SEATED_SHARE
-from seatsim.standards.seat_rows import SETTLE, SeatFailure, SeatTest, Trial, doubt_runs, has_travel, state_row
+from seatsim.standards.seat_rows import SETTLE, SeatFailure, SeatTest, Trial, doubt_runs, state_row
 
 NEEDED = ("floor_acceleration", "driver_acceleration")
 TRAVEL = "suspension_displacement"
@@ -45,7 +46,8 @@ def assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass])
     Raises:
         InputError: the recording lacks a channel, or no run of it is of a class.
     """
-    plant = single(recording.nominal).plant
+    nominal = single(recording.nominal)
+    plant = None if nominal.plant is None else augment_plant(nominal.effects, nominal.plant)
     if plant is None or any(name not in recording.channels for name in NEEDED):
         raise InputError(f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(NEEDED)}")
     groups: dict[tuple[SpectralClass, str], list[Trial]] = {}
@@ -106,5 +108,5 @@ def weighted_input(spectral_class: SpectralClass) -> float:
 def _trial(table: Mapping[str, Array], rate: float, plant: Plant) -> Trial:
     settled = round(SETTLE * rate)
     floor, driver = (dose(weight(table[name] - table[name].mean(), rate)[settled:], rate) for name in NEEDED)
-    known = TRAVEL in table and has_travel(plant)
-    return Trial(driver, floor, end_stop_hits(table[TRAVEL], plant.travel) if known else None)
+    stops = plant.end_stops if TRAVEL in table else None
+    return Trial(driver, floor, end_stop_hits(table[TRAVEL], stops) if stops else None)

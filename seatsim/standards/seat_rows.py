@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from seatsim.excitations.iso7096 import SpectralClass
 from seatsim.metrics.comfort import Dose
 from seatsim.metrics.seat_transmission import SPREAD, seat_transmission
-from seatsim.rig.plant import Plant
 from seatsim.schema.text import join_names
 from seatsim.standards.damping_test import DampingTest
 from seatsim.standards.iso7096 import ACCEPTANCE, DAMPING, LIMITS, PERSONS
 
 SETTLE = 2.0
 """s; beginning of a run that is left out, while the floor fades in."""
-DEFAULT_TRAVEL = cast(tuple[float, float], Plant._field_defaults["travel"])
 
 
 class Trial(NamedTuple):
-    """One simulated run: doses at driver and floor, hits of the end stops (None where no travel is stated)."""
+    """One simulated run: doses at driver and floor, hits of the end stops (None where none are stated)."""
 
     driver: Dose
     floor: Dose
@@ -44,7 +42,7 @@ class SeatRow(NamedTuple):
     """Largest deviation of a run from the mean of the runs, as a share of it."""
     within_spread: bool | None
     end_stop_hits: int | None
-    """Excursions beyond the travel; None where it is not stated. No acceptance value of ISO 7096 depends on it."""
+    """Excursions beyond the end stops; None where none are stated. No acceptance value of ISO 7096 depends on it."""
 
 
 class DampingRow(NamedTuple):
@@ -125,8 +123,3 @@ def doubt_runs(rows: Sequence[SeatRow]) -> list[str]:
 
 def _name(row: SeatRow) -> str:
     return f"{row.run}, {row.spectral_class}, {row.mass:g} kg"
-
-
-def has_travel(plant: Plant) -> bool:
-    """Whether a plant states where its end stops are."""
-    return plant.travel != DEFAULT_TRAVEL

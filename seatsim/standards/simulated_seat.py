@@ -19,6 +19,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
 from seatsim.schema.text import join_names
+from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.simulate import simulate
 from seatsim.standards.damping_test import DampingTest, run_damping_test
 from seatsim.standards.iso7096 import PERSONS, RECALLED, SEATED_SHARE
@@ -28,7 +29,6 @@ from seatsim.standards.seat_rows import (
     SeatTest,
     Trial,
     doubt_runs,
-    has_travel,
     state_damping_row,
     state_row,
 )
@@ -116,7 +116,7 @@ def _seat_of(scenario: Scenario) -> _Seat:
         )
     # The test has drivers of its own.
     effects = tuple(effect for effect in scenario.effects if not isinstance(effect, Mass))
-    return _Seat(dataclasses.replace(scenario, effects=effects), scenario.plant)
+    return _Seat(dataclasses.replace(scenario, effects=effects), augment_plant(effects, scenario.plant))
 
 
 def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: int) -> Trial:
@@ -133,8 +133,8 @@ def _run_trial(seat: _Seat, spectral_class: SpectralClass, person: str, seed: in
     driver, floor = (
         dose(weight(history[name], rate)[settled:], rate) for name in ("driver_acceleration", "floor_acceleration")
     )
-    hits = end_stop_hits(history["suspension_displacement"], seat.plant.travel) if has_travel(seat.plant) else None
-    return Trial(driver, floor, hits)
+    stops = seat.plant.end_stops
+    return Trial(driver, floor, end_stop_hits(history["suspension_displacement"], stops) if stops else None)
 
 
 def _count(futures: Sequence[Future[Trial] | Future[DampingTest]], progress: Count) -> None:
@@ -144,6 +144,6 @@ def _count(futures: Sequence[Future[Trial] | Future[DampingTest]], progress: Cou
 
 def _notes(seats: Mapping[str, _Seat]) -> Iterator[str]:
     yield RECALLED
-    without = [title for title, seat in seats.items() if not has_travel(seat.plant)]
+    without = [title for title, seat in seats.items() if seat.plant.end_stops is None]
     if without:
-        yield f"no travel is stated for {join_names(without)}: end stops are not checked; state plant.travel"
+        yield f"no end stops are stated for {join_names(without)}, and none are checked; state plant.travel"

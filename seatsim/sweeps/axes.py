@@ -23,6 +23,8 @@ FORMS = (
     "a list, {from: A, to: B, steps: N}, or a distribution: "
     + ", ".join(f"{name}: {takes}" for name, takes in DISTRIBUTIONS.items())
 )  # fmt: skip
+MOST_STEPS = 1_000_000
+"""Of a range; more would be a slip of the keyboard."""
 SLIGHTLY = 1e-9
 """By how much probabilities may miss the sum of 1, for the sake of rounding."""
 EDGE = 2.0**-53
@@ -76,8 +78,10 @@ def _read_range(stated: Mapping[str, object], source: Source, where: KeyPath) ->
             raise source.error((*where, name), f"{stated.get(name)!r} is not a finite number; a range is"
                                                " {from: A, to: B, steps: N}")  # fmt: skip
     steps, ends = stated["steps"], [stated["from"], stated["to"]]
-    if not isinstance(steps, int) or steps < 2:
-        raise source.error((*where, "steps"), f"{steps!r} is not permitted; it must be a whole number of at least 2")
+    if not isinstance(steps, int) or not 2 <= steps <= MOST_STEPS:
+        raise source.error(
+            (*where, "steps"), f"{steps!r} is not permitted; it must be a whole number from 2 to {MOST_STEPS}"
+        )
     values = np.linspace(float(str(ends[0])), float(str(ends[1])), steps).tolist()
     whole = all(isinstance(end, int) for end in ends) and all(value.is_integer() for value in values)
     # Whole numbers stay what they are: keys such as `seed` take no others.

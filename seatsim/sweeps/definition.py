@@ -29,8 +29,6 @@ DESIGNS: tuple[str, ...] = get_args(DesignName)
 KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
 MOST_RUNS = 10_000_000
 """Runs of a sweep: their numbers have this many digits, and more would be a slip of the keyboard."""
-
-
 LARGEST_DESIGN = 2**30
 """Bytes of a table of runs."""
 

@@ -21,6 +21,16 @@ Columns = Mapping[str, list[object]]
 """The values of every varied key, a list over the points each."""
 
 
+def count_points(definition: SweepDefinition) -> int:
+    """Return how many points a design has, without making any of them."""
+    if definition.table is not None:
+        return len(next(iter(definition.table.columns.values())))
+    lengths = [len(axis.values) for axis in definition.axes if axis.values is not None]
+    if definition.design == "cross":
+        return math.prod(lengths) * (1 if len(lengths) == len(definition.axes) else definition.runs or 1)
+    return definition.runs or max(lengths, default=1)
+
+
 def resolve_design(definition: SweepDefinition) -> Columns:
     """Return the points of a sweep, without its replicates and the variants of its scenario.
 

@@ -77,14 +77,16 @@ class PreparedSweep(NamedTuple):
     doubts: list[str]
 
 
-def prepare(path: Path) -> PreparedSweep:
+def prepare(path: Path, foresee: Callable[[int], None] = lambda runs: None) -> PreparedSweep:
     """Read a sweep file, resolve its design and check its values; nothing runs.
+
+    `foresee` is called with the number of runs before the design is resolved.
 
     Raises:
         InputError: anything in it is wrong, or a draw is not permitted.
     """
     definition = read_definition(path)
-    plan = make_plan(definition)
+    plan = make_plan(definition, foresee)
     return PreparedSweep(definition, plan, check_plan(plan))
 
 

@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from seatsim.schema.errors import InputError, OutputError
+from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder
+from seatsim.schema.links import check_no_link, open_in_place
 
 
 @contextmanager
@@ -19,9 +20,12 @@ def hold_folder(folder: Path, share: str = "") -> Iterator[None]:
     The system releases the locks (flock) when the process ends, however that happens. The files stay.
 
     Raises:
-        InputError: another process holds the folder, or the same share of it; the message names that process.
+        InputError: another process holds the folder, or the same share of it; the message names that process. Or
+            something in it is a link, through which rows would be written.
     """
     make_folder(folder)
+    for place in folder.iterdir():
+        check_no_link(folder, place)
     if not share:
         with hold_file(folder / ".lock"):
             yield
@@ -43,16 +47,11 @@ def hold_file(path: Path, alone: bool = True, wait: bool = False) -> Iterator[No
         raise InputError(
             "a sweep locks its folder with flock, which this system has not; use Linux, macOS, or Windows' WSL"
         ) from error
-    try:
-        opened = path.open("a+", encoding="utf-8")
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
-    with opened as file:
+    with open_in_place(path) as file:
         how = (fcntl.LOCK_EX if alone else fcntl.LOCK_SH) | (0 if wait else fcntl.LOCK_NB)
         try:
             fcntl.flock(file, how)
         except BlockingIOError as error:
-            file.seek(0)
             owner = file.read().strip() or "another process"
             raise InputError(
                 f"{path.parent}: {owner} works on this sweep; wait for it, end it, or choose another --out"

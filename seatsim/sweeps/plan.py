@@ -8,7 +8,8 @@ do more points where there is one replicate.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -17,8 +18,8 @@ from seatsim.scenario.expansion import expand
 from seatsim.scenario.loading import read_scenario, reread
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.yaml_source import Source
-from seatsim.sweeps.definition import SweepDefinition
-from seatsim.sweeps.design import resolve_design
+from seatsim.sweeps.definition import MOST_RUNS, SweepDefinition
+from seatsim.sweeps.design import count_points, resolve_design
 
 
 class Base(NamedTuple):
@@ -114,14 +115,24 @@ class Selection(NamedTuple):
     runs: tuple[tuple[int, int], ...]
 
 
-def make_plan(definition: SweepDefinition) -> Plan:
+def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lambda runs: None) -> Plan:
     """Return the runs of a sweep: the points of its design, for each variant of its scenario and each replicate.
 
+    `foresee` is called with their number before any of them is made.
+
     Raises:
-        InputError: the design cannot be resolved, or a varied key is one that the scenario varies itself.
+        InputError: there are too many, the design cannot be resolved, or a varied key is one that the scenario varies
+            itself.
     """
-    columns = resolve_design(definition)
     bases = tuple(Base(source, label) for source, label in expand(definition.scenario, {}))
+    factors = {"points": count_points(definition), "variants": len(bases), "replicates": definition.replicates}
+    runs = math.prod(factors.values())
+    if runs > MOST_RUNS:
+        shown = " x ".join(f"{number} {name}" for name, number in factors.items() if number > 1)
+        raise definition.source.error((), f"makes {runs} runs ({shown}); permitted: at most {MOST_RUNS}. Vary fewer"
+                                          " keys, or draw 'runs' points with design: sobol")  # fmt: skip
+    foresee(runs)
+    columns = resolve_design(definition)
     for key in columns:
         if key in bases[0].label:
             raise definition.source.error(("vary", key), "the scenario itself varies this key; leave it out of one")

@@ -2,6 +2,8 @@
 
 import pytest
 
+from tests.importing.exports import FORMATS
+
 MUTANTS = 40
 # Libraries that write and read tables leave files open.
 pytestmark = pytest.mark.filterwarnings(
@@ -20,11 +22,14 @@ def readers(fuzzing):
     return fuzzing.make_readers()
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["scenario", "variants", "recording", "table", "bench", "sweep", "design", "floor", "rows", "resumed", "unit",
-     "import", "map", "formats", "synthesis", "diagnosis", "manifest", "sealed"],
+NAMES = (
+    "scenario", "variants", "recording", "table", "bench", "sweep", "design", "floor", "rows", "resumed", "unit",
+    "import", "map", "synthesis", "diagnosis", "manifest", "sealed",
+    *(f"format {name}" for name in (*FORMATS, "KRBI.crg", "LRFI.crg")),
 )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_damaged_files_are_read_or_refused_by_a_sentence(fuzzing, readers, name):
     found = fuzzing.fuzz(readers[name], MUTANTS, seed=7, limit=60.0)
     assert set(found.counts) <= {"read", "refused"}, found.examples
@@ -32,7 +37,7 @@ def test_damaged_files_are_read_or_refused_by_a_sentence(fuzzing, readers, name)
 
 
 def test_every_reader_is_fuzzed(readers):
-    assert len(readers) == 18
+    assert set(readers) == set(NAMES)
 
 
 def test_valid_files_are_read(readers, tmp_path):

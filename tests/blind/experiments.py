@@ -16,8 +16,8 @@ class SmallExperiment(NamedTuple):
     runs: CommandedRuns
 
 
-def small_experiment(bingham: bool = False, warm: bool = True, scatter: float = 0.0) -> SmallExperiment:
-    experiment = draw_experiment(np.random.default_rng(5), bingham, CHANNELS, warm, scatter)
+def small_experiment(bingham: bool = False, scatter: float = 0.0) -> SmallExperiment:
+    experiment = draw_experiment(np.random.default_rng(6), bingham, CHANNELS, scatter)
     motions = [simulate_run(experiment, Changes(), k) for k in range(3)]
     context = context_of(experiment, [read_channels(experiment, Changes(), k, motions[k]) for k in range(3)])
     return SmallExperiment(experiment, context, CommandedRuns(experiment, [motion.command for motion in motions]))

@@ -12,6 +12,7 @@ import pytest
 from seatsim.blind.carrier.change import Change
 from seatsim.blind.carrier.draw import DrawnCase, draw_amount
 from seatsim.blind.carrier.injections.catalogue import draw_changes
+from seatsim.blind.carrier.injections.coil import draw_faster_coils
 from seatsim.blind.carrier.recorded import Carrier
 from seatsim.blind.carrier.replays import Ruler
 from seatsim.blind.carrier.signals import low_pass, shifted, shifted_rows, slide, slope
@@ -25,7 +26,8 @@ FIXED = {"sensor.clock_skew": {"hold": 1.0 / RATE}}
 
 
 def put_in(carrier: Carrier, effect: str, form: str = "", channel: str = "", seed: int = 0) -> DrawnCase:
-    changes = draw_changes(carrier, np.random.default_rng(seed))
+    rng = np.random.default_rng(seed)
+    changes = draw_changes(carrier, rng) + draw_faster_coils(carrier, rng)
     chosen = [c for c in changes if c.effect == effect and form in c.form and c.channel == channel]
     drawn = draw_amount(Ruler(carrier), chosen[0], SIZE)
     assert drawn is not None
@@ -114,17 +116,6 @@ def test_every_change_has_a_name_of_the_contract_and_leaves_the_carrier_as_it_wa
             change.alter(change.span[1] / 2)
         for run, table in carrier.tables.items():
             assert all(np.array_equal(values, before[run][name]) for name, values in table.items())
-
-
-def test_a_mechanism_of_the_nominal_is_taken_out_with_its_parameters() -> None:
-    carrier = put_in(bench_carrier(), "damper.seal_friction").altered.carrier
-    stated = {"effect": "damper.seal_friction", "parameters": {"force": 60.0, "presliding": 5e-5}}
-    carrier = dataclasses.replace(carrier, nominal={**carrier.nominal, "effects": [stated]})
-    removed = [c for c in draw_changes(carrier, np.random.default_rng(0)) if "removed" in c.form]
-    altered = removed[0].alter(1.0)
-    assert (removed[0].effect, altered.parameters["force"]) == ("damper.seal_friction", 60.0)
-    assert altered.carrier.nominal["effects"] == []
-    assert altered.carrier.tables is carrier.tables
 
 
 def offset(carrier: Carrier, amount: float) -> Carrier:

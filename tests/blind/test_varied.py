@@ -26,7 +26,7 @@ from seatsim.blind.truth.physics.rig import EXCITATION_RATE, INTEGRATION_STEP
 
 
 def drawn(seed: int, bingham: bool = False) -> Experiment:
-    return draw_varied.draw_varied_experiment(np.random.default_rng(seed), bingham, CHANNELS, False)
+    return draw_varied.draw_varied_experiment(np.random.default_rng(seed), bingham, CHANNELS)
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import seatsim
 from seatsim.cli.outputs.diagnosis import make_tables
 from seatsim.cli.outputs.new_files import KINDS, REGISTERED, write_new
 from seatsim.cli.outputs.schemas import FILES
-from seatsim.diagnosis.result import Cause
+from seatsim.diagnosis.result import Cause, Estimate
 from seatsim.schema.registry import find
 
 from ..report.diagnoses import CASES
@@ -138,7 +138,10 @@ def test_own_classes_are_called_own_and_never_published(tmp_path, seatsim_comman
     assert page.startswith("mine (damper, own)") and "Confidence: own" in page and "published" not in page
     (cause,) = [Cause("suspension.yours", 0.9, 0.8, {})]
     ranked = make_tables(replace(CASES["known"](), causes=[cause]))[1]
-    assert next(iter(ranked.columns[0].cells)) == "suspension.yours (own)"
+    assert next(iter(ranked.columns[0].cells)) == "suspension.yours (own)" and len(ranked.columns) == 3
+    ended = cause._replace(parameters={"drag": Estimate(9.0, 1.0, "N", (0.0, 9.0), True)})
+    table = make_tables(replace(CASES["known"](), causes=[ended]))[1]
+    assert table.columns[3].header == "at the end of its range" and next(iter(table.columns[3].cells)) == "drag"
 
 
 def test_a_league_of_chosen_models_with_one_of_your_own(tmp_path, seatsim_command, forget_own_code):

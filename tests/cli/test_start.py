@@ -70,3 +70,22 @@ def test_a_command_says_that_it_was_interrupted(number, tmp_path):
         process.kill()
     assert process.returncode == 128 + number and said.endswith(b"error: interrupted\n")
     assert not any(path.name.endswith(".part") for path in tmp_path.rglob("*"))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("arguments", [[], ["--json"]])
+def test_a_signal_before_signals_are_watched_is_answered_with_a_word(number, arguments):
+    code = "import os, sys; from seatsim.cli import begin; sys.modules['seatsim.cli.start'] = Now(); begin.begin()"
+    now = f"class Now:\n    @staticmethod\n    def start():\n        import os; os.kill(os.getpid(), {int(number)})"
+    program = f"{now}\n{code}"
+    done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, timeout=20, check=False,
+                          env=os.environ | {"PYTHONPATH": str(ROOT)})  # fmt: skip
+    assert done.returncode == 128 + number and done.stderr == b"error: interrupted\n"
+    assert done.stdout == (b'{"error": "interrupted"}\n' if arguments else b"")
+
+
+def test_what_is_loaded_before_a_signal_has_an_answer_is_next_to_nothing():
+    code = "import sys; before = set(sys.modules); import seatsim.cli.begin; print(*sorted(set(sys.modules) - before))"
+    found = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, timeout=20, check=True,
+                           env=os.environ | {"PYTHONPATH": str(ROOT)}).stdout.split()  # fmt: skip
+    assert "typing" not in found and {"seatsim", "seatsim.cli", "seatsim.cli.begin", "signal"} <= set(found)

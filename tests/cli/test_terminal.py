@@ -72,3 +72,14 @@ def test_names_in_files_lead_nowhere_else(seat_file, tmp_path, monkeypatch, caps
         assert stopped.value.code == 2
         assert ", line 1" in capsys.readouterr().err
         assert [path.name for path in tmp_path.iterdir()] == [seat_file.name]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["run", "NAME.yaml"], ["run", "a/NAME"], ["gap", "quickstart", "NAME"], ["comfort", "NAME.csv"], ["check", "NAME"],
+     ["export", "quickstart", "--to", "c", "--what", "damper", "--out", "NAME.c"]],
+)  # fmt: skip
+def test_a_name_that_no_file_can_have_is_bad_input_in_a_few_words(arguments):
+    process = started(*(word.replace("NAME", 5_000 * "a") for word in arguments), stdout=subprocess.DEVNULL)
+    _, said = process.communicate()
+    assert process.returncode == 2 and said.startswith(b"error: ") and len(said) < 2_000

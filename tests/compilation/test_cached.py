@@ -3,6 +3,7 @@
 import gc
 import hashlib
 import math
+import os
 import sys
 import types
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 
 from seatsim.compilation import cached
-from seatsim.compilation.checked_cache import CheckedCache
+from seatsim.compilation.checked_cache import CheckedCache, find_foreign
 
 
 @pytest.fixture
@@ -38,18 +39,60 @@ def test_the_folder_is_the_one_that_was_chosen(monkeypatch, tmp_path):
     assert cached.cache_folder().name == "compiled" and cached.cache_folder().is_absolute()
 
 
-def test_a_folder_is_made_unless_it_cannot_be(tmp_path):
-    assert cached._usable(tmp_path / "a" / "b") and (tmp_path / "a" / "b").is_dir()
-    assert cached._usable(tmp_path / "a" / "b")
+def test_a_folder_is_made_for_its_user_alone_unless_it_cannot_be(tmp_path, monkeypatch):
+    monkeypatch.setenv("SEATSIM_CACHE_DIR", str(tmp_path / "a" / "b"))
+    before = os.umask(0o002)
+    try:
+        assert cached._find_folder("key") == tmp_path / "a" / "b" / "key"
+    finally:
+        os.umask(before)
+    assert (tmp_path / "a").stat().st_mode & 0o777 == 0o700
+    assert cached._find_folder("key") == tmp_path / "a" / "b" / "key"
     (tmp_path / "file").touch()
-    assert not cached._usable(tmp_path / "file" / "b")
+    monkeypatch.setenv("SEATSIM_CACHE_DIR", str(tmp_path / "file"))
+    assert cached._find_folder("key") is None
 
 
 def test_a_folder_that_cannot_be_written_is_none(tmp_path, monkeypatch):
+    monkeypatch.setenv("SEATSIM_CACHE_DIR", str(tmp_path))
     seen = []
     monkeypatch.setattr(cached.os, "access", lambda folder, mode: seen.append(mode) or False)
-    assert not cached._usable(tmp_path)
+    assert cached._find_folder("key") is None
     assert seen == [cached.os.W_OK | cached.os.X_OK]
+
+
+@pytest.mark.parametrize("level", ["above", "above/cache", "above/cache/key"])
+@pytest.mark.parametrize("mode", [0o775, 0o777, 0o757, 0o1777])
+@pytest.mark.parametrize("home", [0o700, 0o777])
+def test_a_private_folder_takes_the_place_of_one_that_others_may_write(home, level, mode, tmp_path, monkeypatch):
+    cache = tmp_path / "above" / "cache"
+    monkeypatch.setenv("SEATSIM_CACHE_DIR", str(cache))
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home").chmod(home)
+    monkeypatch.setattr(cached.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "home" / name))
+    assert cached._find_folder("key") == cache / "key"
+    (tmp_path / level).chmod(mode)
+    cached._private_cache.cache_clear()
+    if mode == 0o1777 and level != "above/cache/key":  # as in /tmp, nobody can exchange what is another's
+        assert cached._find_folder("key") == cache / "key"
+        return
+    with pytest.warns(UserWarning, match=rf"{tmp_path / level} may be written by other users.*SEATSIM_CACHE_DIR"):
+        private = cached._find_folder("key")
+    assert private == cached._find_folder("key") and cache not in private.parents
+    assert (tmp_path / "home" in private.parents) == (home == 0o700)
+    assert private.stat().st_mode & 0o777 == 0o700 and find_foreign(private) is None
+
+
+def test_a_way_over_a_link_is_as_safe_as_both_of_its_ends(tmp_path):
+    (tmp_path / "open").mkdir()
+    (tmp_path / "own" / "key").mkdir(parents=True)
+    (tmp_path / "open" / "link").symlink_to(tmp_path / "own")
+    (tmp_path / "open").chmod(0o777)
+    assert find_foreign(tmp_path / "own" / "key") is None
+    assert find_foreign(tmp_path / "open" / "link" / "key") == tmp_path / "open"
+    if os.getuid() == 0:
+        os.chown(tmp_path / "own", 12345, -1)
+        assert find_foreign(tmp_path / "own" / "key") == tmp_path / "own"
 
 
 def test_constants_are_written_in_full():

@@ -1,15 +1,19 @@
 """The seat's generalised plant with weights, lag and variations, and the law that uses it."""
 
 import numpy as np
+import pytest
 
 from controllers.laws.static_output_feedback import StaticOutputFeedback
 from controllers.linear_systems import LinearSystem
 from controllers.seat_plant import ActuatorLag, Weights, build_actuator, build_generalised_plant
+from controllers.synthesis import Design
 from controllers.synthesis.norm import frequency_response, hinf_norm
 from controllers.synthesis.plant import Loop
 from seatsim.metrics import weighting
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant, state_space
+from seatsim.rig.sensors import Sensors
+from seatsim.schema.errors import InputError
 
 SEAT = Plant(20.0, 80.0, 4600.0, 200.0, 60000.0, 1500.0)
 OMEGA = np.geomspace(0.5, 300.0, 40)
@@ -49,6 +53,45 @@ def test_every_path_with_lag_and_weighting():
     np.testing.assert_allclose(paths(full), rows * paths(bare) * columns, rtol=1e-8, atol=1e-14)
 
 
+def test_every_measure_is_what_the_seat_moves_by():
+    measures = ("driver_velocity", "velocity", "frame_acceleration", "driver_acceleration", "frame_velocity")
+    lag = ActuatorLag()
+    plant = build_generalised_plant(SEAT, Weights(), lag, measures=measures)
+    found = gains(LinearSystem(plant.A, plant.B1, np.vstack([plant.C1, plant.C2]), np.zeros((7, 1))))[:, :, 0]
+    x, driver = found[:, 0] / Weights().travel, found[:, 1]
+    s = 1j * OMEGA
+    leak, frame = 1.0 / (s + 2 * np.pi * Sensors().corner), s * s * x + 1.0
+    expected = (leak * driver, s * x, frame, driver, leak * frame)
+    np.testing.assert_allclose(found[:, 2:], np.transpose(expected), rtol=1e-9)
+
+
+def test_more_measures_never_design_worse_and_the_file_names_them(tmp_path):
+    few = StaticOutputFeedback(weights=Weights(22.6, weighting="Wk"), lag=ActuatorLag())
+    many = few._replace(measures=("displacement", "velocity", "frame_acceleration"))
+    design = many.synthesis(SEAT)
+    assert design.gamma < 0.97 * few.synthesis(SEAT).gamma and design.certificate
+    design.save(tmp_path / "design.yaml")
+    read = many._replace(weights=None, design=str(tmp_path / "design.yaml"))
+    assert Design.load(tmp_path / "design.yaml").measures == many.measures
+    assert read.prepared(SEAT).frame_acceleration == design.gain[0, 2]
+    with pytest.raises(InputError, match=r"designed for measures: \[displacement, velocity, frame_acceleration\]"):
+        read._replace(measures=few.measures).prepared(SEAT)
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        (StaticOutputFeedback(gain=(1.0, 2.0, 3.0)), r"gain of shape \(1, 3\); displacement, velocity take one"),
+        (StaticOutputFeedback(gain=(1.0, 2.0), measures=("velocity", "velocity")), "names one signal twice"),
+        (StaticOutputFeedback(weights=Weights(), measures=("frame_acceleration",)), "state the coil's lag under lag"),
+        (StaticOutputFeedback(), "exactly one"),
+    ],
+)
+def test_a_law_that_contradicts_itself_says_so(law, words):
+    with pytest.raises(InputError, match=words):
+        law.prepared(SEAT)
+
+
 def test_law_designs_for_the_worst_of_drivers_and_factors():
     law = StaticOutputFeedback(
         weights=Weights(50.0), masses=(50.0, 120.0), force_factors=(0.67, 1.0), displacement_gain=False
@@ -66,7 +109,7 @@ def test_displacement_gain_may_be_left_out():
     lag = ActuatorLag(delay=0.0025)
     law = StaticOutputFeedback(weights=Weights(30.0), displacement_gain=False, lag=lag)
     compiled = law.prepared(SEAT)
-    assert compiled.k1 == 0 and compiled.k2 > 500
+    assert compiled.displacement == 0 and compiled.velocity > 500
 
 
 def test_checks_tell_of_margins_and_the_sampled_loop():

@@ -11,6 +11,7 @@ from seatsim.cli.outputs.schemas import scenario_schema
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
+from seatsim.exchange.compiler import compile_library
 from seatsim.exchange.fmu import write_fmu
 from seatsim.identification.damper_record import find_model
 from seatsim.scenario.loading import load
@@ -136,3 +137,22 @@ def test_the_force_at_the_end_of_a_step_is_found_however_stiff_the_damper(slope)
 
     _agree(miss, 5.0, lambda: None)
     assert abs(miss(asked[-1])) < 1e-4 and len(asked) < 30
+
+
+@pytest.mark.parametrize(
+    "code, problem",
+    [("while (1) {}", "not loaded after 3 s"), ("__builtin_trap();", r"crashes as it is loaded \(signal")],
+)
+def test_a_library_that_does_not_load_is_an_error(code, problem, unit_file, tmp_path, monkeypatch):
+    monkeypatch.setattr("seatsim.cosimulation.unit.PATIENCE", 3.0)
+    (tmp_path / "stuck.c").write_text(f"__attribute__((constructor)) static void load(void) {{ {code} }}\n")
+    compile_library(tmp_path / "stuck.c", tmp_path / "stuck.so")
+    path = unit_file.with_name("damper.fmu")
+    with zipfile.ZipFile(path) as archive:
+        held = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in held.items():
+            archive.writestr(name, (tmp_path / "stuck.so").read_bytes() if name.endswith(".so") else content)
+    use(path)
+    with pytest.raises(InputError, match=problem):
+        simulate(load(unit_file, {**BASE, "damper": UNIT})[0], carry_all_effects=False)

@@ -134,3 +134,8 @@ def test_the_contributors_examples_work(tmp_path):
         [sys.executable, "-c", recording + CODE], cwd=tmp_path, capture_output=True, encoding="utf-8", check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_how_often_a_diagnosis_is_right_is_stated_on_one_page_only():
+    """Each new set of cases would leave another figure behind elsewhere."""
+    assert not re.findall(r"\d+ of \d+", (ROOT / "docs" / "limits.md").read_text(encoding="utf-8"))

@@ -177,3 +177,20 @@ def test_friction_holds_a_seat_that_is_released_within_its_limit(loose, tmp_path
     assert np.max(np.abs(history["suspension_displacement"] - 0.01)) < 1e-12
     slid = shaken(released, record("suspension.friction", force=20.0))
     assert np.max(np.abs(slid["suspension_displacement"] - 0.01)) > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("travel", "stiffness", "limit"),
+    [((-0.05, 0.05), 6e4, 0.004), ((-0.002, 0.002), 6e4, 0.004), ((-0.002, 0.002), 0.0, 0.002), (None, 0.0, None)],
+)
+def test_hits_are_counted_at_the_buffers_of_the_rig_else_at_its_travel(bingham, travel, stiffness, limit):
+    plant = bingham.plant._replace(**({} if travel is None else {"travel": travel}))
+    stop = record("suspension.end_stop", low=-0.004, high=0.004, stiffness=stiffness)
+    scenario = replace(bingham, plant=plant, effects=(stop,))
+    history = simulate(scenario)
+    metrics = measure_run(scenario, history)
+    if limit is None:
+        assert "end_stop_hits" not in metrics
+    else:
+        beyond = np.abs(history["suspension_displacement"]) > limit
+        assert metrics["end_stop_hits"].value == np.count_nonzero(np.diff(beyond.astype(int), prepend=0) > 0) > 0

@@ -16,7 +16,7 @@ from seatsim.exchange.blocks.held import nothing_held
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.exchange.c_file import print_c, write_c
 from seatsim.exchange.compiler import find_compiler
-from seatsim.exchange.fmu import make_files
+from seatsim.exchange.fmu import identifier, make_files
 from seatsim.exchange.matlab import write_mat
 from seatsim.exchange.model_source import print_model
 from seatsim.exchange.printing.values import NotPrintableError
@@ -130,6 +130,17 @@ def test_what_a_rig_holds_follows_a_parameter_that_is_tuned(seat_file, part, cha
     p = p._replace(**{part: getattr(p, part)._replace(**changed)})
     held, computed = (block.advance(p, u, s, 0.0, block.step) for s in (state, state._replace(held=nothing_held())))
     assert held == computed and held[0].held != state.held
+
+
+@pytest.mark.parametrize("name", ["@MODEL@", "a */ int evil; /* @FED@", "2 seats", "ä" * 300, "\\"])
+def test_a_name_stays_out_of_the_code(name, seat_file, tmp_path):
+    block = damper_block(dataclasses.replace(load(seat_file)[0], name=name))
+    write_c(block, tmp_path / "damper.c")
+    assert run_vector(tmp_path / "damper.c").returncode == 0
+    text = (tmp_path / "damper.c").read_text()
+    assert text.count("} Model;") == 1
+    assert "int evil" not in text.partition("*/")[2]
+    assert identifier(block).isascii() and identifier(block).isidentifier() and len(identifier(block)) < 70
 
 
 def test_a_changed_number_of_the_test_vector_is_found(seat_file, tmp_path):

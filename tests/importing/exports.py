@@ -2,6 +2,7 @@
 
 import gzip
 import io
+import warnings
 
 import numpy as np
 import pandas as pd
@@ -89,6 +90,47 @@ def mat73(path, table):
     content = bytearray(path.read_bytes())
     content[:116] = b"MATLAB 7.3 MAT-file, Platform: PCWIN64".ljust(116)
     path.write_bytes(content)
+
+
+def mat_timetable(path, table):
+    """What MATLAB writes of a timetable, as mat-io does."""
+    matio = pytest.importorskip("matio")
+    frame = pd.DataFrame({name: values for name, values in table.items() if name != "time"})
+    frame.index = pd.to_timedelta(table["time"], unit="s")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # it says that MATLAB writes times in s
+        version = "v7.3" if "73" in path.name else "v7"
+        matio.save_to_mat(str(path), {"run": frame}, version=version, do_compression=False)
+
+
+def simulink(path, table):
+    """A scope that logs a structure with time."""
+    from scipy.io import savemat
+
+    signals = [{"values": values, "label": name} for name, values in table.items() if name != "time"]
+    fields = np.array([tuple(each.values()) for each in signals], dtype=[("values", object), ("label", object)])
+    savemat(path, {"ScopeData": {"time": table["time"][:, None], "signals": fields}})
+
+
+def lvm(path, table):
+    """What LabVIEW writes with one column of x."""
+    names = [name for name in table if name != "time"]
+    cells = {"Channels": [len(names)], "Samples": [len(table["time"])] * len(names),
+             "Date": ["2026/03/01"] * len(names), "Time": ["09:51:40,5"] * len(names),
+             "Y_Unit_Label": [UNITS[name] for name in names], "X_Dimension": ["Time"] * len(names),
+             "X0": ["0,0"] * len(names), "Delta_X": ["0,002"] * len(names)}  # fmt: skip
+    head = [
+        "LabVIEW Measurement\t",
+        "Separator\tTab",
+        "Decimal_Separator\t,",
+        "X_Columns\tOne",
+        "***End_of_Header***",
+        "\t",
+    ]
+    lines = ["\t".join([key, *map(str, row), ""]) for key, row in cells.items()]
+    rows = ["\t".join(f"{value:.15g}" for value in row).replace(".", ",") for row in zip(*table.values(), strict=True)]
+    names_of_columns = "\t".join(["X_Value", *names, "Comment"])
+    path.write_text("\n".join([*head, *lines, "***End_of_Header***\t", names_of_columns, *rows, ""]))
 
 
 def mdf(path, table):
@@ -191,6 +233,10 @@ FORMATS = {
     "a.h5": hdf5,
     "a.mat": mat5,
     "v73.mat": mat73,
+    "table.mat": mat_timetable,
+    "table73.mat": mat_timetable,
+    "simulink.mat": simulink,
+    "a.lvm": lvm,
     "a.mdf": mdf,
     "a.mf4": mdf,
     "a.tdms": tdms,

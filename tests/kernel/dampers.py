@@ -56,3 +56,17 @@ class Parabola(NamedTuple):
 
     def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
         return v * (self.a + self.b * i + self.c * i * i)
+
+
+class Steep(NamedTuple):
+    """`F = v (500 + height s^power)` with `s = (i - start) / width`, and 500 v below the start."""
+
+    order = 0
+
+    start: float
+    width: float
+    height: float = 1000.0
+    power: float = 9.0
+
+    def force(self, x: float, v: float, i: float, scaling: Any, z: Any) -> float:
+        return v * (500.0 + self.height * (max(i - self.start, 0.0) / self.width) ** self.power)

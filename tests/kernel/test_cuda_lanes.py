@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from seatsim.kernel.lane_records import template_of
+from seatsim.kernel.numbers import template_of
 from seatsim.scenario.loading import load
 from seatsim.simulation.device_lanes import as_device_lane
 

@@ -11,7 +11,7 @@ from seatsim.kernel.inverse import CELLS, invert, total_force
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.schema.registry import specification_of
 
-from .dampers import Bump, Parabola, Twice, Wavy
+from .dampers import Bump, Parabola, Steep, Twice, Wavy
 from .rigs import rms, rough, run
 
 HEAT = TemperatureScaling(0.9, 1.0, 0.8)
@@ -105,6 +105,21 @@ def test_a_turn_is_found_to_more_than_the_root_of_rounding(wanted, turn):
     again = ask(damper, wanted * (1.0 + 1e-15), 0.0, 0.1 * (1.0 - 1e-15), ()).current
     assert near == pytest.approx(turn, abs=1e-6)
     assert again == pytest.approx(near, abs=1e-12)
+
+
+@pytest.mark.parametrize(("power", "share"), [(9.0, 1e-6), (9.0, 1e-3), (0.1, 0.3), (0.1, 0.6)])
+def test_a_root_is_found_to_rounding_however_far_the_map_is_from_its_chord(power, share):
+    # Within one cell; without halving the end that stays, the search would end far away.
+    answer = ask(Steep(5.0 * CELL, CELL, 1000.0, power), 0.1 * (500.0 + 1000.0 * share), 0.0, 0.1, ())
+    assert answer.current == pytest.approx(CELL * (5.0 + share ** (1.0 / power)), abs=1e-11 * CELL)
+
+
+@pytest.mark.parametrize("curvature", [0.01, -0.01, 1e-3])
+def test_a_small_curvature_is_kept_however_large_the_force_that_does_not_depend_on_the_current(curvature):
+    damper = Parabola(1e6, 1.0, curvature)
+    for current in (0.2, 0.6, 1.0):
+        wanted = total_force(damper, 0.0, 0.1, current, HEAT, ())
+        assert ask(damper, wanted, 0.0, 0.1, ()).current == pytest.approx(current, abs=1e-8)
 
 
 def test_a_line_is_solved_to_rounding_where_most_of_the_force_does_not_depend_on_the_current():

@@ -11,6 +11,7 @@ from seatsim.kernel.assumed_model import AssumedModel, TrueModel
 from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.loop import run_loop, warm_up
 from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup, Timing
+from seatsim.kernel.recorders import keep_rows
 from seatsim.kernel.rig import Rig
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
@@ -47,7 +48,8 @@ def run(
         Timing(STEP, every, tolerance, heating), top, sensors or Direct(),
     )  # fmt: skip
     out = np.full((rows, len(CHANNELS)), np.nan)
-    reached = run_loop(setup, LoopInputs(floor, velocity, **(given | inputs)), rest, followed, law_state, out)
+    given = LoopInputs(floor, velocity, **(given | inputs))
+    reached, *_ = run_loop(setup, given, rest, followed, law_state, keep_rows(out))
     return dict(zip(CHANNELS, out.T, strict=True)) | {"floor_velocity": velocity}, reached
 
 

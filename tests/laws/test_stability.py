@@ -5,10 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.linalg import expm, solve_continuous_are
+from scipy.signal import cont2discrete
 
-from controllers.analysis.margins import compute_margins, compute_sampled_radius
-from controllers.analysis.sampled_loop import build_sampled_loop
+from controllers.analysis.margins import compute_margins
+from controllers.analysis.sampled_loop import build_sampled_loop, build_seat_with_coil
 from controllers.laws.gaussian import EstimateFeedback, SwitchedFeedback
+from controllers.linear_systems import LinearSystem
 from controllers.optimal.kalman import Noise, design_kalman_filter, dot, predict
 from controllers.optimal.regulator import QuadraticWeights, solve_regulator
 from seatsim.rig.control import prepare_law
@@ -53,14 +55,15 @@ def test_every_linear_law_with_memory_is_hurwitz(name):
 
 
 def test_the_general_loop_is_that_of_static_feedback():
-    gain = np.array([[2.0, 2147.6]])
+    gain, (A, B) = np.array([[2.0, 2147.6, 0.0, 0.0, 0.0]]), build_seat_with_coil(SEAT, COIL)
     found = loop("static_output_feedback")
-    for late in (0, 1, 3):
-        assert found.radius(late) == pytest.approx(
-            compute_sampled_radius(SEAT, gain, COIL, SAMPLE_TIME, late), rel=1e-9
-        )
+    F, G, *_ = cont2discrete((A, B, gain, 0.0), SAMPLE_TIME)
+    late = np.block([[F, G], [gain, np.zeros((1, 1))]])
+    for delay, matrix in enumerate((F + G @ gain, late)):
+        assert found.radius(delay) == pytest.approx(np.abs(np.linalg.eigvals(matrix)).max(), rel=1e-9)
     # The hold delays by half a sample.
-    assert found.delay_margin() == pytest.approx(compute_margins(SEAT, gain, COIL).delay - SAMPLE_TIME / 2, rel=1e-2)
+    margins = compute_margins(LinearSystem(A, B, np.eye(5), np.zeros((5, 1))), gain)
+    assert found.delay_margin() == pytest.approx(margins.delay - SAMPLE_TIME / 2, rel=1e-2)
 
 
 def test_the_delay_margin_is_where_stability_ends():

@@ -15,7 +15,7 @@ from seatsim.schema.errors import InputError
 STEP = 0.001
 NAMES = [
     "driver_acceleration_rms", "driver_acceleration_peak", "driver_acceleration_weighted", "driver_vdv",
-    "driver_mtvv", "driver_crest_factor", "seat_factor", "frame_acceleration_rms",
+    "driver_mtvv", "driver_crest_factor", "driver_jerk_rms", "seat_factor", "frame_acceleration_rms",
     "frame_acceleration_peak", "suspension_displacement_rms", "suspension_displacement_peak",
     "end_stop_hits", "force_tracking_error", "force_tracking_error_relative", "force_served_share",
     "current_rms", "electrical_energy", "damper_energy", "energy_residual", "temperature_final",
@@ -134,7 +134,15 @@ def test_settle_may_leave_a_single_sample():
 
 def test_slow_record_keeps_what_needs_no_weighting():
     table = summarise({"driver_acceleration": np.ones(50), "floor_acceleration": np.ones(50)}, 0.01)
-    assert list(table) == ["driver_acceleration_rms", "driver_acceleration_peak"]
+    assert list(table) == ["driver_acceleration_rms", "driver_acceleration_peak", "driver_jerk_rms"]
+
+
+@pytest.mark.parametrize("step", [0.0005, 0.001, 0.005])
+def test_the_jerk_of_a_tone_is_its_acceleration_times_its_angular_frequency(step):
+    tone = np.sin(2 * np.pi * 4.0 * step * np.arange(round(5.0 / step) + 1))
+    found = summarise({"driver_acceleration": tone}, step)["driver_jerk_rms"]
+    assert found.unit == "m/s^3" and found.value == pytest.approx(2 * np.pi * 4.0 / math.sqrt(2.0), rel=1e-3)
+    assert "driver_jerk_rms" not in summarise({"driver_acceleration": [1.0]}, step)
 
 
 @pytest.mark.parametrize(("options", "message"), [

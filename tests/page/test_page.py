@@ -7,12 +7,14 @@ from pathlib import Path
 import httpx
 import numpy as np
 import pytest
+import uvicorn
+from uvicorn.server import ServerState
 
 from seatsim.page.app import make_app
 from seatsim.page.controls import Choice, Slider, read_choice, read_number
 from seatsim.page.folder import Folder, NotInFolderError, TooLargeError
 from seatsim.page.scenario_view import View
-from seatsim.page.serve import find_target, open_target
+from seatsim.page.serve import Impatient, find_target, open_target
 from seatsim.report.blocks import Table
 from seatsim.report.packing import Axis, Panel, pack_signals
 from seatsim.scenario.finding import EXAMPLES
@@ -58,12 +60,51 @@ def ask(app, method, path, token=TOKEN, base=HOME, **options):
     """Return the answer to one request."""
 
     async def send():
-        cookies = {"seatsim": token} if token else {}
+        cookies = {f"seatsim-{PORT}": token} if token else {}
         transport = httpx.ASGITransport(app=app)
         async with httpx.AsyncClient(transport=transport, base_url=base, cookies=cookies) as client:
             return await client.request(method, path, **options)
 
     return asyncio.run(send())
+
+
+@pytest.mark.parametrize(
+    ("sent", "answered"),
+    [(b"", False), (b"GET / HTTP/1.1\r\nHost:", False),
+     (b"POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\n12", False),
+     (b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", True)],
+)  # fmt: skip
+def test_a_connection_without_a_whole_request_is_closed(sent, answered):
+    class Quick(Impatient):
+        idle = 0.1
+
+    async def slow(scope, receive, send):
+        while (await receive()).get("more_body"):
+            pass
+        await asyncio.sleep(0.5)
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": b"done"})
+
+    async def talk():
+        config = uvicorn.Config(slow, timeout_keep_alive=60)
+        make = lambda: Quick(config, ServerState(), {})  # noqa: E731
+        async with await asyncio.get_running_loop().create_server(make, "127.0.0.1", 0) as server:
+            reader, writer = await asyncio.open_connection(*server.sockets[0].getsockname())
+            writer.write(sent)
+            answer = await asyncio.wait_for(reader.read(), 5.0)
+            writer.close()
+            return answer
+
+    assert (b"done" in asyncio.run(talk())) == answered
+
+
+def test_a_page_keeps_its_cookie_when_another_port_is_opened(app, tmp_path):
+    other = make_app(loaded(Plain()), Folder(tmp_path), "other-token", PORT + 1)
+    opened = [ask(app, "GET", f"/?token={TOKEN}", token=""),
+              ask(other, "GET", "/?token=other-token", token="", base=f"http://127.0.0.1:{PORT + 1}")]  # fmt: skip
+    jar = "; ".join(answer.headers["set-cookie"].partition(";")[0] for answer in opened)
+    for page, base in ((app, HOME), (other, f"http://127.0.0.1:{PORT + 1}")):
+        assert ask(page, "GET", "/", token="", base=base, headers={"cookie": jar}).status_code == 200
 
 
 def test_a_token_opens_the_page_and_leaves_the_address(app):
@@ -180,6 +221,10 @@ def test_an_effect_that_is_not_there_makes_the_gap_grow():
     name = next(switch.name for switch in view.switches if switch.name == "damper.seal_friction")
     before, after = view.show({}), view.show({"effects": {name: {"force": 60.0}}})
     assert before.answer.startswith("The nominal simulation is off by") and "grows" in after.answer
+    # What a slider shows in millimetres is stated in metres.
+    assert {slider.unit for switch in view.switches for slider in switch.sliders} & {"m", "mm"} == {"mm"}
+    saved = view.encode({"effects": {name: {"force": 60.0, "presliding": 0.5}}})
+    assert saved["effects"][-1]["parameters"]["presliding"] == pytest.approx(5e-4)
     saved = view.encode({"effects": {name: {"force": 60.0}}})
     assert saved["effects"][-1]["effect"] == name and saved["effects"][-1]["parameters"]["force"] == 60.0
     with pytest.raises(InputError, match="no effect"):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from seatsim.dampers.bouc_wen import BoucWen
+from seatsim.effects.base import EFFECTS
 from seatsim.metrics import summarise
 from seatsim.plots import labels
 from seatsim.plots.runs import naming
@@ -73,6 +74,13 @@ def test_displacement_is_in_millimetres_within_its_limits(made_up):
     axes = plot_time_histories([made_up()]).axes[2]
     assert np.max(axes.lines[0].get_ydata()) == pytest.approx(20.0, rel=1e-3)
     assert [line.get_ydata()[0] for line in axes.lines[1:3]] == [-50.0, 50.0]
+
+
+def test_the_end_stops_of_the_rig_stand_where_its_buffers_are(made_up):
+    run = made_up()
+    buffers = EFFECTS.find("suspension.end_stop")(low=-0.03, high=0.045)
+    axes = plot_time_histories([replace(run, scenario=replace(run.scenario, effects=(buffers,)))]).axes[2]
+    assert [line.get_ydata()[0] for line in axes.lines[1:3]] == [-30.0, 45.0]
 
 
 def test_limits_that_are_far_away_or_not_stated_are_left_out(made_up):

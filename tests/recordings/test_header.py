@@ -101,3 +101,19 @@ def test_what_is_not_permitted_is_one_error_with_its_place(folder, old, new, wor
     text = str(raised.value)
     assert text.startswith(f"{folder / 'recording.yaml'}, line ") and "\n" not in text
     assert all(word in text for word in words), text
+
+
+@pytest.mark.parametrize("file", ["../a.csv", "/etc/passwd", "sub/../../a.csv", "link.csv", "sub/a.csv"])
+def test_a_run_lies_in_the_folder_of_its_recording(folder, tmp_path_factory, file):
+    outside = tmp_path_factory.mktemp("outside")
+    (outside / "a.csv").write_text("secret")
+    (folder / "sub").symlink_to(outside)
+    (folder / "link.csv").symlink_to(outside / "a.csv")
+    with pytest.raises(InputError, match=r"line 7, runs\.0\.file: .*leads out of the folder.*copy the file into"):
+        load(folder, "file: a.csv", f"file: {file}")
+
+
+def test_a_run_may_lie_in_a_folder_of_its_own_or_be_linked_within(folder):
+    (folder / "sub").mkdir()
+    (folder / "b.csv").symlink_to(folder / "sub" / "b.csv")
+    assert load(folder, "file: a.csv", "file: sub/a.csv").runs["a"].file == "sub/a.csv"

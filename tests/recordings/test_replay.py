@@ -11,6 +11,7 @@ import seatsim
 from seatsim.cli.app import main
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.recordings.gap import measure_gap
+from seatsim.recordings.recording import load_recording
 from seatsim.recordings.writer import save_recording
 from seatsim.simulation.damper_bench import bench_force
 
@@ -43,6 +44,16 @@ def recorded(kept, tmp_path):
 def test_the_replay_of_an_own_noiseless_recording_leaves_no_gap(result, tmp_path, absent):
     folder = save_recording(result, tmp_path, [name for name in CHANNELS if name not in absent])
     assert seatsim.gap(folder / "nominal.yaml", folder).overall < 1e-3
+
+
+def test_noise_is_added_as_it_is_stated(result, kept, tmp_path):
+    noise = {"driver_acceleration": 0.05, "suspension_displacement": 2e-4}
+    clean, noisy = load_recording(kept), load_recording(save_recording(result, tmp_path / "n", CHANNELS, noise=noise))
+    assert {name: entry.noise_rms for name, entry in noisy.channels.items() if entry.noise_rms} == noise
+    for run in clean.runs:
+        added = {name: noisy.table(run)[name] - values for name, values in clean.table(run).items()}
+        assert {name for name, values in added.items() if np.any(values)} == set(noise)
+        assert all(np.std(added[name]) == pytest.approx(rms, rel=0.1) for name, rms in noise.items())
 
 
 def test_a_nominal_that_is_off_leaves_a_gap(recorded):

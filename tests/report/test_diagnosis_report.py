@@ -17,7 +17,7 @@ from seatsim.diagnosis.result import (
     ProposedExperiment,
     Share,
 )
-from seatsim.report.diagnosis import report_diagnosis, say_diagnosis, write_report
+from seatsim.report.diagnosis import advise, report_diagnosis, say_diagnosis, write_report
 from seatsim.report.effect_words import WORDS, say_action, say_cause
 from seatsim.report.formatting import (
     describe_effect,
@@ -190,6 +190,16 @@ def test_every_effect_is_said_in_plain_words():
     assert say_cause(Cause("sensor.gain", 1.0, 0.9, gain)) == "the channel driver acceleration reads with a wrong scale"
     assert all("{" not in say_cause(Cause(name, 1.0, 0.9, {})) and say_action(name) for name in WORDS)
     assert say_cause(Cause("own.effect", 1.0, 0.9, {})).startswith("own.effect is at work")
+
+
+def test_a_cause_at_the_end_of_its_range_is_to_be_confirmed():
+    found = known()
+    first = found.causes[0]
+    estimate = Estimate(-0.5, 0.1, "-", (-0.5, 1.0), True)
+    ended = first._replace(parameters={"error": estimate}, at_bound=True)
+    advice = advise(replace(found, causes=[ended], selected=[first.effect]))
+    assert f"Confirm {first.effect} first: all of its size lies at the end of its range." in advice
+    assert format_estimate(estimate).endswith("(the end of its range)")
 
 
 def test_a_share_of_the_gap_is_said():

@@ -49,6 +49,7 @@ def test_a_failed_run_exits_with_1_and_keeps_the_others(seat_file, undrawn, monk
     assert status == 1
     assert "failed: seat (b)" in capsys.readouterr().err
     assert len(pd.read_csv(out / "summary.csv")) == 1
+    assert "1 of 2 runs failed: seat (b)" in (out / "report.html").read_text(encoding="utf-8")
 
 
 def test_compare_puts_several_files_in_one_table(seat_file, undrawn, monkeypatch):

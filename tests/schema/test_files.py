@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -111,8 +112,12 @@ def test_what_a_killed_process_has_left_is_removed_and_what_another_writes_is_no
         (part / "a.txt").touch()
     (tmp_path / f".a.txt.{files._HOST}-{2**22 + 1}-0123abcd.part.txt").touch()
     (tmp_path / ".kept.part").touch()
+    old, recent = (tmp_path / f".b.txt.node{k}-1-0123abcd.part.txt" for k in range(2))
+    for part, age in ((old, 2 * 86_400), (recent, 3_600)):
+        part.touch()
+        os.utime(part, (time.time() - age,) * 2)
     write_together(tmp_path / "set", write_two)
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([alive.name, ".kept.part", "set"])
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([alive.name, recent.name, ".kept.part", "set"])
     remove_left(tmp_path / "absent")
 
 
@@ -128,3 +133,33 @@ def test_a_name_that_no_file_can_have_is_bad_input(tmp_path, name):
         with pytest.raises(SeatsimError, match=r"cannot be written"):
             write(tmp_path / name if "x" in name else Path(name))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_files_take_the_place_of_links_and_folders_that_are_links_are_refused(tmp_path):
+    victim, out = tmp_path / "victim", tmp_path / "out"
+    victim.mkdir()
+    (victim / "file").write_text("precious")
+    out.mkdir()
+    for name in ("a", "b"):
+        (out / name).symlink_to(victim / "file")
+    write_text(out / "a", "new")
+    write_together(out, lambda part: [write_text(part / "b", "new")])
+    assert (out / "a").read_text() == (out / "b").read_text() == "new" and not (out / "b").is_symlink()
+    (out / "plots").symlink_to(victim)
+    with pytest.raises(InputError, match="plots: is a link, through which nothing is written"):
+        write_together(out, lambda part: [write_text(part / "b", "newer"), write_text(part / "plots" / "file", "x")])
+    assert (victim / "file").read_text() == "precious" and (out / "b").read_text() == "new"
+    (tmp_path / "results").symlink_to(out)  # a place that the user names may be a link
+    assert write_together(tmp_path / "results", lambda part: [write_text(part / "c", "new")])[0].read_text() == "new"
+
+
+@pytest.mark.skipif(os.name != "posix" or os.getuid() != 0, reason="only root can make another user's link")
+def test_nothing_is_written_over_another_users_link(tmp_path):
+    (tmp_path / "victim").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "victim")
+    assert write_text(tmp_path / "link" / "deep" / "own", "").exists()
+    os.lchown(tmp_path / "link", 12345, -1)
+    for write in (write_text, lambda path, text: write_together(path, lambda part: [write_text(part / "a", text)])):
+        with pytest.raises(InputError, match="link: is another user's link"):
+            write(tmp_path / "link" / "deep" / "other", "")
+    assert [path.name for path in (tmp_path / "victim" / "deep").iterdir()] == ["own"]

@@ -13,6 +13,8 @@ BOMB = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
     f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]\n" for n in range(1, 12)
 )
 """Ten to the power of twelve values once its aliases are put in."""
+MERGES = "a0: &a0 {x: 1}\n" + "".join(f"a{n}: &a{n} {{<<: [*a{n - 1}, *a{n - 1}]}}\n" for n in range(1, 40))
+"""A mapping that is merged into others more often than there are atoms in a gram."""
 
 
 @pytest.mark.parametrize(
@@ -50,6 +52,7 @@ def test_keys_that_are_merged_stand_below_the_own_ones_and_the_first_mapping_win
     ("text", "problem", "line"),
     [
         (BOMB, "values once its aliases are put in", None),
+        (MERGES, "values once its aliases are put in", 18),
         ("a: " + "[" * 100_000, f"nest more than {DEEPEST} deep", 1),
         ("a:\n" + "".join(f"{'  ' * n}- a:\n" for n in range(1, 2000)), f"nest more than {DEEPEST} deep", None),
         ("- &a [*a]", "refers to nothing that ends before it", 1),

@@ -71,11 +71,25 @@ def test_a_rig_that_runs_away_says_where(scenario):
         simulate(falling)
 
 
-def test_a_channel_carries_its_name_and_unit_over(scenario):
+def test_a_channel_has_a_unit_and_what_is_computed_from_it_has_none(scenario):
     found = run(scenario)
     force = found["damper_force"]
     assert (force.name, force.unit) == ("damper_force", "N")
-    assert (force[10:20].unit, (2.0 * force).unit) == ("N", "N")
+    for part in (force[10:20], force[::2], force[force > 0.0], force[[1, 2]]):
+        assert (part.name, part.unit) == ("damper_force", "N")
+    computed = (
+        2.0 * force,
+        force * force,
+        force / (force + 1e3),
+        force > 0.0,
+        np.cumsum(force),
+        force.cumsum(),
+        np.sqrt(force**2),
+    )
+    assert {(each.name, each.unit) for each in computed} == {("", "")}
+    assert isinstance(force[0], float)
+    with pytest.raises(ValueError, match="read-only"):
+        force *= force
     assert Channel(np.zeros(2), "x", "m").shape == (2,)
 
 
@@ -99,11 +113,12 @@ def test_many_runs_are_yielded_in_order_with_their_failures(scenario):
     assert np.array_equal(pairs[0][1]["damper_force"], pairs[2][1]["damper_force"])
 
 
-def warned(scenario, share, speed=0.0, current=0.0):
-    """The warnings of a run of which a share is at a speed and a current."""
+def warned(scenario, share, speed=0.0, current=0.0, warmer=0.0):
+    """The warnings of a run of which a share is at a speed, at a current, and warmer than the data at 20 degC."""
     at = np.arange(1000) < 1000 * share
     still = np.zeros(1000)
     return list_ranges_left(scenario, History(0.001, {"suspension_velocity": speed * at, "coil_current": current * at,
+                                                   "damper_temperature": 20.0 + warmer * at,
                                                    "suspension_displacement": still}))  # fmt: skip
 
 
@@ -120,6 +135,11 @@ def test_a_range_left_for_more_than_a_hundredth_of_the_run_is_warned_of(kept_sea
     if np.isfinite(stated.max_current):
         (sentence,) = warned(scenario, 0.011, current=strong)
         assert f"above {stated.max_current:g} A" in sentence
+    coldest, hottest = stated.temperatures
+    for change in (coldest - 20.1, hottest - 19.9):
+        assert warned(scenario, 0.009, warmer=change) == ()
+        (sentence,) = warned(scenario, 0.011, warmer=change)
+        assert f"{hottest:g} degC, beyond the data behind the model" in sentence
 
 
 def figures(**values):
@@ -130,7 +150,7 @@ def figures(**values):
 def test_a_figure_without_value_and_an_open_energy_balance_are_reasons(kept_seat_file):
     scenario, still = single(kept_seat_file), np.zeros(100)
     names = ("suspension_velocity", "coil_current", "suspension_displacement")
-    history = History(0.001, dict.fromkeys(names, still))
+    history = History(0.001, {**dict.fromkeys(names, still), "damper_temperature": 20.0 + still})
     assert list_reasons(scenario, history, figures(driver_vdv=1.0, energy_residual=0.9 * LARGEST_RESIDUAL)) == ()
     for value in (np.nan, np.inf):
         (reason,) = list_reasons(scenario, history, figures(driver_vdv=value))
@@ -149,7 +169,7 @@ def test_a_run_says_why_its_figures_are_unverified(kept_seat_file):
         doubtful.warnings
     )
     assert Result([sure, doubtful]).rows[1]["unverified"] == "; ".join(doubtful.unverified)
-    quiet = comparison([sure, doubtful], "both")
+    quiet = comparison([sure, doubtful, sure], "both")
     assert [next(iter(quiet.columns[0].cells)), list(quiet.columns[0].cells)[1][-1]] == ["seat", "*"]
     best = [cell for column in quiet.columns for cell in column.cells if "bold" in str(cell)]
     assert best and all("bold" not in str(list(column.cells)[1]) for column in quiet.columns)

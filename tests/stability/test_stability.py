@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 
 import seatsim
-from controllers.analysis.margins import compute_margins, compute_sampled_radius
+from controllers.analysis.margins import compute_margins
+from controllers.analysis.sampled_loop import build_sampled_loop
+from controllers.laws.static_output_feedback import OutputFeedback
+from controllers.linear_systems import LinearSystem
+from controllers.seat_plant import ActuatorLag, Weights, build_generalised_plant
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant, state_space
 
@@ -17,6 +21,17 @@ def seat(driver_mass=80.0):
     return Plant(20.0, driver_mass, 4600.0, 150.0, 60000.0, 1500.0)
 
 
+def margins(mass):
+    designed = build_generalised_plant(seat(mass), Weights(), ActuatorLag(COIL.rate))
+    return compute_margins(LinearSystem(designed.A, designed.B2, designed.C2, np.zeros((2, 1))), GAIN)
+
+
+def radius(mass, sample_time, late=0):
+    return build_sampled_loop(OutputFeedback(*GAIN[0]), (), seat(mass), COIL, sample_time, step=sample_time).radius(
+        late
+    )
+
+
 @pytest.mark.parametrize("mass", MASSES)
 def test_the_closed_loop_is_hurwitz(mass):
     s = state_space(seat(mass))
@@ -26,13 +41,13 @@ def test_the_closed_loop_is_hurwitz(mass):
 @pytest.mark.parametrize("sample_time", [0.001, 0.005])
 @pytest.mark.parametrize("mass", MASSES)
 def test_the_sampled_loop_is_stable_with_a_sample_of_delay(mass, sample_time):
-    assert compute_sampled_radius(seat(mass), GAIN, COIL, sample_time) < 1
-    assert compute_sampled_radius(seat(mass), GAIN, COIL, sample_time, delay_samples=1) < 1
+    assert radius(mass, sample_time) < 1
+    assert radius(mass, sample_time, late=1) < 1
 
 
 @pytest.mark.parametrize("mass", [40.0, 80.0, 150.0])
 def test_margins(mass, capsys):
-    found = compute_margins(seat(mass), GAIN, COIL)
+    found = margins(mass)
     with capsys.disabled():
         print(f"\n{mass:.0f} kg: gain {found.gain:.3g}, phase {found.phase:.1f} deg, delay {1e3 * found.delay:.1f} ms")
     assert found.gain > 2
@@ -41,10 +56,9 @@ def test_margins(mass, capsys):
 
 
 def test_the_delay_margin_is_where_the_sampled_loop_loses_stability():
-    delay = compute_margins(seat(), GAIN, COIL).delay
-    step = 0.0005
-    assert compute_sampled_radius(seat(), GAIN, COIL, step, delay_samples=int(0.97 * delay / step)) < 1
-    assert compute_sampled_radius(seat(), GAIN, COIL, step, delay_samples=int(1.03 * delay / step)) > 1
+    delay, step = margins(80.0).delay, 0.0005
+    assert radius(80.0, step, late=int(0.97 * delay / step)) < 1
+    assert radius(80.0, step, late=int(1.03 * delay / step)) > 1
 
 
 def test_the_literal_sign_of_the_paper_is_unstable():

@@ -113,7 +113,7 @@ def test_a_class_is_looked_up_by_name(scenario):
 def test_a_travel_that_is_not_stated_is_said(scenario):
     found = seat_test(scenario, ["EM6"], {"plant.travel": [-10.0, 10.0]})
     assert found.rows[0].end_stop_hits is None
-    assert any("no travel is stated" in note for note in found.notes)
+    assert any("no end stops are stated" in note and "state plant.travel" in note for note in found.notes)
 
 
 def test_a_run_that_breaks_off_leaves_the_others_and_is_a_line_with_its_reason(scenario, tmp_path, monkeypatch):

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 
@@ -62,6 +63,30 @@ def test_failed_runs_end_with_status_1(write_sweep, tmp_path, seatsim_command):
     path = write_sweep(vary={"controller.sample_time": [0.005, 0.0052]}, runs=None)
     status, out, err = seatsim_command("sweep", path, "--out", tmp_path / "out")
     assert status == 1 and "1 done, 1 failed" in out and "failed: run 1: " in err and "choose 0.005 s" in err
+
+
+def test_names_in_a_script_for_slurm_are_quoted_or_refused(write_sweep, tmp_path, seatsim_command):
+    folder, mark = tmp_path / "my $(touch mark) 'rows' 5%a", tmp_path / "mark"
+    path = write_sweep().rename(tmp_path / "a sweep --wrap=x.yaml")
+    status, _, _ = seatsim_command("sweep", path, "--out", folder, "--slurm", tmp_path / "array 1.sh")
+    lines = (tmp_path / "array 1.sh").read_text().splitlines()
+    options = [shlex.split(line.removeprefix("#SBATCH ")) for line in lines if line.startswith("#SBATCH")]
+    assert status == 0 and all(len(option) == 1 for option in options)
+    assert options[0] == ["--job-name=seatsim-a sweep --wrap=x"]
+    assert options[-1] == [f"--output={str(folder).replace('%', '%%')}/slurm-%a.log"]
+    assert shlex.split(lines[-1])[3:6] == [str(path), "--out", str(folder)] and not mark.exists()
+
+
+@pytest.mark.parametrize("bad", ["file", "out", "script"])
+def test_a_line_break_in_a_name_is_refused_for_slurm(bad, write_sweep, tmp_path, seatsim_command):
+    line = "x\ntouch mark"
+    path = write_sweep()
+    path = path.rename(tmp_path / f"{line}.yaml") if bad == "file" else path
+    out = tmp_path / (line if bad == "out" else "out")
+    script = tmp_path / (line if bad == "script" else "array.sh")
+    before = sorted(tmp_path.iterdir())
+    status, _, err = seatsim_command("sweep", path, "--out", out, "--slurm", script)
+    assert status == 2 and "line break" in err and sorted(tmp_path.iterdir()) == before
 
 
 def test_the_tasks_of_a_script_make_the_sweep(write_sweep, tmp_path, seatsim_command):

@@ -9,6 +9,7 @@ from seatsim.sweeps.definition import read_definition
 from seatsim.sweeps.execute import prepare
 from seatsim.sweeps.plan import make_plan
 
+WIDE = {"plant": {}, "sweep": {f"effects.{k}.parameters.high": [0.1] * 100 for k in range(4)}}
 MASS, STIFFNESS, CLASS = "plant.driver_mass", "plant.suspension_stiffness", "excitation.spectral_class"
 
 
@@ -117,6 +118,13 @@ def test_a_run_is_the_scenario_with_its_values_and_a_replicate_the_next_seed(wri
         ({"vary": {CLASS: ["EM1", "EM99"]}}, ["line", "'EM99' is not permitted"]),
         ({"design": "table", "vary": None}, ["CSV file"]),
         ({"scenario": "nowhere.yaml"}, ["line", "no such file"]),
+        ({"vary": {MASS: [60.0] * 1000, STIFFNESS: [4e3] * 1000}, "replicates": 10000},
+         ["makes 10000000000 runs (1000000 points x 10000 replicates)", "at most 10000000"]),
+        ({"vary": {MASS: {"from": 50, "to": 90, "steps": 10**5}, STIFFNESS: {"from": 4e3, "to": 5e3, "steps": 10**5}}},
+         ["makes 10000000000 runs", "design: sobol"]),
+        ({"vary": {MASS: {"from": 50, "to": 90, "steps": 10**10}}}, ["steps", "from 2 to 1000000"]),
+        ({"vary": {MASS: {"normal": [80, 6]}, STIFFNESS: [4e3] * 2}, "runs": 10**7}, ["makes 20000000 runs"]),
+        ({"scenario": WIDE}, ["makes 100000000 runs; a scenario has at most 10000"]),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_refused_before_anything_runs(stated, parts, write_sweep, tmp_path):

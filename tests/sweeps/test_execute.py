@@ -14,7 +14,7 @@ from seatsim.schema.errors import InputError
 from seatsim.sweeps import parts
 from seatsim.sweeps.engines.base import simulate_one
 from seatsim.sweeps.execute import Share
-from seatsim.sweeps.lock import hold_folder
+from seatsim.sweeps.lock import hold_file, hold_folder
 
 from .conftest import MASSES, bytes_of
 
@@ -173,6 +173,28 @@ def test_the_lock_names_its_owner(write_sweep, carry_out, tmp_path):
             carry_out(write_sweep())
         other.kill()
     assert carry_out(write_sweep(runs=2)).counts["done"] == 2
+
+
+@pytest.mark.parametrize("name", [".lock", ".lock-manifest", ".lock-1-of-2", "runs", "histories", "manifest.json"])
+def test_a_sweep_writes_through_no_link_in_its_folder(name, write_sweep, carry_out, tmp_path):
+    victim = tmp_path / "victim"
+    (tmp_path / "out").mkdir()
+    if name in ("runs", "histories"):
+        victim.mkdir()
+    else:
+        victim.write_text("precious")
+    (tmp_path / "out" / name).symlink_to(victim)
+    with pytest.raises(seatsim.InputError, match=rf"{name}: is a link, through which nothing is written"):
+        carry_out(write_sweep(), share=Share(1, 2) if "of" in name else None)
+    assert not list(victim.iterdir()) if victim.is_dir() else victim.read_text() == "precious"
+
+
+def test_a_lock_that_becomes_a_link_is_not_opened(tmp_path):
+    (tmp_path / "victim").write_text("precious")
+    (tmp_path / ".lock").symlink_to(tmp_path / "victim")
+    with pytest.raises(seatsim.InputError, match="is a link"), hold_file(tmp_path / ".lock"):
+        pass
+    assert (tmp_path / "victim").read_text() == "precious"
 
 
 def test_shares_hold_a_folder_together_but_none_twice(tmp_path):

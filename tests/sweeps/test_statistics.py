@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 from scipy.stats import qmc
 
+from seatsim.report.sweep_choices import advise_on_keys, tabulate_best
 from seatsim.report.sweep_pictures import draw_pareto, find_front
 from seatsim.sweeps.statistics.exceedance import count_exceedances
 from seatsim.sweeps.statistics.inputs import SweepRows
@@ -95,3 +96,18 @@ def test_each_road_has_a_picture_of_comfort_over_travel():
     assert [plane.title[-1] for plane in figure.planes] == ["B", "C", "D"]
     assert [name for name, *_ in figure.legend] == ["60.00", "80.00", "Pareto front"]
     assert len(draw_pareto(rows, ["plant.driver_mass"])[0].planes) == 1
+
+
+def test_a_condition_is_never_advised_on_as_a_choice():
+    levels = np.meshgrid([5.0, 10.0, 20.0], np.arange(1.0, 7.0), range(3))
+    speed, damping = levels[0].ravel(), levels[1].ravel()
+    comfort = 0.1 * speed + 0.1 * np.abs(damping - speed / 5.0)
+    frame = pd.DataFrame({"excitation.speed": speed, "controller.damping": damping, COMFORT: comfort})
+    for drawn in ((), ("excitation.speed", "controller.damping")):
+        rows = rows_of(frame, ("excitation.speed", "controller.damping"), drawn)
+        choice, condition = advise_on_keys(analyse_sensitivity(rows).of(COMFORT), rows)
+        assert "controller.damping" in choice and "excitation.speed" not in choice
+        assert condition.startswith("Judge every choice at excitation.speed 20.00")
+    (table,) = tabulate_best(rows_of(frame, ("excitation.speed", "controller.damping")))
+    assert [row[:2] for row in table.rows] == [["20.00", "4.000"], ["10.00", "2.000"], ["5.000", "1.000"]]
+    assert tabulate_best(rows) == []

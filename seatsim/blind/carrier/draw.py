@@ -11,7 +11,7 @@ from numpy.random import Generator
 
 from seatsim.blind.carrier.change import Altered, Change
 from seatsim.blind.carrier.recorded import Carrier
-from seatsim.blind.carrier.replays import MATERIAL_SHARE, Ruler
+from seatsim.blind.carrier.replays import Ruler
 
 WEAKEST, STRONGEST = 0.06, 0.3
 """Standard deviations of a compared channel by which a change moves it: just material, and strong."""
@@ -39,12 +39,7 @@ def choose_runs(carrier: Carrier, rng: Generator) -> Carrier:
 
 
 def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:
-    """Return the change at the amount at which it has a size, None where no amount inside its span has about that.
-
-    A change with a single amount, such as a removal, is taken as it is where it is material.
-    """
-    if change.span[0] == change.span[1]:
-        return _at(ruler, change, change.span[0], MATERIAL_SHARE, math.inf)
+    """Return the change at the amount at which it has a size, None where no amount inside its span has about that."""
     low, high = change.span
     for _ in range(EVALUATIONS):
         middle = 0.5 * (low + high) if low > 0.0 else 0.25 * high
@@ -52,14 +47,10 @@ def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:
         if abs(found - size) < CLOSE * size:
             break
         low, high = (middle, high) if found < size else (low, middle)
-    return _at(ruler, change, middle, (1.0 - 2.0 * CLOSE) * size, (1.0 + 4.0 * CLOSE) * size)
-
-
-def _at(ruler: Ruler, change: Change, amount: float, least: float, most: float) -> DrawnCase | None:
-    altered = change.alter(amount)
-    size = ruler.size(altered.carrier)
-    fits = least < size < most and ruler.stands_out(altered.carrier)
-    return DrawnCase(change, altered, size) if fits else None
+    altered = change.alter(middle)
+    found = ruler.size(altered.carrier)
+    fits = 1.0 - 2.0 * CLOSE < found / size < 1.0 + 4.0 * CLOSE and ruler.stands_out(altered.carrier)
+    return DrawnCase(change, altered, found) if fits else None
 
 
 def draw_size(rng: Generator) -> float:

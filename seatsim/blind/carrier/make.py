@@ -1,12 +1,8 @@
-"""Makes a set of sealed cases on a measured recording.
-
-Every case has its own generator, spawned from the seed, so a set is the same in any order and with any number of
-processes, and one that was broken off goes on.
-"""
+"""Makes a set of sealed cases on a measured recording."""
 
 from __future__ import annotations
 
-import shutil
+import functools
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,10 +14,8 @@ from seatsim.blind.carrier.injections.catalogue import draw_changes
 from seatsim.blind.carrier.recorded import Carrier, encode_carrier, read_carrier
 from seatsim.blind.carrier.replays import MATERIAL_SHARE, Ruler
 from seatsim.blind.labels import Label
-from seatsim.blind.make.folder import write_folder
-from seatsim.blind.make.unfinished import begin_or_resume, case_name, gather, is_finished, keep_label, keep_unseen
-from seatsim.blind.processes import Progress, run_jobs
-from seatsim.blind.sealed import seal
+from seatsim.blind.make.make import CaseFiles, make_set
+from seatsim.blind.processes import Progress
 from seatsim.schema.errors import InputError
 
 UNTOUCHED = "untouched"
@@ -34,30 +28,21 @@ def make_on_carrier(
     recording: str | Path, cases: int, seed: int | None, out: str | Path, sealed: str | Path,
     progress: Progress | None = None, processes: int = 2,
 ) -> str:  # fmt: skip
-    """Write DIR/case-0001/... and the sealed file; return the key, which is stored nowhere.
+    """Write a set on a recording, as `make_set` does; return the key.
 
-    The effects that the recording allows take turns, and beside them the recording as it is. Without `seed` one is
-    drawn and sealed; `progress` is called with the cases done and all cases.
+    The effects that the recording allows take turns, and beside them the recording as it is.
 
     Raises:
         InputError: the recording is none, allows no effect of a material size, or the folder is another set's.
     """
-    folder, target, source = Path(out), Path(sealed), Path(recording)
-    partial = target.with_name(f"{target.name}.partial")
-    if target.resolve().is_relative_to(folder.resolve()):
-        raise InputError(f"{target}: lies inside {folder}; the labels must lie elsewhere than the recordings")
+    source = Path(recording)
     carrier = read_carrier(source)
-    state = begin_or_resume(cases, seed, f"carrier {source.resolve()}", folder, target, partial)
-    wanted = take_turns(carrier, cases, np.random.default_rng(state["seed"]))
-    todo = [k for k in range(cases) if not is_finished(folder, partial, case_name(k))]
-    done_before = cases - len(todo)
-    if progress:
-        progress(done_before, cases)
-    jobs = [(k, wanted[k], source, state["seed"], folder, partial) for k in todo]
-    run_jobs(make_case, jobs, processes, progress and (lambda done, _: progress(done_before + done, cases)))
-    seal(target, folder, state["key"], gather(state, partial))
-    shutil.rmtree(partial)
-    return state["key"]
+
+    def order(seed: int) -> list[str]:
+        return take_turns(carrier, cases, np.random.default_rng(seed))
+
+    kinds, draw = f"carrier {source.resolve()}", functools.partial(draw_files, source)
+    return make_set(cases, seed, kinds, Path(out), Path(sealed), order, draw, progress, processes)
 
 
 def take_turns(carrier: Carrier, cases: int, rng: Generator) -> list[str]:
@@ -67,24 +52,19 @@ def take_turns(carrier: Carrier, cases: int, rng: Generator) -> list[str]:
     return turns[:cases]
 
 
-def make_case(k: int, wanted: str, source: Path, seed: int, folder: Path, partial: Path) -> None:
-    """Draw the case with index k of a set and write its recording, its unseen run and, last, its label.
+def draw_files(source: Path, wanted: str, rng: Generator) -> CaseFiles:
+    """Draw a case on the recording in a folder, of which the last run is withheld where there are enough.
 
     Raises:
         InputError: no effect of a material size can be put into the carrier.
     """
-    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(1, k)))
     carrier = choose_runs(read_carrier(source), rng)
     drawn = None if wanted == UNTOUCHED else draw_case(carrier, wanted, rng)
     told = carrier if drawn is None else drawn.altered.carrier
     runs = tuple(told.tables)
     withheld = runs[-1:] if len(runs) >= LEAST_RUNS else ()
-    name = case_name(k)
-    keep_unseen(partial, name, encode_carrier(told, withheld) if withheld else {})
-    if (folder / name).is_dir():
-        shutil.rmtree(folder / name)
-    write_folder(folder / name, encode_carrier(told, tuple(run for run in runs if run not in withheld)))
-    keep_label(partial, name, label(drawn))
+    shown = encode_carrier(told, tuple(run for run in runs if run not in withheld))
+    return CaseFiles(shown, encode_carrier(told, withheld) if withheld else {}, label(drawn))
 
 
 def draw_case(carrier: Carrier, wanted: str, rng: Generator) -> DrawnCase:

@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 import numpy as np
+from numpy.random import Generator
 
 from seatsim.blind.carrier.change import Change
 from seatsim.blind.carrier.draw import DrawnCase, choose_runs, draw_amount
 from seatsim.blind.carrier.injections.catalogue import draw_changes
+from seatsim.blind.carrier.injections.coil import draw_faster_coils
 from seatsim.blind.carrier.make import label
-from seatsim.blind.carrier.recorded import encode_carrier, read_carrier
+from seatsim.blind.carrier.recorded import Carrier, encode_carrier, read_carrier
 from seatsim.blind.carrier.replays import Ruler
 from seatsim.blind.make.folder import write_folder
 from seatsim.blind.processes import run_jobs
@@ -85,9 +87,7 @@ def measure_power(
     Raises:
         InputError: the recording is none, or does not allow an effect that is named.
     """
-    carrier = read_carrier(recording)
-    changes = draw_changes(carrier, np.random.default_rng(seed))
-    possible = sorted({change.effect for change in changes if has_sizes(change)})
+    possible = sorted({change.effect for change in _draw_all(read_carrier(recording), np.random.default_rng(seed))})
     for name in effects:
         if name not in possible:
             permitted = f"{nearest(name, possible)}; this recording allows {', '.join(possible)}"
@@ -103,9 +103,8 @@ def measure_power(
     return found
 
 
-def has_sizes(change: Change) -> bool:
-    """Tell whether a change can be of any size; what is taken out of a nominal has the one that it has."""
-    return change.span[0] < change.span[1]
+def _draw_all(carrier: Carrier, rng: Generator) -> list[Change]:
+    return draw_changes(carrier, rng) + draw_faster_coils(carrier, rng)
 
 
 def _bisect(setting: Setting, draws: int, processes: int) -> Power:
@@ -155,7 +154,7 @@ def try_draw(setting: Setting, size: float, draw: int) -> Trial:
 def _draw(setting: Setting, size: float, draw: int) -> DrawnCase | None:
     rng = np.random.default_rng([setting.seed, draw])
     carrier = choose_runs(read_carrier(setting.recording), rng)
-    changes = [c for c in draw_changes(carrier, rng) if c.effect == setting.effect and has_sizes(c)]
+    changes = [change for change in _draw_all(carrier, rng) if change.effect == setting.effect]
     ruler, order = Ruler(carrier), rng.permutation(len(changes))
     return next((drawn for k in order if (drawn := draw_amount(ruler, changes[k], size)) is not None), None)
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import gzip
 import io
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.blind.make.folder import encode_yaml
+from seatsim.blind.make.folder import encode_yaml, pack
 from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.schema.errors import InputError
 from seatsim.schema.yaml_source import Source
@@ -25,8 +25,8 @@ Table = Mapping[str, Array]
 """Channels of a run, shape (N,) each."""
 Content = dict[str, object]
 """What a YAML file says."""
-DIGITS = 10
-"""Significant digits of written values: below what any sensor resolves."""
+DECIMALS = 12
+"""Most digits after the point that are written."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,8 @@ class Carrier:
     header: Content
     nominal: Content
     tables: Mapping[str, Table]
+    decimals: Mapping[str, int] = field(default_factory=dict)
+    """Digits after the point with which each channel is written."""
 
     @property
     def rig(self) -> str:
@@ -88,7 +90,20 @@ def read_carrier(folder: Path) -> Carrier:
     header = Source(folder / HEADER).data
     if recording.conversions:  # tables are read in SI units, whatever the header states
         header["channels"] = {name: entry._asdict() for name, entry in recording.channels.items()}
-    return Carrier(header, Source(recording.nominal).data, tables)
+    decimals = {name: _count_decimals([table[name] for table in tables.values()]) for name in recording.channels}
+    return Carrier(header, Source(recording.nominal).data, tables, decimals)
+
+
+def _count_decimals(runs: list[Array]) -> int:
+    """Return the digits with which a channel was recorded, or those of a hundredth of its spread where that has more.
+
+    A command that was recorded as 0 or 1 could not be changed otherwise.
+    """
+    values = np.concatenate(runs)
+    spread = float(np.std(values))
+    least = math.ceil(2.0 - math.log10(spread)) if spread > 0.0 else 0
+    enough = range(min(max(least, 0), DECIMALS), DECIMALS)
+    return next((n for n in enough if np.allclose(values, np.round(values, n), rtol=1e-14, atol=0.0)), DECIMALS)
 
 
 def encode_carrier(carrier: Carrier, runs: tuple[str, ...]) -> dict[str, bytes]:
@@ -97,7 +112,7 @@ def encode_carrier(carrier: Carrier, runs: tuple[str, ...]) -> dict[str, bytes]:
     header = {**carrier.header, "runs": entries, "nominal": "nominal.yaml"}
     header.pop("note", None)
     files = {"recording.yaml": encode_yaml(header), "nominal.yaml": encode_yaml(carrier.nominal)}
-    return files | {f"{run}.csv.gz": _encode_table(carrier.tables[run], carrier.step) for run in runs}
+    return files | {f"{run}.csv.gz": _encode_table(carrier, run) for run in runs}
 
 
 def _entry(carrier: Carrier, run: str, runs: tuple[str, ...]) -> Content:
@@ -107,12 +122,15 @@ def _entry(carrier: Carrier, run: str, runs: tuple[str, ...]) -> Content:
     return {"name": run, "file": f"{run}.csv.gz", **kept}
 
 
-def _encode_table(table: Table, step: float) -> bytes:
-    """Return a run as a gzipped CSV whose bytes depend on nothing but the numbers."""
+def _encode_table(carrier: Carrier, run: str) -> bytes:
+    """Return a run as a gzipped CSV whose bytes depend on nothing but the numbers.
+
+    A channel has as many digits as were recorded: more of them would tell which channel was changed.
+    """
+    table = carrier.tables[run]
     rows = len(next(iter(table.values())))
-    columns = {"time": np.arange(rows) * step, **table}
-    packed = io.BytesIO()
-    with gzip.GzipFile(fileobj=packed, mode="wb", mtime=0, compresslevel=6) as stream:
-        stream.write((",".join(columns) + "\n").encode())
-        np.savetxt(stream, np.column_stack(list(columns.values())), fmt=f"%.{DIGITS}g", delimiter=",")
-    return packed.getvalue()
+    columns = {"time": np.arange(rows) * carrier.step, **table}
+    formats = ["%.10g", *(f"%.{carrier.decimals.get(name, DECIMALS)}f" for name in table)]
+    text = io.StringIO()
+    np.savetxt(text, np.column_stack(list(columns.values())), formats, ",", header=",".join(columns), comments="")
+    return pack(text.getvalue().encode())

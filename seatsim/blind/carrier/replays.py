@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 from ruamel.yaml import YAML
-from scipy.optimize import lsq_linear
 
 from seatsim.blind.carrier.recorded import Array, Carrier, Content, encode_carrier, number, section
+from seatsim.blind.make.tolerance import bounded_least_squares
 from seatsim.recordings.compared import select_compared, stands_out
 from seatsim.recordings.recording import ChannelEntry, load_recording
 from seatsim.recordings.replay import replay_table
@@ -87,8 +87,7 @@ class Ruler:
         if not self.columns:
             return np.zeros_like(g)
         J = np.column_stack(self.columns)
-        triangle = np.asarray(np.linalg.qr(np.column_stack([J, g]), mode="r"))
-        return np.asarray(J @ lsq_linear(triangle[:, :-1], triangle[:, -1], (-1.0, 1.0)).x)
+        return np.asarray(J @ bounded_least_squares(J, g))
 
     def gap(self, changed: Carrier) -> float:
         """Return the overall gap of a changed carrier, in std."""

@@ -9,19 +9,20 @@ import numpy as np
 from numpy.random import Generator
 
 from seatsim.blind.labels import EFFECTS, Kind, Label, Specification
-from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment
-from seatsim.blind.make.draw_varied import draw_varied_experiment
-from seatsim.blind.make.materiality import COARSE_STEP, CommandedRuns, collinearity
+from seatsim.blind.make.draw_experiment import SCATTER
+from seatsim.blind.make.draw_rig import FaultlessRig, draw_rig
+from seatsim.blind.make.materiality import CommandedRuns, collinearity
 from seatsim.blind.make.severity import find_severity
-from seatsim.blind.make.tolerance import ToleranceRefit
-from seatsim.blind.truth.experiment import CHANNELS, Experiment, context_of, read_channels, simulate_run
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, read_channels, simulate_run
 from seatsim.blind.truth.faults.catalogue import SCENARIOS, scenarios_of
 from seatsim.blind.truth.faults.scenario import Changes, Context, FaultScenario, Shape
 from seatsim.blind.truth.sensors import Readings
 from seatsim.schema.errors import RunError
 
-ATTEMPTS = 14
-"""Attempts with the same faults before others are drawn: on some rigs an effect such as play can hardly be seen."""
+ATTEMPTS = 8
+"""Attempts with the same faults before others take their place: on some rigs an effect such as play is hardly seen."""
+EXCHANGES = 20
+"""How often others take their place; some fault can be seen on every rig, so that more are never needed."""
 ROUNDS = 6
 """Of raising faults that are not material beside the others; each raises by 15 % or more."""
 LARGEST_COLLINEARITY = 0.9
@@ -32,12 +33,6 @@ RAISE = 1.15
 """How much further than to the limit a fault is raised."""
 WEAKEST = 0.4
 """Materiality below which a fault is raised no faster, as response and severity are not proportional that far."""
-BINGHAM_SHARE = 0.25
-"""Of the rigs whose faults need neither damper."""
-COMPLETE_SHARE, AT_MOST_ONE_MISSING = 0.6, 0.93
-"""Shares of the rigs that record every channel, and that lack at most one; the others lack two."""
-OPTIONAL = {"damper_force": 0.5, "coil_current": 0.2, "damper_temperature": 0.3}
-"""Channels that a rig may lack, and how likely each is the one: a load cell is what is saved first."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +49,10 @@ class CaseSpecification:
     background: float = 0.0
     scatter: float = SCATTER
     varied: bool = False
+
+    def draw_rig(self, rng: Generator) -> Experiment:
+        """Draw a rig and its protocol, to which neither kind nor names are told."""
+        return draw_rig(rng, self.varied, self.missing, self.scatter, self.background)
 
     def as_dict(self) -> Specification:
         """Return it as it stands in a label."""
@@ -111,30 +110,28 @@ class Case:
 
 
 def draw_case(specification: CaseSpecification, rng: Generator) -> Case:
-    """Draw a case to specification; faults that cannot be made material in these runs are drawn anew.
+    """Draw a case to specification: a rig with its protocol, then faults that are material on it.
 
-    Effects that no draw makes material give way to others drawn at random.
+    The rig is drawn once and without regard to the faults: were it drawn again until they are material, its parameters
+    and protocol would tell which they are. Effects that no draw makes material on it, or that its damper cannot have,
+    give way to others drawn at random.
 
     Raises:
-        RunError: no draw of something outside the library is material.
+        RunError: no draw is material.
     """
-    for _ in range(ATTEMPTS):
-        case = _attempt(specification, rng)
-        if case is not None:
-            return case
-    if specification.kind in ("one", "two"):
-        other = tuple(str(name) for name in rng.choice(EFFECTS, len(specification.names), replace=False))
-        return draw_case(replace(specification, names=other), rng)
-    raise RunError(f"no material case of kind {specification.kind} came of {ATTEMPTS} draws")
-
-
-def draw_missing_channels(rng: Generator) -> tuple[str, ...]:
-    """Draw the channels that are not recorded: none in 60 % of cases, rarely two."""
-    u = rng.random()
-    if u < COMPLETE_SHARE:
-        return ()
-    count = 1 if u < AT_MOST_ONE_MISSING else 2
-    return tuple(str(name) for name in rng.choice(list(OPTIONAL), count, replace=False, p=list(OPTIONAL.values())))
+    scenarios = _draw_scenarios(specification, rng)
+    rig = FaultlessRig(specification.draw_rig(rng))
+    for _ in range(EXCHANGES):
+        for _ in range(ATTEMPTS):
+            case = _attempt(specification, scenarios, rig, rng)
+            if case is not None:
+                return case
+            scenarios = _draw_scenarios(specification, rng)
+        outside = [scenario.name for scenario in scenarios_of("outside")]
+        others = rng.choice(outside if specification.kind == "outside" else EFFECTS, len(scenarios), replace=False)
+        specification = replace(specification, names=tuple(map(str, others)))
+        scenarios = _draw_scenarios(specification, rng)
+    raise RunError(f"no material case of kind {specification.kind} came of {ATTEMPTS * EXCHANGES} draws")
 
 
 def _draw_scenarios(specification: CaseSpecification, rng: Generator) -> list[FaultScenario]:
@@ -144,55 +141,38 @@ def _draw_scenarios(specification: CaseSpecification, rng: Generator) -> list[Fa
     return [choice[int(rng.integers(len(choice)))] for choice in choices]
 
 
-def _draw_rig(specification: CaseSpecification, scenarios: Sequence[FaultScenario], rng: Generator) -> Experiment:
-    """Draw a rig on which the scenarios can be at work and be found."""
-    missing = specification.missing if specification.missing is not None else draw_missing_channels(rng)
-    needed = {name for scenario in scenarios for name in scenario.needs}
-    channels = tuple(name for name in CHANNELS if name not in missing or name in needed)
-    bingham = rng.random() < BINGHAM_SHARE or any(scenario.bingham for scenario in scenarios)
-    warm = any(scenario.warm for scenario in scenarios)
-    if specification.varied:
-        return draw_varied_experiment(rng, bingham, channels, warm)
-    return draw_experiment(rng, bingham, channels, warm, specification.scatter, specification.background)
-
-
-def _attempt(specification: CaseSpecification, rng: Generator) -> Case | None:
-    """Draw rig, shapes and severities once; None where a fault cannot be made material on this rig."""
-    scenarios = _draw_scenarios(specification, rng)
-    experiment = _draw_rig(specification, scenarios, rng)
-    recorded = range(len(experiment.runs) - 1)
-    motions = [simulate_run(experiment, Changes(), k, step=COARSE_STEP) for k in recorded]
-    runs = CommandedRuns(experiment, [motion.command for motion in motions])
-    context = context_of(experiment, [read_channels(experiment, Changes(), k, motions[k]) for k in recorded])
+def _attempt(
+    specification: CaseSpecification, scenarios: Sequence[FaultScenario], rig: FaultlessRig, rng: Generator
+) -> Case | None:
+    """Draw shapes and severities once; None where a fault cannot be made material on this rig."""
     faults: list[DrawnFault] = []
     for scenario in scenarios:
-        fault = _draw_fault(scenario, runs, context, rng)
+        fault = _draw_fault(scenario, rig, rng)
         if fault is None:
             return None
         faults.append(fault)
-    refit = ToleranceRefit(experiment, runs.commands) if faults else None
-    return _settle(specification, experiment, faults, context, refit)
+    return _settle(specification, faults, rig)
 
 
-def _draw_fault(scenario: FaultScenario, runs: CommandedRuns, context: Context, rng: Generator) -> DrawnFault | None:
+def _draw_fault(scenario: FaultScenario, rig: FaultlessRig, rng: Generator) -> DrawnFault | None:
     """Draw a fault's shape, and the severity that gives it a drawn materiality when it is alone."""
-    shape = scenario.draw(rng, context)
+    if scenario.bingham and not rig.experiment.is_bingham:
+        return None
+    shape = scenario.draw(rng, rig.context)
 
     def size_of(severity: float) -> float:
-        return runs.materiality(scenario.build(severity, shape, context), Changes())[0]
+        return rig.runs.materiality(scenario.build(severity, shape, rig.context), Changes())[0]
 
     found = find_severity(size_of, scenario.span, rng)
     if found is None:
         return None
     severity, size = found
-    return DrawnFault(scenario, shape, severity, size, scenario.build(severity, shape, context))
+    return DrawnFault(scenario, shape, severity, size, scenario.build(severity, shape, rig.context))
 
 
-def _settle(
-    specification: CaseSpecification, experiment: Experiment, faults: list[DrawnFault], context: Context,
-    refit: ToleranceRefit | None,
-) -> Case | None:  # fmt: skip
+def _settle(specification: CaseSpecification, faults: list[DrawnFault], rig: FaultlessRig) -> Case | None:
     """Close the loop with the faults in it; raise what is no longer material beside the others, or give up."""
+    experiment = rig.experiment
     runs = range(len(experiment.runs))
     for _ in range(ROUNDS):
         total = _sum_of_changes(faults)
@@ -200,14 +180,14 @@ def _settle(
         if not all(np.all(np.isfinite(motion.frame)) for motion in motions):
             return None
         commanded = CommandedRuns(experiment, [motion.command for motion in motions[:-1]])
-        measured = _measure(faults, commanded, refit)
+        measured = _measure(faults, commanded, rig)
         if measured is None:
             return None
         faults, alike = measured
         if all(fault.net >= MATERIAL for fault in faults):
             readings = [read_channels(experiment, total, k, motion) for k, motion in enumerate(motions)]
             return Case(specification, experiment, tuple(faults), readings, alike)
-        faults = [_raise(fault, context) for fault in faults]
+        faults = [_raise(fault, rig.context) for fault in faults]
     return None
 
 
@@ -216,7 +196,7 @@ def _sum_of_changes(faults: Sequence[DrawnFault]) -> Changes:
 
 
 def _measure(
-    faults: Sequence[DrawnFault], runs: CommandedRuns, refit: ToleranceRefit | None
+    faults: Sequence[DrawnFault], runs: CommandedRuns, rig: FaultlessRig
 ) -> tuple[list[DrawnFault], float] | None:
     """Return the faults with their materiality beside the others, and their collinearity; None where one is no case.
 
@@ -226,7 +206,7 @@ def _measure(
     for k, fault in enumerate(faults):
         others = _sum_of_changes([other for j, other in enumerate(faults) if j != k])
         size, response = runs.materiality(fault.changes, others)
-        net = size * refit.unexplained_share(fault.changes, others) if refit else size
+        net = size * rig.refit.unexplained_share(fault.changes, others)
         sized.append(replace(fault, materiality=size, net=net))
         responses.append(response)
     alike = collinearity(*responses) if len(responses) == 2 else 0.0

@@ -22,8 +22,8 @@ SCATTER = 0.015
 """Largest relative error of a nominal parameter; inside the stated tolerance of 2 %, so a faultless rig is one."""
 STEPPED = 0.4
 """Share of the rigs whose current is stepped in every run, not controlled in some."""
-COLD = 0.65
-"""Share of the rigs, among those that need no warm run, that stay at 20 degC."""
+STARTS, HOT = (20.0, 30.0, 45.0, 60.0), (55.0, 75.0)
+"""Temperatures of the damper at which runs start, to within 2 K, and the range of the one that is hot, degC."""
 NOISE = {
     "floor_acceleration": 0.01, "frame_acceleration": 0.03, "driver_acceleration": 0.015,
     "suspension_displacement": 5e-5, "damper_force": 2.5, "coil_current": 0.003, "damper_temperature": 0.1,
@@ -59,31 +59,36 @@ def scatter_parameters(nominal: Mapping[str, float], rng: Generator, width: floa
 
 
 def draw_experiment(
-    rng: Generator, bingham: bool, channels: tuple[str, ...], warm: bool = False, scatter: float = SCATTER,
-    background: float = 0.0,
-) -> Experiment:  # fmt: skip
-    """Draw a rig and its protocol.
-
-    `warm`: one recorded run is hot. `background` is the rms of a random force on the frame, N, which a repeated run
-    shows.
-    """
+    rng: Generator, bingham: bool, channels: tuple[str, ...], scatter: float = SCATTER, background: float = 0.0
+) -> Experiment:
+    """Draw a rig and its protocol; `background` is the rms of a force on the frame, N, which a repeated run shows."""
     nominal = PLANT | (BINGHAM if bingham else BOUC_WEN) | COIL
-    true = scatter_parameters(nominal, rng, scatter)
+    true = scatter_parameters(nominal, rng, scatter) | draw_heat(rng)
     level = rng.uniform(0.85, 1.2)
     # noise is stated to three digits, and drawn as stated
     noise = {name: float(f"{value * level:.3g}") for name, value in NOISE.items() if name in channels}
     forces = (FrameForce("coloured", background, int(rng.integers(1, 10**6))),) if background else ()
-    return Experiment(nominal, true, channels, noise, _draw_runs(rng, warm, bool(background)), forces)
+    return Experiment(nominal, true, channels, noise, _draw_runs(rng, bool(background)), forces)
 
 
-def draw_temperatures(rng: Generator, warm: bool, count: int) -> list[float]:
-    """Draw the temperature of the damper at the start of each run, degC; the last run is the unseen one."""
-    if not warm and rng.random() < COLD:
-        return [20.0] * count
-    levels = rng.choice([30.0, 45.0, 60.0], count) + rng.uniform(-2.0, 2.0)
-    if warm:
-        # one of the recorded runs, not the last, which is the unseen one
-        levels[rng.integers(count - 1)] = rng.uniform(55.0, 75.0)
+def draw_heat(rng: Generator) -> dict[str, float]:
+    """Draw how the damper warms up, which its thermometer shows whether or not it fades; names of `RigParameters`."""
+    own = rng.spawn(1)[0]  # so that all else that is drawn is as it would be without
+    return {
+        "fluid_heat": own.uniform(25.0, 90.0), "housing_heat": own.uniform(120.0, 400.0),
+        "thermometer_time": own.uniform(1.0, 5.0), "fluid_to_housing": own.uniform(1.5, 4.0),
+        "housing_to_air": own.uniform(0.4, 1.5),
+    }  # fmt: skip
+
+
+def draw_temperatures(rng: Generator, count: int) -> list[float]:
+    """Draw the temperature of the damper at the start of each run, degC; the last run is the unseen one.
+
+    A fade needs a hot run among the recorded ones, so every rig has one, whatever is wrong with it.
+    """
+    own = np.random.default_rng(rng.integers(2**63))
+    levels = own.choice(STARTS, count) + own.uniform(-2.0, 2.0, count)
+    levels[own.integers(count - 1)] = own.uniform(*HOT)
     return [float(level) for level in levels]
 
 
@@ -95,25 +100,25 @@ def draw_laws(rng: Generator) -> tuple[Array, Array]:
     return np.array(skyhook), np.array([control_laws.FEEDBACK, 0.9, *gains])
 
 
-def _draw_runs(rng: Generator, warm: bool, repeat: bool) -> tuple[RunPlan, ...]:
+def _draw_runs(rng: Generator, repeat: bool) -> tuple[RunPlan, ...]:
     """Draw two runs on roads, one over bumps, the first again where `repeat`, and the unseen sweep.
 
     The order of the draws is part of what a seed means; a set must be the same in every version.
     """
     rows, unseen = round(SECONDS * SAMPLE_RATE), round(UNSEEN_SECONDS * SAMPLE_RATE)
     rms = rng.uniform(1.15, 1.7)
-    hot = draw_temperatures(rng, warm, 4)
+    starts = draw_temperatures(rng, 4)
     no_current = np.zeros(rows)
     schedule = np.array([control_laws.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
     skyhook, feedback = draw_laws(rng)
     top = rng.uniform(0.8, 1.0)
-    first = RunPlan("run-a", draw_road(rng, SECONDS, rms), schedule, draw_current_steps(rng, rows, top), hot[0])
+    first = RunPlan("run-a", draw_road(rng, SECONDS, rms), schedule, draw_current_steps(rng, rows, top), starts[0])
     laws = [(skyhook, no_current), (feedback, no_current)]
     if rng.random() < STEPPED:
         laws = [(schedule, draw_current_steps(rng, rows, top)) for _ in laws]
-    second = RunPlan("run-b", draw_road(rng, SECONDS, rms), *laws[0], hot[1])
-    third = RunPlan("run-c", draw_bumps(rng, SECONDS, rng.uniform(6.0, 8.5)), *laws[1], hot[2])
+    second = RunPlan("run-b", draw_road(rng, SECONDS, rms), *laws[0], starts[1])
+    third = RunPlan("run-c", draw_bumps(rng, SECONDS, rng.uniform(6.0, 8.5)), *laws[1], starts[2])
     again = (dataclasses.replace(first, name="run-d", repeat_of="run-a"),) if repeat else ()
     sweep = draw_sweep(rng, UNSEEN_SECONDS, 0.9 * rms)
-    last = RunPlan("run-u", sweep, schedule, draw_current_steps(rng, unseen, top), hot[3])
+    last = RunPlan("run-u", sweep, schedule, draw_current_steps(rng, unseen, top), starts[3])
     return (first, second, third, *again, last)

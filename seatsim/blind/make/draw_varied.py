@@ -63,7 +63,7 @@ STANDARD_MASS = standard.PLANT["ms"] + standard.PLANT["m"]
 """kg, to which the standard damper fits."""
 
 
-def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, ...], warm: bool) -> Experiment:
+def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, ...]) -> Experiment:
     """Draw a rig and its protocol; a third of them have a background force and a repeated run."""
     rate, tolerance = float(rng.choice(SAMPLE_RATES)), _log_uniform(rng, SMALLEST_TOLERANCE, LARGEST_TOLERANCE)
     tolerance = float(f"{tolerance:.2g}")
@@ -73,12 +73,11 @@ def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, .
         for name, value in standard.NOISE.items()
         if name in channels
     }
-    experiment = Experiment(
-        nominal, standard.scatter_parameters(nominal, rng, tolerance), channels, noise, (), (), rate, tolerance,
-        {name: draw_colour(rng) for name in noise},
-    )  # fmt: skip
+    true = standard.scatter_parameters(nominal, rng, tolerance) | standard.draw_heat(rng)
+    colours = {name: draw_colour(rng) for name in noise}
+    experiment = Experiment(nominal, true, channels, noise, (), (), rate, tolerance, colours)
     repeat = rng.random() < BACKGROUND_SHARE
-    experiment = dataclasses.replace(experiment, runs=_draw_runs(rng, experiment, warm, repeat))
+    experiment = dataclasses.replace(experiment, runs=_draw_runs(rng, experiment, repeat))
     return _add_background(experiment, rng) if repeat else experiment
 
 
@@ -139,10 +138,10 @@ def draw_colour(rng: Generator) -> NoiseColour:
     return NoiseColour(flicker, _log_uniform(rng, 0.5, 10.0), left - flicker, _log_uniform(rng, 3.0, 60.0))
 
 
-def _draw_runs(rng: Generator, experiment: Experiment, warm: bool, repeat: bool) -> tuple[RunPlan, ...]:
+def _draw_runs(rng: Generator, experiment: Experiment, repeat: bool) -> tuple[RunPlan, ...]:
     """Draw three runs of one vehicle on different roads, the first again where `repeat`, and the unseen one."""
     rate, vehicle, top = experiment.sample_rate, draw_vehicle(rng), rng.uniform(0.8, 1.0)
-    hot = standard.draw_temperatures(rng, warm, 4)
+    starts = standard.draw_temperatures(rng, 4)
     schedule = np.array([control_laws.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
     laws = [schedule, *_fit_laws(standard.draw_laws(rng), experiment), schedule]
     if rng.random() < standard.STEPPED:
@@ -152,7 +151,7 @@ def _draw_runs(rng: Generator, experiment: Experiment, warm: bool, repeat: bool)
         seconds = standard.UNSEEN_SECONDS if name == "run-u" else standard.SECONDS
         floor = draw_vehicle_floor(rng, vehicle, seconds, rng.uniform(0.05, 0.6))
         currents = draw_current_steps(rng, round(seconds * rate), top, rate)
-        runs.append(RunPlan(name, floor, law, currents, hot[k]))
+        runs.append(RunPlan(name, floor, law, currents, starts[k]))
     again = [dataclasses.replace(runs[0], name="run-d", repeat_of="run-a")] if repeat else []
     return (*runs[:3], *again, runs[3])
 

@@ -94,9 +94,14 @@ def encode_table(channels: Readings, rate: float) -> bytes:
     columns = [np.char.mod("%.3f" if whole_milliseconds else "%.9f", np.arange(rows) / rate)]
     columns += [np.char.mod(f"%.{DIGITS.get(name, 4)}f", values) for name, values in channels.items()]
     lines = [",".join(("time", *channels))] + [",".join(row) for row in zip(*columns, strict=True)]
+    return pack(("\n".join(lines) + "\n").encode())
+
+
+def pack(content: bytes) -> bytes:
+    """Return a gzipped file that holds neither a name nor a time."""
     packed = io.BytesIO()
     with gzip.GzipFile(fileobj=packed, mode="wb", mtime=0, compresslevel=6) as stream:
-        stream.write(("\n".join(lines) + "\n").encode())
+        stream.write(content)
     return packed.getvalue()
 
 

@@ -51,11 +51,11 @@ class ToleranceRefit:
             return 1.0
         columns = [np.concatenate([c[name] / limits[name] for name in names]) for c in self.sensitivities]
         J = np.column_stack(columns)
-        left = np.split(g - J @ _bounded_least_squares(J, g), len(names))
+        left = np.split(g - J @ bounded_least_squares(J, g), len(names))
         return max(rms(part) for part in left) / before
 
 
-def _bounded_least_squares(J: Array, g: Array) -> Array:
+def bounded_least_squares(J: Array, g: Array) -> Array:
     """Return `argmin |g - J theta|` with `|theta| <= 1`.
 
     Solved on the triangular factor of `[J g]`, which has the same minimum with a row per column.

@@ -31,10 +31,10 @@ class _Group(NamedTuple):
 
 
 class _Simulated(NamedTuple):
-    """The runs that were carried to their end, by the id of their scenario, and why the others were not."""
+    """The runs that were carried to their end, and why others were not, by the id of their scenario."""
 
     runs: dict[int, Run]
-    failures: list[str]
+    failures: dict[int, str]
     interrupted: bool
 
 
@@ -78,15 +78,16 @@ def _execute(
     encoded, paths = [], []
     for group in groups:
         runs = [simulated.runs[id(scenario)] for scenario in group.scenarios if id(scenario) in simulated.runs]
+        failures = [simulated.failures[id(each)] for each in group.scenarios if id(each) in simulated.failures]
         if runs:
             # What an interrupt left done is kept before the process ends.
             with uncut() if simulated.interrupted else nullcontext():
-                content, written = _present(runs, group.folder, bracket, simulated.interrupted)
+                content, written = _present(runs, failures, group.folder, bracket, simulated.interrupted)
             encoded.append(content)
             paths += written
     if simulated.interrupted:
         raise KeyboardInterrupt
-    answer({"results": encoded, "failed": simulated.failures}, paths)
+    answer({"results": encoded, "failed": list(simulated.failures.values())}, paths)
     if simulated.failures:
         raise typer.Exit(1)
 
@@ -112,7 +113,7 @@ def _simulate(scenarios: list[Scenario]) -> _Simulated:
     from seatsim.simulation.runs import run_many
 
     done: dict[int, Run] = {}
-    failures: list[str] = []
+    failures: dict[int, str] = {}
     finished = itertools.count(1)
     # No daemon: Python aborts where it ends while such a thread loads compiled code.
     loading = Thread(target=_load_writers)
@@ -122,7 +123,7 @@ def _simulate(scenarios: list[Scenario]) -> _Simulated:
             for scenario, found in run_many(scenarios, lambda _: count(next(finished), len(scenarios))):
                 if isinstance(found, SeatsimError):
                     complain(f"failed: {found}")
-                    failures.append(str(found))
+                    failures[id(scenario)] = str(found)
                 else:
                     done[id(scenario)] = found
         except KeyboardInterrupt:
@@ -143,7 +144,9 @@ def _title(scenarios: Sequence[Scenario]) -> str:
     return names[0] if len(names) == 1 else "comparison"
 
 
-def _present(runs: list[Run], folder: Path, bracket: bool, interrupted: bool) -> tuple[dict[str, object], list[Path]]:
+def _present(
+    runs: list[Run], failures: list[str], folder: Path, bracket: bool, interrupted: bool
+) -> tuple[dict[str, object], list[Path]]:
     """Print the table of some runs, their bounds where wanted and the warnings; return their content and files."""
     from seatsim.cli.outputs.runs import encode_result, write_interrupted, write_result
     from seatsim.cli.published_tables import published_tables
@@ -155,7 +158,7 @@ def _present(runs: list[Run], folder: Path, bracket: bool, interrupted: bool) ->
         show_table(table)
     warn(dict.fromkeys(sentence for run in runs for sentence in run.warnings), "warning")
     warn(f"{run.scenario.title}: {sentence}" for run in runs for sentence in run.history.notes)
-    result = Result(runs, _performance_bounds(runs) if bracket and not interrupted else {})
+    result = Result(runs, _performance_bounds(runs) if bracket and not interrupted else {}, failures)
     paths = write_interrupted(result, folder) if interrupted else write_result(result, folder)
     wrote(folder, paths)
     return encode_result(result), paths

@@ -16,6 +16,8 @@ FAILURES_SHOWN = 5
 EXCEEDED_SHOWN = 12
 """Limits by group that are printed; the page has more."""
 DOUBTS_SHOWN = 5
+MANY_RUNS = 100_000
+"""Runs from which on their number is said at once, since checking them takes seconds."""
 SweepFile = Annotated[Path, typer.Argument(help="A sweep file: a scenario, and what is varied.", show_default=False)]
 
 
@@ -52,7 +54,7 @@ def sweep(
 
     folder = out_folder or Path("out") / file.stem
     part = read_share(share) if share else None
-    prepared = prepare(file)
+    prepared = prepare(file, _foresee)
     warn(prepared.doubts[:DOUBTS_SHOWN], "warning")
     if slurm is not None:
         path = write_slurm(slurm, file, folder, prepared.plan, keep == "histories", own_code or [])
@@ -81,6 +83,11 @@ def sweep(
     )
     if result.failures:
         raise typer.Exit(1)
+
+
+def _foresee(runs: int) -> None:
+    if runs >= MANY_RUNS:
+        say(f"{runs} runs; all of their values are checked before the first run begins")
 
 
 def sweep_report(

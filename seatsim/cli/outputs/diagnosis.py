@@ -10,6 +10,7 @@ from rich.table import Table
 from ruamel.yaml import YAML
 
 from seatsim.blind.processes import run_jobs
+from seatsim.cli.gap_table import show_floor
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.result import Diagnosis, GapFigures, RunGaps
 from seatsim.effects.base import EFFECTS
@@ -85,16 +86,22 @@ def make_tables(diagnosis: Diagnosis) -> list[Table]:
     gaps = Table(title=f"gap on {', '.join(diagnosis.held_out)}, in standard deviations", title_justify="left")
     for heading in ("channel", "nominal", "refitted", "with effects", "noise floor"):
         gaps.add_column(heading, justify="left" if heading == "channel" else "right")
-    columns = (gap.before, gap.calibrated, gap.after, gap.floor)
+    columns = (gap.before, gap.calibrated, gap.after)
     for name in gap.before.channels:
-        gaps.add_row(name, *(f"{column.channels[name]:.4f}" for column in columns))
+        gaps.add_row(
+            name, *(f"{column.channels[name]:.4f}" for column in columns), show_floor(gap.floor.channels[name])
+        )
     gaps.add_section()
-    gaps.add_row("overall", *(f"{column.overall:.4f}" for column in columns))
+    gaps.add_row("overall", *(f"{column.overall:.4f}" for column in columns), show_floor(gap.floor.overall))
     ranked = Table(title=f"verdict: {diagnosis.verdict}", title_justify="left")
+    listed = diagnosis.causes[:LISTED]
     for heading in ("effect", "probability", "own shrink"):
         ranked.add_column(heading, justify="left" if heading == "effect" else "right")
-    for cause in diagnosis.causes[:LISTED]:
-        ranked.add_row(_label(cause.effect), f"{cause.probability:.2f}", f"{cause.shrink:.2f}")
+    if any(cause.ends for cause in listed):
+        ranked.add_column("at the end of its range")
+    for cause in listed:
+        figures = f"{cause.probability:.2f}", f"{cause.shrink:.2f}"
+        ranked.add_row(_label(cause.effect), *figures, *([", ".join(cause.ends)] if cause.ends else []))
     ranked.add_row("none", f"{diagnosis.probability_none:.2f}", "")
     ranked.add_row("unknown", f"{diagnosis.probability_unknown:.2f}", "")
     return [gaps, ranked, *([_make_forms_table(diagnosis)] if diagnosis.alternatives else [])]

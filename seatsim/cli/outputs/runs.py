@@ -31,7 +31,8 @@ MOST_KEPT = 400_000
 
 def write_result(result: Result, folder: Path) -> list[Path]:
     """Write `summary.csv`, `summary.json`, `history.parquet`, `report.html` and the pictures; return their paths."""
-    report = report_runs(result.runs, "seatsim run SCENARIO", os.path.basename(os.path.abspath(folder)))
+    title = os.path.basename(os.path.abspath(folder))
+    report = report_runs(result.runs, "seatsim run SCENARIO", title, result.failures)
     seeds = {run.scenario.seed for run in result.runs}
     seed = seeds.pop() if len(seeds) == 1 else None
     return write_documented(folder, partial(_write_files, result, report), seed)

@@ -29,6 +29,7 @@ from seatsim.diagnosis.settings.designing import DesignSettings
 from seatsim.excitations.base import Floor
 from seatsim.recordings.compared import COMPARED
 from seatsim.scenario.numbers import change_numbers, list_numbers
+from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
 from seatsim.simulation.respond import respond
 
@@ -37,8 +38,6 @@ Kind = Literal["excitation", "intervention", "none"]
 
 USUAL_NOISE = dict(zip(COMPARED["seat"], (0.03, 0.015, 5e-5, 2.5, 0.003), strict=True))
 """Noise of usual sensors, for those that state none, in the unit of their channel."""
-UNSTATED_TRAVEL = 1.0
-"""m; a scenario without a travel has one of 10 m, so that a shorter one is stated."""
 BEYOND = 10.0
 """Score of an excitation for each time that it takes the permitted travel beyond the first."""
 NOT_REPEATED = ("start", "sweep", "variants", "published")
@@ -199,8 +198,7 @@ def _measure_reach(problem: DiagnosisProblem, candidate: CandidateExperiment, ri
     plant, largest = problem.scenario.plant, problem.settings.design.largest_travel
     if candidate.scenario is None or plant is None or problem.bench:
         return 0.0
-    stated = min(-plant.travel[0], plant.travel[1]) < UNSTATED_TRAVEL
-    low, high = plant.travel if stated else (-largest, largest)
+    low, high = augment_plant(problem.scenario.effects, plant).end_stops or (-largest, largest)
     travel = _respond(problem, candidate, rig)["suspension_displacement"]
     return float(max(np.max(travel) / max(high, 1e-9), np.min(travel) / min(low, -1e-9)))
 

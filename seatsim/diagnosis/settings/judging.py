@@ -16,18 +16,9 @@ class DecisionSettings(NamedTuple):
             "-",
             "movement of a channel, in its standard deviations, from which an effect is material",
             "lower: false alarms; higher: weak second effects are missed",
-            "the 5 % of the recording's contract with a margin for the fit's error",
+            "the recording's contract, which also asks for more than the channel's noise",
         ),
-    ] = 0.04
-    above_noise: Annotated[
-        float,
-        Threshold(
-            "-",
-            "movement of a channel, in its noise, from which an effect is material",
-            "as `material`",
-            "a little below 1, for the fit's error",
-        ),
-    ] = 0.9
+    ] = 0.05
     explained: Annotated[
         float,
         Threshold(
@@ -104,12 +95,6 @@ class DecisionSettings(NamedTuple):
             SIMULATED_RIGS,
         ),
     ] = 0.9
-    sets_compared: Annotated[
-        int,
-        Threshold(
-            "-", "sets of each size among which the best material one is taken", "more: weaker sets", SIMULATED_RIGS
-        ),
-    ] = 3
     equivalent_members: Annotated[
         int,
         Threshold(

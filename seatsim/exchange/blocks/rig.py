@@ -7,7 +7,7 @@ import math
 from seatsim.exchange.blocks.base import Block
 from seatsim.exchange.blocks.held import nothing_held
 from seatsim.exchange.blocks.rig_motion import advance, observe, start
-from seatsim.exchange.blocks.rig_records import RigInputs, RigParameters, RigState
+from seatsim.exchange.blocks.rig_records import GivenFloor, RigInputs, RigParameters, RigState
 from seatsim.kernel.assumed_model import AssumedModel
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.generic import scaling_at, wants_force
@@ -73,7 +73,8 @@ def _rest(scenario: Scenario, control: Control, p: RigParameters, u: RigInputs, 
     is_followed = isinstance(p.inverse_model, AssumedModel) and wants_force(p.law)
     followed: State = initial_state(type(p.inverse_model.damper)) if is_followed else ()
     law_state, commands = initial_state(type(control.law)), (0.0,) * (late + 2)
-    return RigState(now, 0.0, u.temperature, 0.0, sensed, followed, law_state, commands, none, 0, nothing_held())
+    return RigState(now, 0.0, u.temperature, 0.0, sensed, followed, law_state, commands, none, 0, GivenFloor(),
+                    nothing_held())  # fmt: skip
 
 
 def _left_out(scenario: Scenario) -> list[str]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from seatsim.compilation.jit import jit
+from seatsim.exchange.blocks.floor import follow_floor, leave_floor
 from seatsim.exchange.blocks.held import hold
 from seatsim.exchange.blocks.rig_records import RigInputs, RigOutputs, RigParameters, RigState
 from seatsim.kernel.assumed_model import follow_state, model_scaling
@@ -32,7 +33,8 @@ def start(p: RigParameters, u: RigInputs, rest: RigState) -> RigState:
     held = hold(p.coil, p.step, p.temperature_factors, temperature, rest.held)
     now = _restart(p, u, rest.now, u.floor_acceleration, rest.current, held.scaling)
     expected = Disturbance(u.floor_acceleration, u.frame_force, u.driver_force)
-    return rest._replace(now=now, temperature=temperature, expected=expected, held=held)
+    floor = rest.floor._replace(acceleration=u.floor_acceleration)
+    return rest._replace(now=now, temperature=temperature, expected=expected, held=held, floor=floor)
 
 
 def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length: float) -> tuple[RigState, bool]:
@@ -40,8 +42,8 @@ def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length:
 
     The law is evaluated before the rig advances, so that its command acts from this instant.
     """
-    floor = u.floor_acceleration + u.floor_jerk * age
-    velocity = u.floor_velocity + age * (u.floor_acceleration + 0.5 * u.floor_jerk * age)
+    given = follow_floor(u, state.floor, age, state.sample, p.step)
+    floor = u.floor_acceleration + given.rate * age
     temperature = state.temperature if p.self_heating else u.temperature
     held = hold(p.coil, p.step, p.temperature_factors, temperature, state.held)
     factors, now = held.scaling, state.now
@@ -50,7 +52,9 @@ def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length:
     sensed = advance_filters(p.sensors, floor, now.state[DISPLACEMENT], now.rates, state.sensed)
     command, law_state = state.command, state.law_state
     if state.sample % p.sample_every == 0:
-        true = measure(now, state.sample * p.step, floor, velocity, state.current, temperature, u.replayed_command)
+        true = measure(
+            now, state.sample * p.step, floor, given.velocity, state.current, temperature, u.replayed_command
+        )
         noise = np.empty((1, READINGS))
         noise[0, 0] = u.displacement_noise
         noise[0, 1] = u.frame_noise
@@ -62,7 +66,7 @@ def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length:
         law_state = update(p.law, y, law_state)
     # The oldest command of the state is of no use any more.
     commands = (command,) + state.commands[:-1]
-    acting = _step_inputs(p, u, commands, floor, state.current, held.kept)
+    acting = _step_inputs(p, u, commands, floor, given.rate, state.current, held.kept)
     later, current, good = advance_rig(p.rig, p.coil, acting, factors, now, p.tolerance)
     # A state without elements is one that nobody asks for.
     followed = state.followed
@@ -71,10 +75,11 @@ def advance(p: RigParameters, u: RigInputs, state: RigState, age: float, length:
     if p.self_heating:
         done = later.state[DAMPER_WORK] - now.state[DAMPER_WORK]
         temperature += warm_up(p.thermal, p.coil, temperature, done, state.current, current, p.step)
-    expected = Disturbance(floor + u.floor_jerk * p.step, u.frame_force, u.driver_force)
+    expected = Disturbance(floor + given.rate * p.step, u.frame_force, u.driver_force)
     next_state = RigState(
-        later, current, temperature, command, sensed, followed, law_state, commands, expected, state.sample + 1, held
-    )
+        later, current, temperature, command, sensed, followed, law_state, commands, expected, state.sample + 1,
+        leave_floor(given, floor, p.step), held,
+    )  # fmt: skip
     return next_state, good
 
 
@@ -98,8 +103,9 @@ def _follow(
 
 @jit
 def _step_inputs(
-    p: RigParameters, u: RigInputs, commands: State, floor: float, current: float, kept: tuple[float, float]
-) -> StepInputs:
+    p: RigParameters, u: RigInputs, commands: State, floor: float, rate: float, current: float,
+    kept: tuple[float, float],
+) -> StepInputs:  # fmt: skip
     """Return what acts on the rig for one step: the commands of `late` and of one more step ago."""
     late = len(commands) - 2
     split = p.coil.delay - late * p.step
@@ -107,7 +113,7 @@ def _step_inputs(
     most = p.coil.max_current
     before, after = min(commands[late + 1], most), min(commands[late], most)
     return StepInputs(
-        p.step, floor, u.floor_jerk * p.step, current, before, after, split, False, kept,
+        p.step, floor, rate * p.step, current, before, after, split, False, kept,
         u.frame_force, 0.0, u.driver_force, 0.0,
     )  # fmt: skip
 
@@ -131,7 +137,7 @@ def _differs(now: Disturbance, expected: Disturbance) -> bool:
 
 def observe(p: RigParameters, u: RigInputs, state: RigState, age: float) -> RigOutputs:
     """Return the outputs `age` seconds after the inputs were given."""
-    s, rates, floor = state.now.state, state.now.rates, u.floor_acceleration + u.floor_jerk * age
+    s, rates, floor = state.now.state, state.now.rates, u.floor_acceleration + state.floor.rate * age
     frame = rates[VELOCITY] + floor
     return RigOutputs(
         frame, frame + rates[CUSHION_VELOCITY],

@@ -36,9 +36,15 @@ class RigParameters(NamedTuple):
 class RigInputs(NamedTuple):
     """What drives the rig from one communication point on."""
 
-    floor_acceleration: Annotated[float, param("m/s^2", "acceleration of the floor, upward positive")] = 0.0
-    floor_velocity: Annotated[float, param("m/s", "velocity of the floor, upward positive")] = 0.0
-    floor_jerk: Annotated[float, param("m/s^3", "rate of the floor's acceleration; 0 holds it over the step")] = 0.0
+    floor_acceleration: Annotated[
+        float, param("m/s^2", "acceleration of the floor at the begin of a communication step, upward positive")
+    ] = 0.0
+    floor_velocity: Annotated[
+        float, param("m/s", "velocity of the floor, upward positive; the integral of its acceleration if not given")
+    ] = 0.0
+    floor_jerk: Annotated[
+        float, param("m/s^3", "rate of the floor's acceleration over the step; that over the last step if not given")
+    ] = 0.0
     frame_force: Annotated[float, param("N", "force on the frame, upward positive")] = 0.0
     driver_force: Annotated[float, param("N", "force on the driver, upward positive")] = 0.0
     temperature: Annotated[float, param("degC", "temperature of the damper, where it does not warm up by itself")] = (
@@ -51,11 +57,26 @@ class RigInputs(NamedTuple):
     floor_noise: Annotated[float, param("m/s^2", "noise of the floor's accelerometer, with sensors only")] = 0.0
 
 
+class GivenFloor(NamedTuple):
+    """What is known of the floor at a communication point.
+
+    `acceleration` in m/s^2 was given at the step of the number `sample`, `rate` in m/s^3 is how it goes on; `velocity`
+    in m/s is that of the present step. `has_rate` and `has_velocity` say whether these two inputs are stated.
+    """
+
+    acceleration: float = 0.0
+    sample: int = 0
+    rate: float = 0.0
+    velocity: float = 0.0
+    has_rate: bool = False
+    has_velocity: bool = False
+
+
 class RigState(NamedTuple):
     """State of the rig and of what controls it; `commands` are those given until now in A, the latest one first.
 
     `followed` is the state of the inverse's damper where the inverse tracks one, `expected` the disturbance that the
-    last step ended with, `sample` the number of steps taken.
+    last step ended with, `sample` the number of steps taken, `floor` what is known of the floor's motion.
     """
 
     now: IntegratorState
@@ -68,6 +89,7 @@ class RigState(NamedTuple):
     commands: State
     expected: Disturbance
     sample: int
+    floor: GivenFloor
     held: Held
 
 

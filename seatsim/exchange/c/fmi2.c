@@ -179,7 +179,17 @@ FMI2(fmi2Status, fmi2GetDirectionalDerivative)(fmi2Component c, const fmi2ValueR
 FMI2(fmi2Status, fmi2SetRealInputDerivatives)(fmi2Component c, const fmi2ValueReference vr[], size_t n,
     const fmi2Integer order[], const fmi2Real values[])
 {
-    return status_of(n == 0);
+    for (size_t k = 0; k < n; k++) {
+        if (!is_of(vr[k], REAL_VARIABLE) || variables[vr[k]].causality != INPUT || order[k] < 1) {
+            return fmi2Error;
+        }
+        /* Of an input whose rate is none of the inputs nothing is used but its value. */
+        if (order[k] == 1 && variables[vr[k]].rate >= 0
+            && !write_number(c, (unsigned int)variables[vr[k]].rate, REAL_VARIABLE, values[k])) {
+            return fmi2Error;
+        }
+    }
+    return fmi2OK;
 }
 
 FMI2(fmi2Status, fmi2GetRealOutputDerivatives)(fmi2Component c, const fmi2ValueReference vr[], size_t n,

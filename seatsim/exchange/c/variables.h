@@ -11,6 +11,7 @@ typedef struct {
     size_t offset;
     double low;
     double high;
+    int rate; /* number of the input that is its rate of change, or -1 */
 } Variable;
 
 static const Variable variables[] = {

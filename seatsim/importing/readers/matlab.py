@@ -1,40 +1,189 @@
-"""MAT files of version 5: vectors, matrices and structures of them; version 7.3 is HDF5."""
+"""MAT files of versions 5 and 7.3: vectors, matrices, tables and structures of them, as many programs lay them out.
+
+Programs differ in names and nesting, not in what they state. A structure with values is a channel; its name, unit,
+times or interval stand in it, or in a structure above (Simulink, dSPACE, time series). Where all variables lie flat,
+those of a channel share the beginning of their names (`Channel_1_Data`, `Channel_1_Header`; `Data1_x`, `Data1_time_x`).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from seatsim.importing.readers.mat_elements import Value, read_variables
-from seatsim.importing.readers.naming import as_text, signals_of, stated_rate, stated_unit
+from seatsim.importing.readers.mat_names import (
+    ABSCISSAS,
+    INDEX,
+    LABELS,
+    STARTS,
+    TIME_INFO,
+    TIMES,
+    UNITS_OF_TIME,
+    VALUES,
+    is_vector,
+    join_flat,
+    statements,
+)
+from seatsim.importing.readers.mat_values import Value, read_values
+from seatsim.importing.readers.naming import as_text, bare, scalar, signals_of, stated_rate, stated_unit
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import DataFile, Group, Signal, groups_by_length
+from seatsim.importing.signals import TIME, Array, DataFile, Group, Signal, add_channels
+from seatsim.schema.units import DIMENSIONS, find_conversion
 
-VALUES = ("values", "data", "signal", "y")
-"""Fields of a structure that is one channel."""
+Structure = Mapping[str, Value]
+AnyArray = NDArray[np.generic]
+LATEST = 1e7
+"""s; a start that is larger is a date."""
+
+
+class _Clock(NamedTuple):
+    """What a structure states of the channels in it: vectors of times in s, or a rate in Hz and a start in s."""
+
+    times: tuple[Array, ...] = ()
+    rate: float | None = None
+    start: float | None = None
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
-    """Return the variables of a file; a structure is a group, or a channel where it has values and a unit."""
-    return DataFile(path, "", tuple(_groups("", read_variables(content))))
+    """Return the channels of a file; a note names the variables that give none, and what is no column of numbers."""
+    reader = _Reader()
+    reader.read_structure("", "", join_flat(read_values(path, content)), _Clock())
+    left_out = ", ".join(dict.fromkeys(reader.left_out))
+    notes = (f"left out, as they hold no columns of real numbers: {left_out}",) if left_out else ()
+    return DataFile(path, "", tuple(reader.groups()), notes)
 
 
-def _groups(name: str, variables: Mapping[str, Value]) -> Iterator[Group]:
-    """Yield the channels that stand beside each other, then those of every structure among them."""
-    units = variables.get("units", variables.get("unit"))
-    own = units if isinstance(units, dict) else {}
-    signals: list[Signal] = []
-    inner: list[tuple[str, Mapping[str, Value]]] = []
-    for key, value in variables.items():
-        if not isinstance(value, dict):
-            signals += signals_of(key, np.asarray(value), as_text(own.get(key, "")))
-        elif (channel := next((field for field in VALUES if field in value), None)) and stated_unit(value):
-            signals += signals_of(key, np.asarray(value[channel]), stated_unit(value))
-        else:
-            inner.append((f"{name}.{key}" if name else key, value))
-    if signals:
-        yield from groups_by_length(name, signals, stated_rate(variables))
-    for title, held in inner:
-        yield from _groups(title, held)
+class _Reader:
+    """Gathers the channels of a file: `timed` by their times, `even` by structure, length and clock."""
+
+    def __init__(self) -> None:
+        self.timed: list[Group] = []
+        self.even: dict[tuple[str, int, _Clock], list[Signal]] = {}
+        self.left_out: list[str] = []
+
+    def groups(self) -> Iterator[Group]:
+        """Yield the groups; those of one structure are called after a channel too."""
+        even = [Group(name, tuple(held), clock.rate, clock.start) for (name, _, clock), held in self.even.items()]
+        every = [*even, *self.timed]
+        names = [group.name for group in every]
+        for group in every:
+            is_one = names.count(group.name) == 1
+            yield group if is_one else group._replace(name=f"{group.name}, {group.signals[-1].name}".strip(", "))
+
+    def read_structure(self, name: str, label: str, held: Structure, above: _Clock) -> None:
+        """Take the channels of a structure, which is called `label` where it does not say how."""
+        stated = statements(held)
+        channel = _channel_of(held)
+        own = _clock(held, stated, ABSCISSAS if channel else TIMES)
+        label = next(
+            (text for key in LABELS for each in stated if bare(each) == key and (text := as_text(stated[each]))), label
+        )
+        if channel:
+            signals = signals_of(label or channel, np.asarray(held[channel]), stated_unit(stated))
+            self._add(name, signals, _own_clock(own, above, stated), name or channel)
+            return
+        before = len(self.timed) + len(self.even)
+        clock = own if own.times or own.rate else above
+        inner = {key: value for key, value in held.items() if isinstance(value, dict | list)}
+        vectors = {key: value for key, value in held.items() if isinstance(value, np.ndarray) and value.size > 1}
+        # Nothing but times is there for the channels in the structures below.
+        if not inner or any(bare(key) not in TIMES for key in vectors):
+            self._read_vectors(name, vectors, held.get("units", held.get("unit")), clock)
+        for key, below in inner.items():
+            if bare(key) not in ABSCISSAS or not own.times:
+                self._read_inner(name, key, label if bare(key) in VALUES else key, below, clock)
+        is_empty = len(self.timed) + len(self.even) == before
+        for key, value in held.items():
+            if value is None or (is_empty and isinstance(value, np.ndarray) and value.size == 0):
+                self.left_out.append(f"{name}.{key}".strip("."))
+
+    def _read_vectors(self, name: str, vectors: Mapping[str, AnyArray], units: Value, clock: _Clock) -> None:
+        """Take vectors that stand beside each other, with their times if these are among them."""
+        timed = {max(vector.shape) for key, vector in vectors.items() if bare(key) in TIMES}
+        for key, vector in vectors.items():
+            unit = as_text(units.get(key, "")) if isinstance(units, dict) else ""
+            # Simulink calls the times of its outputs tout.
+            signals = signals_of(TIME if bare(key) == "tout" else key, vector, unit)
+            beside_times = max(vector.shape) in timed
+            self._add(name, signals, _Clock((), clock.rate) if beside_times else clock, f"{name}.{key}".strip("."))
+
+    def _read_inner(self, above: str, key: str, label: str, value: Value, clock: _Clock) -> None:
+        """Take the channels of a structure or of each of a list; one without times of its own is beside the others."""
+        name = f"{above}.{key}".strip(".")
+        if isinstance(value, dict):
+            is_beside = bool(_channel_of(value)) and not _times(value, ABSCISSAS)
+            self.read_structure(above if is_beside else name, label, join_flat(value), clock)
+        elif isinstance(value, list):
+            for number, each in enumerate(value, 1):
+                if isinstance(each, dict | list):
+                    self._read_inner(above, key, f"{label}#{number}" if len(value) > 1 else label, each, clock)
+                elif each is None or is_vector(each):
+                    self._add(name, signals_of(f"{label}#{number}", np.asarray(each)), clock, name)
+
+    def _add(self, name: str, signals: list[Signal], clock: _Clock, place: str) -> None:
+        if not signals:
+            self.left_out.append(place)
+        for signal in signals:
+            times = next((each for each in clock.times if len(each) == len(signal.values)), None)
+            if times is not None:
+                add_channels(self.timed, name, times, [signal])
+            else:
+                self.even.setdefault((name, len(signal.values), clock._replace(times=())), []).append(signal)
+
+
+def _own_clock(own: _Clock, above: _Clock, stated: Structure) -> _Clock:
+    """Return the clock of a channel: its own times or rate, else those above it, of which it may name one."""
+    if own.times or own.rate:
+        return own
+    index = next((scalar(value) for key, value in stated.items() if bare(key) == INDEX), None)
+    if index is not None and 1 <= index <= len(above.times):
+        return above._replace(times=(above.times[int(index) - 1],))
+    return above
+
+
+def _channel_of(held: Structure) -> str | None:
+    """Return the field that holds the values of a channel, None where a structure is no channel."""
+    key = next((each for name in VALUES for each in held if bare(each) == name and is_vector(held[each])), None)
+    if key is None:
+        return None
+    length = max(np.asarray(held[key]).shape)
+    others = [each for each, value in held.items() if is_vector(value) and max(np.asarray(value).shape) == length]
+    return key if all(each == key or bare(each) in ABSCISSAS for each in others) else None
+
+
+def _times(held: Structure, names: Sequence[str]) -> tuple[Array, ...]:
+    """Return the vectors of times that a structure holds under such names, or as the values of channels in it."""
+    found: list[Array] = []
+    for key, value in held.items():
+        for each in value if isinstance(value, list) else [value]:
+            channel = _channel_of(each) if isinstance(each, dict) and bare(key) in ABSCISSAS else None
+            times = each[channel] if isinstance(each, dict) and channel else each if bare(key) in names else None
+            if is_vector(times):
+                vector = np.squeeze(np.asarray(times))
+                if vector.dtype.kind in "fiu" and vector.ndim == 1 and _rises(vector):
+                    found.append(vector.astype(np.float64))
+    return tuple(found)
+
+
+def _rises(vector: AnyArray) -> bool:
+    steps = np.diff(vector.astype(np.float64))
+    return bool((steps >= 0.0).all() and (steps > 0.0).any())
+
+
+def _clock(held: Structure, stated: Structure, names: Sequence[str]) -> _Clock:
+    """Return what a structure states of time, in s and Hz."""
+    info = next((value for key, value in held.items() if bare(key) == TIME_INFO and isinstance(value, dict)), {})
+    unit = next((as_text(value) for key, value in stated.items() if bare(key) in UNITS_OF_TIME), stated_unit(info))
+    found = find_conversion(unit, DIMENSIONS["time"]) if unit else None
+    factor = found.factor if found else 1.0
+    start = _start(stated)
+    times = tuple(factor * each for each in _times(held, names))
+    return _Clock(times, stated_rate(stated, factor), factor * start if start is not None else None)
+
+
+def _start(stated: Structure) -> float | None:
+    found = (scalar(value) for key, value in stated.items() if bare(key) in STARTS)
+    return next((each for each in found if each is not None and abs(each) < LATEST), None)

@@ -11,12 +11,10 @@ from typing import Any, Protocol
 import numpy as np
 
 from seatsim.importing.optional import need
+from seatsim.importing.readers.mdf_blocks import check_blocks
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import Array, DataFile, Group, Signal
-
-TIME = "time"
-MOST_PACKED = 1032
-"""How many bytes a byte unpacks to at most (deflate)."""
+from seatsim.importing.signals import DataFile, Group, Signal, add_channels
+from seatsim.schema.bounds import check_made
 
 
 class Closing(Protocol):
@@ -37,31 +35,40 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     # A file of which only a part could be read lacks what asammdf deletes as it closes it, which would print an error.
     for version in ("3", "4"):
         vars(need(f"asammdf.blocks.mdf_v{version}", "MDF"))[f"MDF{version}"].__del__ = _close
+    vars(asammdf.blocks.mdf_v4)["debug_channel"] = lambda *_: None  # it prints a channel that cannot be read
+    check_blocks(content)
     groups: list[Group] = []
+    left_out: list[str] = []
     with asammdf.MDF(io.BytesIO(content)) as file:
+        check_made(sum(_bytes_of(group) for group in file.groups), len(content), "what its groups state")
         for index, group in enumerate(file.groups):
-            _check_size(group, len(content))
-            _check_places(group)
+            _check_places(group, len(content))
             master = file.masters_db.get(index)
             wanted = [(None, index, number) for number in range(len(group.channels)) if number != master]
             chosen = file.select(wanted, ignore_value2text_conversions=True) if wanted else []
             found = [each for each in chosen if each.samples.dtype.kind in "fiu" and each.samples.ndim == 1]
+            left_out += [each.name for each in chosen if each.samples.dtype.kind not in "fiu" or each.samples.ndim != 1]
             if found:
                 signals = [Signal(each.name, each.unit or "", each.samples.astype(np.float64)) for each in found]
-                _add(groups, f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
-    return DataFile(path, "", tuple(groups))
+                add_channels(groups, f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
+    notes = (f"channels that hold no single numbers: {', '.join(left_out)}",) if left_out else ()
+    return DataFile(path, "", tuple(groups), notes)
 
 
-def _check_size(group: Any, size: int) -> None:
-    """Raise ValueError where the rows that are stated cannot be in a file of so many bytes."""
+def _bytes_of(group: Any) -> int:
+    """Return how many bytes the rows of a group make, as they stand and as numbers."""
     stated = group.channel_group
-    if stated.cycles_nr * stated.samples_byte_nr > MOST_PACKED * size:
-        raise ValueError(f"{stated.cycles_nr} rows of {stated.samples_byte_nr} bytes are stated, which it cannot hold")
+    size = stated.samples_byte_nr + getattr(stated, "invalidation_bytes_nr", 0)
+    return int(stated.cycles_nr) * max(int(size), 8 * len(group.channels))
 
 
-def _check_places(group: Any) -> None:
-    """Raise ValueError where a channel lies beyond its rows: asammdf would read the memory behind them."""
+def _check_places(group: Any, size: int) -> None:
+    """Raise ValueError where rows lie beyond the file, or a channel beyond its rows: asammdf would read on there."""
     stated = group.channel_group
+    rows, held = stated.cycles_nr * stated.samples_byte_nr, sum(block.original_size for block in group.data_blocks)
+    is_beyond = any(block.address + block.compressed_size > size for block in group.data_blocks)
+    if group.channels and (rows > held or is_beyond):
+        raise ValueError(f"{rows} bytes of rows are stated, which are not there")
     marks = getattr(stated, "invalidation_bytes_nr", 0)
     for channel in group.channels:
         if hasattr(channel, "byte_offset"):  # of version 4
@@ -78,12 +85,3 @@ def _close(file: Closing) -> None:
     """Close what there is of a file."""
     with suppress(AttributeError):
         file.close()
-
-
-def _add(groups: list[Group], name: str, time: Array, signals: list[Signal]) -> None:
-    """Add channels to the group that has the same time, or as a group of their own."""
-    for number, group in enumerate(groups):
-        if len(time) == group.rows and np.array_equal(group.signals[0].values, time):
-            groups[number] = group._replace(signals=(*group.signals, *signals))
-            return
-    groups.append(Group(name, (Signal(TIME, "s", time), *signals)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -10,45 +11,57 @@ from numpy.typing import NDArray
 from seatsim.importing.signals import Signal
 
 RATES = (
-    "fs",
-    "sample_rate",
-    "samplerate",
-    "sampling_rate",
-    "samplingrate",
-    "rate",
-    "frequency",
-    "sample_rate_hz",
-    "fa",
-)
-STEPS = ("dt", "delta_t", "ts", "sample_time", "increment", "wf_increment", "step")
-"""Names under which the sample rate in Hz, or the interval in s, is stated."""
-UNITS = ("unit", "units", "unit_string", "einheit", "ylabel_unit")
+    "fs", "samplerate", "samplingrate", "rate", "frequency", "sampleratehz", "fa", "samplefrequency",
+    "samplingfrequency", "abtastrate",
+)  # fmt: skip
+STEPS = (
+    "dt", "deltat", "ts", "sampletime", "increment", "wfincrement", "step", "samplingperiod", "sampleinterval",
+    "samplinginterval", "dx", "deltax", "xdelta", "xinc", "xincrement",
+)  # fmt: skip
+"""Names, without their underscores, under which the sample rate in Hz, or the interval in s, is stated."""
+NUMBER = re.compile(r"\s*\d+([.,]\d*)?([eE][-+]?\d{1,2})?\s*")
+"""A number as a text."""
+UNITS = ("unit", "units", "unitstring", "einheit", "ylabelunit", "yunit", "unity", "nunit")
 """Names under which a unit is stated."""
 
 
-def stated_rate(values: Mapping[str, object]) -> float | None:
-    """Return the sample rate in Hz that stands among named values, None where none does."""
+def bare(name: str) -> str:
+    """Return a name in lower case and without underscores and blanks: `Sample_Rate` is `samplerate`."""
+    return name.lower().replace("_", "").replace(" ", "")
+
+
+def stated_rate(values: Mapping[str, object], seconds: float = 1.0) -> float | None:
+    """Return the sample rate in Hz that stands among named values, None where none does.
+
+    `seconds` is the unit of intervals in s.
+    """
     for names, is_rate in ((RATES, True), (STEPS, False)):
         for key, value in values.items():
-            number = scalar(value)
-            if key.lower() in names and number is not None and number > 0.0:
-                return number if is_rate else 1.0 / number
+            number = scalar(value) if bare(key) in names else None
+            if number is not None and 0.0 < number < np.inf:
+                return number if is_rate else 1.0 / (seconds * number)
     return None
 
 
 def stated_unit(values: Mapping[str, object]) -> str:
     """Return the unit that stands among named values, empty where none does."""
-    return next((as_text(value) for key, value in values.items() if key.lower() in UNITS), "")
+    return next((as_text(value) for key, value in values.items() if bare(key) in UNITS), "")
 
 
 def scalar(value: object) -> float | None:
-    """Return a single number, whatever array it stands in, None where there is none."""
+    """Return a single number, whatever array or text it stands in, None where there is none."""
+    if isinstance(value, Mapping | list | tuple):
+        return None
     array = np.asarray(value)
+    if array.size == 1 and array.dtype.kind in "USO" and NUMBER.fullmatch(as_text(array)):
+        return float(as_text(array).replace(",", "."))
     return float(array.ravel()[0]) if array.size == 1 and array.dtype.kind in "fiu" else None
 
 
 def as_text(value: object) -> str:
-    """Return a text that may be bytes or stand in an array."""
+    """Return a text that may be bytes or stand in an array; it is empty where there is none."""
+    if value is None or isinstance(value, Mapping | list | tuple):
+        return ""
     array = np.asarray(value)
     if array.size != 1:
         return ""

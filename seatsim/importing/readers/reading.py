@@ -12,16 +12,21 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.guarded import in_mib, is_there, read_bytes
-from seatsim.schema.tables import LARGEST_FILE, unpack
+from seatsim.schema.guarded import is_there, read_bytes
+from seatsim.schema.tables import LARGEST_FILE, UNPACKING_ERRORS, unpack
 from seatsim.schema.text import make_printable
 
-LARGEST_SHEETS = 2**30
-"""Bytes of an XLSX once it is unpacked."""
+LONGEST_REASON = 200
+"""Letters of what a library says that an error repeats."""
 SNIFFED = 4096
 """Bytes from which a format is recognised."""
+USER_BLOCK = 512
+"""Bytes that may stand before an HDF5 file."""
 LEAST_ROWS = 2
+LOWEST_RATE, HIGHEST_RATE, LATEST_START = 1e-6, 1e9, 1e10
+"""Rates in Hz and starts in s, 300 years apart, beyond which a file is damaged."""
 LARGEST_NUMBER = 1e100
 """What is larger, or infinite, was never measured and counts as a row without a number: its square overflows."""
 
@@ -51,10 +56,11 @@ FORMATS = (
     Format("Parquet", "arrow", (b"PAR1",), (".parquet", ".pq")),
     Format("Feather", "arrow", (b"ARROW1", b"FEA1"), (".feather", ".arrow")),
     Format("XLSX", "xlsx", (), (".xlsx", ".xlsm")),
-    Format("MAT v7.3", "hdf5", (b"MATLAB 7.3 MAT-file",), ()),
+    Format("MAT v7.3", "matlab", (b"MATLAB 7.3 MAT-file",), ()),
     Format("MAT v5", "matlab", (b"MATLAB 5.0 MAT-file",), (".mat",)),
     Format("HDF5", "hdf5", (b"\x89HDF\r\n\x1a\n",), (".h5", ".hdf5", ".hdf")),
     Format("MDF", "mdf", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
+    Format("LVM", "lvm", (b"LabVIEW Measurement",), ()),
     Format("TDMS", "tdms", (b"TDSm",), (".tdms",)),
     Format("UFF", "uff", (b"    -1",), (".uff", ".unv")),
     Format("RPC III", "rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
@@ -89,9 +95,13 @@ def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
         file: DataFile = reader.read(path, content, layout or TextLayout())
     except InputError:
         raise
+    except TooMuchError as error:
+        raise InputError(f"{path}: {error}") from error
+    except RecursionError as error:
+        raise InputError(f"{path}: its parts lie too deep in each other, or hold themselves") from error
     except Exception as error:  # libraries raise whatever a damaged file makes them stumble over
-        reason = str(error).strip().split("\n")[0] or type(error).__name__
-        problem = f"cannot be read as {found.name} ({reason}); it is truncated or damaged: export it again"
+        reason = str(error).strip().split("\n")[0][:LONGEST_REASON] or type(error).__name__
+        problem = f"cannot be read as {found.name} ({reason}); it is truncated, damaged, or of a kind that is not read"
         raise InputError(f"{path}: {problem}") from error
     return _checked(file._replace(format=found.name))
 
@@ -123,12 +133,15 @@ def _recognise(path: Path, content: bytes) -> Format:
         return names["XLSX"]
     if b"$ROAD_CRG" in head.upper() or b"$KD_DEFINITION" in head.upper():
         return names["OpenCRG"]
+    if head[USER_BLOCK:].startswith(names["HDF5"].begins):
+        return names["MAT v7.3" if head.startswith(b"MATLAB") else "HDF5"]
     for each in FORMATS:
         if head.startswith(each.begins) and each.name != "OpenCRG":
             return each
     ending = next((each for each in FORMATS if path.name.lower().endswith(each.endings)), None)
     if ending is not None and ending.name != "CSV":
-        raise InputError(f"{path}: does not begin as {ending.name} does; it is damaged, or has a wrong ending")
+        version = ", of version 4 (save it by -v7)" if ending.module == "matlab" else ""
+        raise InputError(f"{path}: does not begin as {ending.name} does; it is damaged{version}, or has a wrong ending")
     if not _is_text(head):
         raise InputError(f"{path}: is no table in a known format; permitted: {KNOWN}")
     return names["CSV"]
@@ -137,11 +150,13 @@ def _recognise(path: Path, content: bytes) -> Format:
 def _check_unpacked(path: Path, content: bytes) -> None:
     """Raise InputError where the parts of a ZIP are too large together, before any is unpacked."""
     try:
-        size = sum(each.file_size for each in zipfile.ZipFile(io.BytesIO(content)).infolist())
-    except (zipfile.BadZipFile, ValueError, OSError) as error:
-        raise InputError(f"{path}: cannot be unpacked ({error}); it is truncated: copy it again") from error
-    if size > LARGEST_SHEETS:
-        raise InputError(f"{path}: unpacks to {in_mib(size)}; permitted: at most {in_mib(LARGEST_SHEETS)}")
+        parts = zipfile.ZipFile(io.BytesIO(content)).infolist()
+    except UNPACKING_ERRORS as error:
+        raise InputError(f"{path}: cannot be unpacked ({error}); it is truncated or damaged: copy it again") from error
+    try:
+        check_made(sum(each.file_size for each in parts), len(content), "what it unpacks to")
+    except TooMuchError as error:
+        raise InputError(f"{path}: {error}") from error
 
 
 def _is_text(head: bytes) -> bool:
@@ -153,10 +168,19 @@ def _is_text(head: bytes) -> bool:
 
 
 def _checked(file: DataFile) -> DataFile:
-    """Return a file whose groups all hold rows and numbers, and have distinct names: a second `run` is `run#2`."""
+    """Return a file whose groups hold rows and numbers, at a rate and from a start that there may be, by one name each.
+
+    A second group `run` is `run#2`.
+    """
     groups = tuple(group for group in file.groups if group.signals and group.rows >= LEAST_ROWS)
     if not groups:
-        raise InputError(f"{file.path}: holds no channel with at least {LEAST_ROWS} rows of numbers; export it again")
+        said = "".join(f"; {note}" for note in file.notes)
+        raise InputError(f"{file.path}: holds no channel with at least {LEAST_ROWS} rows of numbers{said}")
+    for group in groups:
+        if group.rate is not None and not LOWEST_RATE <= group.rate <= HIGHEST_RATE:
+            raise InputError(f"{file.path}: states a sample rate of {group.rate:g} Hz, which no logger has; correct it")
+        if group.start is not None and not abs(group.start) <= LATEST_START:
+            raise InputError(f"{file.path}: states that channels begin at {group.start:g} s; correct that")
     names = [make_printable(group.name) for group in groups]
     titles = [f"{name}#{names[:index].count(name) + 1}" if name in names[:index] else name
               for index, name in enumerate(names)]  # fmt: skip

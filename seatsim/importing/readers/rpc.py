@@ -33,6 +33,10 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     count, frames, per_frame, per_group = (
         int(header[key]) for key in ("CHANNELS", "FRAMES", "PTS_PER_FRAME", "PTS_PER_GROUP")
     )
+    if min(count, frames, per_frame, per_group) < 1:
+        raise InputError(
+            f"{path}: states {count} channels of {frames} frames of {per_frame} points; each is at least 1"
+        )
     kind, order = header.get("DATA_TYPE", "SHORT_INTEGER"), header.get("FORMAT", "BINARY")
     if kind not in TYPES or order not in ORDERS:
         permitted = f"{', '.join(TYPES)} in {', '.join(ORDERS)}"

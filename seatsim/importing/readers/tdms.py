@@ -14,34 +14,74 @@ from seatsim.importing.optional import need
 from seatsim.importing.readers.naming import scalar, signals_of
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.schema.bounds import BYTES_OF_PART, check_made
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
     from nptdms import TdmsChannel, TdmsGroup
 
 UNITS = ("unit_string", "unit", "NI_UnitDescription", "Unit")
+START = "wf_start_time"
+NEVER_SET = np.datetime64("1904-01-02")
+"""LabVIEW counts from 1904 on: a start before this was never set."""
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
-    """Return the groups of a file; channels of a group with other lengths, rates or starts are a group of their own."""
+    """Return the groups of a file; channels of a group with other lengths, rates or starts are a group of their own.
+
+    Starts are counted from the earliest that a channel states.
+    """
     nptdms = need("nptdms", "TDMS")
     nptdms.log.log_manager.set_level(logging.ERROR)  # what it warns of is an error here
+    described = nptdms.TdmsFile.read_metadata(io.BytesIO(content))
+    stated = [channel for group in described.groups() for channel in group.channels()]
+    check_made(sum(BYTES_OF_PART + 8 * len(channel) for channel in stated), len(content), "what its channels state")
     file = nptdms.TdmsFile.read(io.BytesIO(content))
-    if file.file_status.incomplete_final_segment:
+    status = file.file_status
+    if status.incomplete_final_segment or any(
+        each.read_length < each.expected_length for each in (status.channel_statuses or {}).values()
+    ):
         raise InputError(f"{path}: its last segment lacks data; the file is truncated: export it again")
-    return DataFile(path, "", tuple(group for each in file.groups() for group in _groups(each)))
+    channels = [channel for group in file.groups() for channel in group.channels()]
+    starts = [start for channel in channels if (start := _start_time(channel)) is not None]
+    notes: list[str] = []
+    groups = tuple(group for each in file.groups() for group in _groups(each, min(starts, default=None), notes))
+    lacking = [each.name for each in channels if len(each) and _step(each) and _start_time(each) is None]
+    if starts and lacking:
+        notes.append(f"no {START} is stated of {', '.join(lacking)}: laid beside the channel that begins first")
+    return DataFile(path, "", groups, tuple(notes))
 
 
-def _groups(group: TdmsGroup) -> Iterator[Group]:
+def _groups(group: TdmsGroup, first: np.datetime64 | None, notes: list[str]) -> Iterator[Group]:
     parts: dict[tuple[int, float | None, float | None], list[Signal]] = {}
     for channel in group.channels():
-        step, start = (scalar(channel.properties.get(key)) for key in ("wf_increment", "wf_start_offset"))
-        for signal in signals_of(channel.name, _values(channel), _unit(channel)):
+        step, start = _step(channel), _start(channel, first)
+        signals = signals_of(channel.name, _values(channel), _unit(channel)) if len(channel) else []
+        if not signals:
+            notes.append(f"'{channel.name}' is left out: it holds no column of numbers")
+        for signal in signals:
             rate = 1.0 / step if step else None
             parts.setdefault((len(signal.values), rate, start), []).append(signal)
     for (_, rate, start), signals in parts.items():
         name = group.name if len(parts) == 1 else f"{group.name}, {signals[0].name}"
         yield Group(name, tuple(signals), rate, start)
+
+
+def _step(channel: TdmsChannel) -> float | None:
+    return scalar(channel.properties.get("wf_increment"))
+
+
+def _start(channel: TdmsChannel, first: np.datetime64 | None) -> float | None:
+    """Return when a channel begins, in s after the one that begins first; None where it does not say."""
+    offset, start = scalar(channel.properties.get("wf_start_offset")), _start_time(channel)
+    if start is None or first is None:
+        return offset
+    return float((start - first) / np.timedelta64(1, "s")) + (offset or 0.0)
+
+
+def _start_time(channel: TdmsChannel) -> np.datetime64 | None:
+    stated = channel.properties.get(START)
+    return stated if isinstance(stated, np.datetime64) and stated > NEVER_SET else None
 
 
 def _values(channel: TdmsChannel) -> Array:

@@ -11,22 +11,34 @@ import numpy as np
 
 from seatsim.importing.optional import need
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.importing.signals import Array, DataFile, Group, Signal, add_channels
 from seatsim.schema.errors import InputError
+from seatsim.schema.units import DIMENSIONS, conversion
 
-FUNCTION, TIME_RESPONSE = 58, (0, 1)
-"""Type of a data set that is a function, and what kinds of functions are over time (0 is general)."""
-NAMES = ("id1", "id5", "rsp_ent_name", "ordinate_axis_lab", "id2")
+FUNCTION = 58
+"""Type of a data set that is a function."""
+FUNCTIONS = (
+    "a general function", "a time response", "an auto spectrum", "a cross spectrum", "a frequency response",
+    "a transmissibility", "a coherence", "an auto correlation", "a cross correlation", "a power spectral density",
+    "an energy spectral density", "a probability density", "a spectrum",
+)  # fmt: skip
+"""What functions are by the number of their type; those over time are the first two."""
+OVER_TIME, TIME_AXIS = (0, 1), (0, 17)
+"""Types of functions, and of the quantity along the abscissa (0 is not stated)."""
+OF_LINE = 6
+"""Values of a line, up to which the last one is filled with zeros."""
+NAMES = ("rsp_ent_name", "id1", "id5", "ordinate_axis_lab", "id2")
 NONE = ("", "none", "notset", "not set", "general", "unknown")
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
-    """Return the time responses, those of equal length, step and start as one group."""
+    """Return the time responses, those of equal length, step and start, or of the same times, as one group."""
     pyuff = need("pyuff", "UFF58")
     if not content.rstrip().endswith(b"-1"):
-        raise InputError(f"{path}: its last data set has no end; the file is truncated: export it again")
-    parts: dict[tuple[int, float, float], list[Signal]] = {}
-    left_out = 0
+        raise InputError(f"{path}: its last data set has no end (-1); the file is truncated: export it again")
+    even: dict[tuple[int, float, float], list[Signal]] = {}
+    uneven: list[Group] = []
+    others = []
     with tempfile.NamedTemporaryFile(suffix=".uff") as file:  # pyuff reads names of files alone
         file.write(content)
         file.flush()
@@ -34,29 +46,50 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         kinds = [int(kind) for kind in sets.get_set_types()]
         for index, kind in enumerate(kinds):
             held = cast("Mapping[str, object]", sets.read_sets(index)) if kind == FUNCTION else {}
-            if held.get("func_type") in TIME_RESPONSE:
-                key, signal = _signal(path, index, held)
-                parts.setdefault(key, []).append(signal)
+            reason = _why_not(kind, held)
+            if reason:
+                others.append(f"data set {index + 1} is {reason}")
+                continue
+            signal, times = _signal(f"{path}, data set {index + 1}", held)
+            if held.get("abscissa_spacing") == 0:
+                add_channels(uneven, signal.name, times, [signal])
             else:
-                left_out += 1
+                step = round(float(np.mean(np.diff(times))), 12) if len(times) > 1 else 0.0
+                even.setdefault((len(times), step, float(times[0]) if len(times) else 0.0), []).append(signal)
     groups = [Group("", tuple(signals), 1.0 / step if step else None, start)
-              for (_, step, start), signals in parts.items()]  # fmt: skip
-    notes = (f"{left_out} data sets that are no response over time are left out",) if left_out else ()
-    return DataFile(path, "", tuple(groups), notes)
+              for (_, step, start), signals in even.items()]  # fmt: skip
+    notes = (f"left out, as they are no responses over time: {'; '.join(others)}",) if others else ()
+    return DataFile(path, "", (*groups, *uneven), notes)
 
 
-def _signal(path: Path, index: int, held: Mapping[str, object]) -> tuple[tuple[int, float, float], Signal]:
-    values, time = _array(held, "data"), _array(held, "x")
-    stated = int(cast("int", held.get("num_pts", len(values))))
-    if len(values) != stated or len(time) != stated:
-        problem = f"has {len(values)} of {stated} values; the file is truncated: export it again"
-        raise InputError(f"{path}, data set {index + 1}: {problem}")
-    step = round(float(np.mean(np.diff(time))), 12) if len(time) > 1 else 0.0
+def _why_not(kind: int, held: Mapping[str, object]) -> str:
+    """Return what a data set is if it is no response over time, else an empty text."""
+    if kind != FUNCTION:
+        return f"no function, but of type {kind}"
+    function, axis = (int(cast("int", held[key]) or 0) for key in ("func_type", "abscissa_spec_data_type"))
+    if function not in OVER_TIME:
+        return FUNCTIONS[function] if 0 < function < len(FUNCTIONS) else f"a function of type {function}"
+    return "" if axis in TIME_AXIS else f"a function over {str(held['abscissa_axis_lab']).strip() or axis}"
+
+
+def _signal(place: str, held: Mapping[str, object]) -> tuple[Signal, Array]:
+    """Return a channel and its times in s."""
+    values, times = _array(held, "data"), _array(held, "x")
+    stated = int(cast("int", held["num_pts"]))
+    if min(len(values), len(times)) < stated:
+        raise InputError(f"{place}: has {len(values)} of {stated} values; the file is truncated: export it again")
+    if len(values) >= stated + OF_LINE:
+        raise InputError(f"{place}: has {len(values)} values where it states {stated}; correct the number of them")
     name = next((str(held[key]).strip() for key in NAMES if str(held.get(key, "")).strip().lower() not in NONE), "")
     node = f"{held.get('rsp_node', '')}:{held.get('rsp_dir', '')}"
-    unit = str(held.get("ordinate_axis_units_lab", "")).strip()
-    signal = Signal(name or node, "" if unit.lower() in NONE else unit, values)
-    return (len(values), step, float(time[0]) if len(time) else 0.0), signal
+    unit = _unit(held, "ordinate_axis_units_lab")
+    of_time = conversion(_unit(held, "abscissa_axis_units_lab") or "s", DIMENSIONS["time"]).factor
+    return Signal(name or node, unit, values[:stated]), of_time * times[:stated]
+
+
+def _unit(held: Mapping[str, object], key: str) -> str:
+    unit = str(held.get(key, "")).strip()
+    return "" if unit.lower() in NONE else unit
 
 
 def _array(held: Mapping[str, object], key: str) -> Array:

@@ -6,6 +6,7 @@ import datetime
 import io
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,8 +14,15 @@ from seatsim.importing.optional import need
 from seatsim.importing.readers.header import first_row_of_numbers, split_header
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError
 
+if TYPE_CHECKING:
+    from openpyxl.worksheet._read_only import ReadOnlyWorksheet
+
+MOST_ROWS = 2**20
+BYTES_OF_CELL = 64
+"""Bytes that a cell takes in memory as Python holds it."""
 Cell = str | float | int | bool | datetime.datetime | datetime.date | datetime.time | datetime.timedelta | None
 
 
@@ -22,19 +30,45 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the sheets of a workbook that hold rows of numbers."""
     openpyxl = need("openpyxl", "XLSX")
     book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
-    groups, problems = [], []
+    groups, notes = [], []
     for sheet in book.worksheets:
-        rows = [row for row in sheet.iter_rows(values_only=True) if any(cell is not None for cell in row)]
         try:
-            groups.append(_group(sheet.title, rows, f"{path}, sheet {sheet.title}", layout))
+            group, left_out = _group(sheet.title, _rows(sheet, len(content)), f"{path}, sheet {sheet.title}", layout)
         except InputError as error:
-            problems.append(str(error))
-    if not groups and problems:
-        raise InputError(problems[0])
-    return DataFile(path, "", tuple(groups))
+            notes.append(str(error))
+            continue
+        groups.append(group)
+        if left_out:
+            notes.append(f"columns of the sheet {sheet.title} that hold no numbers: {', '.join(left_out)}")
+    if not groups and notes:
+        raise InputError(notes[0])
+    return DataFile(path, "", tuple(groups), tuple(notes))
 
 
-def _group(title: str, rows: Sequence[Sequence[Cell]], place: str, layout: TextLayout) -> Group:
+def _rows(sheet: ReadOnlyWorksheet, size: int) -> list[Sequence[Cell]]:
+    """Return the rows of a sheet that hold something, of equal length.
+
+    Raises:
+        TooMuchError: the sheet has more rows or cells than one of a file of `size` bytes may have.
+    """
+    # The stated dimensions may be anything; without them a row is as long as its last cell.
+    sheet.reset_dimensions()
+    rows: list[Sequence[Cell]] = []
+    cells = 0
+    for number, row in enumerate(sheet.iter_rows(values_only=True)):
+        if number >= MOST_ROWS:
+            raise TooMuchError(f"the sheet {sheet.title} states more than {MOST_ROWS} rows, the most that Excel has")
+        if any(cell is not None for cell in row):
+            rows.append(row)
+            cells += len(row)
+            check_made(BYTES_OF_CELL * cells, size, f"the sheet {sheet.title}")
+    width = max((len(row) for row in rows), default=0)
+    check_made(BYTES_OF_CELL * width * len(rows), size, f"the sheet {sheet.title}")
+    return [(*row, *[None] * (width - len(row))) for row in rows]
+
+
+def _group(title: str, rows: Sequence[Sequence[Cell]], place: str, layout: TextLayout) -> tuple[Group, list[str]]:
+    """Return the columns of numbers, and the names of the others."""
     first = layout.header
     if first is None:
         first = first_row_of_numbers([[_is_number(cell) for cell in row] for row in rows], place)
@@ -43,7 +77,9 @@ def _group(title: str, rows: Sequence[Sequence[Cell]], place: str, layout: TextL
     columns = list(zip(*rows[first:], strict=True))
     named = zip(header.names, header.units, columns, strict=True)
     signals = [Signal(name, unit, _values(cells)) for name, unit, cells in named]
-    return Group(title, tuple(signal for signal in signals if not np.isnan(signal.values).all()))
+    empty = [signal.name for signal in signals if np.isnan(signal.values).all()]
+    left_out = [name for name in empty if not name.startswith("column ")]
+    return Group(title, tuple(signal for signal in signals if signal.name not in empty)), left_out
 
 
 def _is_number(cell: Cell) -> bool:

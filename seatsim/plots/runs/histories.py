@@ -13,6 +13,7 @@ from seatsim.plots import style
 from seatsim.plots.runs import naming
 from seatsim.plots.style import COLOURS, DARK, WIDTH, Entry, Grid
 from seatsim.plots.thinning import Array, Window, find_loudest, thin_line
+from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.result import Run
 
 CLOSE_UP = 6.0
@@ -20,9 +21,7 @@ CLOSE_UP = 6.0
 STRIDE = 0.1
 """Raster in s on which a close-up begins, the digits that its title has."""
 NEAR = 0.2
-"""Share of a travel limit that the motion must reach for the limit to be drawn; else it would flatten the motion."""
-WIDEST = 1.0
-"""m; a larger travel limit counts as none, since no seat travels so far."""
+"""Share of an end stop's distance that the motion must reach for the stop to be drawn; else it would look flat."""
 
 
 class ChannelPanel(NamedTuple):
@@ -172,10 +171,11 @@ def _draw_channel(axes: Axes, run: Run, channel: ChannelPanel, name: str, part: 
 
 
 def _find_limits(runs: Sequence[Run]) -> list[float]:
-    """Return the stated travel limits in m that the runs come near to."""
+    """Return the displacements in m of the end stops that the runs come near to."""
     peak = max(float(np.max(np.abs(run.history["suspension_displacement"]))) for run in runs)
-    stated = {limit for run in runs if run.scenario.plant for limit in run.scenario.plant.travel}
-    return sorted(limit for limit in stated if abs(limit) < WIDEST and abs(limit) * NEAR <= peak)
+    seats = (augment_plant(run.scenario.effects, run.scenario.plant) for run in runs if run.scenario.plant)
+    stated = {limit for seat in seats for limit in seat.end_stops or ()}
+    return sorted(limit for limit in stated if abs(limit) * NEAR <= peak)
 
 
 def _draw_limits(axes: Axes, limits: Sequence[float]) -> None:

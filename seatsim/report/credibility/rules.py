@@ -93,7 +93,7 @@ def _say_validation(known: Evidence) -> str:
     if not known.compared or known.error is None:
         return "no recording of this rig was compared"
     held = f"{known.held_out} of {known.compared} took" if known.held_out else "none is known to have taken"
-    noise = "" if known.noise is None else f", noise alone makes {_format_share(known.noise)}"
+    noise = f", noise alone makes {_format_share(known.noise)}" if known.noise else ""
     size = f"error of {_format_share(known.error)} of the signals' spread{noise}"
     return f"{size}; of the recorded runs {held} no part in a fit"
 

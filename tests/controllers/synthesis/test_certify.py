@@ -13,8 +13,8 @@ from controllers.synthesis.norm import frequency_response, hinf_norm
 from controllers.synthesis.plant import GeneralisedPlant
 
 
-def stable(plant, gain):
-    shift = (plant.close(gain).abscissa + 0.3) * np.eye(plant.order)
+def stable(plant, gain, margin=0.3):
+    shift = (plant.close(gain).abscissa + margin) * np.eye(plant.order)
     return replace(plant, A=plant.A - shift)
 
 
@@ -39,6 +39,37 @@ def test_proves_the_norm_and_nothing_below(random_plant, seed):
     assert certify(plant, gain, gamma * 0.93) is None
     assert largest_lmi_eigenvalue(plant, gain, proof.factor, gamma * 0.99) > 0
     assert largest_lmi_eigenvalue(plant, gain, 0 * proof.factor, gamma) == np.inf
+
+
+NAMES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
+
+
+@pytest.mark.parametrize("below", [0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2])
+@pytest.mark.parametrize(("seed", "order", "margin"), [(0, 2, 0.3), (1, 3, 0.3), (2, 2, 1e-6), (3, 2, 1e-9)])
+def test_every_certificate_is_confirmed_in_fractions_however_little_is_missing(
+    random_plant, exact_certificates, seed, order, margin, below
+):
+    gain = np.random.default_rng(seed).standard_normal((2, 2))
+    plant = stable(random_plant(seed, n=order), gain, margin)
+    norm = hinf_norm(plant.close(gain)).value
+    proof = certify(plant, gain, norm * (1 - below))
+    assert proof.gamma > norm and proof.largest_eigenvalue < 0 < proof.delta
+    stated = {"factor": proof.factor.tolist(), "gamma": proof.gamma, "delta": proof.delta}
+    loop = {"plant": {name: getattr(plant, name).tolist() for name in NAMES}, "certificate": stated}
+    assert exact_certificates.is_proven(gain.tolist(), loop)
+    stated["gamma"] = norm * (1 - 1e-9)
+    assert largest_lmi_eigenvalue(plant, gain, proof.factor, stated["gamma"]) >= 0
+    assert not exact_certificates.is_proven(gain.tolist(), loop)
+
+
+def test_a_factor_whose_inverse_is_lost_proves_nothing():
+    # M < 0 whatever the factor, as nothing drives this plant; only P > 0 is in question.
+    n, none = -np.eye(14), np.zeros((1, 1))
+    quiet = GeneralisedPlant(n, 0 * n[:, :1], n[:, :1], 0 * n[:1], n[:1], none, none, none)
+    hilbert = 1.0 / (1.0 + np.add.outer(np.arange(14.0), np.arange(14.0)))
+    assert largest_lmi_eigenvalue(quiet, none, np.eye(14), 1.0) < 0
+    assert largest_lmi_eigenvalue(quiet, none, hilbert, 1.0) == np.inf
+    assert largest_lmi_eigenvalue(quiet, none, np.full((14, 14), np.nan), 1.0) == np.inf
 
 
 def test_unstable_loop_has_no_certificate():

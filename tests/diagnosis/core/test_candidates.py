@@ -150,6 +150,28 @@ def test_a_parameter_of_both_signs_keeps_the_bounds_of_its_field(listed):
     assert (skewed.low[1], skewed.high[1]) == (-100.0, 100.0)
 
 
+@pytest.mark.parametrize("name", sorted(set(names("effect")) - {"floor.unmeasured_input"}))
+def test_an_effect_is_sought_as_its_record_has_it_by_default_and_with_each_further_parameter(listed, name):
+    """A user who states an effect by what its record requires gets a form that a diagnosis knows, and so on."""
+    cls, away = EFFECTS.find(name), EFFECTS.specification_of(EFFECTS.find(name)).off
+    usual = cls._field_defaults
+    if required := [field for field in cls._fields if field not in (*usual, "channel")]:
+        assert any(
+            set(required) <= set(each.free)
+            and all(each.fixed.get(field, value) == value for field, value in usual.items())
+            and all(low <= usual[field] <= high for field, low, high in zip(each.free, each.low, each.high, strict=True)
+                    if field in usual)
+            for each in listed[name]
+        )  # fmt: skip
+    sought = {
+        field
+        for each in listed[name]
+        for field in (*each.free, *(key for key, value in each.fixed.items() if value != away.get(key, 0.0)))
+    }
+    # A fluid that is warmer than its thermocouple by a constant is a damper of another size, as a tolerance has it.
+    assert set(cls._fields) - sought == ({"rise"} if name == "damper.thermal_fade" else set())
+
+
 def test_the_reach_is_that_of_the_settings():
     settings = posed().settings
     wider = settings._replace(selection=settings.selection._replace(shape_reach=2.0))
@@ -172,7 +194,7 @@ def test_a_limit_is_started_at_several_sizes_and_its_shape_at_one(listed):
     ]  # fmt: skip
     assert len({each.structure for each in listed["cushion.separation"]}) == 3
     stop = listed["suspension.end_stop"][1]
-    assert stop.start == (-0.006, 0.006, 10000.0, 0.5)
+    assert stop.start == (-0.006, 0.006, 10000.0, 0.5, 1.0)
     assert (stop.low[2], stop.high[2]) == (5000.0, 1e6)
 
 
@@ -193,7 +215,7 @@ def test_buffers_beside_a_soft_spring_are_softer():
 
 def test_only_what_grows_towards_off_is_a_limit(listed):
     assert listed["cushion.separation"][0].is_limit
-    assert listed["suspension.end_stop"][0].limits == [True, True, False, False]
+    assert listed["suspension.end_stop"][0].limits == [True, True, False, False, False]
     assert listed["coil.current_limit"][0].is_limit
     assert not listed["cushion.hardening"][0].is_limit
     # Its share is off at 1, but it is the travel that says how much it acts.

@@ -10,6 +10,7 @@ from seatsim.diagnosis.decide import (
     call_unknown,
     decide_beside_unknown,
     decide_verdict,
+    decide_without,
     doubt_single,
     explain_after_all,
 )
@@ -113,7 +114,7 @@ def test_a_gap_that_is_not_material_in_any_channel_is_none(faint):
 
 
 def test_a_gap_that_a_material_effect_explains_is_none_of_it(faint):
-    assert decide(faint, 0.2, [({"c.three": 2.5}, 0.01)]).verdict == "known"
+    assert decide(faint, 0.2, [({"c.three": 2.6}, 0.01)]).verdict == "known"
 
 
 def test_without_any_set_nothing_explains_the_gap(rig, faint):
@@ -263,14 +264,16 @@ def test_where_nothing_is_left_no_further_effect_is_chosen(rig):
     assert found.chosen.parameters.names == {"a.one", "b.two"}
 
 
-def test_sets_with_an_immaterial_effect_are_passed_over_among_the_first_three(rig):
-    tiny = ({"c.three": 1.0}, 0.2)
-    found = decide(rig, 10.0, [tiny, tiny, ({"b.two": 1.0}, 0.3)])
-    assert found.chosen.parameters.names == {"b.two"}
-    late = decide(rig, 10.0, [tiny, tiny, tiny, ({"b.two": 1.0}, 0.3)])
-    assert late.chosen.parameters.terms == () and late.verdict == "unknown"
+def test_an_immaterial_effect_is_neither_chosen_nor_named_beside_the_chosen_one_nor_probable(rig):
+    tiny = {"c.three": 1.0}
+    found = decide(rig, 10.0, [(tiny, 0.2), ({"a.one": 1e-5}, 0.25), ({"b.two": 1.0}, 0.3), ({"d.four": 1.0}, 0.31)])
+    assert found.chosen.parameters.names == {"b.two"} and found.groups == [["b.two", "d.four"]]
+    equal = decide(rig, 10.0, [({"b.two": 1.0}, 0.3), (tiny, 0.3)])
+    assert equal.verdict == "known" and equal.probabilities["c.three"] == 0.006
+    pair = decide(rig, 10.0, [({"b.two": 1.0}, 5.0)], [(both(), 0.3), ({"b.two": 1.0, "c.three": 1.0}, 0.3)])
+    assert (pair.verdict, pair.groups) == ("known", [])
     # Where no set of a size is material, no larger one is looked at.
-    skipped = decide(rig, 10.0, [tiny], [(both(), 0.3)])
+    skipped = decide(rig, 10.0, [(tiny, 0.2)], [(both(), 0.3)])
     assert skipped.chosen.parameters.terms == ()
 
 
@@ -321,16 +324,42 @@ def test_a_cause_that_takes_too_little_of_the_gap_is_called_unknown(rig):
 )
 def test_a_held_out_run_that_speaks_for_another_effect_makes_a_known_one_ambiguous(rig, probability, shrink, doubted):
     known = decide(rig, 10.0, [({"b.two": 0.5}, 0.1)])
-    causes = [Cause("b.two", 0.9, 0.5, {}), Cause("a.one", probability, shrink, {}), Cause("c.three", 0.006, 0.9, {})]
-    found = doubt_single(rig.settings.decision, known, causes)
+    selection = selected(rig, 10.0, [({name: 1.0}, 5.0) for name in ("a.one", "b.two", "c.three")])
+    causes = [
+        Cause("b.two", 0.9, 0.5, {}), Cause("a.one", probability, shrink, {}), Cause("c.three", 0.9, 0.9, {}),
+        Cause("d.four", 0.006, 0.9, {}),
+    ]  # fmt: skip
+    found = doubt_single(rig.problem, selection, known, causes)
     assert (found.verdict, found.groups) == (("ambiguous", [["b.two", "a.one"]]) if doubted else ("known", []))
-    joined = doubt_single(rig.settings.decision, dataclasses.replace(known, groups=[["b.two", "d.four"]]), causes)
+    joined = doubt_single(rig.problem, selection, dataclasses.replace(known, groups=[["b.two", "d.four"]]), causes)
     assert joined.groups == [["b.two", "d.four", "a.one"] if doubted else ["b.two", "d.four"]]
 
 
 def test_no_set_of_two_is_doubted(rig):
     pair = decide(rig, 10.0, [({"b.two": 0.5}, 5.0)], [(both(), 0.1)])
-    assert doubt_single(rig.settings.decision, pair, [Cause("c.three", 0.9, 0.9, {})]) is pair
+    assert doubt_single(rig.problem, selected(rig, 10.0), pair, [Cause("c.three", 0.9, 0.9, {})]) is pair
+
+
+@pytest.mark.parametrize(
+    ("kept", "verdict", "groups"),
+    [
+        ({"b.two": 0.5}, "ambiguous", [["b.two", "d.four"]]),
+        ({"a.one": 1.0}, "known", []),
+        ({}, "unknown", []),
+        (both(), "none", []),
+    ],
+)
+def test_what_is_left_once_an_effect_was_given_up(rig, kept, verdict, groups):
+    known = decide(rig, 10.0, [({"b.two": 0.5}, 5.0)], [(both(), 0.1)])
+    given_up = list(EFFECTS) if verdict == "none" else [name for name in both() if name not in kept]
+    rest = state(rig, kept, 1.0)
+    if verdict == "none":
+        # All that was found is taken for the rig without effects, which then leaves no gap.
+        rest = dataclasses.replace(rest, parameters=rest.parameters.remove(*EFFECTS))
+    ambiguous = dataclasses.replace(known, verdict="ambiguous", groups=[["b.two", "d.four"]])
+    found = decide_without(rig.problem, ambiguous, rest, given_up)
+    assert (found.verdict, found.groups, found.chosen) == (verdict, groups, rest)
+    assert all(found.probabilities[name] == 0.006 for name in given_up)
 
 
 @pytest.mark.parametrize(("left", "verdict"), [(0.5, "known"), (8.0, "unknown")])

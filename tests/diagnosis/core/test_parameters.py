@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
+from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.parameters import Parameters
+from seatsim.effects.sensor import Gain
+from seatsim.effects.suspension import EndStop
 
 from .toy import Added, offer, offer_two
 
@@ -54,6 +57,22 @@ def test_a_move_ends_at_the_bounds(rig):
     low, high = rig.limits
     np.testing.assert_allclose(rig.move_to(np.full(5, 9.0)).vector, high)
     np.testing.assert_allclose(rig.move_to(np.full(5, -9.0)).vector, low)
+
+
+def test_what_ends_at_a_bound_is_found_unless_it_is_off_there():
+    gain = Candidate("sensor.gain", Gain, {"channel": "damper_force"}, ("error",), (0.05,), (-0.5,), (1.0,))
+    stop = Candidate(
+        "suspension.end_stop", EndStop, {"power": 1.0}, ("low", "high", "stiffness", "damping"),
+        (-0.01, 0.01, 1e4, 0.5), (-1.0, 0.0, 5e3, 0.0), (0.0, 1.0, 1e6, 100.0),
+    )  # fmt: skip
+    bent = stop._replace(
+        fixed={}, free=(*stop.free, "power"), start=(*stop.start, 1.0), low=(*stop.low, 1.0), high=(*stop.high, 3.0)
+    )
+    rig = Parameters(np.array([0.979, -0.98, 1.0])).add(gain, np.array([-0.4995]))
+    rig = rig.add(bent, np.array([-0.01, 1e-4, 9e5, 0.0, 1.0]))
+    # Two hundredths of a start are within the margin; a damping of 0 and a power of 1 are off, as a limit of 0 is not.
+    expected = [False, True, True, True, False, True, False, False, False]
+    assert rig.find_at_bound(0.0201).tolist() == expected
 
 
 def test_effects_are_added_and_removed_with_their_values(rig):

@@ -10,11 +10,15 @@ import pytest
 from ruamel.yaml import YAML
 
 from seatsim.diagnosis.augmented import write_augmented
-from seatsim.diagnosis.candidates import Candidate
+from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.nuisance import Nuisance
+from seatsim.diagnosis.parameters import Parameters
 from seatsim.effects.driver import Biodynamics
 from seatsim.effects.sensor import Bias
-from seatsim.scenario.loading import single
+from seatsim.exchange.blocks.rig import rig_block
+from seatsim.rig.drivers import BODIES, SINGLE_MASS
+from seatsim.scenario.loading import FILES, single
+from seatsim.simulation.simulate import set_up
 
 from .toy import NOMINAL, place, pose, record
 
@@ -86,14 +90,38 @@ def test_an_effect_replaces_the_one_of_the_nominal_scenario_at_its_place(problem
     assert write_augmented(other, rig)["effects"] == [own, found]
 
 
-def test_a_saved_design_is_named_so_that_it_is_found_from_another_folder(problem, tmp_path):
-    law = "controller: {law: static_output_feedback, design: saved/design.yaml}\n"
-    text = "\n".join(line for line in NOMINAL.splitlines() if not line.startswith("controller")) + "\n" + law
+def without(section, text=NOMINAL):
+    return "\n".join(line for line in text.splitlines() if not line.startswith(section)) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "stated"),
+    [
+        ("controller", "design", "{law: static_output_feedback, design: saved/file}"),
+        ("excitation", "path", "{kind: table, path: saved/file, column: z}"),
+    ],
+)
+def test_a_file_is_named_so_that_it_is_found_from_another_folder(problem, tmp_path, section, key, stated):
     (tmp_path / "saved").mkdir()
-    (tmp_path / "saved" / "design.yaml").write_text("gain: [2.0, 2147.6]\n")
-    other = loaded(problem, text, tmp_path)
+    (tmp_path / "saved" / "file").write_text("gain: [2.0, 2147.6]\n")
+    other = loaded(problem, f"{without(section)}{section}: {stated}\n", tmp_path)
     content = write_augmented(other, place(problem))
-    assert content["controller"]["design"] == str(tmp_path / "saved" / "design.yaml")
+    assert content[section][key] == str(tmp_path / "saved" / "file")
+    assert (section, key) in FILES and len(FILES) == 2
+
+
+@pytest.mark.parametrize("body", [SINGLE_MASS, max(BODIES)])
+def test_every_candidate_can_be_run_and_exported_wherever_the_nominal_can(problem, tmp_path, body):
+    other = loaded(problem, f"{NOMINAL}driver: {{model: {body}}}\n", tmp_path)
+    other = dataclasses.replace(other, parameters=())
+    for candidate in {each.structure: each for each in list_candidates(other)}.values():
+        for values in (candidate.low, candidate.high):
+            content = write_augmented(other, Parameters(np.zeros(0)).add(candidate, np.array(values)))
+            with (tmp_path / "augmented.yaml").open("w") as stream:
+                YAML(typ="safe").dump(content, stream)
+            back = single(tmp_path / "augmented.yaml")
+            set_up(back, back.plant, back.control, False, None)
+            rig_block(back)
 
 
 def test_a_section_that_the_file_lacks_is_made(problem):

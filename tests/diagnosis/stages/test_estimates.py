@@ -201,6 +201,19 @@ def test_another_effect_has_those_of_its_own_fit_to_all_runs(found):
     assert {each.effect: each.parameters for each in causes}["c.absent"] == {}
 
 
+def test_a_parameter_at_the_end_of_its_range_and_a_cause_all_of_whose_size_is_there_are_flagged(folder):
+    objective = pose_one(folder)
+    problem, term = objective.problem, offer("c.three", "three", start=0.25, high=0.1)
+    half = TWICE._replace(high=(TWICE.high[0], 0.3))
+    chosen = objective.evaluate([place(problem, (half, 0.5, 0.3), (term, 0.1))])[0]
+    calibrated = objective.evaluate([place(problem)])[0]
+    decision = Decision("known", chosen, [], {"b.twice": 0.9, "c.three": 0.8}, 0.0, 0.0)
+    selection, nominal = Selection(calibrated, ((calibrated,),), ()), single(folder / "nominal.yaml")
+    twice, third = estimate_causes(objective, selection, decision, calibrated, chosen, nominal, "first")
+    assert (twice.ends, twice.at_bound, third.ends, third.at_bound) == (["second"], False, ["amount"], True)
+    assert third.parameters["amount"].bound == (-20.0, 0.1)
+
+
 def test_without_any_single_effect_nothing_is_estimated(found):
     objective, selection, decision, calibrated, _, nominal, run = found[4]
     alone = Selection(selection.nominal, selection.sets[:1], ())

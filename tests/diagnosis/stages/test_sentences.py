@@ -67,6 +67,14 @@ def test_several_causes_with_a_channel_and_a_number_without_unit():
     )
 
 
+def test_a_size_at_the_end_of_its_range_is_said():
+    end = GAIN._replace(parameters={"error": Estimate(-0.5, 0.1, "-", (-0.5, 1.0), True)}, at_bound=True)
+    assert write_answer(diagnosis("known", ["sensor.gain"], causes=[end])).startswith(
+        "sensor.gain (one channel reads with a wrong scale; error -0.5, the end of its range; all of its size lies at"
+        " the end of its range, so that it may stand for another cause): that takes"
+    )
+
+
 @pytest.mark.parametrize(
     ("groups", "said"),
     [

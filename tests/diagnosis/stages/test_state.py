@@ -31,8 +31,8 @@ ONE, TWO = offer("damper.seal_friction", "one"), offer("suspension.friction", "t
 TRUTH = (Added("one", 0.8), Added("two", 0.3))
 
 
-def make_objective(folder, runs=RUNS):
-    return weigh_stated(pose(record(folder, TRUTH, runs, channels=CHANNELS[:4], seed=2)))
+def make_objective(folder, runs=RUNS, truth=TRUTH):
+    return weigh_stated(pose(record(folder, truth, runs, channels=CHANNELS[:4], seed=2)))
 
 
 def make_solution(objective, verdict, *terms, **changed):
@@ -161,6 +161,18 @@ def test_effects_whose_rig_cannot_be_simulated_in_a_run_left_out_are_given_up_wi
     assert found.solution.decision.verdict == "unknown" and found.augmented is known.selection.nominal
     (note,) = found.solution.selection.notes
     assert note.startswith(f"{ONE.effect} with {TWO.effect} was given up, since it cannot be simulated as fitted")
+
+
+@pytest.mark.parametrize(("truth", "stated", "verdict"), [(TRUTH[:1], [ONE.effect], "known"), ((), [], "none")])
+def test_an_effect_of_negligible_size_is_given_up_with_a_note(folder, truth, stated, verdict):
+    solution = make_solution(make_objective(folder, truth=truth), "known", ONE, TWO, where=[Share("damper", 1.0)])
+    given_up = [name for name in (ONE.effect, TWO.effect) if name not in stated]
+    found = validate_on_held_out(solution)
+    decision, (note,) = found.solution.decision, found.solution.selection.notes
+    assert (decision.verdict, sorted(decision.chosen.parameters.names)) == (verdict, stated)
+    assert note.startswith(f"{' with '.join(given_up)} was given up, since it moves no channel by a material size")
+    assert [decision.probabilities[name] for name in given_up] == [0.006] * len(given_up)
+    assert bool(found.solution.where) is bool(stated)
 
 
 def test_a_rig_without_effects_that_cannot_be_simulated_is_an_error(objective, monkeypatch):

@@ -1,6 +1,8 @@
-"""Faults of the coil: a command that was given earlier than logged, and a supply that did not reach it."""
+"""Faults of the coil: a command that was given earlier than logged, a supply that did not reach it, a slow current."""
 
 from __future__ import annotations
+
+import dataclasses
 
 import numpy as np
 from numpy.random import Generator
@@ -12,6 +14,8 @@ from seatsim.blind.carrier.signals import shifted_rows
 COMMANDS = ("current_command", "command_voltage")
 LONGEST_DELAY = 0.04
 """s"""
+FASTEST = 3000.0
+"""1/s; a coil that is faster follows at once."""
 NEAR_TOP = 0.93
 """Share of the largest command from which on it counts as the limit."""
 
@@ -28,6 +32,26 @@ def draw_delays(carrier: Carrier, rng: Generator) -> list[Change]:
         return Altered(early, {"time": rows * carrier.step})
 
     return [Change("coil.delay", "command advanced", "", (0.0, LONGEST_DELAY), alter)]
+
+
+def draw_faster_coils(carrier: Carrier, rng: Generator) -> list[Change]:
+    """Return a nominal that believes in a faster coil than was identified, so that the rig's lags behind it.
+
+    The recorded command cannot be sharpened in its stead: a switched one would leave the range of the supply. As the
+    nominal tells what was done, this is no change for a set whose labels are sealed.
+    """
+    command = commanded(carrier)
+    coil = section(carrier.nominal, "actuator")
+    rate = number(coil.get("rate", 130.0))
+    if command is None or not any(np.ptp(table[command]) > 0.0 for table in carrier.tables.values()):
+        return []
+    longest = 1.0 / rate - 1.0 / FASTEST
+
+    def alter(amount: float) -> Altered:
+        faster = {**carrier.nominal, "actuator": {**coil, "rate": float(f"{1.0 / (1.0 / rate - amount):.6g}")}}
+        return Altered(dataclasses.replace(carrier, nominal=faster), {"time": amount})
+
+    return [Change("coil.lag", "coil of the nominal made faster", "", (0.0, longest), alter)] if longest > 0.0 else []
 
 
 def draw_limits(carrier: Carrier, rng: Generator) -> list[Change]:
@@ -52,8 +76,7 @@ def draw_limits(carrier: Carrier, rng: Generator) -> list[Change]:
             return {**table, command: table[command] * (1.0 + amount * raised[run])}
 
         tables = {run: lifted(run, table) for run, table in carrier.tables.items()}
-        changed = Carrier(carrier.header, carrier.nominal, tables)
-        return Altered(changed, {"limit": gain * top})
+        return Altered(dataclasses.replace(carrier, tables=tables), {"limit": gain * top})
 
     return [Change("coil.current_limit", "command raised above what flowed", "", (0.0, room), alter)]
 

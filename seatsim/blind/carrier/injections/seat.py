@@ -6,6 +6,7 @@ With the rig's equations linear, the difference d of the motion with and without
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
@@ -84,7 +85,7 @@ class Builder(NamedTuple):
                 run: {**table, **respond(self.carrier, self.plant, table, self.motions[run], force(amount)())}
                 for run, table in self.carrier.tables.items()
             }
-            return Altered(Carrier(self.carrier.header, self.carrier.nominal, tables), parameters(amount))
+            return Altered(dataclasses.replace(self.carrier, tables=tables), parameters(amount))
 
         return Change(effect, form, "", (0.0, largest), alter)
 

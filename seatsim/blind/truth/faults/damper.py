@@ -22,29 +22,15 @@ from seatsim.blind.truth.faults.scenario import (
 
 
 def _fade_shape(rng: Generator, _: Context) -> Shape:
-    return {
-        "yield": rng.uniform(0.35, 1.0), "fluid": rng.uniform(25.0, 90.0), "body": rng.uniform(120.0, 400.0),
-        "tau": rng.uniform(1.0, 5.0), "gap": rng.uniform(1.5, 4.0), "air": rng.uniform(0.4, 1.5),
-    }  # fmt: skip
-
-
-def _heat(shape: Shape) -> Changes:
-    return set_parameters(
-        fluid_heat=shape["fluid"], housing_heat=shape["body"], thermometer_time=shape["tau"],
-        fluid_to_housing=shape["gap"], housing_to_air=shape["air"],
-    )  # fmt: skip
+    return {"yield": rng.uniform(0.35, 1.0)}
 
 
 def _arrhenius(severity: float, shape: Shape, _: Context) -> Changes:
-    return _heat(shape) + set_parameters(
-        fade_law=1.0, fade_viscous=1.1 * severity, fade_yield=0.004 * shape["yield"] * severity
-    )
+    return set_parameters(fade_law=1.0, fade_viscous=1.1 * severity, fade_yield=0.004 * shape["yield"] * severity)
 
 
 def _power_fade(severity: float, shape: Shape, _: Context) -> Changes:
-    return _heat(shape) + set_parameters(
-        fade_law=2.0, fade_viscous=0.012 * severity, fade_yield=1.3 * shape["yield"] * severity
-    )
+    return set_parameters(fade_law=2.0, fade_viscous=0.012 * severity, fade_yield=1.3 * shape["yield"] * severity)
 
 
 def _gas_shape(rng: Generator, _: Context) -> Shape:
@@ -174,15 +160,13 @@ def _damper(
     build: Build,
     span: tuple[float, float],
     bingham: bool = False,
-    warm: bool = False,
 ) -> FaultScenario:
-    needs = ("damper_temperature",) if warm else ()
-    return FaultScenario(name, f"damper.{effect}", "damper", draw, build, span, bingham, warm, needs)
+    return FaultScenario(name, f"damper.{effect}", "damper", draw, build, span, bingham)
 
 
 SCENARIOS = (
-    _damper("fade-arrhenius", "thermal_fade", _fade_shape, _arrhenius, (0.1, 4.0), warm=True),
-    _damper("fade-power", "thermal_fade", _fade_shape, _power_fade, (0.1, 4.0), warm=True),
+    _damper("fade-arrhenius", "thermal_fade", _fade_shape, _arrhenius, (0.1, 4.0)),
+    _damper("fade-power", "thermal_fade", _fade_shape, _power_fade, (0.1, 4.0)),
     _damper("gas-polytropic", "gas_spring", _gas_shape, _polytropic, (0.02, 4.0)),
     _damper("gas-accumulator", "gas_spring", _gas_shape, _accumulator, (0.02, 4.0)),
     _damper("asymmetry-all", "asymmetry", _asymmetry_shape, _asymmetry_both, (0.05, 6.0)),

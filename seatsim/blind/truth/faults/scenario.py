@@ -94,8 +94,7 @@ class FaultScenario:
     """One way in which an effect, or something outside the library, may be at work.
 
     `draw` chooses the shape; `build` turns severity and shape into changes and is off at severity zero; `span` holds
-    the severities that are plausible on a real rig, 1 being a common one. `bingham`: it needs the Bingham damper;
-    `warm`: it needs a warm run; `needs`: channels without which it could not be found.
+    the severities that are plausible on a real rig, 1 being a common one. `bingham`: it needs the Bingham damper.
     """
 
     name: str
@@ -105,8 +104,6 @@ class FaultScenario:
     build: Build
     span: tuple[float, float] = (0.02, 30.0)
     bingham: bool = False
-    warm: bool = False
-    needs: tuple[str, ...] = ()
 
     @property
     def outside(self) -> bool:

@@ -26,7 +26,6 @@ from seatsim.cli.outputs.answers.measurement import (
     LeagueAnswer,
 )
 from seatsim.cli.outputs.answers.simulation import (
-    BenchAnswer,
     ExportAnswer,
     RunAnswer,
     SeatTestAnswer,
@@ -43,7 +42,7 @@ ANSWERS: Mapping[str, object] = {
     "identify": IdentificationAnswer | LeagueAnswer, "describe": DescriptionAnswer, "new": NewAnswer,
     "check": CheckAnswer, "import": ImportAnswer, "inspect": InspectionAnswer, "comfort": ComfortAnswer,
     "seat-test": SeatTestAnswer, "export": ExportAnswer, "blind-make": BlindMakeAnswer, "blind-score": BlindScoreAnswer,
-    "blind-power": BlindPowerAnswer, "bench": BenchAnswer, "explore": ExploreAnswer, "reproduce": ReproduceAnswer,
+    "blind-power": BlindPowerAnswer, "explore": ExploreAnswer, "reproduce": ReproduceAnswer,
     "error": ErrorAnswer,
 }  # fmt: skip
 """What each command prints; `error` is what any of them prints where it fails."""

@@ -49,3 +49,4 @@ class ReproduceAnswer(Answer):
     compared: list[str]
     differences: list[DifferenceFound]
     versions: list[str]
+    unnamed: list[str]

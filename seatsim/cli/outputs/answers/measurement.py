@@ -34,6 +34,7 @@ class CauseFound(TypedDict):
     probability: float
     shrink: float | None
     parameters: dict[str, object]
+    at_bound: bool
 
 
 class DiagnosisAnswer(Answer):

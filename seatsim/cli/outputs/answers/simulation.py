@@ -1,4 +1,4 @@
-"""Answers of the commands that simulate: run, compare, sweep, sweep-report, synthesise, seat-test, export, bench."""
+"""Answers of the commands that simulate: run, compare, sweep, sweep-report, synthesise, seat-test, export."""
 
 from __future__ import annotations
 
@@ -98,6 +98,7 @@ class SweepReportAnswer(Answer):
 class SynthesisAnswer(Answer):
     """A design, as in `design.yaml`."""
 
+    measures: list[str]
     gain: list[list[float]]
     gamma: float
     lower_bound: float
@@ -131,21 +132,3 @@ class ExportAnswer(Answer):
     step: float
     variables: list[ExportedVariable]
     notes: list[str]
-
-
-class RunCost(TypedDict):
-    """What something costs, and its ratio to the cost of what stands in `beside`."""
-
-    part: str
-    what: str
-    value: float
-    unit: str
-    ratio: float
-    beside: str
-
-
-class BenchAnswer(Answer):
-    """Costs of runs on this machine, and the parts that were left out with the reason."""
-
-    costs: list[RunCost]
-    left_out: dict[str, str]

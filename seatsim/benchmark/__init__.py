@@ -1,4 +1,0 @@
-"""What a run costs: beside C and general solvers, by damper and length, in lanes, on several processors, on a cluster.
-
-Here belongs what is timed and how it is compared; each measurement checks first that both sides compute the same.
-"""

@@ -1,0 +1,161 @@
+"""The variables of a MAT file of version 5 or 7.3 as plain values: numbers, texts, structures, and lists of them.
+
+Objects of MATLAB, such as tables, are resolved by mat-io, which reads files of version 7.3 too.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatsim.importing.optional import need
+from seatsim.importing.readers.hdf5_parts import open_checked
+from seatsim.importing.readers.mat_elements import Array, Resolve, read_variables
+from seatsim.importing.signals import TIME
+from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
+
+Value: TypeAlias = "NDArray[np.generic] | str | dict[str, Value] | list[Value] | None"
+"""Numbers, a text, a structure, cells or structures of many; None for what is none of these."""
+
+USER_BLOCK, HDF5 = 512, b"\x89HDF\r\n\x1a\n"
+"""Bytes before an HDF5 file in a MAT file, and how it begins."""
+REFERRED, SUBSYSTEM = "#refs#", "#subsystem#"
+"""Folders of a file of version 7.3 that hold what its cells and structures refer to, and what its objects hold."""
+REFERENCE = 0xDD000000
+"""First number of an array that tells which object it is."""
+MOST_OBJECTS = LEAST // BYTES_OF_PART
+UNITS = ("varUnits", "VariableUnits")
+"""Attributes with which mat-io states the units of a table."""
+
+
+def is_hdf5(content: bytes) -> bool:
+    """Say whether a MAT file is one of version 7.3."""
+    return content.startswith(b"MATLAB 7.3") or content[USER_BLOCK:].startswith(HDF5)
+
+
+def read_values(path: Path, content: bytes) -> dict[str, Value]:
+    """Return the variables of a file by name.
+
+    Raises:
+        ValueError: it is damaged.
+        TooMuchError: it states more than a file of its size may make.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what mat-io cannot resolve is None, and named by who takes no channel of it
+        if is_hdf5(content):
+            return _read_hdf5(path, content)
+        plain = _Plain(len(content))
+        return {name: plain.of(value) for name, value in read_variables(content, _open_objects).items()}
+
+
+def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
+    with open_checked(path, content, follows=True) as file:
+        reader = need("matio.v7.matreader7", "MAT v7.3").MatRead7(file)
+        if SUBSYSTEM in file:
+            reader.subsystem = _subsystem(reader.read_struct(file[SUBSYSTEM]), "<")
+        found: dict[str, Value] = {}
+        plain = _Plain(len(content))
+        for name in file:
+            if name not in (REFERRED, SUBSYSTEM):
+                try:
+                    found[name] = plain.of(reader.read_h5_data(file[name]))
+                except NotImplementedError:  # no variable of MATLAB
+                    found[name] = None
+        return found
+
+
+def _open_objects(held: Array, order: str) -> Resolve:
+    return _subsystem(held, order).load_opaque_object  # type: ignore[no-any-return]
+
+
+def _subsystem(held: Array, order: str) -> Any:
+    """Return what resolves objects, at most so many of them: objects may hold each other over and over."""
+    base = need("matio.subsystem", "a table or another object of MATLAB").MatSubsystem
+
+    class Bounded(base):  # type: ignore[misc, valid-type]
+        left = MOST_OBJECTS
+
+        def load_opaque_object(self, metadata: Any, type_system: Any, classname: Any = None) -> object:
+            self.left -= 1
+            if self.left < 0:
+                raise ValueError(f"its objects hold each other more than {MOST_OBJECTS} times")
+            _check_reference(metadata)
+            return super().load_opaque_object(metadata, type_system, classname)
+
+    subsystem = Bounded(order, add_table_attrs=True)
+    subsystem.load_subsystem(held)
+    if any(np.min(each, initial=0) < 0 for each in (subsystem.saveobj_metadata, subsystem.nobj_metadata)):
+        raise ValueError("what its objects hold is damaged")
+    return subsystem
+
+
+def _check_reference(numbers: Any) -> None:
+    """Raise ValueError where an array states more objects than it has numbers."""
+    if isinstance(numbers, np.ndarray) and numbers.dtype.kind == "u" and numbers.size > 2:
+        flat = numbers.ravel()
+        if flat[0] == REFERENCE and np.prod(flat[2 : 2 + int(flat[1])], dtype=float) > flat.size:
+            raise ValueError("an array of objects states more of them than it has")
+
+
+class _Plain:
+    """Makes plain values of what mat-io or the reader of elements has made, no more than a file may make."""
+
+    def __init__(self, size: int) -> None:
+        self.size, self.parts = size, 0
+
+    def of(self, value: object) -> Value:
+        """Return a plain value; an object counts as often as something holds it."""
+        import pandas as pd
+
+        self.parts += 1
+        check_made(BYTES_OF_PART * self.parts, self.size)
+        if isinstance(value, pd.DataFrame):
+            return self._of_table(value)
+        if isinstance(value, dict):
+            return {str(key): self.of(each) for key, each in value.items()}
+        if isinstance(value, np.ndarray):
+            return self._of_array(value)
+        if type(value).__name__ == "MatlabCanonicalEmpty":
+            return np.empty((0, 0))
+        properties = getattr(value, "properties", None)  # of an object of a class that mat-io does not know
+        return self.of(properties) if isinstance(properties, dict) else value if isinstance(value, str) else None
+
+    def _of_array(self, array: NDArray[Any]) -> Value:
+        """Return numbers as an array, and what is one text or structure as it is, not as a list."""
+        check_made(array.nbytes, self.size)  # an empty array may state any dimensions
+        flat, kind = array.ravel(order="F"), array.dtype.kind
+        if kind in "Mm":
+            return _seconds(array)
+        if kind in "fiub":
+            return array
+        several: list[Value] = []
+        if array.dtype.names:
+            several = [{name: self.of(each[name]) for name in array.dtype.names} for each in flat]
+        elif kind in "UT":
+            several = [str(each) for each in flat]
+        elif kind == "O":
+            return [self.of(each) for each in flat]
+        else:
+            return None
+        return several[0] if len(several) == 1 else several
+
+    def _of_table(self, frame: Any) -> dict[str, Value]:
+        """Return the columns of a table, with its times in s if it has such, and its units by column."""
+        columns: dict[str, Value] = {TIME: _seconds(frame.index.to_numpy())} if frame.index.dtype.kind in "Mm" else {}
+        columns |= {str(name): self.of(frame[name].to_numpy()) for name in frame}
+        stated: Mapping[str, Any] = frame.attrs
+        units: list[Any] = next((stated[key] for key in UNITS if key in stated), [])
+        if len(units) == len(frame.columns):
+            columns["units"] = {str(name): str(unit) for name, unit in zip(frame, units, strict=True)}
+        return columns
+
+
+def _seconds(times: NDArray[np.generic]) -> NDArray[np.generic]:
+    """Return durations in s, or dates in s since the first of them."""
+    since = times - times.ravel()[0] if times.dtype.kind == "M" and times.size else times
+    return np.asarray(since.astype("timedelta64[ns]") / np.timedelta64(1, "s"), dtype=np.float64)

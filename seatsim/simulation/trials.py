@@ -1,0 +1,56 @@
+"""Half and twice of each number of a law and of the suspension's damping, simulated to see what a change does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import NamedTuple
+
+from seatsim.excitations.base import Floor
+from seatsim.metrics import Metric
+from seatsim.scenario.numbers import LAW, is_permitted, list_numbers, set_number
+from seatsim.scenario.scenario import Scenario
+from seatsim.schema.errors import InputError, RunError
+from seatsim.simulation.runs import measure_run
+from seatsim.simulation.simulate import simulate
+
+STRETCH = 20.0
+"""Seconds from the start that are simulated."""
+FACTORS = (0.5, 2.0)
+DAMPING = "plant.suspension_damping"
+
+
+class Trial(NamedTuple):
+    """A number that was changed, by its dotted key, its value, and the metrics of the run with it."""
+
+    key: str
+    value: float
+    metrics: dict[str, Metric]
+
+
+def try_changes(scenario: Scenario) -> list[Trial]:
+    """Return the first stretch of a run as it is, under no key, then with each change that is permitted and possible.
+
+    Raises:
+        RunError: the run as it is cannot be carried to its end.
+    """
+    floor = _begin(scenario.excitation.floor(scenario.solver.step, scenario.seed))
+    found = [Trial("", 0.0, measure_run(scenario, simulate(scenario, floor)))]
+    for key, value in _list_changes(scenario):
+        with suppress(InputError, RunError):
+            changed = set_number(scenario, key, value)
+            found.append(Trial(key, value, measure_run(changed, simulate(changed, floor))))
+    return found
+
+
+def _list_changes(scenario: Scenario) -> Iterator[tuple[str, float]]:
+    for key, value in list_numbers(scenario).items():
+        if value and (key == DAMPING or key.startswith(f"{LAW}.")):
+            yield from ((key, f * value) for f in FACTORS if is_permitted(scenario, key, f * value))
+
+
+def _begin(floor: Floor) -> Floor:
+    count = round(STRETCH / floor.step) + 1
+    motion = floor._asdict()
+    del motion["step"]
+    return Floor(floor.step, **{name: part[:count] for name, part in motion.items() if part is not None})

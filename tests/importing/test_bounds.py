@@ -1,0 +1,54 @@
+"""Whatever a small file states, a reader is soon done with it, takes little memory and says one sentence."""
+
+import time
+
+import pytest
+
+from seatsim.importing.readers.reading import read_file
+from seatsim.schema.bounds import LEAST, TIMES, Part, TooMuchError, check_made, check_parts
+from seatsim.schema.errors import InputError
+
+from .attacks import ATTACKS, sheet
+
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::ResourceWarning",
+    "ignore::pytest.PytestUnraisableExceptionWarning",  # of libraries that write
+)
+
+
+@pytest.mark.parametrize("name", ATTACKS)
+def test_a_structure_that_asks_for_too_much_is_refused_at_once(name, tmp_path):
+    path = tmp_path / "a.bin"
+    path.write_bytes(ATTACKS[name](tmp_path))
+    assert path.stat().st_size < 2**22
+    start = time.process_time()
+    with pytest.raises(InputError) as raised:
+        read_file(path)
+    assert time.process_time() - start < 5.0
+    assert "\n" not in str(raised.value)
+
+
+def test_what_a_file_may_make_grows_with_its_size_between_two_limits():
+    check_made(LEAST, 1)
+    check_made(TIMES * 2**20, 2**20)
+    check_made(2**31, 2**28)
+    for made, size in ((LEAST + 1, 1), (TIMES * 2**20 + 1, 2**20), (2**30 + 1, 2**26), (2**31 + 1, 2**28)):
+        with pytest.raises(TooMuchError, match="of memory; permitted"):
+            check_made(made, size)
+
+
+def test_parts_count_as_often_as_something_refers_to_them():
+    chain = {number: Part(8, (number + 1,)) for number in range(1000)} | {1000: Part(8)}
+    check_parts([0], chain.__getitem__, 1)
+    doubling = {number: Part(8, (number + 1, number + 1)) for number in range(1000)} | {1000: Part(8)}
+    with pytest.raises(TooMuchError, match="of memory"):
+        check_parts([0], doubling.__getitem__, 1)
+    with pytest.raises(TooMuchError, match="refers to itself"):
+        check_parts([0], (chain | {1000: Part(8, (3,))}).__getitem__, 1)
+
+
+def test_stated_dimensions_of_a_sheet_do_not_count(tmp_path):
+    rows = "".join(f'<row r="{n}"><c r="A{n}"><v>{n}</v></c><c r="B{n}"><v>1</v></c></row>' for n in range(1, 5000))
+    (tmp_path / "a.xlsx").write_bytes(sheet(rows, "A1:XFD1048576"))
+    (group,) = read_file(tmp_path / "a.xlsx").groups
+    assert [len(signal.values) for signal in group.signals] == [4999, 4999]

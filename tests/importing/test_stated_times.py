@@ -1,0 +1,230 @@
+"""The time that a file states counts: starts of channels, columns of x, indices of dates, abscissas."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from seatsim.importing.importing import import_files
+from seatsim.importing.readers.reading import read_file
+from seatsim.schema.errors import InputError
+
+from .helpers import read_run
+from .test_alignment import band_limited
+
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::ResourceWarning",
+    "ignore::pytest.PytestUnraisableExceptionWarning",  # of libraries that write
+)
+TIME = 0.002 * np.arange(5000)
+MORNING = np.datetime64("2026-03-01T09:51:40.500")
+
+
+def tdms(path, starts):
+    """Write a motion that every channel records from its own start on, in s."""
+    nptdms = pytest.importorskip("nptdms")
+    channels = []
+    for name, (start, stated) in starts.items():
+        properties = {"unit_string": "m/s^2", "wf_increment": 0.002} | ({"wf_start_time": stated} if stated else {})
+        channels.append(nptdms.ChannelObject("A", name, band_limited(1, start + TIME), properties))
+    with nptdms.TdmsWriter(path) as writer:
+        writer.write_segment(channels)
+
+
+def after(seconds):
+    return MORNING + np.timedelta64(round(1e6 * seconds), "us")
+
+
+def test_channels_of_tdms_that_start_one_after_the_other_are_laid_on_one_clock(tmp_path):
+    starts = {"floor_acceleration": (1.25, after(1.25)), "driver_acceleration": (0.0, after(0.0))}
+    tdms(tmp_path / "a.tdms", starts)
+    assert not import_files([tmp_path / "a.tdms"], tmp_path / "out").map.align
+    table = read_run(tmp_path / "out")
+    assert len(table) == pytest.approx(5000 - 625, abs=1)
+    assert np.max(np.abs(table["floor_acceleration"] - table["driver_acceleration"])) < 1e-9
+
+
+def test_a_start_that_is_missing_or_was_never_set_is_said(tmp_path):
+    epoch = np.datetime64("1904-01-01T00:00:00.000000")
+    tdms(tmp_path / "a.tdms", {"one": (0.0, after(0.0)), "two": (0.0, None), "three": (0.0, epoch)})
+    file = read_file(tmp_path / "a.tdms")
+    assert "no wf_start_time is stated of two, three" in file.notes[0]
+    assert all(not group.start for group in file.groups)
+    tdms(tmp_path / "b.tdms", {"one": (0.0, None), "two": (0.0, None)})
+    assert not read_file(tmp_path / "b.tdms").notes
+
+
+@pytest.mark.parametrize("step", [0.0, -0.002, 1e-310, np.nan, 1e300])
+def test_a_rate_that_no_logger_has_is_refused(tmp_path, step):
+    nptdms = pytest.importorskip("nptdms")
+    with nptdms.TdmsWriter(tmp_path / "a.tdms") as writer:
+        writer.write_segment([nptdms.ChannelObject("A", "force", TIME, {"wf_increment": step})])
+    if step:
+        with pytest.raises(InputError, match="states a sample rate of"):
+            read_file(tmp_path / "a.tdms")
+    else:
+        assert read_file(tmp_path / "a.tdms").groups[0].rate is None
+
+
+def lvm(x_columns, tables, decimal=".", steps=(0.01, 0.01), starts=("09:51:40.5",)):
+    """Return a file of two channels: a segment for each of `tables`, which hold rows of cells."""
+    blank = "\t" if x_columns == "Multi" else ""
+    lines = ["LabVIEW Measurement", "Separator\tTab", f"Decimal_Separator\t{decimal}", f"X_Columns\t{x_columns}",
+             "***End_of_Header***"]  # fmt: skip
+    for start, table in zip(starts, tables, strict=True):
+        of_channels = {"Channels": ["2", ""], "Samples": [str(len(table))] * 2, "Date": ["2026/03/01"] * 2,
+                       "Time": [start] * 2, "Y_Unit_Label": ["Newtons", "m/s^2"], "X_Dimension": ["Time"] * 2,
+                       "X0": ["0"] * 2, "Delta_X": [str(step).replace(".", decimal) for step in steps]}  # fmt: skip
+        lines += ["\t", *(f"{key}\t{one}\t{blank}{two}\t" for key, (one, two) in of_channels.items())]
+        names = ["X_Value", "force", *(["X_Value"] if x_columns == "Multi" else []), "acc", "Comment"]
+        lines += ["***End_of_Header***\t\t", "\t".join(names)]
+        lines += [
+            "\t".join("" if np.isnan(cell) else f"{cell:.6f}".replace(".", decimal) for cell in row) for row in table
+        ]
+    return "\n".join([*lines, ""])
+
+
+T = 0.01 * np.arange(50)
+F, A = np.sin(20.0 * T), np.cos(20.0 * T)
+NOTHING = np.full(50, np.nan)
+SLOW = np.where(np.arange(50) < 25, np.roll(np.cos(40.0 * T), 0), np.nan)
+
+
+@pytest.mark.parametrize(
+    ("content", "times"),
+    [
+        (lvm("One", [np.column_stack([T, F, A])]), T),
+        (lvm("One", [np.column_stack([T, F, A])], decimal=","), T),
+        (lvm("No", [np.column_stack([NOTHING, F, A])]), T),
+        (lvm("Multi", [np.column_stack([T, F, T, A])]), T),
+        (lvm("One", [np.column_stack([T, F, A])[:25], np.column_stack([T, F, A])[25:]],
+             starts=("09:51:40.5",) * 2), T),
+        (lvm("One", [np.column_stack([T, F, A])[:25], np.column_stack([T[:25], F[25:], A[25:]])],
+             starts=("09:51:40.5", "09:51:42,5")), np.concatenate([T[:25], 2.0 + T[:25]])),
+        (lvm("One", [np.column_stack([T, F, A])]).replace("0.198669\t0.980067", "0.198669\t0.980067\ta remark"), T),
+    ],
+    ids=["one x", "decimal commas", "no x", "an x for each", "two segments", "two segments, 2 s apart", "a remark"],
+)  # fmt: skip
+def test_lvm_states_times_units_and_segments(tmp_path, content, times):
+    (tmp_path / "a.lvm").write_text(content)
+    file = read_file(tmp_path / "a.lvm")
+    (group,) = file.groups
+    assert file.format == "LVM" and [signal.name for signal in group.signals] == ["time", "force", "acc"]
+    assert [signal.unit for signal in group.signals] == ["s", "Newtons", "m/s^2"]
+    assert group.signals[0].values == pytest.approx(times, abs=1e-6)
+    assert group.signals[1].values == pytest.approx(F, abs=1e-6)
+    assert group.signals[2].values == pytest.approx(A, abs=1e-6)
+
+
+def test_a_slower_channel_of_lvm_has_its_own_interval(tmp_path):
+    content = lvm("One", [np.column_stack([T, F, SLOW])], steps=(0.01, 0.02)).replace(
+        "Samples\t50\t50", "Samples\t50\t25"
+    )
+    (tmp_path / "a.lvm").write_text(content)
+    fast, slow = read_file(tmp_path / "a.lvm").groups
+    assert fast.signals[0].values == pytest.approx(T, abs=1e-6)
+    assert slow.signals[0].values == pytest.approx(0.02 * np.arange(25)) and slow.rows == 25
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [("X_Dimension\tTime", "X_Dimension\tFrequency", "X_Dimension is Frequency"), ("0.020000", "oops", "oops")],
+)
+def test_an_lvm_file_of_another_kind_is_refused_with_its_reason(tmp_path, old, new, said):
+    (tmp_path / "a.lvm").write_text(lvm("One", [np.column_stack([T, F, A])]).replace(old, new, 1))
+    with pytest.raises(InputError, match=said):
+        read_file(tmp_path / "a.lvm")
+
+
+@pytest.mark.parametrize("kind", ["parquet", "feather"])
+@pytest.mark.parametrize("index", ["dates", "durations", "named", "zone", "column"])
+def test_a_column_of_dates_is_the_time(tmp_path, kind, index):
+    dates = pd.Timestamp("2026-03-01") + pd.to_timedelta(TIME, unit="s")
+    frame = pd.DataFrame({"floor_acceleration": band_limited(1, TIME), "driver_acceleration": band_limited(2, TIME)})
+    frame.index = {"durations": pd.to_timedelta(TIME, unit="s"), "named": dates.rename("Datum"),
+                   "zone": dates.tz_localize("Europe/Berlin")}.get(index, dates)  # fmt: skip
+    frame = frame.reset_index(names="Datum") if index == "column" else frame
+    getattr(frame, f"to_{kind}")(tmp_path / f"a.{kind}")
+    assert import_files([tmp_path / f"a.{kind}"], tmp_path / "out").rate == 500.0
+    assert read_run(tmp_path / "out")["floor_acceleration"].to_numpy() == pytest.approx(band_limited(1, TIME), rel=1e-6)
+
+
+HEAD = """\
+    -1
+    58
+a title
+NONE
+NONE
+NONE
+NONE
+    {kind}         0    0         0 Fahrer             0   2 NONE               0   0
+         2{points:>10}{even:>10}  0.00000e+00  4.00000e-03  0.00000e+00
+{axis:>10}    0    0    0 {label:20} {unit:20}
+        12    0    0    0 Acceleration         m/s^2
+         0    0    0    0 NONE                 NONE
+         0    0    0    0 NONE                 NONE
+"""
+
+
+def uff(path, values, points=None, kind=1, even=1, axis=17, label="Time", unit="s"):
+    """Write a data set of 58 with full lines of six values."""
+    filled = np.append(values, np.zeros(-len(values) % 6)).reshape(-1, 6)
+    head = HEAD.format(kind=kind, points=points or len(values), even=even, axis=axis, label=label, unit=unit)
+    rows = "".join("".join(f"{value:13.5E}" for value in row) + "\n" for row in filled)
+    path.write_text(head + rows + "    -1\n")
+
+
+@pytest.mark.parametrize("count", [500, 501, 505])
+def test_the_zeros_that_fill_the_last_line_of_a_data_set_are_no_values(tmp_path, count):
+    values = 1.0 + np.sin(np.arange(count))
+    uff(tmp_path / "a.uff", values)
+    (group,) = read_file(tmp_path / "a.uff").groups
+    assert group.signals[0].values == pytest.approx(values, abs=1e-4) and group.rate == 250.0
+    assert (group.signals[0].name, group.signals[0].unit) == ("Fahrer", "m/s^2")
+
+
+def test_an_uneven_abscissa_of_a_data_set_is_its_time(tmp_path):
+    times = np.cumsum(np.where(np.arange(60) % 3, 0.01, 0.02))
+    uff(tmp_path / "a.uff", np.column_stack([1e3 * times, np.sin(times)]).ravel(), points=60, even=0, unit="ms")
+    (group,) = read_file(tmp_path / "a.uff").groups
+    assert group.signals[0].values == pytest.approx(times, abs=1e-4) and group.signals[0].unit == "s"
+    assert group.signals[1].values == pytest.approx(np.sin(times), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"kind": 2}, "data set 1 is an auto spectrum"),
+        ({"kind": 4}, "data set 1 is a frequency response"),
+        ({"kind": 0, "axis": 18, "label": "Frequency", "unit": "Hz"}, "data set 1 is a function over Frequency"),
+        ({"points": 490}, "has 498 values where it states 490"),
+        ({"points": 600}, "has 498 of 600 values; the file is truncated"),
+    ],
+)
+def test_a_data_set_that_is_no_response_over_time_is_called_what_it_is(tmp_path, changes, said):
+    uff(tmp_path / "a.uff", np.sin(np.arange(498.0)), **changes)
+    with pytest.raises(InputError, match=said):
+        read_file(tmp_path / "a.uff")
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("lvm_one_x_point.lvm", {"Damper force": 400, "Driver acceleration": 400}),
+        ("simulink_structure_with_time.mat", {"Fahrer_Beschl": 2000, "Federweg": 2000, "Daempferkraft": 2000}),
+        ("uff_padded.uff", {"Fahrer": 501}),
+    ],
+)
+def test_files_of_others_have_all_their_channels_and_a_time(name, expected, shared):
+    found = {}
+    for group in read_file(shared / "cases" / name).groups:
+        assert group.rate or group.signals[0].name == "time"
+        found |= {signal.name: len(signal.values) for signal in group.signals if signal.name != "time"}
+    assert found == expected
+
+
+def test_channels_of_others_that_start_apart_are_aligned(tmp_path, shared):
+    cases = shared / "cases"
+    import_files([cases / "tdms_start_times.tdms"], tmp_path / "out", cases / "map_tdms.yaml")
+    table = read_run(tmp_path / "out")
+    assert len(table) == 2500
+    assert np.corrcoef(table["floor_acceleration"], table["driver_acceleration"])[0, 1] > 0.999

@@ -1,0 +1,167 @@
+"""What a report of runs says first: for each of some small scenarios the sentences that an expert would write, no more.
+
+Figures may differ by 2 %, the words by nothing.
+"""
+
+import re
+
+import pytest
+
+from seatsim.report.runs import report_runs
+from seatsim.scenario.loading import load
+from seatsim.schema.errors import SeatsimError
+from seatsim.simulation.runs import run_many
+
+SEAT = """\
+name: seat
+plant: {frame_mass: 20.0, driver_mass: 60.0, suspension_stiffness: 4600.0, suspension_damping: 100.0,
+        cushion_stiffness: 60000.0, cushion_damping: 1500.0}
+damper:
+  model: bouc_wen
+  parameters: {c_a: 120.0, c_b: 350.0, alpha_a: 25.0, alpha_b: 620.0, k0: 0.0, x0: 0.0, f0: 0.0, A: 2000.0,
+               beta: 1000.0, gamma: 1000.0, n: 2}
+  temperature_factors: {viscous: -0.01, yield_force: -0.01}
+actuator: {rate: 130.0, max_current: 1.0}
+temperature: 20.0
+controller: {law: skyhook, damping: 1000.0, sample_time: 0.005}
+excitation: {kind: iso7096, spectral_class: EM2, duration: 10.0}
+effects: [{effect: suspension.end_stop, parameters: {low: -0.045, high: 0.045}}]
+"""
+NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?= m/s²| %| mm| times| from|,)")
+
+
+def passive(current, **changes):
+    return {"controller": {"law": "constant", "current": current}, **changes}
+
+
+ZERO, LOW, MIDDLE = passive(0.0), passive(0.1), passive(0.3)
+THREE = {"skyhook": {}, "0 A": ZERO, "0.1 A": LOW}
+OTHERS = "Check that the order holds on other roads and with other drivers: seatsim sweep varies both."
+STOPS = "the suspension meets its end stops."
+HIT = f"Look at the travel of “0 A” (4 times) and “0.1 A” (2 times): {STOPS}"
+PASSIVE = (
+    "“0 A” is the most comfortable: the driver feels 0.960 m/s² (weighted RMS), 8.7 % less than with the next run,"
+    " “0.1 A”, at 50 % more travel (RMS)."
+)
+TRIED = (
+    "The driver feels more than the floor moves in “0.3 A” (SEAT factor 1.21). Half and twice of"
+    " plant.suspension_damping and controller.current were tried on “0.3 A”: controller.current 0.15 lowers its SEAT"
+    " factor the most, to 0.913 from 1.21, with travel up to 43.6 mm in place of 38.9 mm."
+)
+CASES = {
+    "a single run": ({}, [
+        "seat: the driver feels 0.781 m/s² (weighted RMS), 40 % less than the floor moves; the suspension travels up to"
+        " 38.0 mm from its rest and never meets its end stops.",
+        "Compare it with other laws or settings: seatsim compare takes several scenarios or a sweep.",
+    ]),
+    "a law and passive dampers": ({"variants": THREE}, [
+        "Of 3 runs “skyhook” is the most comfortable: the driver feels 0.781 m/s² (weighted RMS), 19 % less than with"
+        " the best passive run, “0 A”, at 38 % less travel (RMS).",
+        HIT, OTHERS,
+    ]),
+    "temperatures": ({"temperature": [20.0, 50.0, 80.0]}, [
+        "Under 3 conditions the driver feels 0.690 m/s² to 0.781 m/s² (weighted RMS); the worst is “20 °C”, the mildest"
+        " “80 °C”.",
+    ]),
+    "laws on floors": ({"variants": THREE, "sweep": {"excitation.spectral_class": ["EM2", "EM5", "EM6"]}}, [
+        "Which run is the most comfortable depends on the condition. At the worst, spectral class EM2, it is"
+        " “skyhook”: the driver feels 0.781 m/s² (weighted RMS), 19 % less than with the best passive run, “0 A”, at"
+        " 38 % less travel (RMS).",
+        "At spectral class EM5 it is “0 A”: the driver feels 0.569 m/s² (weighted RMS); control does not make it less:"
+        " with “skyhook” it is 4.3 % more, at 32 % less travel (RMS).",
+        "At spectral class EM6 it is “0 A”: the driver feels 0.379 m/s² (weighted RMS); control does not make it less:"
+        " with “skyhook” it is 5.8 % more, at 7.0 % less travel (RMS).",
+        "Look at the travel of “0 A, spectral class EM2” (4 times) and “0.1 A, spectral class EM2” (2 times):"
+        f" {STOPS}",
+    ]),
+    "a law that is best everywhere": ({"variants": {"skyhook": {}, "0 A": ZERO}, "sweep": {"seed": [0, 1]}}, [
+        "“skyhook” is the most comfortable under both conditions. The worst of them is seed 0: the driver feels 0.781"
+        " m/s² (weighted RMS), 19 % less than with the best passive run, “0 A”, at 38 % less travel (RMS).",
+        f"Look at the travel of “0 A, seed 1” (7 times) and “0 A, seed 0” (4 times): {STOPS}",
+        "The driver feels more than the floor moves in “0 A, seed 1” (SEAT factor 1.46). Half and twice of"
+        " plant.suspension_damping were tried on “0 A, seed 1”: plant.suspension_damping 200 lowers its SEAT factor the"
+        " most, to 0.982 from 1.46, with travel up to 57.2 mm in place of 63.5 mm.",
+    ]),
+    "passive dampers alone": ({"variants": {"0 A": ZERO, "0.1 A": LOW, "0.3 A": MIDDLE}}, [
+        f"Of 3 runs {PASSIVE}", HIT, TRIED, OTHERS,
+    ]),
+    "a law that is worse than none": ({"variants": {"skyhook": {"controller.damping": 6e3}, "0.1 A": LOW}}, [
+        "Of 2 runs “0.1 A” is the most comfortable: the driver feels 1.05 m/s² (weighted RMS); control does not make it"
+        " less: with “skyhook” it is 14 % more, at 36 % less travel (RMS).",
+        f"Look at the travel of “0.1 A” (2 times): {STOPS}", OTHERS,
+    ]),
+    "end stops": ({"variants": {
+        f"{share:.0%}": ZERO | {"damper.parameters.c_a": 120.0 * share} for share in (0.2, 0.4, 0.6, 0.8, 1.0)
+    }}, [
+        "Of 5 runs “100%” is the most comfortable: the driver feels 0.960 m/s² (weighted RMS), 17 % less than with the"
+        " next run, “80%”, at 5.5 % less travel (RMS).",
+        f"Look at the travel of “20%” (16 times), “40%” (15 times), “60%” (8 times) and 2 others: {STOPS}",
+        "The driver feels more than the floor moves in “20%” (SEAT factor 2.08), “40%” (SEAT factor 1.85) and “60%”"
+        " (SEAT factor 1.11). Half and twice of plant.suspension_damping were tried on “20%”: plant.suspension_damping"
+        " 200 lowers its SEAT factor the most, to 0.722 from 2.08, with travel up to 50.1 mm in place of 61.6 mm.",
+        OTHERS,
+    ]),
+    "a run that fails": ({"variants": {"0 A": ZERO, "0.1 A": LOW, "x": ZERO | {"damper.parameters.k0": -1e9}}}, [
+        f"Of 2 runs {PASSIVE}",
+        "1 of 3 runs failed: seat (x): no solution beyond 0.115 s, where it leaves all bounds or is too stiff (on"
+        " average more than 100 parts of a step); check the signs of gains and stiffnesses, and the damper's"
+        " parameters.",
+        HIT, OTHERS,
+    ]),
+    "a temperature outside the data": ({"variants": {"0 A": ZERO, "0.1 A": LOW}, "temperature": [-10.0, 20.0]}, [
+        f"20 °C: Of 2 runs {PASSIVE}",
+        "The figures of “0 A, -10 °C” and “0.1 A, -10 °C” cannot be relied on; the notes say why.",
+        f"Look at the travel of “0 A, 20 °C” (4 times) and “0.1 A, 20 °C” (2 times): {STOPS}",
+    ]),
+    "unequal travel": ({"variants": {"skyhook": {"controller.damping": 500.0}, "0.3 A": MIDDLE}}, [
+        "Of 2 runs “skyhook” is the most comfortable: the driver feels 0.743 m/s² (weighted RMS), 53 % less than with"
+        " the best passive run, “0.3 A”, at 126 % more travel (RMS).",
+        TRIED, OTHERS,
+    ]),
+    "equal figures": ({"variants": {"0.1 A": LOW, "0.101 A": passive(0.101)}}, [
+        "Both runs are alike in comfort, within 1 %: the driver feels 1.05 m/s² (weighted RMS).",
+        f"Look at the travel of “0.1 A” (2 times) and “0.101 A” (2 times): {STOPS}", OTHERS,
+    ]),
+    "driver masses": ({"sweep": {"plant.driver_mass": [50.0, 70.0, 90.0]}}, [
+        "Under 3 conditions the driver feels 0.540 m/s² to 0.902 m/s² (weighted RMS); the worst is “driver mass 50 kg”,"
+        " the mildest “driver mass 90 kg”.",
+    ]),
+    "no passive run": ({"variants": {"soft": {"controller.damping": 500.0}, "hard": {"controller.damping": 2e3}}}, [
+        "Of 2 runs “soft” is the most comfortable: the driver feels 0.743 m/s² (weighted RMS), 20 % less than with the"
+        " next run, “hard”, at 55 % more travel (RMS); no passive run is there to compare with.",
+        OTHERS,
+    ]),
+    "choice and condition that change together": (
+        {"variants": {"day": {}, "night": {"temperature": 40.0, "controller.damping": 500.0}}},
+        [
+            "Under 2 conditions the driver feels 0.709 m/s² to 0.781 m/s² (weighted RMS); the worst is “day”, the"
+            " mildest “night”.",
+            "No two runs share floor, temperature and driver, so that none is called better than another.",
+        ],
+    ),
+    "a step too long to weight": ({"solver.step": 0.01, "controller.sample_time": 0.01}, [
+        "seat: the driver feels 1.22 m/s² (RMS, not weighted); the suspension travels up to 36.6 mm from its rest and"
+        " never meets its end stops.",
+        "Compare it with other laws or settings: seatsim compare takes several scenarios or a sweep.",
+    ]),
+}  # fmt: skip
+
+
+def report(folder, settings):
+    """Return the report of a seat with changes, and of its runs that failed."""
+    path = folder / "seat.yaml"
+    path.write_text(SEAT)
+    found = [one for _, one in run_many(load(path, settings), lambda _: None)]
+    failures = [str(one) for one in found if isinstance(one, SeatsimError)]
+    runs = [one for one in found if not isinstance(one, SeatsimError)]
+    return report_runs(runs, "seatsim run seat.yaml", "seat", failures)
+
+
+@pytest.mark.parametrize(("settings", "expected"), CASES.values(), ids=CASES)
+def test_a_report_says_what_an_expert_would_and_no_more(settings, expected, tmp_path):
+    found = report(tmp_path, settings)
+    said = [found.answer, *found.lead, *found.next_steps]
+    assert [NUMBER.sub("#", text) for text in said] == [NUMBER.sub("#", text) for text in expected]
+    for text, wanted in zip(said, expected, strict=True):
+        figures, known = ([float(figure) for figure in NUMBER.findall(each)] for each in (text, wanted))
+        assert figures == pytest.approx(known, rel=0.02, abs=0.06)
