@@ -96,7 +96,13 @@ def load_accelerations(
 
 def _choose_group(file: DataFile, wanted: Collection[str]) -> Group:
     holding = [each for each in file.groups if {*wanted} <= {signal.name for signal in each.signals}]
-    return max(holding or file.groups, key=lambda each: len(fit_axes(each.signals)))
+    return max(holding or file.groups, key=_count_axes)
+
+
+def _count_axes(group: Group) -> tuple[int, int]:
+    """Return how many axes of the person a group holds, and how many of any place."""
+    found = fit_axes(group.signals)
+    return len({*found} & {*DIRECTIONS}), len(found)
 
 
 def _say_other_groups(file: DataFile, chosen: Group) -> list[str]:

@@ -110,3 +110,11 @@ def test_check_reads_a_map(tmp_path, monkeypatch, capsys, entry, said):
     assert call(monkeypatch, "check", stated) == (2 if said else 0)
     told = capsys.readouterr()
     assert said in told.err and ("map of a seat" in told.out) == (not said)
+
+
+def test_names_of_others_are_shown_and_not_obeyed(noisy_table, tmp_path, monkeypatch, capsys):
+    table = {"time": noisy_table["time"], ":smile: [/b] =1+1 [g]": noisy_table["floor_acceleration"]}
+    path = write_csv(tmp_path / "a:smile:\x1b[31m[b].csv", table)
+    assert call(monkeypatch, "inspect", path) == 0
+    said = capsys.readouterr().out
+    assert "a:smile:\\x1b[31m[b].csv" in said and ":smile: [/b] =1+1" in said and "\x1b" not in said

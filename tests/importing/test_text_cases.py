@@ -90,6 +90,7 @@ def test_comfort_is_refused_for_the_true_reason(tmp_path, content, rate, sentenc
         (table(X, T, Z, 2 * T, head=["acc_x,t1,acc_z,t2"]), None, "t1: is taken for the time of all columns; t2 has"),
         (READ["whole seconds"][0], None, "the rate is estimated as 250 Hz: state it .* by --rate"),
         (READ["first column without a name"][0], None, "column 1: no column is called time; this one rises evenly"),
+        (table(T, X, 2 * T, Z, head=["t1,a_Boden,t2,a_Sitz"]), 250.0, "'t2' is evaluated alone"),
         (table(T, 2000.0 * Z, head=["t,acc_z"]), None, "acc_z: reaches .* more than a seat does"),
         (PLAIN, 500.0, "the file states 250 Hz; the stated 500 Hz is taken"),
         (table(T + 0.27 * (T > 1), Z, head=["t,acc_z"]), 250.0, "67 rows are missing"),
