@@ -120,6 +120,25 @@ def test_tables_and_timetables_of_matlab_are_groups(version, tmp_path):
     assert "none.force" in file.notes[0]
 
 
+@pytest.mark.parametrize("version", ["v7", "v7.3"])
+def test_objects_of_classes_such_as_timeseries_are_channels(version, tmp_path):
+    matio = pytest.importorskip("matio")
+
+    def made(class_name, **properties):
+        return matio.utils.matclass.MatlabOpaque(properties, class_name)
+
+    info = made("tsdata.datametadata", Units="N")
+    force, inner = (
+        made("timeseries", Name=name, Data_=FORCE[:, None], Time_=TIME[:, None], DataInfo=info)
+        for name in ("force", "")
+    )
+    logged = made("Simulink.SimulationData.Signal", Name="logged", Values=inner)
+    matio.save_to_mat(str(tmp_path / "a.mat"), {"force": force, "signal": logged}, version=version)
+    (group,) = read_file(tmp_path / "a.mat").groups
+    assert [(signal.name, signal.unit) for signal in group.signals] == [("time", "s"), ("force", "N"), ("logged", "N")]
+    assert group.signals[0].values == pytest.approx(TIME) and np.array_equal(group.signals[2].values, FORCE)
+
+
 def test_what_is_no_column_of_real_numbers_is_named(tmp_path):
     held = {"force": FORCE, "spectrum": FORCE + 1j, "cube": np.zeros((3, 4, 5)), "gone": np.zeros((0, 0)), "fs": 500.0}
     savemat(tmp_path / "a.mat", {**held, "run": {"force": np.zeros((0, 1))}, "note": "a text"})

@@ -10,7 +10,7 @@ import numpy as np
 from seatsim.importing.readers.mat_values import Value
 from seatsim.importing.readers.naming import UNITS, bare
 
-VALUES = ("values", "data", "signal", "y", "ydata")
+VALUES = ("values", "data", "signal", "samples", "y", "ydata")
 LABELS = ("label", "signalname", "channelname", "name", "title", "blockname")
 TIMES = ("time", "t", "zeit", "temps", "timestamp", "timestamps", "tout")
 ABSCISSAS = (*TIMES, "x", "xdata")
