@@ -10,6 +10,8 @@ import pytest
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation
+from seatsim.cli.gap_table import gap_table
+from seatsim.cli.show_table import make_plain
 from seatsim.identification.agreement import Agreement
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.information import Information, ParameterEstimate
@@ -98,6 +100,15 @@ def test_a_gap_says_where_it_is_largest_and_what_to_do():
     assert any("seatsim diagnose" in words for words in outline.words) and "A note." in outline.words
     assert "Gap of each run" in outline.headings
     assert say_gap(gap(0.021)).endswith("there is nothing left to explain.")
+
+
+def test_noise_that_is_not_stated_is_not_printed_as_none():
+    found = gap(0.3, floor=0.0)
+    outline = Outline(render_report(report_gap("x", found, {"run-a": pair(20.0)}, Evidence(), "seatsim gap a b")))
+    assert "no sensor noise is stated" in outline.headings[0]
+    shown = make_plain(gap_table(found)), found._repr_html_()
+    assert outline.rows("Gap over all runs")["damper force"] == ["30 %", "not stated"]
+    assert all(text.count("not stated") == 2 for text in shown)
 
 
 def test_a_short_recording_has_no_spectrum_and_says_so():

@@ -33,7 +33,7 @@ def test_a_sweep_and_its_report(write_sweep, tmp_path, seatsim_command):
     assert status == 0 and answer_of("sweep", text)["counts"]["done"] == 24
     status, text, _ = seatsim_command("sweep-report", out, "--json")
     content = answer_of("sweep-report", text)
-    assert status == 0 and re.search("Of 2 tolerances plant.* matters most to the driver Wk RMS", content["sentence"])
+    assert status == 0 and re.search("Of 2 varied keys plant.* matters most to the driver Wk RMS", content["sentence"])
     assert {row["group"]["excitation.spectral_class"] for row in content["exceeded"]} == {"EM1", "EM5"}
     page = (out / "report.html").read_text()
     assert len(page) < 600_000 and all(link.startswith("#") for link in re.findall('(?:href|src)="([^"]*)"', page))
