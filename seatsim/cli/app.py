@@ -8,6 +8,8 @@ import shlex
 import sys
 import traceback
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -65,16 +67,29 @@ class _Commands(TyperGroup):
         ctx.meta[ASKED] = "--json" in args
         return super().parse_args(ctx, args)
 
+    def make_context(self, *arguments: Any, **options: Any) -> Any:
+        with _interrupts_said():
+            return super().make_context(*arguments, **options)
+
     def invoke(self, ctx: Any) -> object:
         answer_as_json(ctx.meta[ASKED])
         try:
-            return super().invoke(ctx)
+            with _interrupts_said():
+                return super().invoke(ctx)
         except UsageError as error:
             answer_error(error.format_message())
             raise
-        except KeyboardInterrupt:  # which typer would turn into an empty line
-            fail("interrupted")
-            raise typer.Exit(130) from None
+
+
+@contextmanager
+def _interrupts_said() -> Iterator[None]:
+    """Say that a command is interrupted, which typer would not."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        answer_as_json("--json" in sys.argv)
+        fail("interrupted")
+        raise typer.Exit(130) from None
 
 
 app = typer.Typer(

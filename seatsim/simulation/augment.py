@@ -93,7 +93,7 @@ def _checked(effect: object, method: str, found: object, like: Array, step: floa
     """
     if found is like:
         return like
-    giver = f"the {method} of the effect '{EFFECTS.name_of(type(effect))}'"
+    giver = f"the {method} of the effect {type(effect).__module__}:{type(effect).__qualname__}"
     return require_samples(found, giver, len(like), step)
 
 

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from typer.core import TyperGroup
 
 from seatsim.cli import app
 
@@ -61,6 +62,18 @@ def test_no_traceback_reaches_the_user(monkeypatch, capsys, error, expected, sta
             app.main()
 
 
+@pytest.mark.parametrize("method", ["parse_args", "resolve_command"])
+def test_an_interrupt_while_the_command_is_looked_up_is_said(method, monkeypatch, capsys):
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(TyperGroup, method, interrupt)
+    monkeypatch.setattr("sys.argv", ["seatsim", "describe"])
+    with pytest.raises(SystemExit) as stopped:
+        app.main()
+    assert stopped.value.code == 130 and capsys.readouterr().err == "error: interrupted\n"
+
+
 def test_names_in_files_lead_nowhere_else(seat_file, tmp_path, monkeypatch, capsys):
     for name in ("../../escaped", "/tmp/escaped", "a\\b", "", "..", "x" * 200, "\0", " a", "a\n"):
         text = "\n".join(line for line in seat_file.read_text().splitlines() if not line.startswith("name"))
@@ -82,4 +95,4 @@ def test_names_in_files_lead_nowhere_else(seat_file, tmp_path, monkeypatch, caps
 def test_a_name_that_no_file_can_have_is_bad_input_in_a_few_words(arguments):
     process = started(*(word.replace("NAME", 5_000 * "a") for word in arguments), stdout=subprocess.DEVNULL)
     _, said = process.communicate()
-    assert process.returncode == 2 and said.startswith(b"error: ") and len(said) < 2_000
+    assert process.returncode == 2 and b"error: " in said and len(said) < 2_000
