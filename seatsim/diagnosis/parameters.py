@@ -50,7 +50,7 @@ class Parameters:
         return np.concatenate([-ones, *low]), np.concatenate([ones, *high])
 
     def find_at_bound(self, margin: float) -> NDArray[np.bool_]:
-        """Return which components of `vector` lie within a margin, in natural sizes, of a bound at which they are not off."""
+        """Return which components of `vector` lie within a margin of a bound, in natural sizes, unless off there."""
         (low, high), vector = self.limits, self.vector
         off = [np.array([t.off.get(name, 0.0) for name in t.free]) / t.scale for t in self.terms]
         is_off = vector == np.concatenate([np.full(len(self.deviations), np.nan), *off])
