@@ -173,13 +173,13 @@ def spark_of(values: Array) -> str:
 
 
 def _repeated_rows(file: DataFile) -> Iterator[Issue]:
-    """Yield rows that repeat the row before in every channel that varies, of which there are at least three."""
+    """Yield rows that repeat the row before in every channel, where at least three vary from row to row."""
     for group in file.groups:
         steps = [np.diff(s.values) == 0.0 for s in group.signals if read_name(s.name).quantity != "time"]
         varying = [same for same in steps if np.mean(same) < RARE]
         if len(varying) < 3:
             continue
-        rows = np.flatnonzero(np.all(varying, axis=0)) + 1
+        rows = np.flatnonzero(np.all(steps, axis=0)) + 1
         if len(rows):
             text = (
                 f"{len(rows)} rows repeat the row before in all channels, first row {rows[0]}; they were written twice"

@@ -36,13 +36,16 @@ def place_in_run(run: str, issues: Iterable[Issue]) -> list[Issue]:
 
 def settle_refusals(issues: Iterable[Issue], accepted: Sequence[str]) -> list[Issue]:
     """Return issues whose errors are notes where a recording accepts their kind, and say how to accept it elsewhere."""
-    return [
-        issue if issue.severity != "error" or issue.kind not in get_args(Refusal)
-        else issue._replace(severity="note", sentence=f"{issue.sentence}; accepted by its owner")
-        if issue.kind in accepted
-        else issue._replace(sentence=f"{issue.sentence}; if it is right as it is, write accept: [{issue.kind}]")
-        for issue in issues
-    ]  # fmt: skip
+    return [_settle(issue, accepted) if issue.severity == "error" else issue for issue in issues]
+
+
+def _settle(error: Issue, accepted: Sequence[str]) -> Issue:
+    if error.kind in accepted:
+        return error._replace(severity="note", sentence=f"{error.sentence}; accepted by its owner")
+    if error.kind not in get_args(Refusal):
+        return error
+    how = f"if it is right as it is, write accept: [{error.kind}] in recording.yaml"
+    return error._replace(sentence=f"{error.sentence}; {how}")
 
 
 def select_errors(issues: Sequence[Issue]) -> list[Issue]:

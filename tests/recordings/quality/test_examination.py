@@ -59,7 +59,7 @@ def test_a_nominal_that_is_far_off_is_no_fault(copy, old, new):
 def test_what_its_owner_accepts_is_a_note_and_the_later_checks_are_made(copy):
     rewrite(copy, scaled("damper_force", -1.0))
     (error,) = examine(load_recording(copy)).errors
-    assert error.sentence.endswith("if it is right as it is, write accept: [sign]")
+    assert error.sentence.endswith("if it is right as it is, write accept: [sign] in recording.yaml")
     edit(copy, lambda header: header.update(accept=["sign"]))
     examination = examine(load_recording(copy))
     assert examination.errors == [] and refuse(examination) is None
