@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
 from seatsim.diagnosis.deadline import OutOfTimeError
-from seatsim.diagnosis.decide import call_unknown, decide_beside_unknown, explain_after_all, shows_effect
+from seatsim.diagnosis.decide import explain_after_all, shows_effect
 from seatsim.diagnosis.fit import refit
 from seatsim.diagnosis.input_noise import carry_force
 from seatsim.diagnosis.localise.discrepancy import describe_discrepancy
@@ -31,6 +31,7 @@ from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Share
+from seatsim.diagnosis.revise import call_unknown, decide_beside_unknown
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solution import Method, Progress, SearchTask, Solution, search
 from seatsim.effects.base import EFFECTS

@@ -9,7 +9,7 @@ import numpy as np
 
 from seatsim.diagnosis.alternatives import are_forms_due, compare_damper_forms, describe_forms, describe_obstacle
 from seatsim.diagnosis.augmented import write_augmented
-from seatsim.diagnosis.decide import Decision, call_unknown, decide_without, doubt_single
+from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.design.collinearity import measure_collinearity
 from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.diagnosis.design.isolability import describe_missing_sensors, find_isolable_groups
@@ -24,6 +24,7 @@ from seatsim.diagnosis.nuisance import list_calibrated
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.result import Cause, DamperForm, Diagnosis, Evidence, Gaps, ProposedExperiment, RunGaps
+from seatsim.diagnosis.revise import call_unknown, decide_without, doubt_single
 from seatsim.diagnosis.sentences import write_answer
 from seatsim.diagnosis.solution import Solution
 from seatsim.diagnosis.validate import (

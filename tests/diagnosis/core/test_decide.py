@@ -6,15 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from seatsim.diagnosis.decide import (
-    call_unknown,
-    decide_beside_unknown,
-    decide_verdict,
-    decide_without,
-    doubt_single,
-    explain_after_all,
-)
+from seatsim.diagnosis.decide import decide_verdict, explain_after_all
 from seatsim.diagnosis.result import Cause
+from seatsim.diagnosis.revise import call_unknown, decide_beside_unknown, decide_without, doubt_single
 from seatsim.diagnosis.select import Selection
 
 from .toy import offer, place, pose_tones
