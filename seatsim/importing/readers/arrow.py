@@ -5,12 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from seatsim.importing.readers.arrow_messages import bytes_of_messages
-from seatsim.importing.readers.columns import column_values
+from seatsim.importing.readers.columns import read_column
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import TIME, Array, DataFile, Group, Signal
+from seatsim.importing.signals import TIME, DataFile, Group, Signal
 from seatsim.schema.bounds import check_made
 
 if TYPE_CHECKING:
@@ -20,8 +18,6 @@ UNIT_KEYS = (b"unit", b"units", b"Unit", b"Units")
 WORDS_FOR_TIME = ("time", "zeit", "temps")
 """A column of dates without such a word in its name, as an index has it, is called time."""
 
-UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the columns of a table as one group."""
@@ -30,16 +26,14 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     has_time = False
     for field, column in zip(table.schema, table.columns, strict=True):
         name, unit = str(field.name), _unit(field)
-        values = _seconds(column)
-        if values is not None:
-            name = name if has_time or any(word in name.lower() for word in WORDS_FOR_TIME) else TIME
-            unit, has_time = "s", True
-        else:
-            values = column_values(column)
-        if values is None:
+        cells = read_column(column, ".")
+        if cells is None:
             left_out.append(name)
-        else:
-            signals.append(Signal(name, unit, values))
+            continue
+        if cells.unit == "s":
+            name = name if has_time or any(word in name.lower() for word in WORDS_FOR_TIME) else TIME
+            has_time = True
+        signals.append(Signal(name, cells.unit or unit, cells.values))
     notes = (f"columns that hold no numbers: {', '.join(left_out)}",) if left_out else ()
     return DataFile(path, "", (Group("", tuple(signals)),) if signals else (), notes)
 
@@ -59,18 +53,6 @@ def _table(content: bytes) -> pa.Table:
 
     check_made(bytes_of_messages(content), len(content), "what its columns state")
     return feather.read_table(pa.BufferReader(content))
-
-
-def _seconds(column: pa.ChunkedArray) -> Array | None:
-    """Return dates or durations in s since the first of them, NaN where none stands; None for another column."""
-    import pyarrow as pa
-
-    if not (pa.types.is_timestamp(column.type) or pa.types.is_duration(column.type)):
-        return None
-    counts = column.cast(pa.int64()).fill_null(0).to_numpy()
-    there = np.asarray(column.is_valid())
-    first = counts[there][0] if there.any() else 0
-    return np.where(there, (counts - first) * UNITS_OF_TIME[column.type.unit], np.nan)
 
 
 def _unit(field: pa.Field) -> str:

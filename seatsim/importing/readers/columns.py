@@ -41,18 +41,14 @@ class Cells(NamedTuple):
         return self.unit == "s" and not (self.values[np.isfinite(self.values)] % DAY).any()
 
 
-def column_values(column: pa.ChunkedArray) -> Array | None:
-    """Return a column as numbers, a time of day in s since its first value; None where most of it is text."""
-    found = read_column(column, ".")
-    return found.values if found else None
-
-
 def read_column(column: pa.ChunkedArray, decimal: str) -> Cells | None:
     """Return a column as numbers, None where most of it is text; cells are texts with this decimal sign."""
     import pyarrow as pa
 
     kind = column.type
-    if pa.types.is_timestamp(kind) or pa.types.is_time(kind) or pa.types.is_date(kind):
+    if any(
+        is_kind(kind) for is_kind in (pa.types.is_timestamp, pa.types.is_time, pa.types.is_date, pa.types.is_duration)
+    ):
         return Cells(_seconds(column), "s")
     if pa.types.is_null(kind):
         return Cells(np.full(len(column), np.nan))
@@ -69,15 +65,15 @@ def read_column(column: pa.ChunkedArray, decimal: str) -> Cells | None:
 
 
 def _seconds(column: pa.ChunkedArray) -> Array:
-    """Return dates and times of day in s since the first, exact to a nanosecond."""
+    """Return dates, times of day and durations in s since the first, exact to a nanosecond."""
     import pyarrow as pa
 
     kind = column.type
-    if pa.types.is_date(kind) or pa.types.is_timestamp(kind):
-        column = column.cast(pa.timestamp("ns"), safe=False)
+    if pa.types.is_time(kind):
+        fine = pa.time64("ns")
     else:
-        column = column.cast(pa.time64("ns"))
-    counts = column.cast(pa.int64())
+        fine = pa.duration("ns") if pa.types.is_duration(kind) else pa.timestamp("ns")
+    counts = column.cast(fine, safe=False).cast(pa.int64())
     first = counts.drop_null()[0].as_py() if counts.null_count < len(counts) else 0
     there = np.asarray(counts.is_valid())
     return np.where(there, 1e-9 * (np.asarray(counts.fill_null(first)) - first), np.nan)
