@@ -54,12 +54,12 @@ damper: {model: bingham, parameters: {c_a: 250.0, c_b: 350.0, fc_a: 25.0, fc_b: 
          temperature_factors: {viscous: -0.004, yield_force: -0.004}}
 actuator: {rate: 130.0, max_current: 1.0}
 temperature: {start: 25.0, heat_capacity: 20.0}
-controller: {law: hybrid, damping: 700.0, share: 0.7, sample_time: 0.002}
+controller: {law: on_off_skyhook, on: 0.6, sample_time: 0.01}
 excitation: {kind: iso7096, spectral_class: EM3, duration: 10.0}
 solver: {step: 0.002}
 variants:
   random: {}
-  rough: {excitation: {kind: iso7096, spectral_class: EM6, duration: 10.0}}
+  rough: {controller.on: 0.25, excitation: {kind: iso7096, spectral_class: EM6, duration: 10.0}}
   sweep: {excitation: {kind: chirp, amplitude: 0.025, start_frequency: 0.7, stop_frequency: 6.0, duration: 10.0}}
 """
 NOISE = {

@@ -49,7 +49,7 @@ FORMS: Mapping[str, Sequence[Form]] = {
         Form({"travel": 5e-4}), Form({"travel": 1e-3}, {"share": 0.5}), Form({"lag": 2e-3}), Form({"behind": 2e-3}),
     ),
     "damper.magnetic_saturation": (
-        Form({"bend": 0.8}), Form({"bend": 0.8}, {"sharpness": 1.0}), Form({"bend": 1.0}, {"sharpness": 4.0}),
+        Form({"bend": 2.0}), Form({"bend": 2.0}, {"sharpness": 1.0}), Form({"bend": 2.5}, {"sharpness": 4.0}),
     ),
     "damper.remanence": (
         Form({"width": 0.06}), Form({"width": 0.06}, {"spread": 0.6}), Form({"width": 0.06}, {"lift": 0.6}),
