@@ -14,6 +14,8 @@ from seatsim.schema.errors import RunError
 from seatsim.schema.registry import initial_state, is_own
 
 Array = NDArray[np.float64]
+_FARTHEST = 10.0
+"""m, as far as the travel of a seat may be stated; beyond it the motion itself has left all bounds."""
 
 
 def explain_divergence(scenario: Scenario, out: Array, ratio: float) -> RunError:
@@ -53,12 +55,12 @@ def _name(cls: type) -> str:
 
 
 def _is_finite(scenario: Scenario, x: float, v: float, i: float, temperature: float) -> bool:
-    """Whether force and rates of the damper, in its state at rest, are finite for a motion that is."""
+    """Whether force and rates of the damper, in its state at rest, are finite for a motion that a seat may make."""
     damper, z = scenario.damper.record, initial_state(type(scenario.damper.record))
     factors = scaling(scenario.damper.factors, temperature)
     # As numbers of numpy, they divide by zero as compiled code does.
     x, v, i = np.float64(x), np.float64(v), np.float64(i)
-    if not np.all(np.isfinite([x, v, i])):
+    if not (np.all(np.isfinite([x, v, i])) and abs(x) < _FARTHEST):
         return True
     with np.errstate(all="ignore"):
         try:

@@ -19,6 +19,7 @@ from seatsim.metrics.table import METRICS
 from seatsim.schema.arrow_arrays import store_numbers, store_texts
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import remove_left, write_whole
+from seatsim.schema.parquet import open_parquet
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Plan
 
@@ -90,10 +91,9 @@ def read_part(path: Path, names: Sequence[str] | None = None) -> pa.Table:
         InputError: the file is no part of a sweep.
     """
     import pyarrow as pa
-    import pyarrow.parquet as pq
 
     try:
-        table = pq.ParquetFile(path).read(columns=names if names is None else list(names))
+        table = open_parquet(path.read_bytes()).read(columns=names if names is None else list(names))
         table.select(names or [*LEADING, *METRICS])
         table.validate(full=True)
     except (pa.ArrowException, OSError, KeyError, ValueError) as error:

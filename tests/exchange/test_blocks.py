@@ -160,7 +160,8 @@ def test_a_mat_file_holds_plant_and_design(seat_file, tmp_path):
     found = loadmat(tmp_path / "controller.mat", simplify_cells=True)
     assert np.array_equal(found["plant"]["B"], control_system(scenario.plant).B)
     assert list(found["plant"]["inputs"]) == ["floor_acceleration", "damper_force"]
-    assert (found["parameters"]["law"]["k1"], found["parameters"]["law"]["k2"]) == (2.0, 2147.6)
+    law = found["parameters"]["law"]
+    assert (law["displacement"], law["velocity"], law["frame_velocity"]) == (2.0, 2147.6, 0.0)
     assert found["step"] == 0.005
 
 

@@ -10,6 +10,7 @@ from seatsim.importing.readers.columns import read_column
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import TIME, DataFile, Group, Signal
 from seatsim.schema.bounds import check_made
+from seatsim.schema.parquet import open_parquet
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -42,13 +43,7 @@ def _table(content: bytes) -> pa.Table:
     import pyarrow as pa
 
     if content.startswith(b"PAR1"):
-        from pyarrow import parquet
-
-        file = parquet.ParquetFile(pa.BufferReader(content))
-        stated = file.metadata
-        packed = sum(stated.row_group(index).total_byte_size for index in range(stated.num_row_groups))
-        check_made(max(packed, 8 * stated.num_rows * stated.num_columns), len(content), "what its columns state")
-        return file.read()
+        return open_parquet(content).read()
     from pyarrow import feather
 
     check_made(bytes_of_messages(content), len(content), "what its columns state")
