@@ -33,8 +33,8 @@ class Parameters:
 
     @property
     def further(self) -> int:
-        """How many free parameters the effects have beyond their sizes."""
-        return sum(len(term.free) - 1 for term in self.terms)
+        """How many parameters the structures of the effects choose beyond their sizes."""
+        return sum(term.further for term in self.terms)
 
     @property
     def vector(self) -> Array:
