@@ -31,7 +31,7 @@ class Candidate(NamedTuple):
 
     `nominal` is the first free parameter in the nominal scenario: 0 unless the effect is one of that scenario's own,
     which the candidate then replaces. The first `sizes` free parameters are sizes, the others the effect's shape. A
-    structure that is a limit of the effect's first one, as set-valued friction is, has chosen the `held` ones of its shape.
+    structure that is a limit of the effect's first one, as set-valued friction is, has chosen `held` of its shape too.
     """
 
     effect: str
