@@ -101,6 +101,7 @@ READ = {
     "units before names": (
         table(T, X, Z, head=["s,g,-", "t,acc_x,acc_z"]), {"acc_x": ("g", X), "acc_z": ("", Z)}, RATE,
     ),
+    "LabVIEW": (table(T, X, Z, head=["X_Value\tacc_x\tacc_z\tComment"], sep="\t"), ACC, RATE),
     # Ways to write
     "lines in quotation marks": ("".join(f'"{line}"\n' for line in PLAIN.splitlines()), ACC, RATE),
     "units in the cells": (

@@ -8,6 +8,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
+from types import ModuleType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -55,7 +56,7 @@ def read_values(path: Path, content: bytes) -> dict[str, Value]:
 
 def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
     with open_checked(path, content, follows=True) as file:
-        reader = need("matio.v7.matreader7", "MAT v7.3").MatRead7(file)
+        reader = _need_matio("matio.v7.matreader7", "MAT v7.3").MatRead7(file)
         if SUBSYSTEM in file:
             reader.subsystem = _subsystem(reader.read_struct(file[SUBSYSTEM]), "<")
         found: dict[str, Value] = {}
@@ -69,13 +70,21 @@ def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
         return found
 
 
+def _need_matio(module: str, kind: str) -> ModuleType:
+    """Return a part of mat-io; its import changes for the whole process how pandas keeps texts, which is put back."""
+    import pandas as pd
+
+    with pd.option_context("future.infer_string", pd.get_option("future.infer_string")):
+        return need(module, kind)
+
+
 def _open_objects(held: Array, order: str) -> Resolve:
     return _subsystem(held, order).load_opaque_object  # type: ignore[no-any-return]
 
 
 def _subsystem(held: Array, order: str) -> Any:
     """Return what resolves objects, at most so many of them: objects may hold each other over and over."""
-    base = need("matio.subsystem", "a table or another object of MATLAB").MatSubsystem
+    base = _need_matio("matio.subsystem", "a table or another object of MATLAB").MatSubsystem
 
     class Bounded(base):  # type: ignore[misc, valid-type]
         left = MOST_OBJECTS
