@@ -81,17 +81,17 @@ def _timed(label: str, group: Group, time: AxisMap, rate: float | None, doubts: 
     """
     times = next(signal.values for signal in group.signals if signal.name == time.column)
     there = np.isfinite(times)
-    signals = tuple(signal._replace(values=signal.values[there]) for signal in group.signals)
+    group = group.take(there)
     axis = measured_axis(conversion(time.unit or "s", DIMENSIONS["time"]).factor * times[there])
     if axis is None:
         raise InputError(f"{label}: column '{time.column}' does not rise as a time does; name another one under time")
     if axis.resolution and rate is not None:
-        return group._replace(signals=signals), even_axis(int(there.sum()), rate, float(axis.times[0]))
+        return group, even_axis(group.rows, rate, float(axis.times[0]))
     found = list(doubt_time(axis, f"{label}, {time.column}"))
     if axis.resolution and not axis.is_even:
         raise InputError(found[-1].sentence)
     doubts += found
-    return group._replace(signals=signals), axis
+    return group, axis
 
 
 def list_names(names: Sequence[str], most: int = 12) -> str:
@@ -124,9 +124,8 @@ def _parts(name: str, broken: Clocked, notes: list[str]) -> list[tuple[str, list
         if lasts < SHORTEST_RUN:
             short.append(f"{lasts:.3g} s from {broken.axis.times[begin]:.6g} s on")
         else:
-            signals = tuple(signal._replace(values=signal.values[begin:end]) for signal in broken.group.signals)
             axis = unbroken(broken.axis.times[begin:end], broken.axis.rate, broken.axis.is_even)
-            part = broken._replace(group=broken.group._replace(signals=signals), axis=axis)
+            part = broken._replace(group=broken.group.take(slice(begin, end)), axis=axis)
             parts.append((f"{name}-{len(parts) + 1}", [part]))
     if not parts:
         raise InputError(f"{broken.label}: no part between its gaps lasts {SHORTEST_RUN:g} s; nothing is left")
@@ -151,6 +150,5 @@ def _without_repeats(clocked: Clocked) -> Clocked:
             f"{clocked.label}: a gap of {longest:.3g} s is not filled, {LONGEST_FILL} s at most are; write gaps: split"
         )
     kept = np.concatenate([[True], steps > 0.0])
-    signals = tuple(signal._replace(values=signal.values[kept]) for signal in clocked.group.signals)
     axis = unbroken(times[kept], clocked.axis.rate, is_even=False)
-    return clocked._replace(group=clocked.group._replace(signals=signals), axis=axis)
+    return clocked._replace(group=clocked.group.take(kept), axis=axis)

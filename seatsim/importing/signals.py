@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-
-
 TIME = "time"
 """Name of a channel of times, where its file has no other for it."""
 
@@ -45,6 +43,10 @@ class Group(NamedTuple):
     def find(self, name: str) -> Signal | None:
         """Return the channel of this name."""
         return next((signal for signal in self.signals if signal.name == name), None)
+
+    def take(self, rows: slice | NDArray[np.bool_]) -> Group:
+        """Return the group with some of its rows."""
+        return self._replace(signals=tuple(signal._replace(values=signal.values[rows]) for signal in self.signals))
 
 
 class DataFile(NamedTuple):

@@ -70,15 +70,7 @@ EXPECTED = {
     "matrix": {"data#1", "data#2"},
     "x, y, z": {"x", "y", "z"},
 }
-UNITS = {
-    "timeseries, even": "N",
-    "dSPACE": "N",
-    "catman": "N",
-    "imc": "N",
-    "flat": "N",
-    "cells": "N",
-    "timeseries": "N",
-}
+IN_NEWTON = ("timeseries, even", "dSPACE", "catman", "imc", "flat", "cells", "timeseries")
 
 
 def clocked(file):
@@ -103,7 +95,7 @@ def test_channels_have_the_times_and_units_that_stand_beside_them(layout, tmp_pa
     values, times, unit = found[first]
     start = 0.25 if layout in ("imc", "timeseries, even") else 0.0
     assert np.array_equal(values, FORCE) and times == pytest.approx(start + TIME, abs=1e-9)
-    assert unit == UNITS.get(layout, "") or layout == "Simulink, Dataset"
+    assert unit == ("N" if layout in IN_NEWTON else "") or layout == "Simulink, Dataset"
     if layout in ("Dewesoft", "dSPACE, two rates"):
         assert np.diff(found["Data1_floor" if layout == "Dewesoft" else "floor"][1])[0] == pytest.approx(0.004)
     assert not file.notes

@@ -12,13 +12,10 @@ from seatsim.importing.readers.mat_values import read_values
 from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
 
-from .helpers import read_run
+from .helpers import LET_LIBRARIES_WARN, read_run
 from .test_alignment import band_limited
 
-pytestmark = pytest.mark.filterwarnings(
-    "ignore::ResourceWarning",
-    "ignore::pytest.PytestUnraisableExceptionWarning",  # of libraries that write
-)
+pytestmark = LET_LIBRARIES_WARN
 FAST, SLOW = np.arange(0.0, 20.0, 0.002), np.arange(0.0, 20.0, 0.01)
 
 

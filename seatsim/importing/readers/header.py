@@ -101,6 +101,12 @@ def _name_and_unit(cell: str, index: int) -> tuple[str, str]:
     return text or f"column {index + 1}", ""
 
 
+def check_header(header: int, lines: int, place: str) -> None:
+    """Raise InputError where no row is left below so many lines above the first row of numbers."""
+    if header >= lines:
+        raise InputError(f"{place}: has {lines} lines; csv.header {header} counts those above the first row of numbers")
+
+
 def first_row_of_numbers(rows: Sequence[Sequence[Kind]], place: str) -> int:
     """Return the first row of the table; `rows` say of each cell what it holds.
 

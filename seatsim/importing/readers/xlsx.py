@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatsim.importing.optional import need
-from seatsim.importing.readers.header import first_row_of_numbers, split_header
+from seatsim.importing.readers.header import check_header, first_row_of_numbers, split_header
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import Array, DataFile, Group, Signal
 from seatsim.schema.bounds import TooMuchError, check_made
@@ -72,6 +72,7 @@ def _group(title: str, rows: Sequence[Sequence[Cell]], place: str, layout: TextL
     first = layout.header
     if first is None:
         first = first_row_of_numbers([[_is_number(cell) for cell in row] for row in rows], place)
+    check_header(first, len(rows), place)
     above = [["" if cell is None else str(cell) for cell in row] for row in rows[:first]]
     header = split_header(above, first, len(rows[first]))
     columns = list(zip(*rows[first:], strict=True))
