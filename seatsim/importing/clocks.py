@@ -11,10 +11,11 @@ import numpy as np
 from seatsim.importing.axis_doubts import doubt_time
 from seatsim.importing.group_time import check_is_history, find_clock
 from seatsim.importing.import_map import AxisMap, ImportMap
-from seatsim.importing.signals import DataFile, Group
+from seatsim.importing.signals import LISTED, DataFile, Group
 from seatsim.importing.time_axis import Axis, even_axis, measured_axis, unbroken
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.text import name_some
 from seatsim.schema.units import DIMENSIONS, conversion
 
 LONGEST_FILL = 0.1
@@ -59,7 +60,7 @@ def _clock(file: DataFile, group: Group, stated: ImportMap, doubts: list[Issue])
     lacking = f"no column '{stated.time.column}'{nearest(stated.time.column, names)}" if stated.time else "no rate"
     raise InputError(
         f"{file.path}: states {lacking}; write sample_rate: or time: {{column: ...}} in the map; columns are"
-        f" {list_names(names)}"
+        f" {name_some(names, LISTED)}"
     )
 
 
@@ -94,11 +95,6 @@ def _timed(label: str, group: Group, time: AxisMap, rate: float | None, doubts: 
     return group, axis
 
 
-def list_names(names: Sequence[str], most: int = 12) -> str:
-    """Return the first names as they stand in an error."""
-    return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
-
-
 def split_at_gaps(
     name: str, clocked: list[Clocked], stated: ImportMap, notes: list[str]
 ) -> list[tuple[str, list[Clocked]]]:
@@ -130,7 +126,7 @@ def _parts(name: str, broken: Clocked, notes: list[str]) -> list[tuple[str, list
     if not parts:
         raise InputError(f"{broken.label}: no part between its gaps lasts {SHORTEST_RUN:g} s; nothing is left")
     if short:
-        notes.append(f"{broken.label}: parts of less than {SHORTEST_RUN:g} s are left out: {list_names(short)}")
+        notes.append(f"{broken.label}: parts of less than {SHORTEST_RUN:g} s are left out: {name_some(short, LISTED)}")
     return parts
 
 

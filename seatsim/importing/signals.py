@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 TIME = "time"
 """Name of a channel of times, where its file has no other for it."""
+LISTED = 8
+"""Names that a sentence lists at most."""
 
 
 class Signal(NamedTuple):
@@ -58,7 +60,7 @@ class DataFile(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-def groups_by_length(name: str, signals: list[Signal], rate: float | None = None) -> list[Group]:
+def groups_by_length(name: str, signals: list[Signal], rate: float | None) -> list[Group]:
     """Return channels as groups of equal length, in the order in which the lengths come."""
     lengths = dict.fromkeys(len(signal.values) for signal in signals)
     parts = [tuple(signal for signal in signals if len(signal.values) == length) for length in lengths]

@@ -39,7 +39,7 @@ class Axis(NamedTuple):
     resolution: float = 0.0
 
 
-def even_axis(rows: int, rate: float, start: float = 0.0) -> Axis:
+def even_axis(rows: int, rate: float, start: float) -> Axis:
     """Return the axis of rows at a stated rate."""
     return unbroken(start + np.arange(rows) / rate, rate)
 

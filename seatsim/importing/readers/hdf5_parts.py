@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from seatsim.importing.optional import need
+from seatsim.importing.readers.reading import need
 from seatsim.schema.bounds import BYTES_OF_NUMBER, Part, check_made, check_parts
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import is_there, read_bytes

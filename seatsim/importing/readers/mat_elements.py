@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from seatsim.schema.bounds import BYTES_OF_PART, check_made, permitted_of
 
-Array: TypeAlias = NDArray[np.generic]
-Resolve: TypeAlias = Callable[[Array, str, str], object]
+AnyArray: TypeAlias = NDArray[np.generic]
+Resolve: TypeAlias = Callable[[AnyArray, str, str], object]
 """Returns an object, of which a file holds an array that tells which it is, its system, and its class."""
 
 HEADER, INNER_HEADER = 128, 8
@@ -48,9 +48,9 @@ class _Element(NamedTuple):
 class _Elements:
     """Reads arrays in one order of bytes, as long as they make no more than a file of `size` bytes may."""
 
-    def __init__(self, order: str, size: int, resolve: Resolve | None = None) -> None:
-        self.order, self.size, self.resolve = order, size, resolve
-        self.made = 0
+    def __init__(self, order: str, size: int) -> None:
+        self.order, self.size, self.made = order, size, 0
+        self.resolve: Resolve | None = None
 
     def count(self, made: int) -> None:
         """Add bytes that are about to be made; TooMuchError where they are too many."""
@@ -120,7 +120,7 @@ class _Elements:
             return self._structures(parts[1:] if kind == OBJECT else parts, shape, depth)
         return None
 
-    def _arrays(self, parts: list[_Element], shape: tuple[int, ...], depth: int) -> Array:
+    def _arrays(self, parts: list[_Element], shape: tuple[int, ...], depth: int) -> AnyArray:
         if prod(shape) != len(parts):
             raise ValueError(f"an array of {shape} has {len(parts)} cells")
         cells = np.empty(len(parts), dtype=object)
@@ -128,7 +128,7 @@ class _Elements:
             cells[index] = self.read_array(part.content, depth + 1)[1]
         return cells.reshape(shape, order="F")
 
-    def _structures(self, parts: list[_Element], shape: tuple[int, ...], depth: int) -> Array:
+    def _structures(self, parts: list[_Element], shape: tuple[int, ...], depth: int) -> AnyArray:
         """Return structures of the same fields: the length of their names, the names, and an array for each."""
         length, names, *arrays = parts
         width = int(self.numbers(length)[0])
@@ -145,7 +145,7 @@ class _Elements:
             held[index // len(fields)][fields[index % len(fields)]] = self.read_array(part.content, depth + 1)[1]
         return held.reshape(shape, order="F")
 
-    def _letters(self, element: _Element, shape: tuple[int, ...]) -> Array:
+    def _letters(self, element: _Element, shape: tuple[int, ...]) -> AnyArray:
         """Return a text, or one for each row of letters."""
         encoding = TEXTS.get(element.kind, "latin-1")
         if encoding in ("utf-16", "utf-32"):
@@ -156,7 +156,7 @@ class _Elements:
         rows = np.array(list(text)).reshape(shape, order="F") if text else np.empty(shape, dtype=np.str_)
         return np.array(["".join(row) for row in rows])
 
-    def numbers(self, element: _Element) -> Array:
+    def numbers(self, element: _Element) -> AnyArray:
         """Return the numbers of an element."""
         if element.kind not in NUMBERS:
             raise ValueError(f"an element of the type {element.kind} stands where numbers should")
@@ -168,7 +168,7 @@ class _Elements:
         return self.resolve(held, system, class_name) if self.resolve and isinstance(held, np.ndarray) else None
 
 
-def read_variables(content: bytes, open_objects: Callable[[Array, str], Resolve]) -> dict[str, object]:
+def read_variables(content: bytes, open_objects: Callable[[AnyArray, str], Resolve]) -> dict[str, object]:
     """Return the variables of a file by name, as `_Elements.read_array` does.
 
     `open_objects` returns what resolves objects, of the structure that holds them all and the order of bytes.
@@ -194,7 +194,7 @@ def read_variables(content: bytes, open_objects: Callable[[Array, str], Resolve]
     return dict(reversed(found.items()))
 
 
-def _open_objects(content: bytes, size: int, open_objects: Callable[[Array, str], Resolve]) -> Resolve | None:
+def _open_objects(content: bytes, size: int, open_objects: Callable[[AnyArray, str], Resolve]) -> Resolve | None:
     order = ORDERS.get(content[2:4])
     if order is None:
         return None

@@ -14,15 +14,14 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.optional import need
 from seatsim.importing.readers.hdf5_parts import open_checked
-from seatsim.importing.readers.mat_elements import Array, Resolve, read_variables
+from seatsim.importing.readers.mat_elements import AnyArray, Resolve, read_variables
 from seatsim.importing.readers.naming import in_seconds
-from seatsim.importing.readers.reading import HDF5, USER_BLOCK
+from seatsim.importing.readers.reading import HDF5, USER_BLOCK, need
 from seatsim.importing.signals import TIME
 from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
 
-Value: TypeAlias = "NDArray[np.generic] | str | dict[str, Value] | list[Value] | None"
+Value: TypeAlias = "AnyArray | str | dict[str, Value] | list[Value] | None"
 """Numbers, a text, a structure, cells or structures of many; None for what is none of these."""
 
 REFERRED, SUBSYSTEM = "#refs#", "#subsystem#"
@@ -73,11 +72,11 @@ def _need_matio(module: str, kind: str) -> ModuleType:
         return need(module, kind)
 
 
-def _open_objects(held: Array, order: str) -> Resolve:
+def _open_objects(held: AnyArray, order: str) -> Resolve:
     return _subsystem(held, order).load_opaque_object  # type: ignore[no-any-return]
 
 
-def _subsystem(held: Array, order: str) -> Any:
+def _subsystem(held: AnyArray, order: str) -> Any:
     """Return what resolves objects, at most so many of them: objects may hold each other over and over."""
     base = _need_matio("matio.subsystem", "a table or another object of MATLAB").MatSubsystem
 

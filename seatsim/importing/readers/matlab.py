@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from seatsim.importing.readers.mat_elements import AnyArray
 from seatsim.importing.readers.mat_names import (
     ABSCISSAS,
     INDEX,
@@ -43,7 +43,6 @@ from seatsim.importing.signals import TIME, Array, DataFile, Group, Signal, add_
 from seatsim.schema.units import DIMENSIONS, find_conversion
 
 Structure = Mapping[str, Value]
-AnyArray = NDArray[np.generic]
 LATEST = 1e7
 """s; a start that is larger is a date."""
 

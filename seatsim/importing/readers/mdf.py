@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from seatsim.importing.optional import need
 from seatsim.importing.readers.mdf_blocks import check_blocks
 from seatsim.importing.readers.naming import note_left_out
-from seatsim.importing.readers.reading import TextLayout
+from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import DataFile, Group, Signal, add_channels
 from seatsim.schema.bounds import check_made
 

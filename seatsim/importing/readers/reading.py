@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -106,6 +107,20 @@ def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
         problem = f"cannot be read as {found.name} ({reason}); it is truncated, damaged, or of a kind that is not read"
         raise InputError(f"{path}: {problem}") from error
     return _checked(file._replace(format=found.name))
+
+
+def need(module: str, kind: str) -> ModuleType:
+    """Return an imported library of the extra `formats`.
+
+    Raises:
+        InputError: it is not installed; the sentence names the command that installs it.
+    """
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise InputError(
+            f'{kind} is read by {module.partition(".")[0]}; install it with: pip install "seatsim[formats]"'
+        ) from error
 
 
 def _content(path: Path) -> bytes:

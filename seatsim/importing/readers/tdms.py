@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from seatsim.importing.optional import need
 from seatsim.importing.readers.naming import scalar, signals_of, stated_unit
-from seatsim.importing.readers.reading import TextLayout
+from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.schema.bounds import BYTES_OF_PART, check_made
 from seatsim.schema.errors import InputError

@@ -34,16 +34,11 @@ LONGEST_NAME = 8
 
 
 class _Head(NamedTuple):
-    """The beginning of a table: its first lines, how they are written, and what those above the numbers say."""
+    """The beginning of a table: how it is written, and the lines above its numbers with what they say."""
 
-    lines: list[str]
     dialect: Dialect
     header: Header
-
-    @property
-    def above(self) -> list[str]:
-        """The lines above the first row of numbers."""
-        return self.lines[: self.header.lines]
+    above: list[str]
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
@@ -55,7 +50,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """
     content = as_utf8(content, layout.encoding)
     head = _read_head(path, content, layout)
-    body, notes = _clean(_without_lines(content, head.header.lines), head)
+    body, notes = _clean(_without_lines(content, len(head.above)), head)
     table = _table(path, content, body, head, notes)
     signals = _signals(table, head, notes)
     _check_texts(path, table, signals)
@@ -105,8 +100,7 @@ def _read_head(path: Path, content: bytes, layout: TextLayout) -> _Head:
     above = used[first] if layout.header is None else layout.header
     table = Rows(lines[used[first]], rows[first:], kinds[first:])
     names = fit_names(path, lines[:above], table, dialect, layout.header is not None)
-    header = split_header(names, len(names), len(rows[first]))
-    return _Head(lines, dialect, header._replace(lines=above))
+    return _Head(dialect, split_header(names, len(rows[first])), lines[:above])
 
 
 def _sample(content: bytes) -> list[str]:
