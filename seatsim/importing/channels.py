@@ -7,16 +7,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatsim.importing.alignment import Channel
-from seatsim.importing.clocks import Clocked, list_names
+from seatsim.importing.clocks import Clocked
 from seatsim.importing.doubts import doubt_channel
 from seatsim.importing.import_map import PRIMITIVE, ChannelMap
 from seatsim.importing.names import quantity_of
 from seatsim.importing.resampling import evened
-from seatsim.importing.signals import Array
+from seatsim.importing.signals import LISTED, Array
 from seatsim.importing.time_axis import Axis
 from seatsim.recordings.quality.damage import find_spikes
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.text import name_some
 from seatsim.schema.units import conversion
 
 SLOWER = 0.9
@@ -46,7 +47,7 @@ def no_column(name: str, column: str | None, group: str | None, clocked: Sequenc
     names = list(dict.fromkeys(signal.name for each in clocked for signal in each.group.signals))
     where = f" of group '{group}'" if group else ""
     hint = nearest(column, names)
-    return InputError(f"channels.{name}: no column '{column}'{where}{hint}; columns are {list_names(names)}")
+    return InputError(f"channels.{name}: no column '{column}'{where}{hint}; columns are {name_some(names, LISTED)}")
 
 
 def _column(name: str, entry: ChannelMap, column: str | None, clocked: Clocked) -> Array:

@@ -11,10 +11,11 @@ import numpy as np
 from seatsim.importing.axis_doubts import doubt_time
 from seatsim.importing.group_time import check_is_history, find_clock
 from seatsim.importing.import_map import AxisMap, ImportMap
-from seatsim.importing.signals import DataFile, Group
+from seatsim.importing.signals import LISTED, DataFile, Group
 from seatsim.importing.time_axis import Axis, even_axis, measured_axis, unbroken
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.text import name_some
 from seatsim.schema.units import DIMENSIONS, conversion
 
 LONGEST_FILL = 0.1
@@ -59,7 +60,7 @@ def _clock(file: DataFile, group: Group, stated: ImportMap, doubts: list[Issue])
     lacking = f"no column '{stated.time.column}'{nearest(stated.time.column, names)}" if stated.time else "no rate"
     raise InputError(
         f"{file.path}: states {lacking}; write sample_rate: or time: {{column: ...}} in the map; columns are"
-        f" {list_names(names)}"
+        f" {name_some(names, LISTED)}"
     )
 
 
@@ -81,22 +82,17 @@ def _timed(label: str, group: Group, time: AxisMap, rate: float | None, doubts: 
     """
     times = next(signal.values for signal in group.signals if signal.name == time.column)
     there = np.isfinite(times)
-    signals = tuple(signal._replace(values=signal.values[there]) for signal in group.signals)
+    group = group.take(there)
     axis = measured_axis(conversion(time.unit or "s", DIMENSIONS["time"]).factor * times[there])
     if axis is None:
         raise InputError(f"{label}: column '{time.column}' does not rise as a time does; name another one under time")
     if axis.resolution and rate is not None:
-        return group._replace(signals=signals), even_axis(int(there.sum()), rate, float(axis.times[0]))
+        return group, even_axis(group.rows, rate, float(axis.times[0]))
     found = list(doubt_time(axis, f"{label}, {time.column}"))
     if axis.resolution and not axis.is_even:
         raise InputError(found[-1].sentence)
     doubts += found
-    return group._replace(signals=signals), axis
-
-
-def list_names(names: Sequence[str], most: int = 12) -> str:
-    """Return the first names as they stand in an error."""
-    return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
+    return group, axis
 
 
 def split_at_gaps(
@@ -124,14 +120,13 @@ def _parts(name: str, broken: Clocked, notes: list[str]) -> list[tuple[str, list
         if lasts < SHORTEST_RUN:
             short.append(f"{lasts:.3g} s from {broken.axis.times[begin]:.6g} s on")
         else:
-            signals = tuple(signal._replace(values=signal.values[begin:end]) for signal in broken.group.signals)
             axis = unbroken(broken.axis.times[begin:end], broken.axis.rate, broken.axis.is_even)
-            part = broken._replace(group=broken.group._replace(signals=signals), axis=axis)
+            part = broken._replace(group=broken.group.take(slice(begin, end)), axis=axis)
             parts.append((f"{name}-{len(parts) + 1}", [part]))
     if not parts:
         raise InputError(f"{broken.label}: no part between its gaps lasts {SHORTEST_RUN:g} s; nothing is left")
     if short:
-        notes.append(f"{broken.label}: parts of less than {SHORTEST_RUN:g} s are left out: {list_names(short)}")
+        notes.append(f"{broken.label}: parts of less than {SHORTEST_RUN:g} s are left out: {name_some(short, LISTED)}")
     return parts
 
 
@@ -151,6 +146,5 @@ def _without_repeats(clocked: Clocked) -> Clocked:
             f"{clocked.label}: a gap of {longest:.3g} s is not filled, {LONGEST_FILL} s at most are; write gaps: split"
         )
     kept = np.concatenate([[True], steps > 0.0])
-    signals = tuple(signal._replace(values=signal.values[kept]) for signal in clocked.group.signals)
     axis = unbroken(times[kept], clocked.axis.rate, is_even=False)
-    return clocked._replace(group=clocked.group._replace(signals=signals), axis=axis)
+    return clocked._replace(group=clocked.group.take(kept), axis=axis)

@@ -15,7 +15,7 @@ from seatsim.importing.matching import propose
 from seatsim.importing.nominal import make_nominal
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.road import assemble_road
-from seatsim.importing.signals import DataFile
+from seatsim.importing.signals import LISTED, DataFile
 from seatsim.importing.writing import write_recording, write_road
 from seatsim.recordings.channel_units import CHANNELS, COMMANDS
 from seatsim.recordings.quality.damage import QUIET, noise_of
@@ -24,11 +24,11 @@ from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.errors import InputError
 from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.text import name_some
 
 OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
 
-MOST_NAMES = 8
 """Most columns that are named as left out."""
 
 
@@ -130,10 +130,9 @@ def _say_left_out(files: Sequence[DataFile], used: ImportMap) -> list[str]:
     left = [f"'{name}'" for name in dict.fromkeys(columns) if name not in taken]
     if not left:
         return []
-    more = f" and {len(left) - MOST_NAMES} more" if len(left) > MOST_NAMES else ""
     channels = ", ".join(name for name in CHANNELS.get(used.rig, ()) if name not in used.channels)
     return [
-        f"left out, for want of a channel with such a name: {', '.join(left[:MOST_NAMES])}{more}; to use one, state it"
+        f"left out, for want of a channel with such a name: {name_some(left, LISTED)}; to use one, state it"
         f" under channels of the map" + (f" as one of {channels}" if channels else "")
     ]
 

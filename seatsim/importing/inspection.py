@@ -158,11 +158,11 @@ def summarise(signal: Signal, unit: str, channel: str | None, rate: float | None
     low, high, mean = float(np.min(values)), float(np.max(values)), float(np.mean(values))
     rms = float(np.sqrt(values @ values / len(values)))
     return ChannelSummary(
-        signal.name, unit, channel, rate, len(signal.values), low, high, mean, rms, noise, spark_of(values)
+        signal.name, unit, channel, rate, len(signal.values), low, high, mean, rms, noise, _spark_of(values)
     )
 
 
-def spark_of(values: Array) -> str:
+def _spark_of(values: Array) -> str:
     """Return the range of a channel over its length, as a line of blocks: each is as high as the swing there."""
     edges = np.unique(np.linspace(0, len(values), SPARKS + 1).astype(int))
     pieces = [values[a:b] for a, b in pairwise(edges)]

@@ -13,13 +13,13 @@ from typing import NamedTuple
 from seatsim.importing.group_time import check_is_history, find_clock, is_spectrum
 from seatsim.importing.import_map import AxisMap, ChannelMap, Gaps, ImportMap, Rig
 from seatsim.importing.names import DIMENSION, Meaning, is_of, read_name, without_unit
-from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.importing.signals import LISTED, DataFile, Group, Signal
 from seatsim.recordings.channel_units import CHANNELS
+from seatsim.schema.text import name_some
 from seatsim.schema.units import DIMENSIONS
 
 NEEDED = {"seat": ("floor_acceleration",), "damper_bench": ("displacement", "damper_force"), "road": ()}
 BENCH_ONLY = ("displacement", "velocity", "command_voltage")
-LISTED = 12
 
 
 class Column(NamedTuple):
@@ -165,7 +165,7 @@ def _entry(name: str, candidates: Sequence[Column], unit: str) -> tuple[ChannelM
         stated = unit
     entry = ChannelMap(first.signal.name, stated or None)
     if len(names) > 1 and not exact:
-        return entry, f"{name}: {' and '.join(names[:LISTED])} fit equally well; keep one as its column"
+        return entry, f"{name}: {name_some(names, LISTED)} fit equally well; keep one as its column"
     if first.meaning.is_contradicted:
         seen = f"'{first.signal.name}' is stated in {first.meaning.unit}, which is no unit of it"
         return entry, f"{name}: {seen}; write unit, such as {_examples(unit)}, with scale and offset, or leave it out"
@@ -191,7 +191,7 @@ def _missing(name: str, columns: Sequence[Column], channels: dict[str, ChannelMa
     left = list(
         dict.fromkeys(c.signal.name for c in columns if c.signal.name not in taken and c.meaning.quantity != "time")
     )
-    listed = ", ".join(left[:LISTED]) + (", ..." if len(left) > LISTED else "")
+    listed = ", ".join(left[:LISTED]) + (", ..." if len(left) > LISTED else "") or "none"
     return f"{name}: no column is it by name; write channels: {{{name}: {{column: ..., unit: ...}}}}; left are {listed}"
 
 

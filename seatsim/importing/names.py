@@ -51,19 +51,9 @@ PLACES: Mapping[str, tuple[str, ...]] = {
 }  # fmt: skip
 """Words for where a sensor is; the first place that fits counts, so that a seat's frame is a frame."""
 COMMANDS = (
-    "command",
-    "commanded",
-    "cmd",
-    "soll",
-    "setpoint",
-    "sollwert",
-    "consigne",
-    "commande",
-    "zhiling",
-    "target",
-    "ref",
+    "command", "commanded", "cmd", "soll", "setpoint", "sollwert", "consigne", "commande", "zhiling", "target", "ref",
     "demand",
-)
+)  # fmt: skip
 AXES: Mapping[str, tuple[str, ...]] = {
     "x": ("x", "ax", "accx", "longitudinal", "fore", "laengs", "langs"),
     "y": ("y", "ay", "accy", "lateral", "quer"),
@@ -116,7 +106,7 @@ class Meaning(NamedTuple):
 def read_name(name: str, unit: str = "") -> Meaning:
     """Return what the name of a column says, with the unit that its file states beside it."""
     plain, words = _plain(name), _words(name)
-    if any(word in words or (len(word) >= LONG and word in plain) for word in OTHERS):
+    if any(_has(word, plain, words) for word in OTHERS):
         return Meaning(None)
     quantity, stated = _read_quantity(name, unit)
     return Meaning(

@@ -9,13 +9,13 @@ import numpy as np
 from seatsim.importing.axis_doubts import doubt_distance
 from seatsim.importing.doubts import doubt_channel
 from seatsim.importing.import_map import ImportMap
-from seatsim.importing.signals import Array, DataFile
+from seatsim.importing.signals import LISTED, Array, DataFile
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.text import name_some
 from seatsim.schema.units import DIMENSIONS, conversion
 
 DISTANCE = "distance_m"
-LISTED = 8
 
 
 def assemble_road(files: Sequence[DataFile], stated: ImportMap) -> tuple[dict[str, Array], list[Issue]]:
@@ -43,8 +43,7 @@ def assemble_road(files: Sequence[DataFile], stated: ImportMap) -> tuple[dict[st
     if len(road) < 2:
         raise InputError(f"{files[0].path}: {doubts[-1].sentence}; no track is measured over the whole length")
     if left_out:
-        listed = ", ".join(left_out[:LISTED]) + (", ..." if len(left_out) > LISTED else "")
-        text = f"tracks that are not measured over the whole length are left out: {listed}"
+        text = f"tracks that are not measured over the whole length are left out: {name_some(left_out, LISTED)}"
         doubts.append(Issue("note", "missing", text))
     return road, doubts
 
@@ -56,5 +55,5 @@ def _column(file: DataFile, name: str, unit: str, key: str) -> Array:
         if signal is not None:
             return conversion(unit or signal.unit or "m", DIMENSIONS["length"]).factor * signal.values
     names = [signal.name for group in file.groups for signal in group.signals]
-    listed = ", ".join(names[:LISTED])
+    listed = name_some(names, LISTED)
     raise InputError(f"{file.path}: {key}: no column '{name}'{nearest(name, names)}; columns are {listed}")

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-
-
 TIME = "time"
 """Name of a channel of times, where its file has no other for it."""
+LISTED = 8
+"""Names that a sentence lists at most."""
 
 
 class Signal(NamedTuple):
@@ -46,6 +46,10 @@ class Group(NamedTuple):
         """Return the channel of this name."""
         return next((signal for signal in self.signals if signal.name == name), None)
 
+    def take(self, rows: slice | NDArray[np.bool_]) -> Group:
+        """Return the group with some of its rows."""
+        return self._replace(signals=tuple(signal._replace(values=signal.values[rows]) for signal in self.signals))
+
 
 class DataFile(NamedTuple):
     """A file's groups, the name of its format, and sentences on what of it was not taken."""
@@ -56,7 +60,7 @@ class DataFile(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-def groups_by_length(name: str, signals: list[Signal], rate: float | None = None) -> list[Group]:
+def groups_by_length(name: str, signals: list[Signal], rate: float | None) -> list[Group]:
     """Return channels as groups of equal length, in the order in which the lengths come."""
     lengths = dict.fromkeys(len(signal.values) for signal in signals)
     parts = [tuple(signal for signal in signals if len(signal.values) == length) for length in lengths]

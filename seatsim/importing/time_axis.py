@@ -39,7 +39,7 @@ class Axis(NamedTuple):
     resolution: float = 0.0
 
 
-def even_axis(rows: int, rate: float, start: float = 0.0) -> Axis:
+def even_axis(rows: int, rate: float, start: float) -> Axis:
     """Return the axis of rows at a stated rate."""
     return unbroken(start + np.arange(rows) / rate, rate)
 
@@ -61,11 +61,11 @@ def measured_axis(times: Array) -> Axis | None:
     usual = float(np.median(rising))
     breaks = np.flatnonzero((steps > GAP * usual) | (steps <= 0.0)) + 1
     if len(breaks) > 0.05 * len(steps) and not (steps < 0.0).any():
-        return unbroken(times, whole_rate((len(times) - 1) / float(times[-1] - times[0])), is_even=False)
+        return unbroken(times, _whole_rate((len(times) - 1) / float(times[-1] - times[0])), is_even=False)
     parts = np.split(times, breaks)
     spans = np.array([part[-1] - part[0] for part in parts])
     counted = np.array([len(part) - 1 for part in parts])
-    rate = whole_rate(float(np.sum(counted) / np.sum(spans)))
+    rate = _whole_rate(float(np.sum(counted) / np.sum(spans)))
     off = max(float(np.max(np.abs(part - np.linspace(part[0], part[-1], len(part))))) for part in parts)
     jumps = steps[breaks - 1]
     lost = int(np.sum(np.round(jumps[jumps > 0.0] * rate) - 1))
@@ -89,7 +89,7 @@ def _rounded_axis(times: Array, steps: Array) -> Axis | None:
     slopes = ((times[last] - times[first]) / (last - first), float(np.polyfit(rows, times - times[0], 1)[0]))
     off, slope = min((float(np.ptp(times - each * rows)), each) for each in slopes)
     if off <= (SHARED if is_shared else ROUNDED) * resolution:
-        rate = whole_rate(1.0 / slope, 1.0 / len(rows))
+        rate = _whole_rate(1.0 / slope, 1.0 / len(rows))
         return unbroken(times[first] + (rows - first) / rate, rate, resolution=resolution)
     return unbroken(times, 1.0 / slope, is_even=False, resolution=resolution) if is_shared else None
 
@@ -101,6 +101,6 @@ def _resolution(times: Array, steps: Array) -> float:
     return float(np.min(np.diff(different))) if len(different) > 1 else float(different[0])
 
 
-def whole_rate(rate: float, near: float = WHOLE) -> float:
+def _whole_rate(rate: float, near: float = WHOLE) -> float:
     """Return a rate, or the whole number of Hz that it is apart from rounding."""
     return float(round(rate)) if round(rate) and abs(rate / round(rate) - 1.0) < near else float(f"{rate:.8g}")

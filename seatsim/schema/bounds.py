@@ -13,7 +13,7 @@ from seatsim.schema.guarded import in_mib
 
 LEAST, LARGEST = 2**24, 2**30
 """Bytes that any file may make, and up to which it may make more than a number of each of its bytes."""
-TIMES, NUMBER = 100, 8
+TIMES, BYTES_OF_NUMBER = 100, 8
 """How many times its size a file may make: where it is packed or doubled, and where each byte becomes a number."""
 BYTES_OF_PART = 256
 """Bytes that a part takes in memory, however small it is: a channel, a group, a text."""
@@ -32,7 +32,7 @@ class Part(NamedTuple):
 
 def permitted_of(size: int) -> int:
     """Return how many bytes a file of `size` bytes may make."""
-    return max(LEAST, min(LARGEST, TIMES * size), NUMBER * size)
+    return max(LEAST, min(LARGEST, TIMES * size), BYTES_OF_NUMBER * size)
 
 
 def check_made(made: float, size: int, what: str = "what it states") -> None:

@@ -73,7 +73,7 @@ def expect(path: Path | str, what: str) -> Iterator[None]:
 def in_mib(size: float) -> str:
     """Return a number of bytes as it stands in a sentence."""
     for unit, bytes_of_unit in (("TiB", 2**40), ("GiB", 2**30), ("MiB", 2**20)):
-        if size >= bytes_of_unit:
+        if size >= 0.976 * bytes_of_unit:  # three digits hold no more than 999 of the next smaller unit
             return f"{size / bytes_of_unit:.3g} {unit}"
     return f"{size / 2**10:.3g} KiB"
 

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from seatsim.schema.errors import InputError
+from seatsim.schema.guarded import in_mib
 
 NUMBERS_OF_STEP = 60
 """Numbers that a simulated step takes: inputs, channels of the history, and copies of some."""
@@ -15,8 +16,7 @@ def check_memory(size: float, what: str, remedy: str) -> None:
     """Raise InputError where `what` needs more bytes than there are; `remedy` is what to do about it."""
     there = find_available()
     if there is not None and size > there:
-        needed, free = (f"{part / 2**30:.3g} GiB" for part in (size, there))
-        raise InputError(f"{what} need {needed} of memory, where {free} are free; {remedy}")
+        raise InputError(f"{what} need {in_mib(size)} of memory, where {in_mib(there)} are free; {remedy}")
 
 
 def check_steps(steps: float) -> None:

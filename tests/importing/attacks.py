@@ -4,6 +4,7 @@ import io
 import struct
 import zipfile
 import zlib
+from functools import partial
 
 import numpy as np
 import pytest
@@ -63,10 +64,16 @@ def hdf5_virtual_of_itself(folder):
     return _hdf5(fill)
 
 
-def mat73_doubling_references(folder):
+def _mat73(folder, fill):
     h5py = pytest.importorskip("h5py")
-    path = folder / "cells.mat"
+    path = folder / "a.mat"
     with h5py.File(path, "w", userblock_size=512) as file:
+        fill(file, h5py)
+    return b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM" + path.read_bytes()[128:]
+
+
+def mat73_doubling_references(folder):
+    def fill(file, h5py):
         cell = file.create_dataset("#refs#/a", data=ROWS[None, :])
         cell.attrs["MATLAB_class"] = np.bytes_("double")
         for number in range(DOUBLINGS):
@@ -75,26 +82,25 @@ def mat73_doubling_references(folder):
             outer.attrs["MATLAB_class"] = np.bytes_("cell")
             cell = outer
         file["cells"] = cell
-    return b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM" + path.read_bytes()[128:]
+
+    return _mat73(folder, fill)
 
 
 def mat73_cell_in_itself(folder):
-    h5py = pytest.importorskip("h5py")
-    path = folder / "cells.mat"
-    with h5py.File(path, "w", userblock_size=512) as file:
+    def fill(file, h5py):
         cell = file.create_dataset("cells", (1, 1), h5py.ref_dtype)
         cell[0, 0] = cell.ref
         cell.attrs["MATLAB_class"] = np.bytes_("cell")
-    return b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM" + path.read_bytes()[128:]
+
+    return _mat73(folder, fill)
 
 
 def mat73_large_empty_array(folder):
-    h5py = pytest.importorskip("h5py")
-    path = folder / "empty.mat"
-    with h5py.File(path, "w", userblock_size=512) as file:
+    def fill(file, _):
         empty = file.create_dataset("empty", data=np.array([2**28, 1], np.uint64))
         empty.attrs["MATLAB_class"], empty.attrs["MATLAB_empty"] = np.bytes_("double"), np.uint8(1)
-    return b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM" + path.read_bytes()[128:]
+
+    return _mat73(folder, fill)
 
 
 def _mat(*elements):
@@ -142,31 +148,11 @@ def _link(content, block, number, address):
     struct.pack_into("<Q", content, block + 24 + 8 * number, address)
 
 
-def _mdf_chain(kind, link, folder):
+def _mdf_in_a_circle(kind, link, folder):
     content = _written(exports.mdf, "a.mf4", folder)
     block = next(_blocks(content, kind))
     _link(content, block, link, block)
     return bytes(content)
-
-
-def mdf_groups_in_a_circle(folder):
-    return _mdf_chain(b"##DG", 0, folder)
-
-
-def mdf_channel_groups_in_a_circle(folder):
-    return _mdf_chain(b"##CG", 0, folder)
-
-
-def mdf_channels_in_a_circle(folder):
-    return _mdf_chain(b"##CN", 0, folder)
-
-
-def mdf_channel_composed_of_itself(folder):
-    return _mdf_chain(b"##CN", 1, folder)
-
-
-def mdf_history_in_a_circle(folder):
-    return _mdf_chain(b"##FH", 0, folder)
 
 
 def mdf_doubling_conversions(folder):
@@ -198,24 +184,9 @@ def _mdf_packed(stated, folder):
     return bytes(content)
 
 
-def mdf_packed_zeros(folder):
-    return _mdf_packed(2**26, folder)
-
-
-def mdf_packed_zeros_that_state_less(folder):
-    return _mdf_packed(64 * len(ROWS), folder)
-
-
-def mdf3_channels_in_a_circle(folder):
+def _mdf3_in_a_circle(kind, folder):
     content = _written(exports.mdf, "a.mdf", folder)
-    block = content.index(b"CN", 64)
-    struct.pack_into("<I", content, block + 4, block)
-    return bytes(content)
-
-
-def mdf3_groups_in_a_circle(folder):
-    content = _written(exports.mdf, "a.mdf", folder)
-    block = content.index(b"DG", 64)
+    block = content.index(kind, 64)
     struct.pack_into("<I", content, block + 4, block)
     return bytes(content)
 
@@ -295,36 +266,41 @@ def uff_values_beyond_the_file(folder):
     return bytes(_written(exports.uff, "a.uff", folder)).replace(b"%10d" % len(ROWS), b"%10d" % (FAR - 1))
 
 
-def _parquet(table, write):
+def _of_one_value(write, **options):
+    import pyarrow as pa
+
     content = io.BytesIO()
-    write(table, content)
+    write(pa.table({"a": np.zeros(2**24, "u1")}), content, **options)
     return content.getvalue()
 
 
 def parquet_of_one_value(folder):
-    import pyarrow as pa
     from pyarrow import parquet
 
-    return _parquet(pa.table({"a": np.zeros(2**24, "u1")}), parquet.write_table)
+    return _of_one_value(parquet.write_table)
 
 
 def feather_of_one_value(folder):
-    import pyarrow as pa
     from pyarrow import feather
 
-    zeros = pa.table({"a": np.zeros(2**24, "u1")})
-    return _parquet(zeros, lambda table, to: feather.write_feather(table, to, compression="zstd", chunksize=2**24))
+    return _of_one_value(feather.write_feather, compression="zstd", chunksize=2**24)
 
 
 def opencrg_rows_beyond_the_file(folder):
-    exports.opencrg(folder / "a.crg", np.zeros((200, 3)))
-    return (
-        (folder / "a.crg")
-        .read_bytes()
-        .replace(b"REFERENCE_LINE_INCREMENT = 0.01 ", b"REFERENCE_LINE_INCREMENT = 1e-99")
-    )
+    content = bytes(_written(lambda path, _: exports.opencrg(path, np.zeros((200, 3))), "a.crg", folder))
+    return content.replace(b"REFERENCE_LINE_INCREMENT = 0.01 ", b"REFERENCE_LINE_INCREMENT = 1e-99")
 
 
 ATTACKS = {name: make for name, make in list(globals().items()) if name.partition("_")[0] in (
-    "hdf5", "mat73", "mat", "mdf", "mdf3", "xlsx", "tdms", "rpc", "uff", "parquet", "feather", "opencrg")}  # fmt: skip
+    "hdf5", "mat73", "mat", "mdf", "xlsx", "tdms", "rpc", "uff", "parquet", "feather", "opencrg")} | {
+    "mdf_groups_in_a_circle": partial(_mdf_in_a_circle, b"##DG", 0),
+    "mdf_channel_groups_in_a_circle": partial(_mdf_in_a_circle, b"##CG", 0),
+    "mdf_channels_in_a_circle": partial(_mdf_in_a_circle, b"##CN", 0),
+    "mdf_channel_composed_of_itself": partial(_mdf_in_a_circle, b"##CN", 1),
+    "mdf_history_in_a_circle": partial(_mdf_in_a_circle, b"##FH", 0),
+    "mdf_packed_zeros": partial(_mdf_packed, 2**26),
+    "mdf_packed_zeros_that_state_less": partial(_mdf_packed, 64 * len(ROWS)),
+    "mdf3_channels_in_a_circle": partial(_mdf3_in_a_circle, b"CN"),
+    "mdf3_groups_in_a_circle": partial(_mdf3_in_a_circle, b"DG"),
+}  # fmt: skip
 """Name of an attack, of which the first word is the format, and what makes the file."""

@@ -30,16 +30,8 @@ def csv_gz(path, table):
 
 def german_csv(path, table):
     """A title, names and a row of units, semicolons, decimal commas, another encoding."""
-    names = [
-        "Zeit",
-        "Beschl. Boden",
-        "Beschl. Sitzrahmen",
-        "Beschl. Fahrer",
-        "Federweg",
-        "Dämpferkraft",
-        "Strom Soll",
-        "Strom Ist",
-    ]
+    names = ["Zeit", "Beschl. Boden", "Beschl. Sitzrahmen", "Beschl. Fahrer", "Federweg", "Dämpferkraft", "Strom Soll",
+             "Strom Ist"]  # fmt: skip
     units = ["ms", "m/s²", "g", "m/s²", "mm", "kN", "mA", "A"]
     factors = [1e3, 1, 1 / 9.80665, 1, 1e3, 1e-3, 1e3, 1]
     rows = np.column_stack([factor * values for factor, values in zip(factors, table.values(), strict=True)])
@@ -148,13 +140,10 @@ def mdf(path, table):
 def tdms(path, table):
     nptdms = pytest.importorskip("nptdms")
     with nptdms.TdmsWriter(path) as writer:
-        writer.write_segment(
-            [
-                nptdms.ChannelObject("daq", name, values, {"unit_string": UNITS[name], "wf_increment": 0.002})
-                for name, values in table.items()
-                if name != "time"
-            ]
-        )
+        writer.write_segment([
+            nptdms.ChannelObject("daq", name, values, {"unit_string": UNITS[name], "wf_increment": 0.002})
+            for name, values in table.items() if name != "time"
+        ])  # fmt: skip
 
 
 def uff(path, table):
@@ -163,34 +152,12 @@ def uff(path, table):
     for name, values in table.items():
         if name != "time":
             data = pyuff.prepare_58(
-                id1=name,
-                func_type=1,
-                rsp_node=1,
-                rsp_dir=3,
-                ref_node=1,
-                ref_dir=3,
-                x=table["time"],
-                data=values,
-                binary=1,
-                abscissa_spacing=1,
-                num_pts=len(values),
-                abscissa_inc=0.002,
-                abscissa_min=0.0,
-                ordinate_axis_units_lab=UNITS[name],
-                ordinate_spec_data_type=12,
-                abscissa_spec_data_type=17,
-                orddenom_spec_data_type=0,
-                z_axis_axis_units_lab="NONE",
-                ver_num=0,
-                load_case_id=0,
-                rsp_ent_name="NONE",
-                ref_ent_name="NONE",
-                z_axis_spec_data_type=0,
-                id2="NONE",
-                id3="NONE",
-                id4="NONE",
-                id5="NONE",
-            )
+                id1=name, func_type=1, rsp_node=1, rsp_dir=3, ref_node=1, ref_dir=3, x=table["time"], data=values,
+                binary=1, abscissa_spacing=1, num_pts=len(values), abscissa_inc=0.002, abscissa_min=0.0,
+                ordinate_axis_units_lab=UNITS[name], ordinate_spec_data_type=12, abscissa_spec_data_type=17,
+                orddenom_spec_data_type=0, z_axis_axis_units_lab="NONE", ver_num=0, load_case_id=0, rsp_ent_name="NONE",
+                ref_ent_name="NONE", z_axis_spec_data_type=0, **dict.fromkeys(("id2", "id3", "id4", "id5"), "NONE"),
+            )  # fmt: skip
             file.write_sets(data, "add")
 
 
@@ -198,18 +165,10 @@ def rpc(path, table):
     channels = {name: values for name, values in table.items() if name != "time"}
     points, frame = len(table["time"]), 1024
     frames = -(-points // frame)
-    header = {
-        "FORMAT": "BINARY_IEEE_LITTLE_END",
-        "NUM_HEADER_BLOCKS": "",
-        "NUM_PARAMS": "",
-        "FILE_TYPE": "TIME_HISTORY",
-        "DATA_TYPE": "FLOATING_POINT",
-        "DELTA_T": "2.0000000E-03",
-        "CHANNELS": str(len(channels)),
-        "PTS_PER_FRAME": str(frame),
-        "PTS_PER_GROUP": str(2 * frame),
-        "FRAMES": str(frames),
-    }
+    header = {"FORMAT": "BINARY_IEEE_LITTLE_END", "NUM_HEADER_BLOCKS": "", "NUM_PARAMS": "",
+              "FILE_TYPE": "TIME_HISTORY", "DATA_TYPE": "FLOATING_POINT", "DELTA_T": "2.0000000E-03",
+              "CHANNELS": str(len(channels)), "PTS_PER_FRAME": str(frame), "PTS_PER_GROUP": str(2 * frame),
+              "FRAMES": str(frames)}  # fmt: skip
     for number, name in enumerate(channels, 1):
         header |= {f"DESC.CHAN_{number}": name, f"UNITS.CHAN_{number}": UNITS[name], f"SCALE.CHAN_{number}": "1.0"}
     header["NUM_PARAMS"] = str(len(header))
@@ -224,47 +183,21 @@ def rpc(path, table):
 
 
 FORMATS = {
-    "a.csv": csv,
-    "a.csv.gz": csv_gz,
-    "german.csv": german_csv,
-    "a.parquet": parquet,
-    "a.feather": feather,
-    "a.xlsx": xlsx,
-    "a.h5": hdf5,
-    "a.mat": mat5,
-    "v73.mat": mat73,
-    "table.mat": mat_timetable,
-    "table73.mat": mat_timetable,
-    "simulink.mat": simulink,
-    "a.lvm": lvm,
-    "a.mdf": mdf,
-    "a.mf4": mdf,
-    "a.tdms": tdms,
-    "a.uff": uff,
-    "a.rsp": rpc,
-}
+    "a.csv": csv, "a.csv.gz": csv_gz, "german.csv": german_csv, "a.parquet": parquet, "a.feather": feather,
+    "a.xlsx": xlsx, "a.h5": hdf5, "a.mat": mat5, "v73.mat": mat73, "table.mat": mat_timetable,
+    "table73.mat": mat_timetable, "simulink.mat": simulink, "a.lvm": lvm, "a.mdf": mdf, "a.mf4": mdf, "a.tdms": tdms,
+    "a.uff": uff, "a.rsp": rpc,
+}  # fmt: skip
 """Name of a file, and what writes it."""
 
 
 def opencrg(path, elevations, step=0.01, kind="KRBI"):
     """A road of OpenCRG: elevations of shape (rows, tracks), 0.5 m apart."""
     rows, tracks = elevations.shape
-    lines = [
-        "$CT",
-        "a road",
-        "$",
-        "$ROAD_CRG",
-        "REFERENCE_LINE_START_U = 0.0",
-        f"REFERENCE_LINE_END_U = {(rows - 1) * step:.6f}",
-        f"REFERENCE_LINE_INCREMENT = {step}   ! m",
-        "LONG_SECTION_V_RIGHT = -0.50",
-        "LONG_SECTION_V_LEFT = 0.50",
-        "$",
-        "$KD_DEFINITION",
-        f"#:{kind}",
-        "U:reference line u,m",
-        "D:reference line phi,rad",
-    ]
+    lines = ["$CT", "a road", "$", "$ROAD_CRG", "REFERENCE_LINE_START_U = 0.0",
+             f"REFERENCE_LINE_END_U = {(rows - 1) * step:.6f}", f"REFERENCE_LINE_INCREMENT = {step}   ! m",
+             "LONG_SECTION_V_RIGHT = -0.50", "LONG_SECTION_V_LEFT = 0.50", "$", "$KD_DEFINITION", f"#:{kind}",
+             "U:reference line u,m", "D:reference line phi,rad"]  # fmt: skip
     lines += [f"D:long section {number + 1},m" for number in range(tracks)] + ["$", "$" * 72]
     table = np.column_stack([np.zeros(rows), elevations])
     head = ("\n".join(lines) + "\n").encode()

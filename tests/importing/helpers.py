@@ -1,6 +1,12 @@
 """What several tests of imports use."""
 
 import pandas as pd
+import pytest
+
+LET_LIBRARIES_WARN = pytest.mark.filterwarnings(
+    "ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning"
+)
+"""For tests with files that other libraries write."""
 
 
 def read_run(folder, run="run-a"):

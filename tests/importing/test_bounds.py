@@ -9,11 +9,9 @@ from seatsim.schema.bounds import LEAST, TIMES, Part, TooMuchError, check_made, 
 from seatsim.schema.errors import InputError
 
 from .attacks import ATTACKS, sheet
+from .helpers import LET_LIBRARIES_WARN
 
-pytestmark = pytest.mark.filterwarnings(
-    "ignore::ResourceWarning",
-    "ignore::pytest.PytestUnraisableExceptionWarning",  # of libraries that write
-)
+pytestmark = LET_LIBRARIES_WARN
 
 
 @pytest.mark.parametrize("name", ATTACKS)

@@ -11,12 +11,9 @@ from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
 
 from . import exports
-from .helpers import read_run
+from .helpers import LET_LIBRARIES_WARN, read_run
 
-pytestmark = pytest.mark.filterwarnings(
-    "ignore::ResourceWarning",
-    "ignore::pytest.PytestUnraisableExceptionWarning",  # of libraries that write
-)
+pytestmark = LET_LIBRARIES_WARN
 
 
 @pytest.fixture(params=exports.FORMATS, scope="module")

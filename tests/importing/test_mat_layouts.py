@@ -1,5 +1,8 @@
 """MAT files as many programs lay them out: channels, units, rates and times are those that stand there."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,6 +10,8 @@ from scipy.io import savemat
 
 from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
+
+from . import exports
 
 TIME = 0.002 * np.arange(500)
 FORCE, FLOOR = 100.0 * np.sin(9.0 * TIME), np.cos(7.0 * TIME)
@@ -65,15 +70,7 @@ EXPECTED = {
     "matrix": {"data#1", "data#2"},
     "x, y, z": {"x", "y", "z"},
 }
-UNITS = {
-    "timeseries, even": "N",
-    "dSPACE": "N",
-    "catman": "N",
-    "imc": "N",
-    "flat": "N",
-    "cells": "N",
-    "timeseries": "N",
-}
+IN_NEWTON = ("timeseries, even", "dSPACE", "catman", "imc", "flat", "cells", "timeseries")
 
 
 def clocked(file):
@@ -98,7 +95,7 @@ def test_channels_have_the_times_and_units_that_stand_beside_them(layout, tmp_pa
     values, times, unit = found[first]
     start = 0.25 if layout in ("imc", "timeseries, even") else 0.0
     assert np.array_equal(values, FORCE) and times == pytest.approx(start + TIME, abs=1e-9)
-    assert unit == UNITS.get(layout, "") or layout == "Simulink, Dataset"
+    assert unit == ("N" if layout in IN_NEWTON else "") or layout == "Simulink, Dataset"
     if layout in ("Dewesoft", "dSPACE, two rates"):
         assert np.diff(found["Data1_floor" if layout == "Dewesoft" else "floor"][1])[0] == pytest.approx(0.004)
     assert not file.notes
@@ -118,6 +115,18 @@ def test_tables_and_timetables_of_matlab_are_groups(version, tmp_path):
     assert np.array_equal(groups["timed"].find("floor").values, FLOOR)
     assert np.array_equal(groups["table"].find("force").values, FORCE[::2])
     assert "none.force" in file.notes[0]
+
+
+@pytest.mark.parametrize("name", ["table.mat", "table73.mat"])
+def test_pandas_keeps_texts_as_before_a_table_of_matlab_was_read(name, tmp_path):
+    exports.mat_timetable(tmp_path / name, {"time": TIME, "force": FORCE})
+    program = (
+        "import sys, warnings; from pathlib import Path; import pandas as pd; warnings.simplefilter('ignore');"
+        "from seatsim.importing.readers.reading import read_file; pd.set_option('future.infer_string', False);"
+        "assert read_file(Path(sys.argv[1])).groups and 'matio' in sys.modules;"
+        "assert not pd.get_option('future.infer_string')"
+    )
+    subprocess.run([sys.executable, "-c", program, str(tmp_path / name)], check=True)
 
 
 @pytest.mark.parametrize("version", ["v7", "v7.3"])

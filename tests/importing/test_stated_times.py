@@ -8,13 +8,10 @@ from seatsim.importing.importing import import_files
 from seatsim.importing.readers.reading import read_file
 from seatsim.schema.errors import InputError
 
-from .helpers import read_run
+from .helpers import LET_LIBRARIES_WARN, read_run
 from .test_alignment import band_limited
 
-pytestmark = pytest.mark.filterwarnings(
-    "ignore::ResourceWarning",
-    "ignore::pytest.PytestUnraisableExceptionWarning",  # of libraries that write
-)
+pytestmark = LET_LIBRARIES_WARN
 TIME = 0.002 * np.arange(5000)
 MORNING = np.datetime64("2026-03-01T09:51:40.500")
 
@@ -86,7 +83,7 @@ def lvm(x_columns, tables, decimal=".", steps=(0.01, 0.01), starts=("09:51:40.5"
 T = 0.01 * np.arange(50)
 F, A = np.sin(20.0 * T), np.cos(20.0 * T)
 NOTHING = np.full(50, np.nan)
-SLOW = np.where(np.arange(50) < 25, np.roll(np.cos(40.0 * T), 0), np.nan)
+SLOW = np.where(np.arange(50) < 25, np.cos(40.0 * T), np.nan)
 
 
 @pytest.mark.parametrize(

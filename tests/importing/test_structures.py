@@ -9,16 +9,13 @@ from scipy.io import loadmat, savemat
 
 from seatsim.importing.importing import import_files
 from seatsim.importing.readers.mat_values import read_values
-from seatsim.importing.readers.reading import read_file
+from seatsim.importing.readers.reading import TextLayout, read_file
 from seatsim.schema.errors import InputError
 
-from .helpers import read_run
+from .helpers import LET_LIBRARIES_WARN, read_run
 from .test_alignment import band_limited
 
-pytestmark = pytest.mark.filterwarnings(
-    "ignore::ResourceWarning",
-    "ignore::pytest.PytestUnraisableExceptionWarning",  # of libraries that write
-)
+pytestmark = LET_LIBRARIES_WARN
 FAST, SLOW = np.arange(0.0, 20.0, 0.002), np.arange(0.0, 20.0, 0.01)
 
 
@@ -96,6 +93,8 @@ def test_every_sheet_of_a_workbook_with_numbers_is_a_group(tmp_path):
     assert [group.name for group in file.groups] == ["run 1"]
     assert file.groups[0].rows == 500
     assert [signal.name for signal in file.groups[0].signals] == ["time", "floor_acceleration"]
+    with pytest.raises(InputError, match=r"csv\.header 999"):
+        read_file(tmp_path / "a.xlsx", TextLayout(header=999))
 
 
 def test_units_stand_in_the_metadata_of_parquet(tmp_path):

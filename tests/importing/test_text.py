@@ -60,35 +60,3 @@ def test_cells_without_a_value_are_missing_and_texts_are_named(tmp_path):
     file = read_file(path)
     assert np.isnan(file.groups[0].signals[1].values).sum() == 1
     assert file.notes == ("columns that hold no numbers: state",)
-
-
-def test_points_that_part_thousands_are_none_of_a_decimal_sign(tmp_path):
-    path = tmp_path / "a.csv"
-    path.write_text("t;F\n" + "".join(f"0,{k:02d};1.2{k:02d},5\n" for k in range(30)))
-    np.testing.assert_allclose(read_file(path).groups[0].signals[1].values, 1200.5 + np.arange(30))
-
-
-def test_lines_of_numbers_among_titles_are_none_of_the_table(tmp_path):
-    above = ["Channels\t3\t3", "Samples\t40\t40", "***End***", "X_Value\tacc\tforce"]
-    file = read_file(written(tmp_path / "a.lvm", "\t", ".", above))
-    assert list(columns(file)) == ["X_Value", "acc", "force"]
-    assert file.groups[0].rows == len(ROWS)
-
-
-def test_dates_become_seconds(tmp_path):
-    path = tmp_path / "a.csv"
-    path.write_text("when,force\n" + "".join(f"2026-11-23 07:00:{k / 10:06.3f},{k}\n" for k in range(30)))
-    when = read_file(path).groups[0].signals[0]
-    np.testing.assert_allclose(np.diff(when.values), 0.1, atol=1e-9)
-
-
-def test_a_row_with_fewer_columns_is_named(tmp_path):
-    path = written(tmp_path / "a.csv", ",", ".", ["t,a,b"])
-    path.write_text(path.read_text() + "0.4,3\n")
-    with pytest.raises(InputError, match="line 42: has 2 columns where the others have 3; the file is truncated"):
-        read_file(path)
-
-
-def test_two_columns_of_one_name_stay_apart(tmp_path):
-    file = read_file(written(tmp_path / "a.csv", ",", ".", ["t,acc,acc"]))
-    assert list(columns(file)) == ["t", "acc", "acc#2"]

@@ -101,6 +101,12 @@ READ = {
     "units before names": (
         table(T, X, Z, head=["s,g,-", "t,acc_x,acc_z"]), {"acc_x": ("g", X), "acc_z": ("", Z)}, RATE,
     ),
+    "two columns of one name": (table(T, X, Z, head=["t,acc,acc"]), {"acc": ("", X), "acc#2": ("", Z)}, RATE),
+    "numbers among titles": (
+        table(T, X, Z, head=["Channels\t3\t3", "Samples\t40\t40", "***End***", "X_Value\tacc_x\tacc_z"], sep="\t"),
+        ACC, RATE,
+    ),
+    "LabVIEW": (table(T, X, Z, head=["X_Value\tacc_x\tacc_z\tComment"], sep="\t"), ACC, RATE),
     # Ways to write
     "lines in quotation marks": ("".join(f'"{line}"\n' for line in PLAIN.splitlines()), ACC, RATE),
     "units in the cells": (
@@ -129,6 +135,10 @@ READ = {
     "a blank behind the sign": (table(T, marked(X), marked(Z), head=["t;acc_x;acc_z"], sep=";"), ACC, RATE),
     "a blank behind the sign and between": (table(T, marked(X), marked(Z), head=["t acc_x acc_z"], sep=" "), ACC, RATE),
     "German thousands": (table(T, german(FORCE), head=["t;F [N]"], sep=";", dec=","), {"F": ("N", FORCE)}, RATE),
+    "German thousands and decimals": (
+        table(T[:30], [f"1.2{k:02d},5" for k in range(30)], head=["t;F"], sep=";", dec=","),
+        {"F": ("", 1200.5 + np.arange(30))}, RATE,
+    ),
     "Swiss thousands": (table(T, texts(FORCE, "{:,.1f}"), head=["t;F [N]"], sep=";").replace(",", "'"),
                         {"F": ("N", FORCE)}, RATE),
     "thousands with narrow blanks": (table(T, texts(FORCE, "{:,.0f}"), head=["t;F [N]"], sep=";")
@@ -169,6 +179,7 @@ READ = {
             "%d.%m.%Y %H:%M:%S,MS": START, "%d.%m.%Y %H:%M:%S.MS": MIDNIGHT,
             "%m/%d/%Y %I:%M:%S.MS %p": datetime.datetime(2020, 1, 12, 11, 59, 59, 500000), "%M:%S.MS": START,
             "%H:%M:%S:MS": START, "%H:%M:%S,MS": START, "%Y-%m-%dT%H:%M:%S.MSZ": START, "%d-%b-%Y %H:%M:%S.MS": START,
+            "%Y-%m-%d %H:%M:%S.MS": START,
             "%Y/%m/%d %H:%M:%S.MS": START,
         }.items()
     },

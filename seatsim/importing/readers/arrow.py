@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from seatsim.importing.readers.arrow_messages import bytes_of_messages
 from seatsim.importing.readers.columns import read_column
+from seatsim.importing.readers.naming import note_left_out, stated_unit
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import TIME, DataFile, Group, Signal
 from seatsim.schema.bounds import check_made
@@ -15,7 +16,6 @@ from seatsim.schema.parquet import open_parquet
 if TYPE_CHECKING:
     import pyarrow as pa
 
-UNIT_KEYS = (b"unit", b"units", b"Unit", b"Units")
 WORDS_FOR_TIME = ("time", "zeit", "temps")
 """A column of dates without such a word in its name, as an index has it, is called time."""
 
@@ -26,7 +26,8 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     signals, left_out = [], []
     has_time = False
     for field, column in zip(table.schema, table.columns, strict=True):
-        name, unit = str(field.name), _unit(field)
+        name = str(field.name)
+        unit = stated_unit({key.decode(errors="replace"): value for key, value in (field.metadata or {}).items()})
         cells = read_column(column, ".")
         if cells is None:
             left_out.append(name)
@@ -35,8 +36,8 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
             name = name if has_time or any(word in name.lower() for word in WORDS_FOR_TIME) else TIME
             has_time = True
         signals.append(Signal(name, cells.unit or unit, cells.values))
-    notes = (f"columns that hold no numbers: {', '.join(left_out)}",) if left_out else ()
-    return DataFile(path, "", (Group("", tuple(signals)),) if signals else (), notes)
+    groups = (Group("", tuple(signals)),) if signals else ()
+    return DataFile(path, "", groups, note_left_out("columns that hold no numbers", left_out))
 
 
 def _table(content: bytes) -> pa.Table:
@@ -48,8 +49,3 @@ def _table(content: bytes) -> pa.Table:
 
     check_made(bytes_of_messages(content), len(content), "what its columns state")
     return feather.read_table(pa.BufferReader(content))
-
-
-def _unit(field: pa.Field) -> str:
-    stated = field.metadata or {}
-    return next((stated[key].decode() for key in UNIT_KEYS if key in stated), "")

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import struct
 
-NUMBER = 8
+from seatsim.schema.bounds import BYTES_OF_NUMBER
+
 KIND, HEADER = 1, 2
 """Fields of a message: what kind of header it has, and the header."""
 DICTIONARY, BATCH = 2, 3
@@ -53,9 +54,9 @@ def _bytes_of_batch(head: bytes, body: bytes) -> int:
     unpacked = 0
     for number in range(struct.unpack_from("<I", head, buffers)[0]):
         offset, length = struct.unpack_from("<qq", head, buffers + 4 + 16 * number)
-        packed = _field(head, batch, PACKING) is not None and length >= NUMBER
+        packed = _field(head, batch, PACKING) is not None and length >= BYTES_OF_NUMBER
         unpacked += max(length, struct.unpack_from("<q", body, offset)[0] if packed else 0)
-    return int(max(unpacked, NUMBER * stated * columns))
+    return int(max(unpacked, BYTES_OF_NUMBER * stated * columns))
 
 
 def _field(head: bytes, table: int, number: int) -> int | None:

@@ -100,7 +100,7 @@ def _numbers(texts: pd.Series[str], decimal: str) -> Array:
     """Return texts as numbers, NaN for those that are none with this decimal sign."""
     import pandas as pd
 
-    parted = texts.str.fullmatch(THOUSANDS[decimal], na=False)
+    parted = texts.str.fullmatch(THOUSANDS[decimal].pattern, na=False)
     is_number = parted | texts.str.fullmatch(PLAIN[decimal].pattern, na=False)
     marks = ".'\u2019 \u00a0\u202f" if decimal == "," else ",'\u2019 \u00a0\u202f"
     plain = texts.where(~parted, texts.str.replace(f"[{marks}]", "", regex=True)).str.replace(decimal, ".", regex=False)

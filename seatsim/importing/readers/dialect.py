@@ -16,8 +16,8 @@ MISSING = ("", "nan", "NaN", "NAN", "NA", "n/a", "N/A", "null", "NULL", "None", 
 SIGN = "[+\\-\u2212\u2013]"
 """Signs of numbers: a minus and a dash of typesetting are a minus, too."""
 THOUSANDS = {
-    ".": rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}(?:[,'\u2019 \u00a0\u202f]\d{{3}})+(?:\.\d+)?",
-    ",": rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}(?:[.'\u2019 \u00a0\u202f]\d{{3}})+(?:,\d+)?",
+    ".": re.compile(rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}(?:[,'\u2019 \u00a0\u202f]\d{{3}})+(?:\.\d+)?"),
+    ",": re.compile(rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}(?:[.'\u2019 \u00a0\u202f]\d{{3}})+(?:,\d+)?"),
 }
 """A number whose thousands are parted, such as 1,234.5, by decimal sign."""
 PLAIN = {
@@ -25,7 +25,6 @@ PLAIN = {
     ",": re.compile(rf"(?:{SIGN}\s*)?(?:\d+(?:,\d*)?|,\d+)(?:[eEdD][+-]?\d+)?"),
 }
 """What a number looks like with each decimal sign."""
-PARTED = {sign: re.compile(pattern) for sign, pattern in THOUSANDS.items()}
 DATE = r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4}|\d{8}"
 CLOCK = r"\d{1,2}:\d{2}(?::\d{2})?(?:[.,:]\d+)?(?:\s*[AaPp]\.?[Mm]\.?)?"
 STAMP = re.compile(rf"(?:{DATE})(?:[ T_,-]+{CLOCK})?(?:Z| ?UTC|[+-]\d\d:?\d\d)?|{CLOCK}")
@@ -71,7 +70,7 @@ def kind_of(cell: str, decimal: str) -> Kind:
     plain = cell.strip()
     if plain in MISSING:
         return None
-    patterns = (PLAIN[decimal], PARTED[decimal], STAMP)
+    patterns = (PLAIN[decimal], THOUSANDS[decimal], STAMP)
     return any(pattern.fullmatch(_without_unit(plain)) for pattern in patterns)
 
 
@@ -139,4 +138,4 @@ def _count(cell: str, decimal: str) -> float:
     cell = _without_unit(cell)
     if PLAIN[decimal].fullmatch(cell) or STAMP.fullmatch(cell):
         return 0.5 if LEADING_ZERO.fullmatch(cell) else 1.0
-    return (1.0 if decimal in cell else 0.5) if PARTED[decimal].fullmatch(cell) else 0.0
+    return (1.0 if decimal in cell else 0.5) if THOUSANDS[decimal].fullmatch(cell) else 0.0

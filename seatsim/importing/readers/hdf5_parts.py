@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from seatsim.importing.optional import need
-from seatsim.schema.bounds import Part, check_made, check_parts
+from seatsim.importing.readers.reading import need
+from seatsim.schema.bounds import BYTES_OF_NUMBER, Part, check_made, check_parts
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.tables import LARGEST_FILE
@@ -24,8 +24,6 @@ from seatsim.schema.tables import LARGEST_FILE
 if TYPE_CHECKING:
     import h5py
 
-NUMBER = 8
-"""Bytes of a number as channels hold it."""
 HERE = "."
 """How a virtual data set names its own file."""
 
@@ -74,7 +72,7 @@ def _part(item: Hashable, path: Path, size: int, follows: bool, sources: set[Pat
 def _bytes_of(array: Any) -> int:
     """Return how many bytes a data set or an attribute makes."""
     shape = array.shape or ()
-    return prod(shape) * int(max(NUMBER, array.dtype.itemsize))
+    return prod(shape) * int(max(BYTES_OF_NUMBER, array.dtype.itemsize))
 
 
 def _members(group: h5py.Group, place: str) -> Iterator[h5py.HLObject]:

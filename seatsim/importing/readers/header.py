@@ -26,20 +26,19 @@ MOSTLY = 0.75
 
 
 class Header(NamedTuple):
-    """Names and units of the columns, and the number of lines above the first row of numbers."""
+    """Names and units of the columns."""
 
     names: tuple[str, ...]
     units: tuple[str, ...]
-    lines: int
 
 
-def split_header(rows: Sequence[Sequence[str]], first: int, columns: int) -> Header:
-    """Return what the rows above the row `first` say of so many columns; rows of another width are titles.
+def split_header(rows: Sequence[Sequence[str]], columns: int) -> Header:
+    """Return what the rows above the numbers say of so many columns; rows of another width are titles.
 
     Of the rows of texts that fill most columns one may hold units; of the others the one that says most holds the
     names, the last one where several say as much.
     """
-    full = [row for row in rows[:first] if len(row) == columns and may_be_names(row)]
+    full = [row for row in rows if len(row) == columns and may_be_names(row)]
     below = next((row for row in reversed(full) if is_units(row)), None) if len(full) > 1 else None
     others = [row for row in full if row is not below]
     names = max(reversed(others), key=_count_meanings, default=[""] * columns)
@@ -49,7 +48,6 @@ def split_header(rows: Sequence[Sequence[str]], first: int, columns: int) -> Hea
     return Header(
         tuple(name for name, _ in named),
         tuple(unit or of_name for unit, (_, of_name) in zip(stated, named, strict=True)),
-        first,
     )
 
 
@@ -99,6 +97,12 @@ def _name_and_unit(cell: str, index: int) -> tuple[str, str]:
     if parted and is_unit(parted[2]):
         return parted[1], parted[2]
     return text or f"column {index + 1}", ""
+
+
+def check_header(header: int, lines: int, place: str) -> None:
+    """Raise InputError where no row is left below so many lines above the first row of numbers."""
+    if header >= lines:
+        raise InputError(f"{place}: has {lines} lines; csv.header {header} counts those above the first row of numbers")
 
 
 def first_row_of_numbers(rows: Sequence[Sequence[Kind]], place: str) -> int:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
@@ -16,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.readers.reading import TextLayout
+from seatsim.importing.readers.text import as_utf8
 from seatsim.importing.signals import Array, DataFile, Group, Signal, add_channels
 from seatsim.schema.errors import InputError
 
@@ -61,7 +61,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     Raises:
         InputError: a segment lacks rows, its x is no time, or a channel states no interval.
     """
-    lines = _text(content, layout).splitlines()
+    lines = as_utf8(content, layout.encoding).decode(errors="replace").splitlines()
     separator = next((line[9] for line in lines[:20] if line.startswith("Separator") and line[9:]), "\t")
     first = next((number for number, line in enumerate(lines) if line.startswith(END)), len(lines))
     head = {key: value for key, _, value in (line.partition(separator) for line in lines[:first])}
@@ -71,13 +71,6 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         for column, piece in _pieces(segment, table, head.get("X_Columns", "One").strip(separator).strip(), path):
             pieces.setdefault((column, piece.signal.name, piece.signal.unit), []).append(piece)
     return DataFile(path, "", tuple(_join(list(pieces.values()))))
-
-
-def _text(content: bytes, layout: TextLayout) -> str:
-    if layout.encoding is None:
-        with suppress(UnicodeDecodeError):
-            return content.decode("utf-8-sig")
-    return content.decode(layout.encoding or "cp1252", errors="replace")
 
 
 def _segments(lines: Sequence[str], separator: str) -> Iterator[_Segment]:

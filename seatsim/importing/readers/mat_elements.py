@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 
 from seatsim.schema.bounds import BYTES_OF_PART, check_made, permitted_of
 
-Array: TypeAlias = NDArray[np.generic]
-Resolve: TypeAlias = Callable[[Array, str, str], object]
+AnyArray: TypeAlias = NDArray[np.generic]
+Resolve: TypeAlias = Callable[[AnyArray, str, str], object]
 """Returns an object, of which a file holds an array that tells which it is, its system, and its class."""
 
 HEADER, INNER_HEADER = 128, 8
+ORDERS = {b"IM": "<", b"MI": ">"}
+"""Bytes at the end of a header, and the order of bytes of which they tell."""
 NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
 TEXTS = {2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}
 ARRAY, PACKED = 14, 15
@@ -36,26 +38,26 @@ FILE_WRAPPER = "FileWrapper__"
 """Class of the array that holds what all objects of a file hold."""
 
 
-class Element(NamedTuple):
+class _Element(NamedTuple):
     """An element: its type and its content."""
 
     kind: int
     content: bytes
 
 
-class Elements:
+class _Elements:
     """Reads arrays in one order of bytes, as long as they make no more than a file of `size` bytes may."""
 
-    def __init__(self, order: str, size: int, resolve: Resolve | None = None) -> None:
-        self.order, self.size, self.resolve = order, size, resolve
-        self.made = 0
+    def __init__(self, order: str, size: int) -> None:
+        self.order, self.size, self.made = order, size, 0
+        self.resolve: Resolve | None = None
 
     def count(self, made: int) -> None:
         """Add bytes that are about to be made; TooMuchError where they are too many."""
         self.made += made
         check_made(self.made, self.size)
 
-    def split(self, content: bytes) -> Iterator[Element]:
+    def split(self, content: bytes) -> Iterator[_Element]:
         """Yield the elements that stand one after the other."""
         at = 0
         while at < len(content):
@@ -70,10 +72,10 @@ class Elements:
             if begin + size > len(content):
                 raise ValueError(f"an element states {size} bytes, and {len(content) - begin} are left")
             self.count(BYTES_OF_PART)
-            yield Element(kind, content[begin : begin + size])
+            yield _Element(kind, content[begin : begin + size])
             at = end
 
-    def unpack(self, element: Element) -> Element:
+    def unpack(self, element: _Element) -> _Element:
         """Return a variable, unpacked where it is packed."""
         if element.kind != PACKED:
             return element
@@ -82,7 +84,7 @@ class Elements:
         except zlib.error as error:
             raise ValueError(f"a variable cannot be unpacked: {error}") from error
         self.count(len(content))
-        return next(self.split(content), Element(PACKED, b""))
+        return next(self.split(content), _Element(PACKED, b""))
 
     def read_array(self, content: bytes, depth: int = 0) -> tuple[str, object]:
         """Return the name and the value of an array; None is the value of what holds neither numbers nor others."""
@@ -103,7 +105,7 @@ class Elements:
             raise ValueError(f"an array states the dimensions {shape}")
         return _text(name), self._value(kind, state, shape, parts, depth)
 
-    def _value(self, kind: int, state: int, shape: tuple[int, ...], parts: list[Element], depth: int) -> object:
+    def _value(self, kind: int, state: int, shape: tuple[int, ...], parts: list[_Element], depth: int) -> object:
         if kind == TEXT:
             return self._letters(parts[0], shape) if parts else np.empty(0, dtype=np.str_)
         if kind in NUMERIC and parts:
@@ -118,7 +120,7 @@ class Elements:
             return self._structures(parts[1:] if kind == OBJECT else parts, shape, depth)
         return None
 
-    def _arrays(self, parts: list[Element], shape: tuple[int, ...], depth: int) -> Array:
+    def _arrays(self, parts: list[_Element], shape: tuple[int, ...], depth: int) -> AnyArray:
         if prod(shape) != len(parts):
             raise ValueError(f"an array of {shape} has {len(parts)} cells")
         cells = np.empty(len(parts), dtype=object)
@@ -126,12 +128,12 @@ class Elements:
             cells[index] = self.read_array(part.content, depth + 1)[1]
         return cells.reshape(shape, order="F")
 
-    def _structures(self, parts: list[Element], shape: tuple[int, ...], depth: int) -> Array:
+    def _structures(self, parts: list[_Element], shape: tuple[int, ...], depth: int) -> AnyArray:
         """Return structures of the same fields: the length of their names, the names, and an array for each."""
         length, names, *arrays = parts
         width = int(self.numbers(length)[0])
         fields = [
-            _text(Element(0, names.content[at : at + width])) for at in range(0, len(names.content), max(1, width))
+            _text(_Element(0, names.content[at : at + width])) for at in range(0, len(names.content), max(1, width))
         ]
         if len(arrays) != len(fields) * prod(shape):
             raise ValueError(f"structures of {shape} with {len(fields)} fields have {len(arrays)} values")
@@ -143,7 +145,7 @@ class Elements:
             held[index // len(fields)][fields[index % len(fields)]] = self.read_array(part.content, depth + 1)[1]
         return held.reshape(shape, order="F")
 
-    def _letters(self, element: Element, shape: tuple[int, ...]) -> Array:
+    def _letters(self, element: _Element, shape: tuple[int, ...]) -> AnyArray:
         """Return a text, or one for each row of letters."""
         encoding = TEXTS.get(element.kind, "latin-1")
         if encoding in ("utf-16", "utf-32"):
@@ -154,7 +156,7 @@ class Elements:
         rows = np.array(list(text)).reshape(shape, order="F") if text else np.empty(shape, dtype=np.str_)
         return np.array(["".join(row) for row in rows])
 
-    def numbers(self, element: Element) -> Array:
+    def numbers(self, element: _Element) -> AnyArray:
         """Return the numbers of an element."""
         if element.kind not in NUMBERS:
             raise ValueError(f"an element of the type {element.kind} stands where numbers should")
@@ -166,8 +168,8 @@ class Elements:
         return self.resolve(held, system, class_name) if self.resolve and isinstance(held, np.ndarray) else None
 
 
-def read_variables(content: bytes, open_objects: Callable[[Array, str], Resolve]) -> dict[str, object]:
-    """Return the variables of a file by name, as `Elements.read_array` does.
+def read_variables(content: bytes, open_objects: Callable[[AnyArray, str], Resolve]) -> dict[str, object]:
+    """Return the variables of a file by name, as `_Elements.read_array` does.
 
     `open_objects` returns what resolves objects, of the structure that holds them all and the order of bytes.
 
@@ -175,10 +177,10 @@ def read_variables(content: bytes, open_objects: Callable[[Array, str], Resolve]
         ValueError: the file is damaged.
         TooMuchError: it states more than a file of its size may make.
     """
-    order = {b"IM": "<", b"MI": ">"}.get(content[HEADER - 2 : HEADER])
+    order = ORDERS.get(content[HEADER - 2 : HEADER])
     if order is None:
         raise ValueError("it does not state the order of its bytes")
-    elements = Elements(order, len(content))
+    elements = _Elements(order, len(content))
     variables = [elements.unpack(each) for each in elements.split(content[HEADER:])]
     found: dict[str, object] = {}
     # What objects hold stands last, and is needed first.
@@ -192,11 +194,11 @@ def read_variables(content: bytes, open_objects: Callable[[Array, str], Resolve]
     return dict(reversed(found.items()))
 
 
-def _open_objects(content: bytes, size: int, open_objects: Callable[[Array, str], Resolve]) -> Resolve | None:
-    order = {b"IM": "<", b"MI": ">"}.get(content[2:4])
+def _open_objects(content: bytes, size: int, open_objects: Callable[[AnyArray, str], Resolve]) -> Resolve | None:
+    order = ORDERS.get(content[2:4])
     if order is None:
         return None
-    elements = Elements(order, size)
+    elements = _Elements(order, size)
     for element in elements.split(content[INNER_HEADER:]):
         variable = elements.unpack(element)
         _, value = elements.read_array(variable.content) if variable.kind == ARRAY else ("", None)
@@ -205,5 +207,5 @@ def _open_objects(content: bytes, size: int, open_objects: Callable[[Array, str]
     return None
 
 
-def _text(element: Element) -> str:
+def _text(element: _Element) -> str:
     return element.content.split(b"\0")[0].decode("latin-1")

@@ -24,24 +24,10 @@ UNITS_OF_TIME = ("xunit", "xunits", "unitx", "timeunit", "timeunits")
 """A structure that states the unit of times, and fields that do."""
 BESIDE = (TIME_INFO, "header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
 """Structures that state something of what stands beside them."""
-PARTS = (
-    "data",
-    "values",
-    "header",
-    "unit",
-    "units",
-    "time",
-    "name",
-    "label",
-    "fs",
-    "dt",
-    "dx",
-    "x0",
-    "samplerate",
-    "xdelta",
+ENDING = re.compile(
+    r"^(.+?)_(data|values|header|unit|units|time|name|label|fs|dt|dx|x0|samplerate|xdelta)$", re.IGNORECASE
 )
-"""Endings of flat variables that are parts of a channel."""
-ENDING = re.compile(rf"^(.+?)_({'|'.join(PARTS)})$", re.IGNORECASE)
+"""A flat variable that is part of a channel: the name of the channel, and which part it is."""
 TIME_WITHIN = re.compile(r"^(.*?)_?time_(.*)$", re.IGNORECASE)
 
 

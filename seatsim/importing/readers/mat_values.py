@@ -8,22 +8,22 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
+from types import ModuleType
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.optional import need
 from seatsim.importing.readers.hdf5_parts import open_checked
-from seatsim.importing.readers.mat_elements import Array, Resolve, read_variables
+from seatsim.importing.readers.mat_elements import AnyArray, Resolve, read_variables
+from seatsim.importing.readers.naming import in_seconds
+from seatsim.importing.readers.reading import HDF5, USER_BLOCK, need
 from seatsim.importing.signals import TIME
 from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
 
-Value: TypeAlias = "NDArray[np.generic] | str | dict[str, Value] | list[Value] | None"
+Value: TypeAlias = "AnyArray | str | dict[str, Value] | list[Value] | None"
 """Numbers, a text, a structure, cells or structures of many; None for what is none of these."""
 
-USER_BLOCK, HDF5 = 512, b"\x89HDF\r\n\x1a\n"
-"""Bytes before an HDF5 file in a MAT file, and how it begins."""
 REFERRED, SUBSYSTEM = "#refs#", "#subsystem#"
 """Folders of a file of version 7.3 that hold what its cells and structures refer to, and what its objects hold."""
 REFERENCE = 0xDD000000
@@ -31,11 +31,6 @@ REFERENCE = 0xDD000000
 MOST_OBJECTS = LEAST // BYTES_OF_PART
 UNITS = ("varUnits", "VariableUnits")
 """Attributes with which mat-io states the units of a table."""
-
-
-def is_hdf5(content: bytes) -> bool:
-    """Say whether a MAT file is one of version 7.3."""
-    return content.startswith(b"MATLAB 7.3") or content[USER_BLOCK:].startswith(HDF5)
 
 
 def read_values(path: Path, content: bytes) -> dict[str, Value]:
@@ -47,7 +42,7 @@ def read_values(path: Path, content: bytes) -> dict[str, Value]:
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what mat-io cannot resolve is None, and named by who takes no channel of it
-        if is_hdf5(content):
+        if content.startswith(b"MATLAB 7.3") or content[USER_BLOCK : USER_BLOCK + len(HDF5)] == HDF5:
             return _read_hdf5(path, content)
         plain = _Plain(len(content))
         return {name: plain.of(value) for name, value in read_variables(content, _open_objects).items()}
@@ -55,7 +50,7 @@ def read_values(path: Path, content: bytes) -> dict[str, Value]:
 
 def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
     with open_checked(path, content, follows=True) as file:
-        reader = need("matio.v7.matreader7", "MAT v7.3").MatRead7(file)
+        reader = _need_matio("matio.v7.matreader7", "MAT v7.3").MatRead7(file)
         if SUBSYSTEM in file:
             reader.subsystem = _subsystem(reader.read_struct(file[SUBSYSTEM]), "<")
         found: dict[str, Value] = {}
@@ -69,13 +64,21 @@ def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
         return found
 
 
-def _open_objects(held: Array, order: str) -> Resolve:
+def _need_matio(module: str, kind: str) -> ModuleType:
+    """Return a part of mat-io; its import changes for the whole process how pandas keeps texts, which is put back."""
+    import pandas as pd
+
+    with pd.option_context("future.infer_string", pd.get_option("future.infer_string")):
+        return need(module, kind)
+
+
+def _open_objects(held: AnyArray, order: str) -> Resolve:
     return _subsystem(held, order).load_opaque_object  # type: ignore[no-any-return]
 
 
-def _subsystem(held: Array, order: str) -> Any:
+def _subsystem(held: AnyArray, order: str) -> Any:
     """Return what resolves objects, at most so many of them: objects may hold each other over and over."""
-    base = need("matio.subsystem", "a table or another object of MATLAB").MatSubsystem
+    base = _need_matio("matio.subsystem", "a table or another object of MATLAB").MatSubsystem
 
     class Bounded(base):  # type: ignore[misc, valid-type]
         left = MOST_OBJECTS
@@ -129,10 +132,8 @@ class _Plain:
         """Return numbers as an array, and what is one text or structure as it is, not as a list."""
         check_made(array.nbytes, self.size)  # an empty array may state any dimensions
         flat, kind = array.ravel(order="F"), array.dtype.kind
-        if kind in "Mm":
-            return _seconds(array)
-        if kind in "fiub":
-            return array
+        if kind in "fiubMm":
+            return in_seconds(array)
         several: list[Value] = []
         if array.dtype.names:
             several = [{name: self.of(each[name]) for name in array.dtype.names} for each in flat]
@@ -146,16 +147,10 @@ class _Plain:
 
     def _of_table(self, frame: Any) -> dict[str, Value]:
         """Return the columns of a table, with its times in s if it has such, and its units by column."""
-        columns: dict[str, Value] = {TIME: _seconds(frame.index.to_numpy())} if frame.index.dtype.kind in "Mm" else {}
+        columns: dict[str, Value] = {TIME: in_seconds(frame.index.to_numpy())} if frame.index.dtype.kind in "Mm" else {}
         columns |= {str(name): self.of(frame[name].to_numpy()) for name in frame}
         stated: Mapping[str, Any] = frame.attrs
         units: list[Any] = next((stated[key] for key in UNITS if key in stated), [])
         if len(units) == len(frame.columns):
             columns["units"] = {str(name): str(unit) for name, unit in zip(frame, units, strict=True)}
         return columns
-
-
-def _seconds(times: NDArray[np.generic]) -> NDArray[np.generic]:
-    """Return durations in s, or dates in s since the first of them."""
-    since = times - times.ravel()[0] if times.dtype.kind == "M" and times.size else times
-    return np.asarray(since.astype("timedelta64[ns]") / np.timedelta64(1, "s"), dtype=np.float64)

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from seatsim.importing.readers.mat_elements import AnyArray
 from seatsim.importing.readers.mat_names import (
     ABSCISSAS,
     INDEX,
@@ -28,13 +28,21 @@ from seatsim.importing.readers.mat_names import (
     statements,
 )
 from seatsim.importing.readers.mat_values import Value, read_values
-from seatsim.importing.readers.naming import as_text, bare, scalar, signals_of, stated_rate, stated_unit
+from seatsim.importing.readers.naming import (
+    as_text,
+    bare,
+    note_left_out,
+    scalar,
+    signals_of,
+    stated_rate,
+    stated_text,
+    stated_unit,
+)
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import TIME, Array, DataFile, Group, Signal, add_channels
 from seatsim.schema.units import DIMENSIONS, find_conversion
 
 Structure = Mapping[str, Value]
-AnyArray = NDArray[np.generic]
 LATEST = 1e7
 """s; a start that is larger is a date."""
 
@@ -51,8 +59,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """Return the channels of a file; a note names the variables that give none, and what is no column of numbers."""
     reader = _Reader()
     reader.read_structure("", "", join_flat(read_values(path, content)), _Clock())
-    left_out = ", ".join(dict.fromkeys(reader.left_out))
-    notes = (f"left out, as they hold no columns of real numbers: {left_out}",) if left_out else ()
+    notes = note_left_out("left out, as they hold no columns of real numbers", reader.left_out)
     return DataFile(path, "", tuple(reader.groups()), notes)
 
 
@@ -78,9 +85,7 @@ class _Reader:
         stated = statements(held)
         channel = _channel_of(held)
         own = _clock(held, stated, ABSCISSAS if channel else TIMES)
-        label = next(
-            (text for key in LABELS for each in stated if bare(each) == key and (text := as_text(stated[each]))), label
-        )
+        label = stated_text(stated, LABELS) or label
         if channel:
             signals = signals_of(label or channel, np.asarray(held[channel]), stated_unit(stated))
             self._add(name, signals, _own_clock(own, above, stated), name or channel)
@@ -176,7 +181,7 @@ def _rises(vector: AnyArray) -> bool:
 def _clock(held: Structure, stated: Structure, names: Sequence[str]) -> _Clock:
     """Return what a structure states of time, in s and Hz."""
     info = next((value for key, value in held.items() if bare(key) == TIME_INFO and isinstance(value, dict)), {})
-    unit = next((as_text(value) for key, value in stated.items() if bare(key) in UNITS_OF_TIME), stated_unit(info))
+    unit = stated_text(stated, UNITS_OF_TIME) or stated_unit(info)
     found = find_conversion(unit, DIMENSIONS["time"]) if unit else None
     factor = found.factor if found else 1.0
     start = _start(stated)

@@ -6,22 +6,15 @@ import io
 import logging
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from seatsim.importing.optional import need
 from seatsim.importing.readers.mdf_blocks import check_blocks
-from seatsim.importing.readers.reading import TextLayout
+from seatsim.importing.readers.naming import note_left_out
+from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import DataFile, Group, Signal, add_channels
 from seatsim.schema.bounds import check_made
-
-
-class Closing(Protocol):
-    """What can be closed."""
-
-    def close(self) -> None:
-        """Close it."""
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
@@ -51,8 +44,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
             if found:
                 signals = [Signal(each.name, each.unit or "", each.samples.astype(np.float64)) for each in found]
                 add_channels(groups, f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
-    notes = (f"channels that hold no single numbers: {', '.join(left_out)}",) if left_out else ()
-    return DataFile(path, "", tuple(groups), notes)
+    return DataFile(path, "", tuple(groups), note_left_out("channels that hold no single numbers", left_out))
 
 
 def _bytes_of(group: Any) -> int:
@@ -81,7 +73,7 @@ def _check_places(group: Any, size: int) -> None:
             raise ValueError(f"channel {channel.name} has its marks of invalid values beyond the end of its rows")
 
 
-def _close(file: Closing) -> None:
+def _close(file: Any) -> None:
     """Close what there is of a file."""
     with suppress(AttributeError):
         file.close()

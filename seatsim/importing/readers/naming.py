@@ -1,27 +1,35 @@
-"""What variables of a structured file state beside the channels: units, rates, and how matrices are named."""
+"""What a file states beside its channels: units and rates by name or in lines of text, and how matrices are named."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.importing.signals import Signal
 
-RATES = (
-    "fs", "samplerate", "samplingrate", "rate", "frequency", "sampleratehz", "fa", "samplefrequency",
-    "samplingfrequency", "abtastrate",
-)  # fmt: skip
-STEPS = (
-    "dt", "deltat", "ts", "sampletime", "increment", "wfincrement", "step", "samplingperiod", "sampleinterval",
-    "samplinginterval", "dx", "deltax", "xdelta", "xinc", "xincrement",
-)  # fmt: skip
-"""Names, without their underscores, under which the sample rate in Hz, or the interval in s, is stated."""
+SAMPLE = r"(?:sampl\w*|abtast|scan|acquisition)"
+RATE = rf"{SAMPLE}(?:rate|freq\w*)|fs|fr[ée]quenced.[ée]chantillonnage"
+STEP = rf"{SAMPLE}(?:interval\w*|period\w*|step|zeit)|dt|delta[tx]"
+"""Names, as `bare` returns them, under which the sample rate in Hz, or the interval in s, is stated."""
+RATES = re.compile(rf"{RATE}|rate|frequency|sampleratehz|fa")
+STEPS = re.compile(rf"{STEP}|ts|sampletime|increment|wfincrement|step|dx|xdelta|xinc|xincrement")
+"""The same where they stand among variables: words that mean something else in a line of text are among them."""
+ENTRY = re.compile(
+    r"""^[\W_]*(?P<key>[^\W\d][^\d:=;,|\t\[(]*?)["']?\s*(?:[\[(](?P<of_key>[^\])]*)[\])])?\s*[:=;,|\t ]\s*["']?"""
+    r"""(?P<number>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)["']?[\s;,|\[(]*(?P<unit>[A-Za-zµμ]*)[\W_]*$"""
+)
+"""A key, a number and perhaps a unit in a line of their own, such as `SampleRate, 200, Hz` or `dt = 0.002 s`."""
+LONGEST = 200
+"""Letters of a line that may be such an entry."""
+IN_HZ = {"": 1.0, "hz": 1.0, "khz": 1e3, "s": 1.0, "sps": 1.0}
+IN_S = {"": 1.0, "s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
 NUMBER = re.compile(r"\s*\d+([.,]\d*)?([eE][-+]?\d{1,2})?\s*")
 """A number as a text."""
-UNITS = ("unit", "units", "unitstring", "einheit", "ylabelunit", "yunit", "unity", "nunit")
+UNITS = ("unitstring", "unit", "units", "einheit", "ylabelunit", "yunit", "unity", "nunit", "niunitdescription")
 """Names under which a unit is stated."""
 
 
@@ -37,15 +45,33 @@ def stated_rate(values: Mapping[str, object], seconds: float = 1.0) -> float | N
     """
     for names, is_rate in ((RATES, True), (STEPS, False)):
         for key, value in values.items():
-            number = scalar(value) if bare(key) in names else None
+            number = scalar(value) if names.fullmatch(bare(key)) else None
             if number is not None and 0.0 < number < np.inf:
                 return number if is_rate else 1.0 / (seconds * number)
     return None
 
 
+def find_rate(lines: Sequence[str]) -> float | None:
+    """Return the sample rate in Hz that lines of text state, None where none does."""
+    entries = (ENTRY.match(line) for line in lines if len(line) <= LONGEST)
+    for entry in filter(None, entries):
+        number, key = float(entry["number"].replace(",", ".")), bare(entry["key"])
+        unit = (entry["unit"] or entry["of_key"] or "").lower()
+        if re.fullmatch(RATE, key) and number > 0.0 and unit in IN_HZ:
+            return number * IN_HZ[unit]
+        if re.fullmatch(STEP, key) and number > 0.0 and unit in IN_S:
+            return 1.0 / (number * IN_S[unit])
+    return None
+
+
+def stated_text(values: Mapping[str, object], names: Sequence[str]) -> str:
+    """Return the text that stands under the first of some bare names, empty where none does."""
+    return next((text for name in names for key in values if bare(key) == name and (text := as_text(values[key]))), "")
+
+
 def stated_unit(values: Mapping[str, object]) -> str:
     """Return the unit that stands among named values, empty where none does."""
-    return next((as_text(value) for key, value in values.items() if bare(key) in UNITS), "")
+    return stated_text(values, UNITS)
 
 
 def scalar(value: object) -> float | None:
@@ -69,11 +95,24 @@ def as_text(value: object) -> str:
     return single.decode(errors="replace") if isinstance(single, bytes) else str(single)
 
 
+def in_seconds(times: NDArray[np.generic]) -> NDArray[np.generic]:
+    """Return durations in s, or dates in s since the first of them; other values as they are."""
+    if times.dtype.kind not in "mM":
+        return times
+    since = times - times.ravel()[0] if times.dtype.kind == "M" and times.size else times
+    return np.asarray(since.astype("timedelta64[ns]") / np.timedelta64(1, "s"), dtype=np.float64)
+
+
+def note_left_out(what: str, names: Sequence[str]) -> tuple[str, ...]:
+    """Return a sentence on what was not taken, none where that is nothing."""
+    return (f"{what}: {', '.join(dict.fromkeys(names))}",) if names else ()
+
+
 def signals_of(
     name: str, array: NDArray[np.generic], unit: str = "", columns: Sequence[str] = (), units: Sequence[str] = ()
 ) -> list[Signal]:
     """Return the channels of an array of shape (N,), (N, k) or (k, N), k smaller; a matrix is `name#1`, `name#2`."""
-    values = np.squeeze(np.asarray(array))
+    values: NDArray[Any] = in_seconds(np.squeeze(np.asarray(array)))
     if values.dtype.kind not in "fiub" or values.ndim not in (1, 2) or values.size < 2:
         return []
     values = values.astype(np.float64)

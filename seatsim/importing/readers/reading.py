@@ -5,8 +5,11 @@ from __future__ import annotations
 import io
 import re
 import zipfile
+from collections import Counter
+from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -22,8 +25,8 @@ LONGEST_REASON = 200
 """Letters of what a library says that an error repeats."""
 SNIFFED = 4096
 """Bytes from which a format is recognised."""
-USER_BLOCK = 512
-"""Bytes that may stand before an HDF5 file."""
+USER_BLOCK, HDF5 = 512, b"\x89HDF\r\n\x1a\n"
+"""Bytes that may stand before an HDF5 file, and how it begins."""
 LEAST_ROWS = 2
 LOWEST_RATE, HIGHEST_RATE, LATEST_START = 1e-6, 1e9, 1e10
 """Rates in Hz and starts in s, 300 years apart, beyond which a file is damaged."""
@@ -32,7 +35,7 @@ LARGEST_NUMBER = 1e100
 
 
 class TextLayout(NamedTuple):
-    """What `map.yaml` states of a text table; None and 0 leave it to be found.
+    """What `map.yaml` states of a text table; None leaves it to be found.
 
     `header` counts the lines above the first row of numbers.
     """
@@ -58,7 +61,7 @@ FORMATS = (
     Format("XLSX", "xlsx", (), (".xlsx", ".xlsm")),
     Format("MAT v7.3", "matlab", (b"MATLAB 7.3 MAT-file",), ()),
     Format("MAT v5", "matlab", (b"MATLAB 5.0 MAT-file",), (".mat",)),
-    Format("HDF5", "hdf5", (b"\x89HDF\r\n\x1a\n",), (".h5", ".hdf5", ".hdf")),
+    Format("HDF5", "hdf5", (HDF5,), (".h5", ".hdf5", ".hdf")),
     Format("MDF", "mdf", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
     Format("LVM", "lvm", (b"LabVIEW Measurement",), ()),
     Format("TDMS", "tdms", (b"TDSm",), (".tdms",)),
@@ -106,6 +109,20 @@ def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
     return _checked(file._replace(format=found.name))
 
 
+def need(module: str, kind: str) -> ModuleType:
+    """Return an imported library of the extra `formats`.
+
+    Raises:
+        InputError: it is not installed; the sentence names the command that installs it.
+    """
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise InputError(
+            f'{kind} is read by {module.partition(".")[0]}; install it with: pip install "seatsim[formats]"'
+        ) from error
+
+
 def _content(path: Path) -> bytes:
     """Return the bytes of a file, unpacked where it is packed."""
     if not is_there(path):
@@ -133,7 +150,7 @@ def _recognise(path: Path, content: bytes) -> Format:
         return names["XLSX"]
     if b"$ROAD_CRG" in head.upper() or b"$KD_DEFINITION" in head.upper():
         return names["OpenCRG"]
-    if head[USER_BLOCK:].startswith(names["HDF5"].begins):
+    if head[USER_BLOCK:].startswith(HDF5):
         return names["MAT v7.3" if head.startswith(b"MATLAB") else "HDF5"]
     for each in FORMATS:
         if head.startswith(each.begins) and each.name != "OpenCRG":
@@ -168,10 +185,7 @@ def _is_text(head: bytes) -> bool:
 
 
 def _checked(file: DataFile) -> DataFile:
-    """Return a file whose groups hold rows and numbers, at a rate and from a start that there may be, by one name each.
-
-    A second group `run` is `run#2`.
-    """
+    """Return a file whose groups have rows, a rate and a start that may be, and distinct names."""
     groups = tuple(group for group in file.groups if group.signals and group.rows >= LEAST_ROWS)
     if not groups:
         said = "".join(f"; {note}" for note in file.notes)
@@ -181,27 +195,26 @@ def _checked(file: DataFile) -> DataFile:
             raise InputError(f"{file.path}: states a sample rate of {group.rate:g} Hz, which no logger has; correct it")
         if group.start is not None and not abs(group.start) <= LATEST_START:
             raise InputError(f"{file.path}: states that channels begin at {group.start:g} s; correct that")
-    names = [make_printable(group.name) for group in groups]
-    titles = [f"{name}#{names[:index].count(name) + 1}" if name in names[:index] else name
-              for index, name in enumerate(names)]  # fmt: skip
-    return file._replace(
-        groups=tuple(_named_once(group._replace(name=title)) for group, title in zip(groups, titles, strict=True))
-    )
+    names = _name_once(group.name for group in groups)
+    return file._replace(groups=tuple(_check_group(group, name) for group, name in zip(groups, names, strict=True)))
 
 
-def _named_once(group: Group) -> Group:
-    """Return a group whose channels hold finite numbers and have distinct names that can be printed.
-
-    A second `force` is `force#2`.
-    """
-    seen: dict[str, int] = {}
+def _check_group(group: Group, title: str) -> Group:
+    """Return a group whose channels hold finite numbers and have distinct names that can be printed."""
+    names = _name_once(re.sub(r"\s", " ", signal.name) for signal in group.signals)
     signals = []
-    for signal in group.signals:
-        name = make_printable(re.sub(r"\s", " ", signal.name))
-        seen[name] = seen.get(name, 0) + 1
-        number = seen[name]
+    for name, signal in zip(names, group.signals, strict=True):
         values = np.asarray(signal.values, dtype=np.float64)
         values = np.where(np.abs(values) <= LARGEST_NUMBER, values, np.nan)
-        unit = make_printable(signal.unit)
-        signals.append(Signal(f"{name}#{number}" if number > 1 else name, unit, values))
-    return group._replace(signals=tuple(signals))
+        signals.append(Signal(name, make_printable(signal.unit), values))
+    return group._replace(name=title, signals=tuple(signals))
+
+
+def _name_once(names: Iterable[str]) -> list[str]:
+    """Return names that can be printed; a second `force` is `force#2`."""
+    seen: Counter[str] = Counter()
+    found = []
+    for name in map(make_printable, names):
+        seen[name] += 1
+        found.append(f"{name}#{seen[name]}" if seen[name] > 1 else name)
+    return found

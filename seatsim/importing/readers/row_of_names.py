@@ -20,6 +20,8 @@ LABEL = re.compile(r"^(?:headers?|columns?|fields?|names?|channels?|spalten|colo
 """A word before the names that says that they follow."""
 QUOTED = 120
 """Letters of a line that an error quotes."""
+LEFT_OUT = ("", "comment", "comments", "remark", "remarks", "kommentar", "bemerkung", "commentaire")
+"""Last names of a line, in lower case, that may have no cells in the rows: LabVIEW writes `Comment`."""
 ROW = "row"
 """Name of a first column of row numbers or labels, which has none in the file."""
 
@@ -95,7 +97,7 @@ def _fit(line: str, rows: Rows, dialect: Dialect) -> list[str]:
         for part in _ways(words, dialect.delimiter, is_remark):
             cells = [cell.strip() for cell in part(words)]
             cells[:1] = [mark.sub("", cell) for cell in cells[:1]]
-            while len(cells) > rows.columns and not cells[-1]:
+            while len(cells) > rows.columns and cells[-1].lower() in LEFT_OUT:
                 cells.pop()
             if rows.filled <= len(cells) <= rows.columns:
                 return [*cells, *[""] * (rows.columns - len(cells))]

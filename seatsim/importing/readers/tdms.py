@@ -10,17 +10,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from seatsim.importing.optional import need
-from seatsim.importing.readers.naming import scalar, signals_of
-from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.importing.readers.naming import scalar, signals_of, stated_unit
+from seatsim.importing.readers.reading import TextLayout, need
+from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.schema.bounds import BYTES_OF_PART, check_made
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
     from nptdms import TdmsChannel, TdmsGroup
 
-UNITS = ("unit_string", "unit", "NI_UnitDescription", "Unit")
 START = "wf_start_time"
 NEVER_SET = np.datetime64("1904-01-02")
 """LabVIEW counts from 1904 on: a start before this was never set."""
@@ -56,7 +54,7 @@ def _groups(group: TdmsGroup, first: np.datetime64 | None, notes: list[str]) -> 
     parts: dict[tuple[int, float | None, float | None], list[Signal]] = {}
     for channel in group.channels():
         step, start = _step(channel), _start(channel, first)
-        signals = signals_of(channel.name, _values(channel), _unit(channel)) if len(channel) else []
+        signals = signals_of(channel.name, channel[:], stated_unit(channel.properties)) if len(channel) else []
         if not signals:
             notes.append(f"'{channel.name}' is left out: it holds no column of numbers")
         for signal in signals:
@@ -82,14 +80,3 @@ def _start(channel: TdmsChannel, first: np.datetime64 | None) -> float | None:
 def _start_time(channel: TdmsChannel) -> np.datetime64 | None:
     stated = channel.properties.get(START)
     return stated if isinstance(stated, np.datetime64) and stated > NEVER_SET else None
-
-
-def _values(channel: TdmsChannel) -> Array:
-    values = channel[:]
-    if values.dtype.kind == "M":
-        return np.asarray((values - values[0]) / np.timedelta64(1, "s"), dtype=np.float64)
-    return np.asarray(values)
-
-
-def _unit(channel: TdmsChannel) -> str:
-    return next((str(channel.properties[key]) for key in UNITS if channel.properties.get(key)), "")

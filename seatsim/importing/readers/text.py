@@ -11,8 +11,8 @@ import numpy as np
 
 from seatsim.importing.readers.columns import read_column
 from seatsim.importing.readers.dialect import BLANKS, MISSING, Dialect, find_dialect, kind_of, split_line
-from seatsim.importing.readers.header import Header, count_columns, first_row_of_numbers, split_header
-from seatsim.importing.readers.rate_in_header import find_rate
+from seatsim.importing.readers.header import Header, check_header, count_columns, first_row_of_numbers, split_header
+from seatsim.importing.readers.naming import find_rate, note_left_out
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.readers.row_of_names import COMMENT, Rows, fit_names, quote
 from seatsim.importing.readers.time_pairs import part_by_time
@@ -33,17 +33,12 @@ LONGEST_NAME = 8
 """Lines over which a name in quotation marks may go."""
 
 
-class Head(NamedTuple):
-    """The beginning of a table: its first lines, how they are written, and what those above the numbers say."""
+class _Head(NamedTuple):
+    """The beginning of a table: how it is written, and the lines above its numbers with what they say."""
 
-    lines: list[str]
     dialect: Dialect
     header: Header
-
-    @property
-    def above(self) -> list[str]:
-        """The lines above the first row of numbers."""
-        return self.lines[: self.header.lines]
+    above: list[str]
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
@@ -53,9 +48,9 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         InputError: it holds no rows of numbers, its names are not as many as its columns, or a row has fewer or more
             columns than the others.
     """
-    content = _as_utf8(content, layout.encoding)
+    content = as_utf8(content, layout.encoding)
     head = _read_head(path, content, layout)
-    body, notes = _clean(_without_lines(content, head.header.lines), head)
+    body, notes = _clean(_without_lines(content, len(head.above)), head)
     table = _table(path, content, body, head, notes)
     signals = _signals(table, head, notes)
     _check_texts(path, table, signals)
@@ -64,7 +59,8 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     return DataFile(path, "CSV", part_by_time(signals, find_rate(head.above)), tuple(notes))
 
 
-def _as_utf8(content: bytes, stated: str | None) -> bytes:
+def as_utf8(content: bytes, stated: str | None) -> bytes:
+    """Return a text in UTF-8, of the encoding that is stated, else found, without a mark of the order of its bytes."""
     encoding = stated or _encoding(content)
     if encoding != "utf-8":
         content = content.decode(encoding, errors="replace").encode()
@@ -85,7 +81,7 @@ def _encoding(content: bytes) -> str:
     return "utf-8"
 
 
-def _read_head(path: Path, content: bytes, layout: TextLayout) -> Head:
+def _read_head(path: Path, content: bytes, layout: TextLayout) -> _Head:
     lines = _sample(content)
     used = [index for index, line in enumerate(lines) if line.strip() and not COMMENT.match(line)]
     dialect = find_dialect([lines[index] for index in used], layout.delimiter, layout.decimal)
@@ -100,16 +96,11 @@ def _read_head(path: Path, content: bytes, layout: TextLayout) -> Head:
         first += first == 0 and len(rows) > 1 and count_columns(rows[0])
     else:
         first = sum(index < layout.header for index in used)
-        if first == len(used):
-            raise InputError(
-                f"{path}: has {len(lines)} lines; csv.header {layout.header} counts those above the first row of"
-                " numbers"
-            )
+        check_header(layout.header, used[-1] + 1, str(path))
     above = used[first] if layout.header is None else layout.header
     table = Rows(lines[used[first]], rows[first:], kinds[first:])
     names = fit_names(path, lines[:above], table, dialect, layout.header is not None)
-    header = split_header(names, len(names), len(rows[first]))
-    return Head(lines, dialect, header._replace(lines=above))
+    return _Head(dialect, split_header(names, len(rows[first])), lines[:above])
 
 
 def _sample(content: bytes) -> list[str]:
@@ -133,7 +124,7 @@ def _without_lines(content: bytes, count: int) -> bytes:
     return content[begin:]
 
 
-def _clean(body: bytes, head: Head) -> tuple[bytes, list[str]]:
+def _clean(body: bytes, head: _Head) -> tuple[bytes, list[str]]:
     """Return rows as pyarrow reads them, without remarks and names among them, and sentences on those."""
     for sign in ("\u2212", "\u2013"):
         body = body.replace(sign.encode(), b"-")
@@ -162,7 +153,7 @@ def _repeats(body: bytes, above: Sequence[str]) -> bool:
     return last is not None and last.strip().encode() in body
 
 
-def _table(path: Path, content: bytes, body: bytes, head: Head, notes: list[str]) -> pa.Table:
+def _table(path: Path, content: bytes, body: bytes, head: _Head, notes: list[str]) -> pa.Table:
     import pyarrow as pa
     from pyarrow import csv as arrow_csv
 
@@ -189,7 +180,7 @@ def _table(path: Path, content: bytes, body: bytes, head: Head, notes: list[str]
     return table
 
 
-def _check_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], head: Head, notes: list[str]) -> None:
+def _check_rows(path: Path, content: bytes, bad: Sequence[tuple[str, int]], head: _Head, notes: list[str]) -> None:
     """Raise InputError at the first row of another length than the names; lines of text below the table are noted."""
     lines = [line.strip() for line in content.decode(errors="replace").splitlines()]
     last = [line for line in lines if line][-len(bad) :]
@@ -230,7 +221,7 @@ def _find(lines: Sequence[str], text: str) -> int:
     return lines.index(plain) + 1 if plain in lines else len(lines)
 
 
-def _signals(table: pa.Table, head: Head, notes: list[str]) -> list[Signal]:
+def _signals(table: pa.Table, head: _Head, notes: list[str]) -> list[Signal]:
     """Return the columns of numbers; a column of dates is added to the times of day behind it. The others are noted."""
     signals, left_out, days = [], [], None
     for name, unit, column in zip(head.header.names, head.header.units, table.columns, strict=True):
@@ -243,5 +234,5 @@ def _signals(table: pa.Table, head: Head, notes: list[str]) -> list[Signal]:
             since = days if days is not None and found.unit == "s" else 0.0
             signals.append(Signal(name, unit or found.unit, found.values + since))
             notes += [f"{name}: {found.parted} is read with its thousands parted"] if found.parted else []
-    notes += [f"columns that hold no numbers: {', '.join(left_out)}"] if left_out else []
+    notes += note_left_out("columns that hold no numbers", left_out)
     return signals

@@ -32,7 +32,11 @@ def part_by_time(signals: Sequence[Signal], rate: float | None) -> tuple[Group, 
             same += [signal for signal in part if signal is not clock]
     if len(parts) == 1:
         return (Group("", tuple(parts[0]), rate),)
-    return tuple(_with_times(part) for part in parts)
+    clocks = [_clock(part) for part in parts]
+    return tuple(
+        Group(clock.name, tuple(part)).take(np.isfinite(clock.values))
+        for clock, part in zip(clocks, parts, strict=True)
+    )
 
 
 def _is_clock(signal: Signal) -> bool:
@@ -42,9 +46,3 @@ def _is_clock(signal: Signal) -> bool:
 
 def _clock(part: Sequence[Signal]) -> Signal:
     return next(signal for signal in part if _is_clock(signal))
-
-
-def _with_times(part: Sequence[Signal]) -> Group:
-    clock = _clock(part)
-    there = np.isfinite(clock.values)
-    return Group(clock.name, tuple(signal._replace(values=signal.values[there]) for signal in part))

@@ -9,8 +9,8 @@ from typing import cast
 
 import numpy as np
 
-from seatsim.importing.optional import need
-from seatsim.importing.readers.reading import TextLayout
+from seatsim.importing.readers.naming import note_left_out
+from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import Array, DataFile, Group, Signal, add_channels
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import DIMENSIONS, conversion
@@ -58,8 +58,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
                 even.setdefault((len(times), step, float(times[0]) if len(times) else 0.0), []).append(signal)
     groups = [Group("", tuple(signals), 1.0 / step if step else None, start)
               for (_, step, start), signals in even.items()]  # fmt: skip
-    notes = (f"left out, as they are no responses over time: {'; '.join(others)}",) if others else ()
-    return DataFile(path, "", (*groups, *uneven), notes)
+    return DataFile(path, "", (*groups, *uneven), note_left_out("left out, as they are no responses over time", others))
 
 
 def _why_not(kind: int, held: Mapping[str, object]) -> str:

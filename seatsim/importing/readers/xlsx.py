@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from seatsim.importing.optional import need
-from seatsim.importing.readers.header import first_row_of_numbers, split_header
-from seatsim.importing.readers.reading import TextLayout
+from seatsim.importing.readers.header import check_header, first_row_of_numbers, split_header
+from seatsim.importing.readers.naming import note_left_out
+from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import Array, DataFile, Group, Signal
 from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError
@@ -38,8 +38,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
             notes.append(str(error))
             continue
         groups.append(group)
-        if left_out:
-            notes.append(f"columns of the sheet {sheet.title} that hold no numbers: {', '.join(left_out)}")
+        notes += note_left_out(f"columns of the sheet {sheet.title} that hold no numbers", left_out)
     if not groups and notes:
         raise InputError(notes[0])
     return DataFile(path, "", tuple(groups), tuple(notes))
@@ -72,8 +71,9 @@ def _group(title: str, rows: Sequence[Sequence[Cell]], place: str, layout: TextL
     first = layout.header
     if first is None:
         first = first_row_of_numbers([[_is_number(cell) for cell in row] for row in rows], place)
+    check_header(first, len(rows), place)
     above = [["" if cell is None else str(cell) for cell in row] for row in rows[:first]]
-    header = split_header(above, first, len(rows[first]))
+    header = split_header(above, len(rows[first]))
     columns = list(zip(*rows[first:], strict=True))
     named = zip(header.names, header.units, columns, strict=True)
     signals = [Signal(name, unit, _values(cells)) for name, unit, cells in named]
