@@ -16,8 +16,7 @@ Array = NDArray[np.float64]
 def measure_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list[Array]:
     """Return by how much each effect of a set moves each channel, in the channel's standard deviations.
 
-    The movement is the RMS change of the simulation over all runs when this effect alone is removed. A channel that is
-    constant there, as a current at which a bench drives its damper, is an input that no effect moves.
+    The movement is the RMS change of the simulation over all runs when this effect alone is removed.
     """
     parameters = evaluation.parameters
     without = [parameters.remove(term.effect) for term in parameters.terms]
@@ -25,7 +24,7 @@ def measure_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list
     moves = []
     for other in others:
         change = np.concatenate([other[run] - evaluation.residuals[run] for run in problem.runs], axis=1)
-        moves.append(np.sqrt(np.mean(change**2, axis=1)) / np.where(problem.spread > 0.0, problem.spread, np.inf))
+        moves.append(np.sqrt(np.mean(change**2, axis=1)) / problem.spread)
     return moves
 
 

@@ -92,7 +92,7 @@ def select_effects(
     """
     settings = objective.settings.selection
     largest = settings.largest_set if largest is None else largest
-    rig = linearise_rig(objective, candidates) if rig is None else rig
+    rig = _linearise_rig(objective, candidates) if rig is None else rig
     nuisances, sensitivities = rig.nuisances, rig.sensitivities
     sets: list[list[Evaluation]] = [[rig.calibrated]]
     linearisations = [nuisances]
@@ -123,7 +123,7 @@ def select_effects(
     return Selection(rig.nominal, fitted, tuple(linearisations), sensitivities=sensitivities, notes=notes)
 
 
-def linearise_rig(objective: Objective, candidates: Sequence[Candidate]) -> LinearisedRig:
+def _linearise_rig(objective: Objective, candidates: Sequence[Candidate]) -> LinearisedRig:
     """Return the rig with refitted nuisance parameters, and its sensitivities to them and to the candidates.
 
     The refitted rig is what every answer starts from, so that no deadline ends that fit.

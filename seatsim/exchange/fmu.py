@@ -40,7 +40,7 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
             (Path(folder) / Path(name).name).write_bytes(content)
         library = Path(folder) / "library"
         compile_library(Path(folder) / f"fmi{version}.c", library)
-        binary = f"binaries/{platform_folder(version)}/{identifier(block)}{ENDINGS.get(platform.system(), '.so')}"
+        binary = f"binaries/{_platform_folder(version)}/{identifier(block)}{ENDINGS.get(platform.system(), '.so')}"
         files[binary] = library.read_bytes()
     write_whole(path, lambda part: _pack(files, part))
 
@@ -71,7 +71,7 @@ def identifier(block: Block) -> str:
     return f"m_{name}" if name[:1].isdigit() else name
 
 
-def platform_folder(version: int) -> str:
+def _platform_folder(version: int) -> str:
     """Return the folder of this platform's library as the version of the standard names it."""
     if version == 2:
         return FOLDERS.get(platform.system(), "linux") + ("64" if sys.maxsize > 2**32 else "32")

@@ -45,7 +45,7 @@ def report_gap(name: str, found: Gap, pairs: Mapping[str, ReplayedPair], evidenc
     channels = list(found.channels)
     sections = [
         Section("gaps", "How far: gap of each channel", [_make_table(found), *_make_matrix(channels, pairs)]),
-        Section("signals", "Measured and simulated over time", [show_pairs(channels, pairs)]),
+        Section("signals", "Measured and simulated over time", [_show_pairs(channels, pairs)]),
         Section("spectra", "Spectrum of the difference", _show_left(channels, pairs)),
         Section("notes", "Notes on the data", _list_notes(found)),
         show_card(evidence),
@@ -73,7 +73,7 @@ def _advise(found: Gap) -> list[str]:
     return ["Find the cause with seatsim diagnose: it names the effect, and says how far the gap shrinks with it."]
 
 
-def show_pairs(channels: Sequence[str], pairs: Mapping[str, ReplayedPair]) -> Signals:
+def _show_pairs(channels: Sequence[str], pairs: Mapping[str, ReplayedPair]) -> Signals:
     """Return linked pictures of the measured and the simulated channels of every run."""
     axes = {run: pair.time for run, pair in pairs.items()}
     panels = [

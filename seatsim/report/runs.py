@@ -81,7 +81,7 @@ def _list_gaps(runs: Sequence[Run], failures: Sequence[str]) -> list[str]:
 
 def _make_table(runs: Sequence[Run]) -> Table:
     if len(runs) == 1:
-        return list_metrics(runs[0])
+        return _list_metrics(runs[0])
     chosen = [name for name in SHORT if any(name in run.metrics for run in runs)]
     shown = {name: describe_channel(SHORT[name], _unit_of(runs, name)) for name in chosen}
     head = ["run", *(each.words if each.unit == "-" else each.axis for each in shown.values())]
@@ -102,7 +102,7 @@ def _format_metric(name: str, value: float) -> str:
     return f"{value:.0f}" if name == "end_stop_hits" and np.isfinite(value) else format_number(value)
 
 
-def list_metrics(run: Run) -> Table:
+def _list_metrics(run: Run) -> Table:
     """Return every figure of a run as a table."""
     rows = [
         [format_sentence(metric.meaning).rstrip("."), format_quantity(metric.value, metric.unit)]

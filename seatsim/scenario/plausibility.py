@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from typing import cast
+from typing import Any, cast
 
-from seatsim.effects.base import acts_on
+import numpy as np
+
+from seatsim.effects.base import EFFECTS, acts_on
 from seatsim.rig.temperature import TemperatureFactors, Thermal
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import describe, field_names
 from seatsim.schema.plausible import doubt
-from seatsim.schema.registry import Record, is_own
+from seatsim.schema.registry import Record, is_own, specification_of
 
 TEMPERATURE = "temperature"
 
 
 def list_doubts(scenario: Scenario) -> list[str]:
-    """Return a sentence for each value that is unusual for a seat, and for a temperature that nothing depends on."""
+    """Return a sentence for each value that is unusual for a seat, and for each that changes nothing."""
     doubts = []
     for section, record in _list_records(scenario).items():
         for field in describe(type(record)):
@@ -28,7 +30,21 @@ def list_doubts(scenario: Scenario) -> list[str]:
             f"{_place(scenario, (TEMPERATURE,))}: nothing depends on the temperature that is varied, so that all runs"
             " are the same; state damper.temperature_factors, or damper.thermal_fade under effects"
         )
-    return doubts
+    return doubts + _list_unread(scenario)
+
+
+def _list_unread(scenario: Scenario) -> list[str]:
+    """Return a sentence for each effect on a thermocouple that nothing reads, since the fluid itself is simulated."""
+    if not _is_thermal(scenario) or scenario.control is None or specification_of(type(scenario.control.law)).replays:
+        return []
+    ramp, own = np.arange(3.0), cast("tuple[Any, ...]", scenario.effects)
+    return [
+        f"{_place(scenario, ('effects',))}: {EFFECTS.name_of(type(effect))} states how the fluid differs from its"
+        " thermocouple, which changes nothing here, since the temperature of the fluid is simulated; state it as a"
+        " number, or replay a recorded damper_temperature"
+        for effect in own
+        if acts_on(type(effect), (TEMPERATURE,)) and not np.array_equal(effect.temperature(1.0, ramp), ramp)
+    ]
 
 
 def _list_records(scenario: Scenario) -> dict[str, Record]:

@@ -175,9 +175,12 @@ def prepare_inputs(scenario: Scenario, control: Control, floor: Floor, forces: F
     """Return what drives a run of the loop, under a floor and with forces beside those of the effects."""
     step, effects, samples = scenario.solver.step, scenario.effects, len(floor.acceleration)
     acceleration = undo_reading(effects, floor.acceleration, "floor_acceleration", step)
-    fixed = scenario.temperature.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
-    temperature = np.full(samples, fixed) if floor.temperature is None else floor.temperature
-    temperature = augment_temperature(effects, step, temperature)
+    if floor.temperature is None and isinstance(scenario.temperature, Thermal):
+        # What is simulated is the temperature of the fluid, which no thermocouple reads.
+        temperature = np.full(samples, scenario.temperature.start)
+    else:
+        stated = np.full(samples, scenario.temperature) if floor.temperature is None else floor.temperature
+        temperature = augment_temperature(effects, step, stated)
     command = NONE if floor.command is None else undo_reading(effects, floor.command, "current_command", step)
     replays = specification_of(type(control.law)).replays
     flowing = NONE

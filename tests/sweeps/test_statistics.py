@@ -111,3 +111,18 @@ def test_a_condition_is_never_advised_on_as_a_choice():
     (table,) = tabulate_best(rows_of(frame, ("excitation.speed", "controller.damping")))
     assert [row[:2] for row in table.rows] == [["20.00", "4.000"], ["10.00", "2.000"], ["5.000", "1.000"]]
     assert tabulate_best(rows) == []
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("runs", range(8, 17))
+def test_a_value_of_a_single_run_is_predicted_from_no_other(runs):
+    seen = set()
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        road = np.array(["B"] * (runs - 1) + ["C"])
+        frame = pd.DataFrame({"a": rng.uniform(size=runs), "b": rng.uniform(size=runs), "t": road})
+        frame[COMFORT] = frame.a + 0.1 * rng.standard_normal(runs)
+        found = analyse_sensitivity(rows_of(frame, "abt"))
+        seen.add(found.problem)
+        assert all(np.isfinite(row.total) for row in found.rows)
+    assert any("too few" in problem for problem in seen)

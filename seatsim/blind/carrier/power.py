@@ -131,13 +131,13 @@ def _try_size(setting: Setting, size: float, draws: int, processes: int) -> list
     allowed = draws - math.ceil(FOUND_SHARE * draws)
     for first in range(0, draws, BATCH):
         batch = range(first, min(first + BATCH, draws))
-        trials += run_jobs(try_draw, [(setting, size, k) for k in batch], processes)
+        trials += run_jobs(_try_draw, [(setting, size, k) for k in batch], processes)
         if sum(not trial.found for trial in trials) > allowed:
             break
     return trials
 
 
-def try_draw(setting: Setting, size: float, draw: int) -> Trial:
+def _try_draw(setting: Setting, size: float, draw: int) -> Trial:
     """Return one trial, read from its file where it was made before."""
     name = f"{setting.effect}-{size:g}-{draw + 1:02d}"
     case, note = setting.out / "cases" / name, setting.out / "cases" / f"{name}.json"

@@ -74,7 +74,7 @@ def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, .
         if name in channels
     }
     true = standard.scatter_parameters(nominal, rng, tolerance) | standard.draw_heat(rng)
-    colours = {name: draw_colour(rng) for name in noise}
+    colours = {name: _draw_colour(rng) for name in noise}
     experiment = Experiment(nominal, true, channels, noise, (), (), rate, tolerance, colours)
     repeat = rng.random() < BACKGROUND_SHARE
     experiment = dataclasses.replace(experiment, runs=_draw_runs(rng, experiment, repeat))
@@ -88,7 +88,7 @@ def _log_uniform(rng: Generator, low: float, high: float) -> float:
 def draw_nominal(rng: Generator, bingham: bool) -> dict[str, float]:
     """Draw the parameters of seat, damper and coil, rounded to three digits as an owner states them."""
     seat = SEATS[int(rng.integers(len(SEATS)))]
-    plant = draw_plant(rng, seat)
+    plant = _draw_plant(rng, seat)
     ratio = round(rng.uniform(*seat.damper_ratio), 2)
     damper = draw_damper(rng, plant, ratio, bingham)
     coil = {"rate": _log_uniform(rng, 60.0, 250.0), "i_max": standard.COIL["i_max"]}
@@ -96,7 +96,7 @@ def draw_nominal(rng: Generator, bingham: bool) -> dict[str, float]:
     return rounded | {"damper_ratio": ratio}
 
 
-def draw_plant(rng: Generator, seat: SeatKind) -> dict[str, float]:
+def _draw_plant(rng: Generator, seat: SeatKind) -> dict[str, float]:
     """Draw masses, and from natural frequencies and damping ratios the springs and dampings."""
     ms, m = rng.uniform(*seat.frame), rng.uniform(*DRIVER)
     w, cushion = (2.0 * math.pi * rng.uniform(*band) for band in (seat.resonance, CUSHION_RESONANCE))
@@ -131,7 +131,7 @@ def draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham: 
     }  # fmt: skip
 
 
-def draw_colour(rng: Generator) -> NoiseColour:
+def _draw_colour(rng: Generator) -> NoiseColour:
     """Draw the colour of a sensor's noise: 40-80 % of its variance is white."""
     left = rng.uniform(0.2, 0.6)
     flicker = left * rng.uniform(0.1, 0.6)

@@ -87,7 +87,7 @@ def add_noise(experiment: Experiment, readings: Readings, rng: Generator) -> Rea
     return noisy
 
 
-def encode_table(channels: Readings, rate: float) -> bytes:
+def _encode_table(channels: Readings, rate: float) -> bytes:
     """Return a run as a gzipped CSV whose bytes depend on nothing but the numbers."""
     rows = next(iter(channels.values())).size
     whole_milliseconds = 1000.0 % rate == 0.0
@@ -124,7 +124,7 @@ def encode_recording(
         "nominal.yaml": encode_yaml(nominal_scenario(experiment)),
     }
     for k, plan in zip(runs, plans, strict=True):
-        files[f"{plan.name}.csv.gz"] = encode_table(add_noise(experiment, readings[k], rng), experiment.sample_rate)
+        files[f"{plan.name}.csv.gz"] = _encode_table(add_noise(experiment, readings[k], rng), experiment.sample_rate)
     return files
 
 

@@ -60,7 +60,7 @@ def doubt_shape(doubter: Doubter, values: Array, lengths: NDArray[np.int_]) -> I
         yield from doubt_spikes(doubter, values)
     if doubter.rate is None or is_command:
         return
-    level, step = measure_level(values[:MOST_ROWS], doubter.rate), find_resolution(values[:MOST_ROWS])
+    level, step = measure_level(values[:MOST_ROWS], doubter.rate), _find_resolution(values[:MOST_ROWS])
     usual = float(np.median(lengths[:MOST_ROWS]))
     if usual >= 2.0 and np.mean(lengths == usual) > REGULAR:
         yield doubter.say("warning", "held", f"holds each value for {usual:.0f} rows; its own rate is lower")
@@ -128,7 +128,7 @@ def _floor(doubter: Doubter, level: Level, step: float, swing: float) -> Iterato
         yield doubter.say("note", "smooth", text)
 
 
-def find_resolution(values: Array) -> float:
+def _find_resolution(values: Array) -> float:
     """Return the step between the levels that values come in, 0 where they come in none."""
     gaps = np.diff(np.unique(values))
     low, usual = (float(np.quantile(gaps, share)) for share in (0.1, 0.5))

@@ -19,6 +19,8 @@ MOST_VALUES = 40
 """Different texts of a key that have contrasts of their own."""
 RUNS_PER_TERM = 2
 """Runs for each coefficient that are needed at least."""
+SINGULAR = 1e-10
+"""Reciprocal of the condition number from which on runs do not determine an expansion."""
 
 
 class Degree(NamedTuple):
@@ -40,15 +42,11 @@ class Basis(NamedTuple):
 
 
 class Expansion(NamedTuple):
-    """Coefficients of metrics, shape (P, M), inverse of the Gram matrix, shape (P, P), and variances of errors (M,).
-
-    `errors` are those of runs left out one by one, shape (N, M).
-    """
+    """Coefficients of metrics, shape (P, M), inverse of the Gram matrix, shape (P, P), and variances of errors (M,)."""
 
     coefficients: Array
     inverse: Array
     noise: Array
-    errors: Array
 
 
 def make_key_basis(values: Array | Sequence[object], degree: int) -> Array:
@@ -85,14 +83,26 @@ def fit_expansion(basis: Array, metrics: Array) -> Expansion | None:
     """Return the expansion of metrics, shape (N, M), or None where the runs do not determine it."""
     runs, terms = basis.shape
     gram = basis.T @ basis
-    if runs < RUNS_PER_TERM * terms or np.linalg.cond(gram) > 1e10:
+    if runs < RUNS_PER_TERM * terms or np.linalg.cond(gram) > 1 / SINGULAR:
         return None
     inverse = cast("Array", np.linalg.inv(gram))
     coefficients: Array = inverse @ (basis.T @ metrics)
     residuals = metrics - basis @ coefficients
-    leverage = ((basis @ inverse) * basis).sum(axis=1)
     noise: Array = (residuals**2).sum(axis=0) / (runs - terms)
-    return Expansion(coefficients, inverse, noise, residuals / (1 - leverage)[:, None])
+    return Expansion(coefficients, inverse, noise)
+
+
+def predict_left_out(basis: Array, metrics: Array, expansion: Expansion) -> Array | None:
+    """Return the errors of an expansion at runs left out one by one, shape (N, M).
+
+    With the leverage h of a run they are `residual / (1 - h)`; None where h is 1, so that the run alone determines a
+    coefficient.
+    """
+    leverage = ((basis @ expansion.inverse) * basis).sum(axis=1)
+    if np.any(leverage > 1 - SINGULAR):
+        return None
+    errors: Array = (metrics - basis @ expansion.coefficients) / (1 - leverage)[:, None]
+    return errors
 
 
 def _is_polynomial(column: Array | Sequence[object]) -> bool:

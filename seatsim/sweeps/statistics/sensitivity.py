@@ -24,6 +24,7 @@ from seatsim.sweeps.statistics.chaos import (
     fit_expansion,
     make_basis,
     make_key_basis,
+    predict_left_out,
 )
 from seatsim.sweeps.statistics.inputs import SweepRows, is_number
 
@@ -98,11 +99,11 @@ def analyse_sensitivity(rows: SweepRows) -> Sensitivities:
     if found is None:
         what, over = ("draws", drawn) if draws < len(usable) else ("runs", keys)
         return Sensitivities([], f"{draws} {what} that can be used are too few for {len(over)} keys")
-    basis, expansion = found
+    basis, expansion, errors = found
     resampled = list(_resample(basis, usable[complete].to_numpy(), draw))
     made: list[Sensitivity] = []
     for m, metric in enumerate(complete):
-        explained = 1 - float((expansion.errors[:, m] ** 2).mean() / usable[metric].var())
+        explained = 1 - float((errors[:, m] ** 2).mean() / usable[metric].var())
         here = [
             _make_row(usable, metric, key, k, basis, expansion, resampled, m, explained) for k, key in enumerate(keys)
         ]
@@ -126,23 +127,24 @@ def _find_dependent(columns: Sequence[Array]) -> tuple[int, int] | None:
     return None
 
 
-def _expand(columns: Sequence[Array], metrics: Array, draws: int, drawn: int) -> tuple[Basis, Expansion] | None:
-    """Return the expansion that predicts runs left out best, over all metrics.
+def _expand(columns: Sequence[Array], metrics: Array, draws: int, drawn: int) -> tuple[Basis, Expansion, Array] | None:
+    """Return the expansion that predicts runs left out best, over all metrics, with its errors there, shape (N, M).
 
     So many keys are `drawn` together so many times: these `draws` determine their terms, however many runs there are.
     """
-    best: tuple[float, Basis, Expansion] | None = None
+    best: tuple[float, Basis, Expansion, Array] | None = None
     scale = metrics.var(axis=0)
     for degree in DEGREES:
         if draws < RUNS_PER_TERM * (1 + drawn * degree.alone):
             continue
         basis = make_basis(columns, degree)
         expansion = fit_expansion(basis.values, metrics)
-        if expansion is None:
+        errors = None if expansion is None else predict_left_out(basis.values, metrics, expansion)
+        if expansion is None or errors is None:
             continue
-        error = float((np.mean(expansion.errors**2, axis=0) / scale).mean())
+        error = float((np.mean(errors**2, axis=0) / scale).mean())
         if best is None or error < best[0]:
-            best = error, basis, expansion
+            best = error, basis, expansion, errors
     return None if best is None else best[1:]
 
 

@@ -212,6 +212,13 @@ def test_the_spread_is_that_of_all_runs_together(linear):
     assert linear.channels == CHANNELS
 
 
+def test_a_channel_that_is_constant_in_a_run_counts_nothing_there(linear):
+    still = linear.measured["first"].copy()
+    still[0] = 7.0
+    part = dataclasses.replace(linear, measured={**linear.measured, "first": still}).on_runs(["first"])
+    assert list(normalise_rms_errors(part, {"first": np.vstack([np.ones_like(still[0]), 0.0 * still[0]])})) == [0.0]
+
+
 def test_a_part_of_the_runs_has_its_own_spread_and_the_same_rest(linear):
     part = linear.on_runs(["third", "first"])
     assert part.runs == ("third", "first")
