@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.effects.base import EFFECTS, ON_SEAT, Form, acts_on, same_place
-from seatsim.recordings.replay import COMMANDS
 from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.schema.fields import bounds, choices, describe, field_names
 from seatsim.schema.registry import Record
@@ -21,7 +20,7 @@ Fixed = Mapping[str, float | str]
 """Parameters that no fit changes."""
 
 
-INPUTS = ("floor_acceleration", "displacement", "coil_current")
+INPUTS = ("floor_acceleration", "displacement")
 """Recorded inputs whose sensor may err: it moves every channel that is simulated from them."""
 SEAT_SPRING = 4600.0
 """N/m; spring of the seat for which the effects state the stiffnesses at which fits start."""
@@ -184,7 +183,8 @@ def _fits(cls: type[Record], problem: DiagnosisProblem) -> bool:
         return False
     if acts_on(cls, ("inner_mass",)) and problem.scenario.driver.model != SINGLE_MASS:
         return False
-    commanded = any(name in problem.recording.channels for name in COMMANDS)
+    recorded = problem.recording.channels
+    commanded = "current_command" in recorded or "command_voltage" in recorded
     # Where only the current is recorded, it drives the damper in the simulation, so that no fault of the coil shows.
     if acts_on(cls, ("coil",)) and not commanded:
         return False
@@ -199,7 +199,7 @@ def _places(cls: type[Record], problem: DiagnosisProblem) -> list[Fixed]:
     if not EFFECTS.specification_of(cls).by_channel:
         return [{}]
     known = choices(cls, "channel")
-    named = dict.fromkeys([*problem.channels, *INPUTS])
+    named = [*problem.channels, *INPUTS]
     return [{"channel": name} for name in named if name in problem.recording.channels and name in known]
 
 

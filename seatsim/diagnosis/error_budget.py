@@ -10,7 +10,7 @@ simulation, and u_D the stated noise of the channel; all are RMS values over the
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +19,10 @@ from scipy.interpolate import CubicSpline, UnivariateSpline
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import ErrorBudget
 from seatsim.metrics.motion import rms
-from seatsim.recordings.compared import select_compared
+from seatsim.recordings.compared import COMPARED, select_compared
 from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import Recording
-from seatsim.recordings.replay import list_compared, replay_table
+from seatsim.recordings.replay import replay_table
 from seatsim.scenario.scenario import Scenario
 from seatsim.simulation.inputs import BenchInputs
 from seatsim.simulation.respond import respond
@@ -32,6 +32,7 @@ Table = Mapping[str, Array]
 
 REPLICATES = 3
 """Simulations with newly drawn noise of the inputs."""
+COMMANDS = ("current_command", "command_voltage")
 
 
 def budget_errors(problem: DiagnosisProblem, scenario: Scenario, run: str) -> list[ErrorBudget]:
@@ -99,18 +100,18 @@ def carry_input_noise(scenario: Scenario, recording: Recording, table: Table) ->
     # The same draws for every recording: equal input gives equal output.
     rng = np.random.default_rng(0)
     clean = replay_table(scenario, recording, table)
-    outputs = list_compared(scenario, recording.header.rig, table)
-    noisy = [replay_table(scenario, recording, _add_noise(recording, table, outputs, rng)) for _ in range(REPLICATES)]
+    noisy = [replay_table(scenario, recording, _add_noise(recording, table, rng)) for _ in range(REPLICATES)]
     return {
         name: float(np.sqrt(np.mean([np.mean((other[name] - values) ** 2) for other in noisy])))
         for name, values in clean.items()
     }
 
 
-def _add_noise(
-    recording: Recording, table: Table, outputs: Container[str], rng: np.random.Generator
-) -> dict[str, Array]:
-    """Return a table with noise added to all that is no output."""
+def _add_noise(recording: Recording, table: Table, rng: np.random.Generator) -> dict[str, Array]:
+    """Return a table with noise added to what drives the simulation: a coil current only in place of a command."""
+    outputs = set(COMPARED[recording.header.rig])
+    if not any(name in table for name in COMMANDS):
+        outputs -= {"coil_current"}
     return {
         name: values
         if name in outputs

@@ -18,13 +18,12 @@ from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.settings.fitting import FitSettings
 from seatsim.effects.base import replace_effects
-from seatsim.recordings.compared import LEFT_OUT, stands_out
+from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
 from seatsim.recordings.header import USUAL, Header, Tolerance
 from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.quality.coverage import shows_falling_current
 from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording
-from seatsim.recordings.replay import list_compared
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.errors import InputError, RunError
@@ -168,7 +167,7 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
     solver = scenario.solver._replace(step=interval / parts)
     scenario = dataclasses.replace(scenario, solver=solver, start=Start())
     tables = {run: recording.table(run) for run in recording.runs}
-    names = list_compared(scenario, recording.header.rig, recording.channels)
+    names = [name for name in COMPARED[recording.header.rig] if name in recording.channels]
     loud = [
         name for name in names
         if stands_out(np.concatenate([table[name] for table in tables.values()]), recording.channels[name].noise_rms)

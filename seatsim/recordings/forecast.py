@@ -6,11 +6,12 @@ import math
 from pathlib import Path
 from typing import NamedTuple
 
+from seatsim.recordings.compared import COMPARED
 from seatsim.recordings.gap import Gap, measure_gap
 from seatsim.recordings.prediction import Prediction, predict_gap
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
-from seatsim.recordings.replay import list_compared, note_unused_log
+from seatsim.recordings.replay import note_unused_log
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 
@@ -62,7 +63,14 @@ def forecast_gap(scenario: str | Path | Scenario, recording: str | Path | Record
     refuse(examination)
     predicted = predict_gap(scenario, recording, diagnosis)
     measured = None
-    if list_compared(scenario, recording.header.rig, recording.channels):
+    if has_outputs(recording):
         measured = MeasuredGaps(measure_gap(recording.nominal, recording), measure_gap(scenario, recording))
     notes = dict.fromkeys([*note_unused_log(scenario, recording), *examination.sentences])
     return Forecast(predicted, measured, tuple(notes))
+
+
+def has_outputs(recording: Recording) -> bool:
+    """Whether an output is recorded; a coil current is an input where it drives the damper in place of a command."""
+    recorded, commands = set(recording.channels), {"current_command", "command_voltage"}
+    outputs = recorded.intersection(COMPARED[recording.header.rig])
+    return bool(outputs if commands & recorded else outputs - {"coil_current"})

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.metrics.motion import rms
-from seatsim.recordings.compared import LEFT_OUT, stands_out
+from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording, load_recording
-from seatsim.recordings.replay import list_compared, note_unused_log, replay
+from seatsim.recordings.replay import note_unused_log, replay
 from seatsim.scenario.loading import single
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
@@ -136,7 +136,7 @@ def pool_runs(
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return measured and simulated channels that are compared, over all samples of the runs, shape (N,) each."""
     pairs = [replay(scenario, recording, run) for run in runs]
-    names = list_compared(scenario, recording.header.rig, recording.channels)
+    names = [name for name in COMPARED[recording.header.rig] if name in recording.channels]
     measured = {name: np.concatenate([m[name] for m, _ in pairs]) for name in names}
     simulated = {name: np.concatenate([s[name] for _, s in pairs]) for name in names}
     loud = loud_channels(recording, measured)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.recordings.compared import COMPARED, LEAST_ROWS, LEFT_OUT, select_compared
+from seatsim.recordings.compared import LEAST_ROWS, LEFT_OUT, select_compared
 from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import Recording
 from seatsim.rig.control import LAWS
@@ -17,18 +17,6 @@ from seatsim.schema.registry import specification_of
 from seatsim.simulation.respond import respond
 
 Array = NDArray[np.float64]
-COMMANDS = ("current_command", "command_voltage")
-"""Channels that command the coil."""
-
-
-def list_compared(scenario: Scenario, rig: str, recorded: Container[str]) -> list[str]:
-    """Return the recorded channels that are compared with a scenario.
-
-    A coil current is an input, and so not compared, where it drives the damper in place of a command.
-    """
-    commanded = any(name in recorded for name in COMMANDS)
-    prescribed = not commanded and (scenario.control is None or specification_of(type(scenario.control.law)).replays)
-    return [name for name in COMPARED[rig] if name in recorded and not (prescribed and name == "coil_current")]
 
 
 def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str, Array], dict[str, Array]]:
@@ -43,8 +31,7 @@ def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str
     if rows < round(LEFT_OUT * rate) + LEAST_ROWS:
         raise InputError(f"{recording.folder}, run {run}: {rows} rows are too short; its first second is left out")
     simulated = replay_table(recording.scenario_of(run, scenario), recording, table)
-    measured = select_compared(table, recording.header.rig, rate)
-    return {name: measured[name] for name in simulated}, simulated
+    return select_compared(table, recording.header.rig, rate), simulated
 
 
 def note_unused_log(scenario: Scenario, recording: Recording) -> list[str]:
@@ -61,8 +48,7 @@ def note_unused_log(scenario: Scenario, recording: Recording) -> list[str]:
 
 def replay_table(scenario: Scenario, recording: Recording, table: Mapping[str, Array]) -> dict[str, Array]:
     """Return the simulated channels that are compared, driven by the inputs of a table, without the first second."""
-    outputs = simulate_table(scenario, recording, table)
-    return {name: outputs[name] for name in list_compared(scenario, recording.header.rig, table)}
+    return {name: values for name, values in simulate_table(scenario, recording, table).items() if name in table}
 
 
 def simulate_table(scenario: Scenario, recording: Recording, table: Mapping[str, Array]) -> dict[str, Array]:

@@ -2,7 +2,6 @@
 
 import json
 import shutil
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pandas as pd
@@ -11,11 +10,9 @@ import pytest
 import seatsim
 from seatsim.cli.app import main
 from seatsim.dampers.bouc_wen import BoucWen
-from seatsim.diagnosis.problem import pose_problem
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.recording import load_recording
 from seatsim.recordings.writer import save_recording
-from seatsim.scenario.loading import single
 from seatsim.simulation.damper_bench import bench_force
 
 CHANNELS = ["floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement",
@@ -47,17 +44,6 @@ def recorded(kept, tmp_path):
 def test_the_replay_of_an_own_noiseless_recording_leaves_no_gap(result, tmp_path, absent):
     folder = save_recording(result, tmp_path, [name for name in CHANNELS if name not in absent])
     assert seatsim.gap(folder / "nominal.yaml", folder).overall < 1e-3
-
-
-def test_a_current_that_drives_the_damper_is_an_input_and_is_not_compared(result, tmp_path):
-    folder = save_recording(result, tmp_path, [name for name in CHANNELS if name != "current_command"])
-    nominal, outputs = folder / "nominal.yaml", ["frame_acceleration", "driver_acceleration",
-                                                 "suspension_displacement", "damper_force"]  # fmt: skip
-    assert list(seatsim.gap(nominal, folder).channels) == outputs
-    own = single(nominal, {"controller": {"law": "skyhook", "damping": 1000.0}})
-    assert list(measure_gap(own, folder).channels) == [*outputs, "coil_current"]
-    with ThreadPoolExecutor(1) as pool:
-        assert pose_problem(load_recording(folder), pool).channels == tuple(outputs)
 
 
 def test_noise_is_added_as_it_is_stated(result, kept, tmp_path):

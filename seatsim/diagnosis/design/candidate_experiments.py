@@ -121,7 +121,7 @@ def _intervene(problem: DiagnosisProblem, floor: Floor) -> Iterator[CandidateExp
     rest, time = np.zeros(len(floor.acceleration)), floor.time
     steps = NEARLY_FULL * problem.scenario.coil.max_current * (np.floor(time / SWITCHING) % 2.0)
     still = Floor(floor.step, rest, rest, rest, steps)
-    if "coil_current" not in problem.channels and floor.coil_current is None:
+    if "coil_current" not in problem.channels:
         text = "repeat a run and log the current of the coil"
         yield CandidateExperiment("coil_current", text, floor, ("coil_current",))
     without = floor._replace(command=rest, coil_current=rest)

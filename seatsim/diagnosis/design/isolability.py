@@ -23,7 +23,6 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import maximum_bipartite_matching
 
-from seatsim.recordings.replay import COMMANDS
 from seatsim.schema.text import join_names
 
 
@@ -62,6 +61,7 @@ SENSED = {
     "coil_current": "i",
 }
 """The unknown that each sensor measures; the command and the temperature are known inputs."""
+COMMANDS = ("current_command", "command_voltage")
 BLOCKS = {
     "seat": ("damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"),
     "damper_bench": ("damper", "coil", "sensor"),

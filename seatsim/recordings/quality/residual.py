@@ -18,9 +18,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.recordings.compared import LEFT_OUT
+from seatsim.recordings.compared import COMPARED, LEFT_OUT
 from seatsim.recordings.quality.run_under_test import Array, RunUnderTest, Table
-from seatsim.recordings.replay import list_compared, replay_table
+from seatsim.recordings.replay import replay_table
 from seatsim.schema.errors import RunError
 
 
@@ -36,7 +36,7 @@ def consistency_residuals(run: RunUnderTest, table: Table, outputs: Table | None
     """Return e^2 of each compared channel (1 where there is no simulation) and of each balance between channels."""
     skip = round(LEFT_OUT * run.rate)
     used = {name: values[skip:] for name, values in table.items()}
-    compared = list_compared(run.nominal, run.recording.header.rig, used)
+    compared = [name for name in COMPARED[run.recording.header.rig] if name in used]
     pairs = {name: (used[name], np.zeros_like(used[name]) if outputs is None else outputs[name]) for name in compared}
     pairs |= _balances(run, used)
     if not pairs:
