@@ -7,12 +7,11 @@ from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, expm
 
 from seatsim.metrics.weighting import sections
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 Coefficients = tuple[float, float, float]
 
 

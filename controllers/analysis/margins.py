@@ -10,11 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from controllers.linear_systems import LinearSystem
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class Margins(NamedTuple):

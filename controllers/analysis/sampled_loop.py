@@ -18,9 +18,9 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.control import CompiledLaw, ForceLaw, LawWithMemory, Measurement, State
 from seatsim.rig.plant import Plant, state_space
 from seatsim.rig.sensors import READINGS, Sensors, at_rest
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
-Array = NDArray[np.float64]
 QUIET = np.zeros((1, READINGS))
 SMALL = 1e-9
 """Size of the motion at which a law is asked, in the units of its measurement."""

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from controllers.clairvoyant.problem import HeldForceProblem
-from controllers.clairvoyant.recursion import Array, ForceBand
+from controllers.clairvoyant.recursion import ForceBand
+from seatsim.schema.arrays import Array
 
 if TYPE_CHECKING:
     import scipy.sparse

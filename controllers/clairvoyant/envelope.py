@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controllers.clairvoyant.recursion import Array, ForceBand
+from controllers.clairvoyant.recursion import ForceBand
 from seatsim.scenario.scenario import DamperChoice
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.simulation.damper_bench import sine_test
 

@@ -12,7 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 from controllers.clairvoyant.problem import ClairvoyantRun, HeldForceProblem
-from controllers.clairvoyant.recursion import Array, ForceBand
+from controllers.clairvoyant.recursion import ForceBand
+from seatsim.schema.arrays import Array
 
 # Most passes. The proximity grows from next to nothing to where no force changes any more, and the search ends.
 PASSES = 80

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from controllers.clairvoyant.recursion import (
-    Array,
     ForceBand,
     ForceModes,
     StageMatrices,
@@ -17,6 +16,7 @@ from controllers.clairvoyant.recursion import (
 )
 from controllers.clairvoyant.transcription import Transcription
 from seatsim.compilation.cached import compiled
+from seatsim.schema.arrays import Array
 
 
 class ClairvoyantRun(NamedTuple):

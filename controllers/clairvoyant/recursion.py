@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 ForceModes = NDArray[np.int64]
 
 FREE, LOWER, UPPER, STUCK = 0, 1, 2, 3

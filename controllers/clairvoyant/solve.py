@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike
 from controllers.clairvoyant.bound import LowerBound, find_lower_bound
 from controllers.clairvoyant.envelope import TOP, DamperEnvelope, fit_envelope
 from controllers.clairvoyant.feasible import find_best_run
-from controllers.clairvoyant.performance_bounds import Array, ClairvoyantBounds
+from controllers.clairvoyant.performance_bounds import ClairvoyantBounds
 from controllers.clairvoyant.problem import ClairvoyantRun, HeldForceProblem
 from controllers.clairvoyant.transcription import Transcription, transcribe
 from seatsim.effects.base import ON_DAMPER, ON_SEAT, acts_on
 from seatsim.rig.drivers import SINGLE_MASS
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import name_of, register
 

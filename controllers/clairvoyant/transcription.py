@@ -14,7 +14,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from controllers.linear_systems import (
     LinearSystem,
@@ -26,8 +25,7 @@ from controllers.linear_systems import (
 )
 from seatsim.metrics.weighting import weight
 from seatsim.rig.plant import Plant, state_space
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class Criterion(NamedTuple):

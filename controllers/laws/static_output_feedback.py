@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from controllers.analysis.margins import compute_margins
@@ -18,6 +17,7 @@ from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weight
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from controllers.synthesis import Design, GeneralisedPlant
 
-Array = NDArray[np.float64]
 # Margins above this are crossings that rounding alone makes.
 _UNBOUNDED = 1e6
 SOURCE = "Yu et al. 2019, eqs 15-19, on the exact plant and with u = +K y for the damper force"

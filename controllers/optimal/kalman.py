@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
 from controllers.linear_systems import zero_order_hold
@@ -13,9 +12,9 @@ from controllers.optimal.riccati import solving
 from seatsim.compilation.jit import jit
 from seatsim.rig.control import Measurement, State
 from seatsim.rig.plant import Plant, PlantMatrices, state_space
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 
-Array = NDArray[np.float64]
 Rows = tuple[State, ...]
 AT_REST: State = (0.0, 0.0, 0.0, 0.0)
 

@@ -6,16 +6,15 @@ import time
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_are
 
 from controllers.linear_systems import zero_order_hold
 from controllers.optimal.regulator import QuadraticWeights
 from controllers.optimal.riccati import solving
 from seatsim.rig.plant import Plant, state_space
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 
-Array = NDArray[np.float64]
 SETTINGS = {"verbose": False, "adaptive_rho": False, "eps_abs": 1e-4, "eps_rel": 1e-4, "max_iter": 500}
 """Of OSQP: a fixed penalty, so that an answer does not depend on the machine's timing."""
 UNIT = 100.0

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controllers.synthesis.plant import Array
+from seatsim.schema.arrays import Array
 
 Function = Callable[[Array, float], tuple[float, Array]]
 

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from controllers.synthesis.certify import Certificate
 from controllers.synthesis.norm import build_frequency_grid, frequency_response
-from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
+from controllers.synthesis.plant import GeneralisedPlant, Loop
+from seatsim.schema.arrays import Array
 
 Response = NDArray[np.complex128]
 

@@ -18,7 +18,8 @@ import scipy.linalg
 
 from controllers.synthesis.exact import ExactMatrix, close_exactly
 from controllers.synthesis.norm import balance, hinf_norm
-from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
+from controllers.synthesis.plant import GeneralisedPlant, Loop
+from seatsim.schema.arrays import Array
 
 # Excess of the certified gamma over the norm: the smallest that double precision can prove is taken.
 _DELTAS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 5e-2)

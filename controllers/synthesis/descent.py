@@ -15,9 +15,9 @@ import numpy as np
 
 from controllers.synthesis.bfgs import minimise
 from controllers.synthesis.objective import STABILITY_MARGIN, NormObjective
-from controllers.synthesis.plant import Array
 from controllers.synthesis.polish import polish
 from controllers.synthesis.starts import StartingGain
+from seatsim.schema.arrays import Array
 
 # A loop this stable (in scaled time) is ready for the descent on its norm.
 _STABLE_ENOUGH = -1e-2

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from ruamel.yaml import YAML
 
 from controllers.synthesis.certify import Certificate
-from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_whole
 from seatsim.schema.yaml_source import Source

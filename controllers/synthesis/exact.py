@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.synthesis.plant import Array, GeneralisedPlant
+from controllers.synthesis.plant import GeneralisedPlant
+from seatsim.schema.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

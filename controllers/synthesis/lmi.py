@@ -14,7 +14,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from controllers.synthesis.plant import Array, GeneralisedPlant
+from controllers.synthesis.plant import GeneralisedPlant
+from seatsim.schema.arrays import Array
 
 # The bound is solved again in the coordinates of its own solution until it settles.
 _PASSES, _SETTLED = 4, 1e-5

@@ -13,7 +13,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
-from controllers.synthesis.plant import Array, Loop
+from controllers.synthesis.plant import Loop
+from seatsim.schema.arrays import Array
 
 # Bisection converges quadratically: so many rounds are a guard against rounding that keeps it from settling.
 _ITERATIONS = 60

@@ -17,7 +17,8 @@ import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
 from controllers.synthesis.norm import Peak, frequency_response, hinf_norm
-from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
+from controllers.synthesis.plant import GeneralisedPlant, Loop
+from seatsim.schema.arrays import Array
 
 Complex = NDArray[np.complex128]
 

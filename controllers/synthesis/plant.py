@@ -17,9 +17,9 @@ from typing import NamedTuple, Protocol, cast, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
-Array = NDArray[np.float64]
 MATRICES = ("A", "B1", "B2", "C1", "C2", "D11", "D12", "D21")
 
 

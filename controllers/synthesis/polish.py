@@ -18,7 +18,8 @@ from scipy.optimize import minimize
 
 from controllers.synthesis.norm import find_local_peaks, hinf_norm, largest_singular_values
 from controllers.synthesis.objective import NormObjective, differentiate_singular_values
-from controllers.synthesis.plant import Array, Loop
+from controllers.synthesis.plant import Loop
+from seatsim.schema.arrays import Array
 
 _ROUNDS = 40
 # Peaks this near to the highest can become the highest within a step, so that each is a constraint.

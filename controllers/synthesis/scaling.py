@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controllers.synthesis.plant import Array, GeneralisedPlant
+from controllers.synthesis.plant import GeneralisedPlant
+from seatsim.schema.arrays import Array
 
 # Steps are powers of two, so that sweeps end where no factor changes; a guard where they circle.
 _SWEEPS = 30

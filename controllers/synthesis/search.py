@@ -12,9 +12,10 @@ import numpy as np
 from controllers.synthesis.descent import Descent, StabilisingGain, explore, improve, refine
 from controllers.synthesis.modes import require_stabilisable
 from controllers.synthesis.objective import NormObjective
-from controllers.synthesis.plant import Array, GeneralisedPlant
+from controllers.synthesis.plant import GeneralisedPlant
 from controllers.synthesis.scaling import scale
 from controllers.synthesis.starts import StartingGain, generate_convex_start, generate_starting_gains
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import SynthesisError
 
 # A few starts tell an easy problem, where all lead to the same value; where they do not, many more follow.

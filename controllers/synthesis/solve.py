@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike
 
 from controllers.synthesis.bound import compute_lower_bound, compute_pointwise_bound
 from controllers.synthesis.design import Design
-from controllers.synthesis.plant import MATRICES, Array, GeneralisedPlant, StateSpaceLike
+from controllers.synthesis.plant import MATRICES, GeneralisedPlant, StateSpaceLike
 from controllers.synthesis.search import Progress, TimeBudget, search
 from controllers.synthesis.verify import verify
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
 

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy.linalg
 
-from controllers.synthesis.plant import Array, GeneralisedPlant
+from controllers.synthesis.plant import GeneralisedPlant
+from seatsim.schema.arrays import Array
 
 # Spread of the random gains: shallow basins lie at any of these.
 _SPREADS = (1.0, 10.0, 0.1, 100.0)

@@ -7,7 +7,8 @@ import numpy as np
 from controllers.synthesis.certify import certify
 from controllers.synthesis.design import ClosedLoop
 from controllers.synthesis.norm import Peak, grid_norm, hinf_norm
-from controllers.synthesis.plant import Array, GeneralisedPlant, Loop
+from controllers.synthesis.plant import GeneralisedPlant, Loop
+from seatsim.schema.arrays import Array
 
 # Two frequencies of equal height differ by rounding; a grid higher by more has found what bisection missed.
 _ROUNDING = 1e-10

@@ -7,12 +7,10 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.schema.arrays import Array
 from seatsim.simulation.damper_bench import SineTest
-
-Array = NDArray[np.float64]
 
 BAND = 0.2
 """Half the width, over the amplitude, of the band about mid-stroke that a passage has to cross from side to side."""

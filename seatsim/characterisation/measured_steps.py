@@ -6,13 +6,11 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.characterisation.response import Response, StepEnsemble, estimate_response, find_crossing
 from seatsim.characterisation.steps import CurrentStep, find_steps
 from seatsim.recordings.bench_tables import BenchRecord
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 LONGEST = 0.5
 """Seconds after a step that are looked at."""

@@ -6,9 +6,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 SHARES = (0.05, 0.90, 0.95)
 """Shares of the change whose instants are stated."""

@@ -7,14 +7,13 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from seatsim.characterisation.cycles import Cycle, average_loops, find_cycles, resample_loops, select_steady_cycles
 from seatsim.metrics.motion import rms
 from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.schema.arrays import Array
 from seatsim.simulation.damper_bench import SineTest
-
-Array = NDArray[np.float64]
 
 COARSE = 16
 """Rows of a cycle below which its peaks and areas are coarse."""

@@ -9,16 +9,15 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 from numba import types
-from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit, specialise
 from seatsim.dampers.base import damper
 from seatsim.dampers.pieces import BRANCH_STATE, CurrentLaw, branch, branch_rate, cubic
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 
-Array = NDArray[np.float64]
 Row = tuple[float, float, float, float, float]
 
 CURRENTS = np.array([0.0, 0.25, 0.5, 0.75, 1.0, 2.0])

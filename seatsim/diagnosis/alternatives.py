@@ -18,7 +18,6 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.dampers.base import Damper
 from seatsim.diagnosis.problem import DiagnosisProblem
@@ -32,6 +31,7 @@ from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.recordings.gap import measure_gap
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import name_of
 from seatsim.schema.text import join_names
@@ -40,7 +40,6 @@ from seatsim.simulation.bench_response import fit_motion
 from seatsim.simulation.inputs import BenchInputs
 from seatsim.simulation.respond import respond
 
-Array = NDArray[np.float64]
 MOTION = {"seat": "suspension_displacement", "damper_bench": "displacement"}
 """Channel from which the motion of the damper is taken, by rig."""
 

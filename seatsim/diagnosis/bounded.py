@@ -7,9 +7,9 @@ rows here; a diagnosis solves about a thousand of these.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
+
 PATIENCE = 3
 """Exchanges of whole blocks without fewer components out of place, after which one component at a time is exchanged."""
 ALLOWANCE = 1e-12

@@ -7,15 +7,14 @@ from collections.abc import Hashable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.effects.base import EFFECTS, ON_SEAT, Form, acts_on, same_place
 from seatsim.rig.drivers import SINGLE_MASS
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import bounds, choices, describe, field_names
 from seatsim.schema.registry import Record
 
-Array = NDArray[np.float64]
 Fixed = Mapping[str, float | str]
 """Parameters that no fit changes."""
 

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.fit import find_step, fit
 from seatsim.diagnosis.movement import is_material
@@ -22,8 +21,7 @@ from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.probability import Evidence
 from seatsim.diagnosis.problem import normalise_rms_errors
 from seatsim.diagnosis.select import Selection
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class Supported(NamedTuple):

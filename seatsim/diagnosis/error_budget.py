@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, UnivariateSpline
 
 from seatsim.diagnosis.problem import DiagnosisProblem
@@ -24,10 +23,10 @@ from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import Recording
 from seatsim.recordings.replay import replay_table
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.simulation.inputs import BenchInputs
 from seatsim.simulation.respond import respond
 
-Array = NDArray[np.float64]
 Table = Mapping[str, Array]
 
 REPLICATES = 3

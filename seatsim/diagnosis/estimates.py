@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.every_run import ReplayedRun
@@ -21,9 +20,8 @@ from seatsim.metrics.motion import rms
 from seatsim.recordings.compared import LEFT_OUT
 from seatsim.recordings.gap import measure_gap
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import describe
-
-Array = NDArray[np.float64]
 
 QUOTED = ("driver_acceleration", "frame_acceleration", "suspension_displacement")
 """Channels whose RMS the report states."""

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import GapFigures, Gaps, RunGaps
@@ -14,9 +13,8 @@ from seatsim.recordings.gap import Signals, compare_signals, loud_channels
 from seatsim.recordings.model_error import ModelError, measure_model_error
 from seatsim.recordings.replay import replay
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 class ReplayedRun(NamedTuple):

@@ -9,14 +9,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.bounded import minimise_bounded
 from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 def fit(objective: Objective, start: Evaluation, nuisances: Linearisation, steps: int | None = None) -> Evaluation:

@@ -11,15 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import LSQUnivariateSpline
 
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.spectra import randomise_phases, smooth_spectrum
+from seatsim.schema.arrays import Array
 from seatsim.simulation.bench_response import fit_motion
 from seatsim.simulation.inputs import BenchInputs, Forces, RigInputs, SeatInputs
-
-Array = NDArray[np.float64]
 
 
 def carry_input_noise(problem: DiagnosisProblem, run: str) -> Array:

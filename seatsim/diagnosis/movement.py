@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 def measure_movements(problem: DiagnosisProblem, evaluation: Evaluation) -> list[Array]:

@@ -17,14 +17,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import rfft
 
 from seatsim.diagnosis.input_noise import carry_input_noise
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.diagnosis.spectra import smooth_spectrum
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,10 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.diagnosis.result import CalibratedParameter
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import bounds, describe, replace_fields
-
-Array = NDArray[np.float64]
 
 SCALE_OF_FORCES = 100.0
 """N; scale of the tolerance of forces that are nominally zero, as the recording's contract states it."""

@@ -16,15 +16,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.deadline import NEVER
 from seatsim.diagnosis.noise import NoiseWeights
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 AT_ONCE = 16
 """Rigs that are simulated between two looks at the clock: enough for all cores, few enough for a budget of seconds."""
 

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import Candidate
+from seatsim.schema.arrays import Array
 from seatsim.schema.registry import Record
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

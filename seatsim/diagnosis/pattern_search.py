@@ -10,12 +10,11 @@ from __future__ import annotations
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.parameters import Parameters
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 DECIMALS = 9
 """Decimals, in natural sizes of the parameters, to which two points have to agree to be the same."""
 

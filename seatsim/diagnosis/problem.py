@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import prev_fast_len
 
 from seatsim.diagnosis.deadline import NEVER, Deadline
@@ -26,13 +25,13 @@ from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import Record
 from seatsim.simulation.bench_response import FINER
 from seatsim.simulation.inputs import RigInputs
 from seatsim.simulation.respond import respond
 
-Array = NDArray[np.float64]
 COARSEST_STEP = 0.002
 """s; longest step of the simulation: its adaptive sub-steps make a shorter one change no figure of a diagnosis."""
 REACHED = {"m": ("suspension_displacement",), "A": ("coil_current", "current_command")}

@@ -6,13 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.recordings.model_error import ModelError
+from seatsim.schema.arrays import Array
 from seatsim.schema.notebook import Pictures, draw, html_table
 
-Array = NDArray[np.float64]
 Content = Mapping[str, object]
 """What a YAML file holds: sections by key."""
 

@@ -9,15 +9,13 @@ from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.deadline import OutOfTimeError
 from seatsim.diagnosis.fit import solve_step
 from seatsim.diagnosis.objective import AT_ONCE, Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class Sensitivities(NamedTuple):

@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import ParamSpec
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.cross_validate import cross_validate, select_by_cross_validation
@@ -35,8 +34,8 @@ from seatsim.diagnosis.revise import call_unknown, decide_beside_unknown
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.solution import Method, Progress, SearchTask, Solution, search
 from seatsim.effects.base import EFFECTS
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 P = ParamSpec("P")
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
+
 Spectra = NDArray[np.complex128]
 
 FEWEST_BINS = 4

@@ -16,13 +16,11 @@ Whether their 90 % intervals cover is measured by `benchmarks/diagnosis_interval
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.spectra import Spectra, as_complex
 from seatsim.recordings.model_error import band_edges, band_powers, band_widths
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 def estimate_standard_deviations(objective: Objective, evaluation: Evaluation, nuisances: Linearisation) -> Array:

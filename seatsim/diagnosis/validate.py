@@ -15,8 +15,7 @@ from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, normalise_rms_errors
 from seatsim.effects.base import replace_effects
 from seatsim.scenario.scenario import Scenario
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 def shrink_by_run(problem: DiagnosisProblem, nominal: Evaluation, chosen: Evaluation) -> Array:

@@ -6,12 +6,10 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.effects.base import effect
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
-
-Array = NDArray[np.float64]
 
 
 @effect(

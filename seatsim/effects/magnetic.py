@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
 from seatsim.effects.base import Form, effect
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
-
-Array = NDArray[np.float64]
 
 FOLLOWING = 500.0
 """1/s; rate at which a play follows the current that drags it along."""

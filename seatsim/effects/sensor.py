@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from seatsim.effects.base import Form, effect
 from seatsim.rig.sensors import discretise_lag
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 
-Array = NDArray[np.float64]
 ChannelName = Literal[
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "displacement",
     "damper_force", "coil_current",

@@ -7,13 +7,12 @@ from functools import wraps
 from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
 from seatsim.schema.registry import Record, Registry
 from seatsim.schema.samples import require_samples
 
-Array = NDArray[np.float64]
 FEWEST = 2
 """Samples of a floor that make a step."""
 T = TypeVar("T", bound=type)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from seatsim.excitations.base import Array
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.guarded import is_there
 from seatsim.schema.tables import numbers, read_table

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.excitations.base import Array, Floor
+from seatsim.excitations.base import Floor
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.memory import check_steps
 

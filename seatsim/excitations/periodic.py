@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.fields import FieldInfo
 
-from seatsim.excitations.base import Array, Floor, excitation
+from seatsim.excitations.base import Floor, excitation
 from seatsim.excitations.keys import Duration, Quantity, choice
 from seatsim.excitations.motion import (
     Motion,
@@ -21,6 +21,7 @@ from seatsim.excitations.motion import (
     sine,
     soft_start,
 )
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 

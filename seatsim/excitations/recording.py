@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.excitations.base import Array, Floor, excitation
+from seatsim.excitations.base import Floor, excitation
 from seatsim.recordings.recording import load_recording
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.memory import check_steps
 

@@ -19,11 +19,12 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from scipy.fft import irfft
 
-from seatsim.excitations.base import Array, Floor, excitation
+from seatsim.excitations.base import Floor, excitation
 from seatsim.excitations.keys import Duration, Speed, Through, choice
 from seatsim.excitations.motion import check_step, clock, samples, soft_start
 from seatsim.excitations.spectra import Spectrum, lines, motion_of, random_phase
 from seatsim.excitations.vehicle import TRUCK, Vehicle, floor_response
+from seatsim.schema.arrays import Array
 
 RoadClass = Literal["A", "B", "C", "D", "E", "F", "G", "H"]
 REFERENCE_WAVENUMBER = 0.1

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
-from seatsim.excitations.base import Array
 from seatsim.excitations.motion import Motion
+from seatsim.schema.arrays import Array
 
 Spectrum = NDArray[np.complex128]
 

@@ -15,8 +15,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.excitations.base import Array
 from seatsim.excitations.spectra import Spectrum
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 GUARD = 0.05
 """Share of a record's peak force below which a measured force does not count in the mean deviation."""

@@ -8,16 +8,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.identification.agreement import Agreement, assess_agreement
 from seatsim.identification.prediction import BenchModel, predict_force, prepare_inputs
 from seatsim.identification.smoothing import sharpen, smooth
 from seatsim.identification.split import Split
 from seatsim.recordings.bench_tables import BenchRecord, load_bench
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 class Assessment(NamedTuple):

@@ -13,15 +13,13 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.identification.adjustment import RANGE_FIELDS
 from seatsim.identification.current_laws import evaluate_law, interpolate_law, is_current_law
 from seatsim.identification.damper_record import DamperRecord, FieldValue, law_range
 from seatsim.identification.scales import Scales, parse_unit
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import bounds, describe
-
-Array = NDArray[np.float64]
 
 SPAN = 1e3
 """Factor by which a positive parameter may differ from its start, and from its size in the data, where its bounds do

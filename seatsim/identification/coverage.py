@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.dampers.base import DamperSpecification
 from seatsim.recordings.bench_tables import BenchRecord
+from seatsim.schema.arrays import Array
 from seatsim.simulation.damper_bench import centring
-
-Array = NDArray[np.float64]
 
 BEYOND = 1.05
 """Factor from which a held-out record counts as beyond what was fitted."""

@@ -7,10 +7,9 @@ from functools import cache
 from typing import get_args, get_type_hints
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic.fields import FieldInfo
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 @cache

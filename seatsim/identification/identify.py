@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.identification.agreement import Agreement, mean_agreement
 from seatsim.identification.assessment import (
@@ -29,10 +28,9 @@ from seatsim.identification.search import Progress, ignore_progress, search_para
 from seatsim.identification.settings import IdentificationSettings
 from seatsim.identification.split import split_records
 from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
 from seatsim.schema.notebook import Pictures, draw, html_table
-
-Array = NDArray[np.float64]
 
 DEFAULTS = IdentificationSettings()
 NO_BETTER_THAN_MEAN = 1.01

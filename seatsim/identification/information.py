@@ -7,13 +7,11 @@ from concurrent.futures import Executor
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.identification.coordinates import Component
 from seatsim.identification.problem import OFFSET_PER_KELVIN, PER_KELVIN, IdentificationProblem, compute_jacobian
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import describe
-
-Array = NDArray[np.float64]
 
 IDENTIFIED = 0.1
 """Standard deviation, over the parameter's size, above which the data are said not to identify it."""

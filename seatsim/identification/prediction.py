@@ -6,7 +6,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.compilation.cached import compiled
 from seatsim.identification.damper_record import DamperRecord, find_specification
@@ -16,8 +15,7 @@ from seatsim.kernel.coil_current import simulate_current
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 FAST_ENOUGH = 400.0
 """Hz; at this rate and above every second row is the middle of a step."""

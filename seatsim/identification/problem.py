@@ -8,15 +8,13 @@ from concurrent.futures import Executor
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.identification.coordinates import Coordinates
 from seatsim.identification.prediction import BenchModel, RecordInputs, predict_force
 from seatsim.kernel.bench import TOLERANCE
 from seatsim.recordings.bench_tables import BenchRecord
 from seatsim.rig.temperature import TemperatureFactors
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 COIL_RATE = 130.0
 """1/s, the size of the coil's rates: those of Braz-Cesar and Barros 2012."""

@@ -7,7 +7,6 @@ from concurrent.futures import Executor
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.identification.adjustment import rescale_damper
 from seatsim.identification.prediction import BenchModel, predict_force
@@ -18,8 +17,8 @@ from seatsim.identification.problem import (
     compute_jacobian,
 )
 from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 """Called with what is being done."""
 

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.recordings.bench_tables import BenchRecord
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 RECOVERED = 0.85
 """Frequency up to which motion is sharpened, over the first one that a moving average removes altogether."""

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.resampling import resample
-from seatsim.importing.signals import Array
 from seatsim.recordings.quality.relations import band_passed
+from seatsim.schema.arrays import Array
 
 PARTS, SHORTEST = 6, 2.0
 """Parts of a record in which the offset is estimated again, and their least length in s."""

@@ -14,10 +14,11 @@ from seatsim.importing.channels import make_channel, no_column
 from seatsim.importing.clocks import SHORTEST_RUN, Clocked, clock_groups, split_at_gaps
 from seatsim.importing.import_map import ImportMap
 from seatsim.importing.resampling import HELD, hold, resample
-from seatsim.importing.signals import Array, DataFile
+from seatsim.importing.signals import DataFile
 from seatsim.recordings.channel_units import CHANNELS
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import conversion
 

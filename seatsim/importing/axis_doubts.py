@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.importing.signals import Array
 from seatsim.importing.time_axis import Axis
 from seatsim.recordings.quality.damage import Doubter
 from seatsim.recordings.quality.issue import Issue
+from seatsim.schema.arrays import Array
 
 SLOWEST, FASTEST = 5.0, 200_000.0
 """Hz; rates of loggers of vibration lie between."""

@@ -12,10 +12,11 @@ from seatsim.importing.doubts import doubt_channel
 from seatsim.importing.import_map import PRIMITIVE, ChannelMap
 from seatsim.importing.names import quantity_of
 from seatsim.importing.resampling import evened
-from seatsim.importing.signals import LISTED, Array
+from seatsim.importing.signals import LISTED
 from seatsim.importing.time_axis import Axis
 from seatsim.recordings.quality.damage import find_spikes
 from seatsim.recordings.quality.issue import Issue
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.text import name_some
 from seatsim.schema.units import conversion

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.importing.names import BY_UNIT, DIMENSION
-from seatsim.importing.signals import Array
 from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape
 from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.quality.plausible_ranges import say_implausible
 from seatsim.recordings.quality.shapes import plateaus
+from seatsim.schema.arrays import Array
 from seatsim.schema.units import DIMENSIONS, STANDARD_GRAVITY
 
 NEAR = 0.08

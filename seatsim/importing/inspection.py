@@ -17,11 +17,12 @@ from seatsim.importing.matching import Column, channel_of, read_columns
 from seatsim.importing.names import DIMENSION, is_of, read_name, without_unit
 from seatsim.importing.readers.reading import TextLayout, read_file
 from seatsim.importing.relations import doubt_pairs
-from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis
 from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.issue import Issue
+from seatsim.schema.arrays import Array
 from seatsim.schema.units import DIMENSIONS, conversion
 
 BLOCKS = "▁▂▃▄▅▆▇█"

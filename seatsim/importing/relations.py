@@ -7,9 +7,9 @@ from itertools import combinations
 
 import numpy as np
 
-from seatsim.importing.signals import Array
 from seatsim.recordings.quality.issue import Issue
 from seatsim.recordings.quality.relations import MOST_ROWS, kind_of, read_gain, regress
+from seatsim.schema.arrays import Array
 
 ALIKE = 0.9
 """Correlation from which a channel is the delayed copy of another one."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from seatsim.importing.signals import Array
+from seatsim.schema.arrays import Array
 
 HALF, BETA, ROLL = 32, 9.0, 0.92
 """Zero crossings of the sinc on each side, shape of the Kaiser window (stop band -90 dB), share of the band kept."""

@@ -9,8 +9,9 @@ import numpy as np
 from seatsim.importing.axis_doubts import doubt_distance
 from seatsim.importing.doubts import doubt_channel
 from seatsim.importing.import_map import ImportMap
-from seatsim.importing.signals import LISTED, Array, DataFile
+from seatsim.importing.signals import LISTED, DataFile
 from seatsim.recordings.quality.issue import Issue
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.text import name_some
 from seatsim.schema.units import DIMENSIONS, conversion

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
+
 TIME = "time"
 """Name of a channel of times, where its file has no other for it."""
 LISTED = 8

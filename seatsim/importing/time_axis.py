@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.signals import Array
+from seatsim.schema.arrays import Array
 
 GAP = 1.5
 """A step of more median steps than this is a gap."""

@@ -14,9 +14,9 @@ from seatsim.importing.import_map import FILE, ImportMap
 from seatsim.importing.map_text import write_map
 from seatsim.importing.nominal import NOMINAL
 from seatsim.importing.road import DISTANCE
-from seatsim.importing.signals import Array
 from seatsim.provenance.manifest import write_documented
 from seatsim.recordings.channel_units import CHANNELS
+from seatsim.schema.arrays import Array
 from seatsim.schema.files import write_packed, write_whole
 from seatsim.schema.text import disarm
 

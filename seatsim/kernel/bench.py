@@ -7,9 +7,6 @@ parabola through the three samples of the step.
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import force, rates, scaling_at
 from seatsim.kernel.inverse import total_force
@@ -18,8 +15,8 @@ from seatsim.kernel.tuples import axpy, combine
 from seatsim.kernel.work import MOST_DEBT, owe
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 Samples = Array | tuple[float, float, float]
 """What goes on in a step: its value at the beginning, in the middle and at the end."""
 

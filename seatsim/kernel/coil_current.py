@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.compilation.cached import compiled
 from seatsim.kernel.step import relaxed
 from seatsim.rig.coil import Coil
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 ROUNDING = 1e-9
 """Share of a step by which a delay may miss a whole number of steps and still count as that many."""

@@ -24,8 +24,8 @@ from seatsim.kernel.loop_inputs import LoopInputs, LoopSetup
 from seatsim.kernel.numbers import SHARED, numbers
 from seatsim.kernel.sums import NO_SUMS, LaneLimits, Summed, Sums
 from seatsim.rig.state import State
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 Form = tuple[str, tuple[tuple[str, type], ...]]
 """Source that builds a record out of rows, and the classes that it names."""
 

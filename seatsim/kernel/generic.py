@@ -10,9 +10,10 @@ from seatsim.compilation.jit import jit, specialise
 from seatsim.kernel.hooks import hook, record_class
 from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.control import CompiledLaw, CurrentLaw, ForceLaw, Measurement
-from seatsim.rig.sensors import Array, Sensing
+from seatsim.rig.sensors import Sensing
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling, scaling
+from seatsim.schema.arrays import Array
 
 scaling_at = jit(scaling)
 

@@ -5,16 +5,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.compilation.jit import jit
 from seatsim.kernel.generic import force, friction_limit
 from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureScaling
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 CELLS = 16
 """Cells of the grid on which a non-polynomial force-current map is searched for its first crossing.

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.compilation.jit import jit
 from seatsim.kernel.assumed_model import InverseModel, follow_state, model_scaling, model_state
 from seatsim.kernel.chain import leading_state
@@ -20,8 +17,7 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.control import CompiledLaw, Measurement
 from seatsim.rig.state import CUSHION_VELOCITY, DAMPER_WORK, DISPLACEMENT, MECHANICAL, VELOCITY, State
 from seatsim.rig.temperature import TemperatureScaling, Thermal
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 ROUNDING = 1e-9
 """Share of a step by which a delay may miss a whole number of steps and still count as that many."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
 from seatsim.kernel.assumed_model import InverseModel
@@ -17,8 +16,7 @@ from seatsim.rig.control import CompiledLaw
 from seatsim.rig.sensors import READINGS, Direct, Sensing
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors, Thermal
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class LoopInputs(NamedTuple):

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.kernel import channels
 from seatsim.kernel.hooks import hook
@@ -27,8 +26,7 @@ from seatsim.rig.state import (
     VELOCITY,
     State,
 )
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class Sample(NamedTuple):

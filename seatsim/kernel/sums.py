@@ -5,9 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.kernel.recorders import Sample
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.step import IntegratorState
@@ -22,8 +19,7 @@ from seatsim.rig.state import (
     VELOCITY,
     State,
 )
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class Sums(NamedTuple):

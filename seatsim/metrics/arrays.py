@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 def as_signal(values: ArrayLike, name: str = "signal") -> Array:

@@ -14,9 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.arrays import Array, as_pair, as_signal, ratio, require_positive
+from seatsim.metrics.arrays import as_pair, as_signal, ratio, require_positive
 from seatsim.metrics.motion import peak, rms
 from seatsim.metrics.weighting import weight
+from seatsim.schema.arrays import Array
 
 WINDOW = 1.0
 """Integration time of the running RMS in s (ISO 2631-1:1997, 6.3)."""

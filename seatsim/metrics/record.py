@@ -8,8 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.arrays import Array, as_signal, require_finite, require_positive
+from seatsim.metrics.arrays import as_signal, require_finite, require_positive
 from seatsim.metrics.weighting import can_weight, weight
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
 

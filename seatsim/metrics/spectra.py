@@ -6,8 +6,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy import fft
 
-from seatsim.metrics.arrays import Array
 from seatsim.metrics.weighting import ComplexArray
+from seatsim.schema.arrays import Array
 
 
 def cross_spectral_density(x: Array, y: Array, sample_rate: float, length: int) -> tuple[Array, ComplexArray]:

@@ -7,9 +7,10 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatsim.metrics.arrays import Array, as_pair, require_positive
+from seatsim.metrics.arrays import as_pair, require_positive
 from seatsim.metrics.spectra import cross_spectral_density, power_spectral_density
 from seatsim.metrics.weighting import ComplexArray
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
 AVERAGES = 8

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.augmented import write_augmented
 from seatsim.diagnosis.candidates import Candidate, list_candidates
@@ -29,10 +28,9 @@ from seatsim.report.formatting import (
     say_noise,
 )
 from seatsim.report.packing import Axis, Panel, pack_signals
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import describe
-
-Array = NDArray[np.float64]
 
 REACH = 4.0
 """How far a slider reaches, in sizes of the effect as a fit would start with it."""

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
+
 T = TypeVar("T")
 
 BINS = 1200

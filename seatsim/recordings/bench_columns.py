@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.schema import tables
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import OWN_SPELLINGS, USUAL, conversion
 from seatsim.schema.yaml_source import Source
@@ -23,7 +23,6 @@ from seatsim.schema.yaml_source import Source
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 QUANTITIES: dict[str, tuple[tuple[str, ...], str]] = {
     "time": (("time", "t"), "s"),

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 
 from seatsim.recordings.bench_columns import DRIVES, KNOWN, check_needed, columns_of, constants, numbers
 from seatsim.recordings.recording import HEADER, load_recording
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.guarded import is_there
 from seatsim.schema.tables import read_table
 from seatsim.schema.yaml_source import Source
 
-Array = NDArray[np.float64]
 Table = dict[str, Array]
 
 SUFFIXES = (".csv", ".csv.gz", ".csv.bz2", ".csv.xz", ".csv.zip")

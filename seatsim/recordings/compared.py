@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from seatsim.schema.arrays import Array
 from seatsim.simulation.respond import SEAT_OUTPUTS
 
-Array = NDArray[np.float64]
 LEFT_OUT = 1.0
 """s; start of each run that is left out of the gap, since the simulation starts from rest and has to settle."""
 COMPARED = {"seat": SEAT_OUTPUTS, "damper_bench": SEAT_OUTPUTS[-2:]}

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import NamedTuple, TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.metrics.motion import rms
 from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
@@ -19,10 +18,10 @@ from seatsim.recordings.replay import note_unused_log, replay
 from seatsim.scenario.loading import single
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.notebook import Pictures, draw, html_table
 
-Array = NDArray[np.float64]
 Signals = Mapping[str, Array]
 
 

@@ -5,14 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.excitations.recording import interpolate_floor
 from seatsim.recordings.recording import Recording
+from seatsim.schema.arrays import Array
 from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
 
-Array = NDArray[np.float64]
 SAME_STEP = 1e-9
 """Part of a step by which a row interval may exceed a whole number of steps, as an allowance for rounding."""
 

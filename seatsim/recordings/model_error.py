@@ -6,11 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
-Array = NDArray[np.float64]
 Signals = Mapping[str, Array]
 
 BANDS = 7

@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.effects.base import EFFECTS
 from seatsim.recordings.compared import NOISE_FACTOR
@@ -27,12 +26,11 @@ from seatsim.recordings.recording import Recording, load_recording
 from seatsim.recordings.replay import simulate_table
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import bounds, replace_fields
 from seatsim.schema.guarded import expect, read_json
 from seatsim.schema.registry import Record
-
-Array = NDArray[np.float64]
 
 EXCITATION_STD = 0.15
 """Standard deviation of the logarithm of what is missed, between excitations of one kind; on sealed rigs."""

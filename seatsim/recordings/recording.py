@@ -8,14 +8,12 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.header import Header, RunEntry, check_against, read_runs, read_tolerances
 from seatsim.scenario.loading import single
 from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
 from seatsim.schema.guarded import is_there
@@ -23,8 +21,6 @@ from seatsim.schema.tables import numbers, read_table
 from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import build, check_keys, mapping
 from seatsim.schema.yaml_source import Source
-
-Array = NDArray[np.float64]
 
 HEADER = "recording.yaml"
 KEYS = (*Header._fields, "runs", "channels", "actuator", "note")

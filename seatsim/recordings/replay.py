@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.recordings.compared import LEAST_ROWS, LEFT_OUT, select_compared
 from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import Recording
 from seatsim.rig.control import LAWS
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.respond import respond
-
-Array = NDArray[np.float64]
 
 
 def replay(scenario: Scenario, recording: Recording, run: str) -> tuple[dict[str, Array], dict[str, Array]]:

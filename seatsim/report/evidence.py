@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics import rms
@@ -31,9 +30,8 @@ from seatsim.report.formatting import (
 from seatsim.report.packing import Axis, Panel, make_density, pack_signals
 from seatsim.report.planes import Curve, Range, draw_cells, draw_curves, join_planes
 from seatsim.report.spectra import estimate_spectrum
+from seatsim.schema.arrays import Array
 from seatsim.schema.text import join_names
-
-Array = NDArray[np.float64]
 
 CLOSE_UP = 2.0
 """Seconds of the closer look at the held-out run, with every sample."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.metrics.motion import rms
 from seatsim.recordings.gap import Gap, ReplayedPair
@@ -17,8 +16,7 @@ from seatsim.report.method import describe_method
 from seatsim.report.packing import Axis, Panel, make_density, pack_signals
 from seatsim.report.spectra import METHOD as SPECTRA
 from seatsim.report.spectra import estimate_spectrum
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 NEAR_NOISE = 1.2
 """Gap over its noise up to which nothing is left to explain."""

@@ -7,13 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.plots import labels
 from seatsim.report.blocks import Signals
 from seatsim.report.formatting import describe_channel
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 BUDGET = 330_000
 """Bytes that the lines of one group of pictures take on the page together."""

@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.report.blocks import Facets, Plane, Shape, Tick
 from seatsim.report.formatting import format_number
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 SIDE = 1000.0
 """Side of the square in which paths are drawn, whatever the shape of the picture."""

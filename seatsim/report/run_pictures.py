@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.plots.runs.naming import label_runs, select_shown
 from seatsim.report.blocks import Block, Text
 from seatsim.report.packing import Axis, Panel, make_density, pack_signals
 from seatsim.report.planes import Curve, draw_curves, join_planes
 from seatsim.report.spectra import estimate_spectrum
+from seatsim.schema.arrays import Array
 from seatsim.simulation.result import UNITS, Run
 
-Array = NDArray[np.float64]
 Groups = Mapping[str, Mapping[str, Run]]
 """Runs that are drawn over each other, by name, in groups of which the reader chooses one; alone it has no name."""
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.metrics.table import SHORT
 from seatsim.plots.labels import format_unit
@@ -29,8 +28,6 @@ from seatsim.report.spectra import METHOD as SPECTRA
 from seatsim.scenario.numbers import list_numbers
 from seatsim.schema.text import name_some
 from seatsim.simulation.result import Run
-
-Array = NDArray[np.float64]
 
 UNVERIFIED = "* unverified, and never the best: the notes say why."
 METHOD = (

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.metrics import power_spectral_density
 from seatsim.plots.averaging import average_bands
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 SEGMENT = 4.0
 """Longest segment in s: its lines are 0.25 Hz apart."""

@@ -13,12 +13,12 @@ from seatsim.report.blocks import Block, Matrix, Plane
 from seatsim.report.formatting import format_number
 from seatsim.report.planes import Curve, draw_curves, join_planes
 from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
+from seatsim.schema.arrays import Array
 from seatsim.sweeps.statistics.inputs import SweepRows, is_number
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 ROAD = "excitation."
 """How the keys of the excitation begin; the first of them with few values gives each value a picture of its own."""

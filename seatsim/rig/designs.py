@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], object]
 """Callback that gets a line on the progress of a long computation."""
 

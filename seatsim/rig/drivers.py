@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 ModelName = Literal["single_mass", "iso5982", "wan_schimmels", "boileau_rakheja"]
 SINGLE_MASS: ModelName = "single_mass"

@@ -6,14 +6,13 @@ import math
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
 
 if TYPE_CHECKING:
     import control
 
-Array = NDArray[np.float64]
 USUAL_TRAVEL = (0.01, 0.12)
 """m; how far from mid-stroke the end stops of seats are."""
 

@@ -9,14 +9,12 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.compilation.jit import jit
 from seatsim.rig.control import Measurement
 from seatsim.rig.state import CUSHION_VELOCITY, VELOCITY, State
+from seatsim.schema.arrays import Array
 from seatsim.schema.fields import param
-
-Array = NDArray[np.float64]
 
 READINGS = 4
 """Suspension displacement, then the accelerations of frame, driver and floor."""

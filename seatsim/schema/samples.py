@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
-
-Array = NDArray[np.float64]
 
 
 def require_samples(values: object, giver: str, count: int, step: float) -> Array:

@@ -7,7 +7,6 @@ from functools import cache
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.cosimulation.damper import require_model
 from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on, off
@@ -19,12 +18,12 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.drivers import BODIES, SINGLE_MASS, Driver, body_matrices
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
 from seatsim.schema.samples import require_samples
 from seatsim.simulation.effect_hooks import COIL, FACTORS, FRAME_FORCE, PLANT, READING, TEMPERATURE, TRUTH
 
-Array = NDArray[np.float64]
 NONE = np.zeros(0)
 
 

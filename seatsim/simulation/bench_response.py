@@ -5,13 +5,13 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, UnivariateSpline
 
 from seatsim.effects.base import ON_SEAT, acts_on
 from seatsim.kernel.coil_current import simulate_current
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import name_of
 from seatsim.simulation.augment import (
@@ -26,7 +26,6 @@ from seatsim.simulation.augment import (
 from seatsim.simulation.damper_bench import bench_force
 from seatsim.simulation.inputs import BenchInputs
 
-Array = NDArray[np.float64]
 FINER = 16
 """Parts of a row by which a log may be shifted, an even number: a sixteenth of 5 ms is far below any coil's lag."""
 

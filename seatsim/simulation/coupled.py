@@ -17,7 +17,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.compilation.cached import compiled
 from seatsim.cosimulation.damper import CoupledForce, FmuDamper
@@ -36,10 +35,10 @@ from seatsim.kernel.step import IntegratorState, StepInputs, relaxed
 from seatsim.rig.state import DAMPER_WORK, DISPLACEMENT, VELOCITY, State
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling
 from seatsim.scenario.scenario import DamperChoice, Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import name_of
 
-Array = NDArray[np.float64]
 AGREED = 1e-7
 """Difference between the force that the rig felt and that of the unit, over its size plus 1 N, at which a step ends."""
 MOST_TRIALS = 30

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from seatsim.compilation.cached import compiled
 from seatsim.cosimulation.damper import require_model
@@ -16,10 +16,9 @@ from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, run_bench
 from seatsim.kernel.protocols import DamperModel
 from seatsim.rig.state import State
 from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.registry import specification_of
-
-Array = NDArray[np.float64]
 
 DRIFT_LIMIT = 0.2
 """Mean distance of the middle of a stroke from x = 0, over half the stroke, that counts as uncentred."""

@@ -17,7 +17,6 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.excitations.base import Floor
 from seatsim.kernel.cuda_lanes import (
@@ -35,6 +34,7 @@ from seatsim.metrics.arrays import ratio
 from seatsim.metrics.side_by_side import measure_drivers
 from seatsim.metrics.weighting import can_weight
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.damper_bench import judge_centring
@@ -42,7 +42,6 @@ from seatsim.simulation.device_lanes import DeviceLane, as_device_lane, can_driv
 from seatsim.simulation.summed_metrics import RigOfSums, metrics_of_sums
 from seatsim.simulation.validity import Excursions, highest_current
 
-Array = NDArray[np.float64]
 MakeFloor = Callable[[Scenario], Floor | None]
 
 MOST_BYTES, MOST_SHARE = 4 << 30, 0.5

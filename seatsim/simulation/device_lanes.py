@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.excitations.base import Floor
 from seatsim.kernel.cuda_lanes import LaneStart
@@ -14,12 +13,11 @@ from seatsim.kernel.numbers import numbers
 from seatsim.rig.sensors import READINGS, Direct, at_rest
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.augment import has_inner_masses
 from seatsim.simulation.effect_hooks import FRAME_FORCE, TEMPERATURE, TRUTH
 from seatsim.simulation.simulate import set_up
-
-Array = NDArray[np.float64]
 
 
 class DeviceLane(NamedTuple):

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.kernel.channels import CHANNELS
 from seatsim.kernel.work import MOST_WORK
 from seatsim.rig.control import LAWS
 from seatsim.rig.temperature import scaling
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
 from seatsim.schema.registry import initial_state, is_own
 
-Array = NDArray[np.float64]
 _FARTHEST = 10.0
 """m, as far as the travel of a seat may be stated; beyond it the motion itself has left all bounds."""
 

@@ -8,14 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Generic, Protocol, TypeVar, cast
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 P_co = TypeVar("P_co", covariant=True)
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.excitations.base import Floor
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 NONE = np.zeros(0)
 
 

@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import dataclasses
 
-import numpy as np
-from numpy.typing import NDArray
-
 from seatsim.scenario.scenario import Scenario, Start
+from seatsim.schema.arrays import Array
 from seatsim.simulation.augment import read_sensors
 from seatsim.simulation.bench_response import simulate_bench
 from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
 from seatsim.simulation.simulate import simulate
 
-Array = NDArray[np.float64]
 SEAT_OUTPUTS = (
     "frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current",
 )  # fmt: skip

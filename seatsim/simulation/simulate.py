@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.compilation.cached import compiled
 from seatsim.cosimulation.damper import FmuDamper
@@ -25,6 +24,7 @@ from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Direct, at_rest
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Control, Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.augment import (
@@ -43,7 +43,6 @@ from seatsim.simulation.coupled import run_coupled, stand_in
 from seatsim.simulation.divergence import explain_divergence
 from seatsim.simulation.inputs import NONE, Forces
 
-Array = NDArray[np.float64]
 DEFAULT_SAMPLE_TIME = 0.001
 """Seconds between two samples of a law that states none, as common for embedded controllers of such seats."""
 SAME_TIME = 1e-9

@@ -5,17 +5,15 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.effects.base import acts_on
 from seatsim.excitations.base import Floor
 from seatsim.metrics.motion import rms
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 from seatsim.schema.registry import specification_of
 from seatsim.simulation.simulate import DEFAULT_SAMPLE_TIME, History, simulate
-
-Array = NDArray[np.float64]
 
 STRETCH = 5.0
 """Seconds from the start that are simulated again, a small share of most runs."""

@@ -12,11 +12,12 @@ from seatsim.importing.axis_doubts import doubt_time
 from seatsim.importing.group_time import Clock, check_is_history, find_clock
 from seatsim.importing.names import read_name, unit_of_name
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.metrics.directions import DIRECTIONS
 from seatsim.recordings.bench_columns import constants
 from seatsim.recordings.bench_tables import stem
 from seatsim.recordings.recording import HEADER, load_recording
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import conversion
 from seatsim.schema.yaml_source import Source

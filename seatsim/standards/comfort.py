@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.metrics.arrays import Array
 from seatsim.metrics.comfort import Dose, dose, find_shocks, join_doses, motion_sickness_dose
 from seatsim.metrics.directions import DIRECTIONS, POINTS, Direction, direction, point_of
 from seatsim.metrics.exposure import Exposure, assess_exposure
 from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmission
 from seatsim.metrics.weighting import weight
 from seatsim.recordings.quality.plausible_ranges import say_implausible
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import STANDARD_GRAVITY
 from seatsim.standards.acceleration_axes import choose_axes

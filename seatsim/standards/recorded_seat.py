@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from seatsim.excitations.iso7096 import SpectralClass, acceleration_density
-from seatsim.metrics.arrays import Array
 from seatsim.metrics.comfort import dose
 from seatsim.metrics.motion import end_stop_hits
 from seatsim.metrics.spectra import power_spectral_density
@@ -15,6 +14,7 @@ from seatsim.metrics.weighting import frequency_response, weight
 from seatsim.recordings.recording import HEADER, Recording
 from seatsim.rig.plant import Plant
 from seatsim.scenario.loading import single
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.text import join_names
 from seatsim.simulation.augment import augment_plant

@@ -7,13 +7,12 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from seatsim.schema.arrays import Array
 from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath, parse_value
 
-Array = NDArray[np.float64]
 DISTRIBUTIONS = {
     "uniform": "[low, high]", "normal": "[mean, standard deviation]",
     "lognormal": "[mean, standard deviation of the log]", "choice": "{value: probability, ...}",

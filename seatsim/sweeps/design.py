@@ -11,12 +11,11 @@ import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from seatsim.schema.arrays import Array
 from seatsim.sweeps.axes import Axis
 from seatsim.sweeps.definition import SweepDefinition
 
-Array = NDArray[np.float64]
 Columns = Mapping[str, list[object]]
 """The values of every varied key, a list over the points each."""
 

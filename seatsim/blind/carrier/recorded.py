@@ -9,14 +9,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.blind.make.folder import encode_yaml, pack
 from seatsim.recordings.recording import HEADER, load_recording
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.yaml_source import Source
 
-Array = NDArray[np.float64]
 LEFT_OUT = 1.0
 """s; start of each run that no gap counts (contract, section 4)."""
 LEAST_ROWS = 200

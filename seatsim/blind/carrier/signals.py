@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import lfilter, savgol_filter
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
+
 SMOOTHING = 0.02
 """s; window of the polynomial whose slope is the velocity."""
 

@@ -12,8 +12,8 @@ from seatsim.blind.truth.excitation import draw_bumps, draw_current_steps, draw_
 from seatsim.blind.truth.experiment import Experiment, RunPlan
 from seatsim.blind.truth.faults.scenario import FrameForce
 from seatsim.blind.truth.physics import control_laws
-from seatsim.blind.truth.physics.compiled import Array
 from seatsim.blind.truth.physics.rig import SAMPLE_RATE
+from seatsim.schema.arrays import Array
 
 SECONDS = 24.0
 """Of a recorded run: about 30 periods of the suspension, as a drive over one stretch of road gives."""

@@ -16,8 +16,8 @@ from seatsim.blind.truth.experiment import Experiment, RunPlan, simulate_run
 from seatsim.blind.truth.faults.scenario import Changes, FrameForce
 from seatsim.blind.truth.noise import NoiseColour
 from seatsim.blind.truth.physics import control_laws
-from seatsim.blind.truth.physics.compiled import Array
 from seatsim.blind.truth.vehicle_floor import draw_vehicle, draw_vehicle_floor
+from seatsim.schema.arrays import Array
 
 SAMPLE_RATES = (256.0, 400.0, 500.0, 512.0, 800.0, 1000.0)
 """Hz, of common loggers."""

@@ -14,9 +14,9 @@ import numpy as np
 
 from seatsim.blind.truth.experiment import Experiment, read_channels, simulate_run
 from seatsim.blind.truth.faults.scenario import Changes
-from seatsim.blind.truth.physics.compiled import Array
 from seatsim.blind.truth.physics.rig import RigMotion
 from seatsim.blind.truth.sensors import Readings
+from seatsim.schema.arrays import Array
 
 MATERIAL_SHARE = 0.05
 """Of a channel's spread (contract, section 4)."""

@@ -13,7 +13,7 @@ from seatsim.blind.make.draw_experiment import EXACT, zero_scales
 from seatsim.blind.make.materiality import CommandedRuns, rms
 from seatsim.blind.truth.experiment import Experiment
 from seatsim.blind.truth.faults.scenario import Changes
-from seatsim.blind.truth.physics.compiled import Array
+from seatsim.schema.arrays import Array
 
 SECONDS = 12.0
 """Of each run that are looked at: half of it, as every parameter costs a simulation."""

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.random import Generator
 
 from seatsim.blind.truth.noise import coloured_noise
-from seatsim.blind.truth.physics.compiled import Array
 from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE
+from seatsim.schema.arrays import Array
 
 OFF_SHARE = 0.3
 """Share of the steps of a schedule that are without current, so that the damper's fall is seen as often as its rise."""

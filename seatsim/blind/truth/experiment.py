@@ -10,7 +10,6 @@ import numpy as np
 from seatsim.blind.truth.faults.scenario import Changes, Context, FrameForce
 from seatsim.blind.truth.frame_forces import frame_force
 from seatsim.blind.truth.noise import NoiseColour
-from seatsim.blind.truth.physics.compiled import Array
 from seatsim.blind.truth.physics.parameters import parameter_record
 from seatsim.blind.truth.physics.rig import (
     EXCITATION_RATE,
@@ -21,6 +20,7 @@ from seatsim.blind.truth.physics.rig import (
     simulate,
 )
 from seatsim.blind.truth.sensors import Readings, read_sensors
+from seatsim.schema.arrays import Array
 
 COMPARED = ("frame_acceleration", "driver_acceleration", "suspension_displacement", "damper_force", "coil_current")
 """Outputs that a gap compares, where they are recorded."""

@@ -9,8 +9,8 @@ from numpy.random import Generator
 
 from seatsim.blind.truth.faults.scenario import FrameForce
 from seatsim.blind.truth.noise import coloured_noise
-from seatsim.blind.truth.physics.compiled import Array
 from seatsim.blind.truth.physics.rig import EXCITATION_RATE
+from seatsim.schema.arrays import Array
 
 NO_FORCE = np.zeros(1)
 """A single sample, which the rig's loop takes for none."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.truth.physics.compiled import Array
+from seatsim.schema.arrays import Array
 
 HIGHEST = 60.0
 """Hz, above which there is nothing, so that linear interpolation at 2 kHz and rows at 500 Hz lose nothing."""

@@ -10,8 +10,8 @@ from scipy.signal import bilinear, lfilter, lfilter_zi
 from seatsim.blind.truth.faults.scenario import SensorFault
 from seatsim.blind.truth.faults.sensor import NEIGHBOUR
 from seatsim.blind.truth.noise import coloured_noise
-from seatsim.blind.truth.physics.compiled import Array
 from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE, RigMotion
+from seatsim.schema.arrays import Array
 
 Readings = dict[str, Array]
 """What each channel reads in a run, shape (rows,) each."""

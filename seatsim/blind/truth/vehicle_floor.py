@@ -9,8 +9,8 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from seatsim.blind.truth.noise import coloured_noise
-from seatsim.blind.truth.physics.compiled import Array
 from seatsim.blind.truth.physics.rig import EXCITATION_RATE
+from seatsim.schema.arrays import Array
 
 Spectrum = NDArray[np.complex128]
 ROUGHNESS = {"A": 16e-6, "B": 64e-6, "C": 256e-6, "D": 1024e-6}

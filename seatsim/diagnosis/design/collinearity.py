@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.candidates import Candidate, list_candidates
 from seatsim.diagnosis.design.projection import measure_cosines, project
@@ -17,8 +16,7 @@ from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.result import Collinearity
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 def measure_collinearity(objective: Objective, nuisances: Linearisation, names: Sequence[str]) -> Collinearity:

@@ -13,7 +13,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.augmented import write_augmented
 from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, list_candidate_experiments
@@ -29,11 +28,11 @@ from seatsim.diagnosis.settings.designing import DesignSettings
 from seatsim.excitations.base import Floor
 from seatsim.recordings.compared import COMPARED
 from seatsim.scenario.numbers import change_numbers, list_numbers
+from seatsim.schema.arrays import Array
 from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.inputs import BenchInputs, RigInputs, SeatInputs
 from seatsim.simulation.respond import respond
 
-Array = NDArray[np.float64]
 Kind = Literal["excitation", "intervention", "none"]
 
 USUAL_NOISE = dict(zip(COMPARED["seat"], (0.03, 0.015, 5e-5, 2.5, 0.003), strict=True))

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from seatsim.diagnosis.design.candidate_experiments import EXCITATIONS, CandidateExperiment, excite
 from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 FIRST_STEP = 0.6
 """First step of the search in the natural logarithm of a key: a factor of 1.8."""
 LARGEST_FACTOR = 2.4

@@ -13,9 +13,8 @@ from __future__ import annotations
 from itertools import permutations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 def project(changes: Array, sensitivities: Array, deviations: Array) -> Array:

@@ -6,11 +6,9 @@ from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.design.projection import project
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class PredictedExperiment(NamedTuple):

@@ -11,7 +11,6 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.localise.hypotheses import FaultHypothesis
 from seatsim.diagnosis.localise.regression import explain_signal
@@ -20,8 +19,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import DiscrepancySignal
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.settings.localising import LocalisationSettings
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class Discrepancy(NamedTuple):

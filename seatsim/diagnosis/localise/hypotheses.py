@@ -16,7 +16,6 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.fit import solve_step
 from seatsim.diagnosis.localise.input_estimate import (
@@ -29,8 +28,7 @@ from seatsim.diagnosis.localise.reconstruction import PORTS
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.spectra import as_complex
 from seatsim.recordings.quality.floor_sensor import FLOOR, follows_floor
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 QUANTITIES = {"coil": ("current", "A"), "floor": ("acceleration", "m/s^2")}
 """Quantity and unit of an unknown input by block, where it is not a force in N."""

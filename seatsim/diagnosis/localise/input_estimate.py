@@ -16,13 +16,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.localise.reconstruction import PORTS, Port, Reconstruction, reconstruct
 from seatsim.diagnosis.objective import Evaluation, Objective
 from seatsim.diagnosis.spectra import Spectra, as_complex, measure_power, wiener_share
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class InputEstimate(NamedTuple):

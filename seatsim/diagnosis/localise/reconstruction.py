@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.noise import NoiseWeights
 from seatsim.diagnosis.objective import Objective
@@ -14,11 +13,10 @@ from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings.localising import ReconstructionSettings
 from seatsim.diagnosis.spectra import Spectra, estimate_response, measure_power
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
 from seatsim.simulation.inputs import Forces, SeatInputs
 from seatsim.simulation.respond import respond
-
-Array = NDArray[np.float64]
 
 FAR_OFF = 1e6
 """Residual, in standard deviations, given to a rig that leaves all bounds, so that such a step is rejected."""

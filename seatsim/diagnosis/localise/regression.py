@@ -9,14 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import decimate
 
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.settings.localising import LocalisationSettings
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 def explain_signal(problem: DiagnosisProblem, parameters: Parameters, signals: Mapping[str, Array]) -> dict[str, float]:

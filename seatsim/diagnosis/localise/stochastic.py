@@ -10,7 +10,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.diagnosis.decide import Decision
 from seatsim.diagnosis.input_noise import carry_force
@@ -27,8 +26,7 @@ from seatsim.diagnosis.result import Cause, Estimate, Share
 from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.spectra import measure_power, smooth_spectrum
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 FORCE_FROM_OUTSIDE, BIAS_DRIFT = "floor.unmeasured_input", "sensor.bias"
 

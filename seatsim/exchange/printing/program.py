@@ -9,13 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import types
-from numpy.typing import NDArray
 
 from seatsim.compilation.jit import GENERIC
 from seatsim.exchange.printing.declarations import Declarations, free_name
 from seatsim.exchange.printing.values import REAL, Signature, Value, is_empty, is_tuple, number
-
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
 
 
 class Printed(NamedTuple):

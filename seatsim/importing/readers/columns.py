@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from seatsim.importing.readers.dialect import CLOCK, DATE, LISTED_UNITS, PLAIN, SIGN, THOUSANDS, WITH_UNIT
-from seatsim.importing.signals import Array
+from seatsim.schema.arrays import Array
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -16,7 +16,8 @@ import numpy as np
 
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.readers.text import as_utf8
-from seatsim.importing.signals import Array, DataFile, Group, Signal, add_channels
+from seatsim.importing.signals import DataFile, Group, Signal, add_channels
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
 END, SPECIAL, END_SPECIAL = "***End_of_Header***", "***Start_Special***", "***End_Special***"

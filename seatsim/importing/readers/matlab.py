@@ -39,7 +39,8 @@ from seatsim.importing.readers.naming import (
     stated_unit,
 )
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import TIME, Array, DataFile, Group, Signal, add_channels
+from seatsim.importing.signals import TIME, DataFile, Group, Signal, add_channels
+from seatsim.schema.arrays import Array
 from seatsim.schema.units import DIMENSIONS, find_conversion
 
 Structure = Mapping[str, Value]

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
 END = re.compile(rb"^\$\$[^\n]*\n", re.MULTILINE)

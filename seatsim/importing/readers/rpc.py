@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
 RECORD, KEYWORD, BLOCK = 128, 32, 512

@@ -11,7 +11,8 @@ import numpy as np
 
 from seatsim.importing.readers.naming import note_left_out
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import Array, DataFile, Group, Signal, add_channels
+from seatsim.importing.signals import DataFile, Group, Signal, add_channels
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import DIMENSIONS, conversion
 

@@ -13,7 +13,8 @@ import numpy as np
 from seatsim.importing.readers.header import check_header, first_row_of_numbers, split_header
 from seatsim.importing.readers.naming import note_left_out
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import Array, DataFile, Group, Signal
+from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.schema.arrays import Array
 from seatsim.schema.bounds import TooMuchError, check_made
 from seatsim.schema.errors import InputError
 

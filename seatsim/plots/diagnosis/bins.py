@@ -9,8 +9,9 @@ import numpy as np
 
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics import power_spectral_density, rms
-from seatsim.plots.thinning import Array, Window, find_loudest
+from seatsim.plots.thinning import Window, find_loudest
 from seatsim.recordings.compared import LEFT_OUT
+from seatsim.schema.arrays import Array
 
 FEWEST = 20
 """Samples below which a bin is left empty: the standard error of an RMS is 1 / sqrt(2 n), a sixth of it at 20."""

@@ -23,7 +23,8 @@ from seatsim.plots.diagnosis.frame import MEASURED, NOISE, NOMINAL, choose_after
 from seatsim.plots.frame import FONT, Picture, describe_quantity, format_number, make_frame
 from seatsim.plots.quantities import Quantity
 from seatsim.plots.style import GREY, Entry, Grid
-from seatsim.plots.thinning import Array, Window
+from seatsim.plots.thinning import Window
+from seatsim.schema.arrays import Array
 
 SECONDS = 2.0
 """Length in s of the window that is shown."""

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from seatsim.plots import style
 from seatsim.plots.runs import naming
 from seatsim.plots.style import COLOURS, LETTER, Entry, Grid
-from seatsim.plots.thinning import Array
+from seatsim.schema.arrays import Array
 from seatsim.simulation.result import Run
 
 

@@ -14,7 +14,7 @@ from seatsim.plots import style
 from seatsim.plots.runs import naming
 from seatsim.plots.runs.loops import FREQUENCY, find_dampers, start_temperature, stroke_ratio
 from seatsim.plots.style import Entry, Grid
-from seatsim.plots.thinning import Array
+from seatsim.schema.arrays import Array
 from seatsim.simulation.result import Run
 
 MOST_SAMPLES = 6000

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from seatsim.plots import style
 from seatsim.plots.runs import naming
 from seatsim.plots.style import COLOURS, DARK, WIDTH, Entry, Grid
-from seatsim.plots.thinning import Array, Window, find_loudest, thin_line
+from seatsim.plots.thinning import Window, find_loudest, thin_line
+from seatsim.schema.arrays import Array
 from seatsim.simulation.augment import augment_plant
 from seatsim.simulation.result import Run
 

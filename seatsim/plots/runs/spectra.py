@@ -15,7 +15,7 @@ from seatsim.metrics.transmissibility import AVERAGES, LONGEST
 from seatsim.plots import style
 from seatsim.plots.runs import naming
 from seatsim.plots.style import GREY, Entry, Grid
-from seatsim.plots.thinning import Array
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.simulation.result import Run
 

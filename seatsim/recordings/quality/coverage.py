@@ -12,14 +12,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.recordings.recording import Recording
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 PERCENTILES = (0.1, 5.0, 50.0, 95.0, 99.9)
 WARM = 5.0
 """K; least warming above the temperature of the nominal scenario at which thermal fade can be seen."""

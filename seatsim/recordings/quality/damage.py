@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.recordings.quality.issue import Issue, Severity
-from seatsim.recordings.quality.shapes import Array, Level, flat_tops, measure_level
+from seatsim.recordings.quality.shapes import Level, flat_tops, measure_level
+from seatsim.schema.arrays import Array
 
 SPIKE, AROUND, ALONE = 8.0, 25, 4.0
 """A spike bends so many times as much as usual, and so many times as much as anything within so many rows."""

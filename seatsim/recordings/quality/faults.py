@@ -11,7 +11,8 @@ import numpy as np
 from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.compared import LEFT_OUT
 from seatsim.recordings.quality.residual import filter_band, find_delay
-from seatsim.recordings.quality.run_under_test import LATE, MOTION, Array, RunUnderTest, Table
+from seatsim.recordings.quality.run_under_test import LATE, MOTION, RunUnderTest, Table
+from seatsim.schema.arrays import Array
 from seatsim.schema.units import USUAL, conversion
 
 TOGETHER = (("floor_acceleration", "frame_acceleration", "driver_acceleration"), ("displacement", "velocity"))

@@ -17,8 +17,9 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.quality.run_under_test import Array, RunUnderTest, is_at_rest
+from seatsim.recordings.quality.run_under_test import RunUnderTest, is_at_rest
 from seatsim.recordings.recording import Recording
+from seatsim.schema.arrays import Array
 
 FLOOR = "floor_acceleration"
 """Channel of the floor's accelerometer, whose error acts like a motion of the floor."""

@@ -14,8 +14,9 @@ import numpy as np
 
 from seatsim.recordings.quality.damage import SILENT
 from seatsim.recordings.quality.issue import Issue, issue_in_all_runs
-from seatsim.recordings.quality.run_under_test import Array, RunUnderTest
+from seatsim.recordings.quality.run_under_test import RunUnderTest
 from seatsim.recordings.quality.shapes import Level, measure_level, quantum
+from seatsim.schema.arrays import Array
 
 NOISE_OFF = 3.0
 """Factor by which the noise may differ from what is stated."""

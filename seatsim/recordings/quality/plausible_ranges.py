@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from seatsim.recordings.quality.shapes import Array
+from seatsim.schema.arrays import Array
 from seatsim.schema.units import find_conversion
 
 PLAUSIBLE = {

@@ -9,14 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.recordings.channel_units import SEAT_CHANNELS
 from seatsim.recordings.quality.faults import is_within_reach
 from seatsim.recordings.quality.issue import Issue, Severity
+from seatsim.schema.arrays import Array
 from seatsim.schema.units import USUAL, find_conversion
-
-Array = NDArray[np.float64]
 
 ALIKE = 0.9
 """Correlation from which a factor between two sides of an equation is meant."""

@@ -19,8 +19,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from seatsim.recordings.compared import COMPARED, LEFT_OUT
-from seatsim.recordings.quality.run_under_test import Array, RunUnderTest, Table
+from seatsim.recordings.quality.run_under_test import RunUnderTest, Table
 from seatsim.recordings.replay import replay_table
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
 
 

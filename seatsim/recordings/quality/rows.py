@@ -11,7 +11,8 @@ from scipy.ndimage import uniform_filter1d
 from seatsim.recordings.quality.damage import ALONE, AROUND
 from seatsim.recordings.quality.issue import Issue, Severity, issue_in_all_runs
 from seatsim.recordings.quality.run_under_test import LATE, MOTION, RunUnderTest
-from seatsim.recordings.quality.shapes import Array, measure_level
+from seatsim.recordings.quality.shapes import measure_level
+from seatsim.schema.arrays import Array
 
 LEAST_FINE = 2
 """Channels with noise finer than their resolution from which on no two rows are alike by chance."""

@@ -6,14 +6,13 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatsim.recordings.quality.issue import Issue, Severity
 from seatsim.recordings.quality.shapes import flickers, quantum
 from seatsim.recordings.recording import Recording
 from seatsim.scenario.scenario import Scenario
+from seatsim.schema.arrays import Array
 
-Array = NDArray[np.float64]
 Table = Mapping[str, Array]
 
 MOTION = (

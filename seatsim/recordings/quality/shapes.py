@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
+
 WINDOW, FEWEST, LEAST_WINDOWS = 0.5, 50, 4
 """Seconds of a window in which noise is measured, its least rows, and least windows of a run."""
 PILED = 3.0

@@ -12,9 +12,9 @@ from itertools import combinations
 from typing import NamedTuple, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from seatsim.schema.arrays import Array
+
 MOST_VALUES = 40
 """Different texts of a key that have contrasts of their own."""
 RUNS_PER_TERM = 2

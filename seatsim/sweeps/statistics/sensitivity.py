@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.schema.arrays import Array
 from seatsim.sweeps.statistics.chaos import (
     DEGREES,
     RUNS_PER_TERM,
@@ -31,7 +32,6 @@ from seatsim.sweeps.statistics.inputs import SweepRows, is_number
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 RESAMPLES = 200
 MOST_RUNS = 4000
 """Runs that are used; more hardly narrow the intervals, and the bootstrap takes time for each."""

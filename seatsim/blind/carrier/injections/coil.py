@@ -8,8 +8,9 @@ import numpy as np
 from numpy.random import Generator
 
 from seatsim.blind.carrier.change import Altered, Change, with_tables
-from seatsim.blind.carrier.recorded import Array, Carrier, Table, number, section
+from seatsim.blind.carrier.recorded import Carrier, Table, number, section
 from seatsim.blind.carrier.signals import shifted_rows
+from seatsim.schema.arrays import Array
 
 COMMANDS = ("current_command", "command_voltage")
 LONGEST_DELAY = 0.04

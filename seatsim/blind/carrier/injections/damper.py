@@ -9,8 +9,9 @@ from numpy.random import Generator
 
 from seatsim.blind.carrier.change import Altered, Change, with_tables
 from seatsim.blind.carrier.injections.coil import commanded
-from seatsim.blind.carrier.recorded import Array, Carrier, Table, number, section
+from seatsim.blind.carrier.recorded import Carrier, Table, number, section
 from seatsim.blind.carrier.signals import low_pass, slide, slope
+from seatsim.schema.arrays import Array
 
 LARGEST = 1.5
 """Of a force, in standard deviations of the recorded one."""

@@ -16,8 +16,9 @@ from scipy.linalg import expm
 from scipy.signal import butter, sosfiltfilt
 
 from seatsim.blind.carrier.change import Altered, Change
-from seatsim.blind.carrier.recorded import Array, Carrier, Table, number, section
+from seatsim.blind.carrier.recorded import Carrier, Table, number, section
 from seatsim.blind.carrier.signals import slope
+from seatsim.schema.arrays import Array
 
 SUBSTEPS = 4
 """Of the integration in each row: friction is stiff."""

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.random import Generator
 
 from seatsim.blind.carrier.change import Altered, Change, with_tables
-from seatsim.blind.carrier.recorded import Array, Carrier, Table
+from seatsim.blind.carrier.recorded import Carrier, Table
 from seatsim.blind.carrier.signals import low_pass, shifted, shifted_rows
+from seatsim.schema.arrays import Array
 
 SENSORS = (
     "floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement", "displacement",

@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 
 from seatsim.blind.truth.physics import state
-from seatsim.blind.truth.physics.compiled import Array, compiled
+from seatsim.blind.truth.physics.compiled import compiled
 from seatsim.blind.truth.physics.parameters import RigParameters
+from seatsim.schema.arrays import Array
 
 ROUNDING = 1e-6
 """Of a row: a time that lies on a row but for rounding counts as that row."""

@@ -10,10 +10,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import numba
-import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
 F = TypeVar("F", bound=Callable[..., object])
 
 

@@ -6,8 +6,9 @@ A `law` is a vector of six numbers: kind, level (A), then what the kind needs.
 from __future__ import annotations
 
 from seatsim.blind.truth.physics import state
-from seatsim.blind.truth.physics.compiled import Array, compiled
+from seatsim.blind.truth.physics.compiled import compiled
 from seatsim.blind.truth.physics.parameters import RigParameters
+from seatsim.schema.arrays import Array
 
 SCHEDULE, SKYHOOK, FEEDBACK = 0.0, 1.0, 2.0
 """Kinds of law; numbers, because compiled code reads them from the vector."""

@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 
 from seatsim.blind.truth.physics import state
-from seatsim.blind.truth.physics.compiled import Array, compiled
+from seatsim.blind.truth.physics.compiled import compiled
 from seatsim.blind.truth.physics.friction import FASTEST, MICRO_DAMPING, bristle_rate
 from seatsim.blind.truth.physics.magnetisation import yield_current
 from seatsim.blind.truth.physics.parameters import RigParameters
 from seatsim.blind.truth.physics.temperature import viscous_factor, yield_factor
+from seatsim.schema.arrays import Array
 
 LEAST_GAS_COLUMN = 0.2
 """Of the gas column: the travel of a seat never compresses it further, and the power stays finite."""

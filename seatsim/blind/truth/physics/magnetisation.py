@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 from seatsim.blind.truth.physics import state
-from seatsim.blind.truth.physics.compiled import Array, compiled
+from seatsim.blind.truth.physics.compiled import compiled
 from seatsim.blind.truth.physics.parameters import RigParameters
+from seatsim.schema.arrays import Array
 
 SERIES = 1e-3
 """Argument below which the Langevin function is its own tangent, whose closed form would cancel."""

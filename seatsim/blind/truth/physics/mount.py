@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from seatsim.blind.truth.physics import state
-from seatsim.blind.truth.physics.compiled import Array, compiled
+from seatsim.blind.truth.physics.compiled import compiled
 from seatsim.blind.truth.physics.damper import gas_force, main_force, seal_force, write_yield_rates
 from seatsim.blind.truth.physics.magnetisation import write_magnetisation_rate
 from seatsim.blind.truth.physics.parameters import RigParameters
 from seatsim.blind.truth.physics.temperature import write_heat_rates
+from seatsim.schema.arrays import Array
 
 CLOSE_ENOUGH = 0.05
 """N; a fiftieth of the load cell's noise."""

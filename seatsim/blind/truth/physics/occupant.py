@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from seatsim.blind.truth.physics import state
-from seatsim.blind.truth.physics.compiled import Array, compiled
+from seatsim.blind.truth.physics.compiled import compiled
 from seatsim.blind.truth.physics.parameters import RigParameters
+from seatsim.schema.arrays import Array
 
 
 @compiled

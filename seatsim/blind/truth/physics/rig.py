@@ -15,7 +15,7 @@ import numpy as np
 
 from seatsim.blind.truth.physics import state
 from seatsim.blind.truth.physics.coil import ROUNDING, held_command, target_current, write_coil_rates
-from seatsim.blind.truth.physics.compiled import Array, compiled
+from seatsim.blind.truth.physics.compiled import compiled
 from seatsim.blind.truth.physics.control_laws import command_of
 from seatsim.blind.truth.physics.cushion import cushion_force
 from seatsim.blind.truth.physics.damper import update_cavity
@@ -24,6 +24,7 @@ from seatsim.blind.truth.physics.mount import damper_force
 from seatsim.blind.truth.physics.occupant import occupant_force, write_occupant_rates
 from seatsim.blind.truth.physics.parameters import RigParameters
 from seatsim.blind.truth.physics.suspension import suspension_force
+from seatsim.schema.arrays import Array
 
 SAMPLE_RATE = 500.0
 """Rows per second, unless an experiment states another rate."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 
 from seatsim.blind.truth.physics import state
-from seatsim.blind.truth.physics.compiled import Array, compiled
+from seatsim.blind.truth.physics.compiled import compiled
 from seatsim.blind.truth.physics.friction import MICRO_DAMPING, bristle_rate
 from seatsim.blind.truth.physics.parameters import RigParameters
+from seatsim.schema.arrays import Array
 
 DEEPEST = 6.0
 """Depth of an exponential buffer over its length, beyond which its force grows no further (400 times its scale)."""
