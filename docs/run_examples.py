@@ -4,7 +4,7 @@ Two pages are run at once, since much of an example is start-up and compilation 
 shown where it fails.
 
 A block that is preceded by `<!-- not run -->` is left out. A `text` block that is preceded by `<!-- printed -->` is
-compared with what the last example before it printed on a terminal of 80 columns: every line of it must be there, in
+compared with what the last example before it printed on a terminal of 100 columns: every line of it must be there, in
 this order; `...` stands for lines that are left out. After `<!-- printed, within 5 % -->` numbers may differ by as
 much, since they do between machines. The cells of a notebook are one block; its outputs are made anew by
 `jupyter nbconvert --execute --inplace`, started where `scenarios` is.
@@ -94,7 +94,7 @@ def read_blocks(page: Path) -> Iterator[Block]:
 
 
 def run_block(block: Block, folder: str, page: Path) -> str:
-    """Run one block in the page's folder, and return what it printed on a terminal of 80 columns.
+    """Run one block in the page's folder, and return what it printed on a terminal of 100 columns.
 
     Raises:
         ExampleError: it failed.
@@ -102,7 +102,7 @@ def run_block(block: Block, folder: str, page: Path) -> str:
     command = ["bash", "-euc", block.content] if block.language == "sh" else [sys.executable, "-c", block.content]
     terminal, end = pty.openpty()
     with subprocess.Popen(
-        command, cwd=folder, stdin=subprocess.DEVNULL, stdout=end, stderr=end, env=os.environ | {"COLUMNS": "80"}
+        command, cwd=folder, stdin=subprocess.DEVNULL, stdout=end, stderr=end, env=os.environ | {"COLUMNS": "100"}
     ) as process:
         os.close(end)
         said = CONTROL.sub("", _read_all(terminal).decode(errors="replace")).replace("\r", "\n")

@@ -141,7 +141,7 @@ def test_own_classes_are_called_own_and_never_published(tmp_path, seatsim_comman
     assert next(iter(ranked.columns[0].cells)) == "suspension.yours (own)" and len(ranked.columns) == 3
     ended = cause._replace(parameters={"drag": Estimate(9.0, 1.0, "N", (0.0, 9.0), True)})
     table = make_tables(replace(CASES["known"](), causes=[ended]))[1]
-    assert table.columns[3].header == "at the end of its range" and next(iter(table.columns[3].cells)) == "drag"
+    assert table.columns[3].header == "at end of range" and next(iter(table.columns[3].cells)) == "drag"
 
 
 def test_a_league_of_chosen_models_with_one_of_your_own(tmp_path, seatsim_command, forget_own_code):

@@ -98,7 +98,7 @@ def make_tables(diagnosis: Diagnosis) -> list[Table]:
     for heading in ("effect", "probability", "own shrink"):
         ranked.add_column(heading, justify="left" if heading == "effect" else "right")
     if any(cause.ends for cause in listed):
-        ranked.add_column("at the end of its range")
+        ranked.add_column("at end of range")
     for cause in listed:
         figures = f"{cause.probability:.2f}", f"{cause.shrink:.2f}"
         ranked.add_row(_label(cause.effect), *figures, *([", ".join(cause.ends)] if cause.ends else []))
