@@ -18,6 +18,7 @@ from scipy.interpolate import CubicSpline, UnivariateSpline
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import ErrorBudget
 from seatsim.metrics.motion import rms
+from seatsim.recordings.channel_units import COMMANDS
 from seatsim.recordings.compared import COMPARED, select_compared
 from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import Recording
@@ -31,7 +32,6 @@ Table = Mapping[str, Array]
 
 REPLICATES = 3
 """Simulations with newly drawn noise of the inputs."""
-COMMANDS = ("current_command", "command_voltage")
 
 
 def budget_errors(problem: DiagnosisProblem, scenario: Scenario, run: str) -> list[ErrorBudget]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.recordings.channel_units import COMMANDS
 from seatsim.recordings.quality.issue import Issue, Severity
 from seatsim.recordings.quality.shapes import Level, flat_tops, measure_level
 from seatsim.schema.arrays import Array
@@ -31,8 +32,6 @@ QUIET = ("smooth", "resolution")
 """Kinds of doubts because of which the floor at high frequencies is not the noise of a sensor."""
 COARSE, LEVELLED = 1.2, 0.3
 """Share of its step below which noise is hidden by the resolution; ratio of small to usual gaps of what has steps."""
-COMMANDS = ("current_command", "command_voltage")
-"""Channels that may jump from row to row, and that no sensor measures: they have neither spikes nor noise."""
 MOST_ROWS = 200_000
 """Rows that the slower checks look at."""
 
@@ -56,6 +55,7 @@ def doubt_shape(doubter: Doubter, values: Array, lengths: NDArray[np.int_]) -> I
     """Yield clipping, spikes, held values and the floor of a channel that varies."""
     for extreme, rows in flat_tops(values):
         yield doubter.say("warning", "clipped", f"{rows} rows stand at its extreme {extreme:.5g}; it is clipped")
+    # A command may jump from row to row, and no sensor measures it: it has neither spikes nor noise.
     is_command = doubter.channel in COMMANDS
     if not is_command:
         yield from doubt_spikes(doubter, values)
