@@ -30,7 +30,6 @@ import numpy as np
 from cases import EncodedDiagnosis, diagnose_cases, make_parser, open_labels, show_scores, weigh_stated_noise
 from measured_motion import feed_objective, feed_problem, has_measured_motion
 
-from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.diagnosis.candidates import Candidate
 from seatsim.diagnosis.decide import Decision, decide_verdict
 from seatsim.diagnosis.diagnose import diagnose_problem
@@ -43,6 +42,7 @@ from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.solution import Method
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import load_recording
+from seatsim.schema.content import to_content
 
 ONE_PERCENT = 2.33
 """Standard deviations of chi^2 that noise alone exceeds in 1 % of cases."""
@@ -139,7 +139,7 @@ def diagnose_without(part: str, case: Path) -> EncodedDiagnosis:
         problem = pose_problem(recording, pool, settings)
         if not vary_parameters:
             problem = dataclasses.replace(problem, parameters=())
-        return encode_diagnosis(diagnose_problem(problem, examination.sentences, method=method))
+        return to_content(diagnose_problem(problem, examination.sentences, method=method))
 
 
 def main() -> None:

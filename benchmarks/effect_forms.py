@@ -30,7 +30,6 @@ import seatsim
 from controllers.laws.constant import Replay
 from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.verdicts import NAMING, Verdict, read_verdict
-from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.effects.base import EFFECTS
@@ -39,6 +38,7 @@ from seatsim.recordings.channel_units import SEAT_CHANNELS
 from seatsim.recordings.recording import load_recording
 from seatsim.recordings.writer import save_recording
 from seatsim.scenario.scenario import Control
+from seatsim.schema.content import to_content
 from seatsim.schema.fields import field_names
 from seatsim.schema.files import write_json, write_text
 from seatsim.schema.registry import Record, names
@@ -161,7 +161,7 @@ def work(case: FormCase, out: Path) -> None:
     if not (folder / "moved.json").exists():
         write_json(folder / "moved.json", measure_movement(folder, case.record))
     write_verdict(
-        folder / "diagnosis", lambda recording: encode_diagnosis(seatsim.diagnose(recording, budget=math.inf))
+        folder / "diagnosis", lambda recording: to_content(seatsim.diagnose(recording, budget=math.inf))
     )
 
 

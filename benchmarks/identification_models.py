@@ -27,9 +27,9 @@ from rich.progress import track
 from rich.table import Table
 from threadpoolctl import threadpool_limits
 
-from seatsim.cli.outputs.identification import encode_identification, encode_parameters
 from seatsim.identification.identify import identify, predict
 from seatsim.identification.settings import IdentificationSettings
+from seatsim.schema.content import to_content
 from seatsim.schema.files import write_json
 from seatsim.schema.registry import names
 
@@ -114,7 +114,7 @@ def load_or_fit(task: FitTask, out: Path) -> FitResult:
     if not path.exists():
         found = identify(task.data, task.model, task.settings)
         found = predict(found, task.predicted, AVERAGE, centred=True) if task.predicted else found
-        write_json(path, {**encode_identification(found), "warm": found.warm, "file": encode_parameters(found)})
+        write_json(path, {**to_content(found), "warm": found.warm, "file": found.to_scenario()})
     result: FitResult = json.loads(path.read_text(encoding="utf-8"))
     return result
 

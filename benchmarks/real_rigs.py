@@ -165,7 +165,7 @@ def by_hand(rig: RigRecords, folder: Path) -> list[RigEvidence]:
         augmented, shown = _augmented(rig, nominal, quick(recording), seen, trial)
         after, last = seatsim.gap(augmented, recording, held).overall, _unseen(augmented, other)
         effects = " + ".join(effect for effect, _, _ in trial)
-        gaps = before.floor["overall"], before.overall, refitted, after
+        gaps = before.floor.overall, before.overall, refitted, after
         found.append(
             RigEvidence(rig.name, effects, shown, *gaps, None if first is None or last is None else (first, last))
         )
@@ -223,7 +223,7 @@ def nominal_table(folders: Mapping[str, Path], known: Mapping[str, str]) -> Tabl
     for name, folder in folders.items():
         found, recording = seatsim.gap(folder / "nominal.yaml", folder), load_recording(folder)
         rows = sum(len(next(iter(recording.table(run).values()))) for run in recording.runs)
-        figures = f"{found.overall:.3f}", f"{found.floor['overall']:.3f}"
+        figures = f"{found.overall:.3f}", f"{found.floor.overall:.3f}"
         table.add_row(name, str(len(recording.runs)), str(rows), *figures, known[name])
     return table
 

@@ -32,7 +32,7 @@ import numpy as np
 from loop_alone import loop_of
 from numpy.typing import NDArray
 
-from seatsim.cli.outputs.sweeps import report_sweep
+from seatsim.cli.outputs.simulated import write_sweep_report
 from seatsim.sweeps.engines.base import simulate_one
 from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.engines.memory import keep_freed_memory
@@ -137,7 +137,7 @@ def measure(what: str, runs: int, folder: Path | None) -> dict[str, Cost]:
         prepared = prepare(file)
         runs, few = prepared.plan.runs, min(prepared.plan.runs, SAMPLE)
         if what == "report":
-            return {what: cost_of(runs, partial(report_sweep, out, out))}
+            return {what: cost_of(runs, partial(write_sweep_report, out, out))}
         # What loads what is compiled is left out, as it is the same for any number of runs.
         run_all(prepared.plan, VARIANTS)
         if what == "loop":

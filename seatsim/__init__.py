@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from seatsim.diagnosis.diagnose import diagnose
     from seatsim.diagnosis.result import Diagnosis
     from seatsim.identification.identify import Identification, identify
+    from seatsim.plots.notebook import plot
     from seatsim.recordings.gap import Gap, gap
     from seatsim.recordings.prediction import Prediction, predict_gap
     from seatsim.recordings.recording import Recording, load_recording
@@ -49,6 +50,7 @@ _HOME = {
     "identify": "identification.identify",
     "load": "scenario.loading",
     "load_recording": "recordings.recording",
+    "plot": "plots.notebook",
     "predict_gap": "recordings.prediction",
     "read_sweep": "sweeps.read",
     "run": "simulation.runs",
@@ -78,6 +80,7 @@ __all__ = [
     "identify",
     "load",
     "load_recording",
+    "plot",
     "predict_gap",
     "read_sweep",
     "run",

@@ -15,6 +15,7 @@ from seatsim.recordings.recording import HEADER, load_recording
 from seatsim.scenario.describe import KINDS
 from seatsim.scenario.loading import load
 from seatsim.scenario.plausibility import list_doubts
+from seatsim.schema.content import Joined
 from seatsim.schema.modules import UNIT, use
 from seatsim.schema.registry import find, names
 from seatsim.schema.yaml_source import Source
@@ -28,6 +29,13 @@ class Checked(NamedTuple):
     kind: str
     holds: list[str]
     warnings: list[str]
+
+
+class CheckedFile(NamedTuple):
+    """A file, and what is known of it."""
+
+    file: Path
+    checked: Joined[Checked]
 
 
 def check_file(path: Path) -> Checked:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from rich.table import Table
 
 from seatsim.recordings.forecast import Forecast
@@ -14,9 +16,9 @@ def gap_table(found: Gap) -> Table:
     for heading in ("channel", "gap", "noise floor"):
         table.add_column(heading, justify="left" if heading == "channel" else "right")
     for name, value in found.channels.items():
-        table.add_row(name, f"{value:.4f}", show_floor(found.floor["channels"][name]))
+        table.add_row(name, f"{value:.4f}", show_floor(found.floor.channels[name]))
     table.add_section()
-    table.add_row("overall", f"{found.overall:.4f}", show_floor(found.floor["overall"]))
+    table.add_row("overall", f"{found.overall:.4f}", show_floor(found.floor.overall))
     return table
 
 
@@ -37,8 +39,9 @@ def forecast_table(found: Forecast) -> Table:
     for heading in (*headings, "measured before", "measured after") if measured else headings:
         table.add_column(heading, justify="left" if heading == "channel" else "right")
     for name, expected in predicted.channels.items():
-        table.add_row(name, *(f"{value:.4f}" for value in (*expected, *(measured.channel(name) if measured else ()))))
+        gaps = [part.get(name, math.nan) for part in (measured.channels, found.channels)] if measured else []
+        table.add_row(name, *(f"{value:.4f}" for value in (*expected, *gaps)))
     table.add_section()
-    overall = (measured.before.overall, measured.after.overall) if measured else ()
+    overall = (measured.before, measured.after) if measured else ()
     table.add_row("overall", *(f"{value:.4f}" for value in (predicted.before, predicted.after, *overall)))
     return table

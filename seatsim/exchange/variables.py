@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import NamedTuple, cast, get_args
+from collections.abc import Iterator, Sequence
+from typing import Annotated, NamedTuple, cast, get_args
 
 import numba
 from numba import types
@@ -17,6 +17,7 @@ from seatsim.exchange.printing.values import is_empty
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.seated_body import SeatedBody
+from seatsim.schema.content import Form, Unwritten
 from seatsim.schema.fields import bounds, describe
 
 RATES = {"floor_acceleration": "floor_jerk", "velocity": "acceleration"}
@@ -28,12 +29,21 @@ class Variable(NamedTuple):
 
     name: str
     causality: str
-    value: float | int | bool
-    place: str
+    value: Annotated[float | int | bool, Form(key="start")]
+    place: Unwritten[str]
     unit: str = ""
     meaning: str = ""
-    low: float = -math.inf
-    high: float = math.inf
+    low: Unwritten[float] = -math.inf
+    high: Unwritten[float] = math.inf
+
+
+class ExportedBlock(NamedTuple):
+    """What was exported, with its step in s."""
+
+    name: str
+    step: float
+    variables: list[Variable]
+    notes: Sequence[str]
 
 
 def list_variables(block: Block) -> list[Variable]:

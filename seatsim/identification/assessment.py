@@ -15,6 +15,7 @@ from seatsim.identification.smoothing import sharpen, smooth
 from seatsim.identification.split import Split
 from seatsim.recordings.bench_tables import BenchRecord, load_bench
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import Joined, Unwritten, written
 from seatsim.schema.errors import InputError
 
 
@@ -24,10 +25,16 @@ class Assessment(NamedTuple):
     The force is NaN from where the state ran away; there it counts as zero in the agreement.
     """
 
-    record: BenchRecord
+    record: Unwritten[BenchRecord]
     part: str
-    predicted: Array
-    agreement: Agreement
+    predicted: Unwritten[Array]
+    agreement: Joined[Agreement]
+
+    @property
+    @written()
+    def current(self) -> float:
+        """Mean current in A."""
+        return self.record.mean_current
 
     @property
     def complete(self) -> bool:

@@ -6,8 +6,9 @@ Source: ISO 2631-1:1997, 7.2.3 and Tables 1 and 2 with 8.2.2.1 to 8.2.2.3; facto
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
+from seatsim.schema.content import Form
 from seatsim.schema.errors import InputError, nearest
 
 
@@ -16,9 +17,9 @@ class Direction(NamedTuple):
 
     weighting: str
     """Frequency weighting, a name of `seatsim.metrics.WEIGHTINGS`."""
-    comfort: float
+    comfort: Annotated[float, Form(key="factor_comfort")]
     """Factor k of the vibration total value for comfort (8.2.2); m/rad for rotation."""
-    health: float | None = None
+    health: Annotated[float | None, Form(key="factor_health")] = None
     """Factor k with regard to health (7.2.3); None where the standard has none."""
     unit: str = "m/s^2"
 

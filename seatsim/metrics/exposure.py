@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from seatsim.metrics.comfort import EIGHT_HOURS, Dose, daily_exposure, daily_vdv, estimated_vdv
 from seatsim.metrics.directions import direction
+from seatsim.schema.content import written
 from seatsim.schema.errors import InputError
 
 HOUR, DAY = 3600.0, 24.0
@@ -69,6 +70,18 @@ class Exposure(NamedTuple):
     """Zone of ISO 2631-1, Annex B, by equation B.1: a name of `ZONES`."""
     zone_vdv: str
     """The same by equation B.2, from the estimated VDV of the day."""
+
+    @property
+    @written()
+    def zone_a8_text(self) -> str:
+        """What ISO 2631-1 says of the zone by equation B.1."""
+        return ZONES[self.zone_a8]
+
+    @property
+    @written()
+    def zone_vdv_text(self) -> str:
+        """What ISO 2631-1 says of the zone by equation B.2."""
+        return ZONES[self.zone_vdv]
 
 
 def assess_exposure(doses: dict[str, Dose], hours: float) -> Exposure | None:

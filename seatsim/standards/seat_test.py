@@ -34,8 +34,10 @@ def seat_test(
     """
     chosen = find_classes(classes) or tuple(LIMITS)
     if (Path(source) / HEADER).exists():
-        return assess_recorded_seat(load_recording(source), chosen)
-    return assess_simulated_seats(load(source, settings), chosen, progress)
+        found = assess_recorded_seat(load_recording(source), chosen)
+    else:
+        found = assess_simulated_seats(load(source, settings), chosen, progress)
+    return found._replace(source=Path(source).name)
 
 
 def find_classes(names: Sequence[str]) -> tuple[SpectralClass, ...]:

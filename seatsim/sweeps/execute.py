@@ -6,8 +6,9 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import closing
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
+from seatsim.schema.content import Form, Unwritten
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.leftovers import uncut
 from seatsim.sweeps.checks import check_plan
@@ -63,10 +64,10 @@ def read_share(text: str) -> Share:
 class SweepResult(NamedTuple):
     """A sweep after a command: its folder, its identity, runs by state, and reasons of the first runs that failed."""
 
-    folder: Path
+    folder: Unwritten[Path]
     identity: str
     counts: Mapping[str, int]
-    failures: list[str]
+    failures: Annotated[list[str], Form(key="failed")]
 
 
 class PreparedSweep(NamedTuple):

@@ -8,7 +8,7 @@ import pytest
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.cli.outputs.diagnosis import encode_diagnosis, make_tables
+from seatsim.cli.outputs.diagnosis_tables import make_tables
 from seatsim.diagnosis.alternatives import (
     are_forms_due,
     compare_damper_forms,
@@ -24,6 +24,7 @@ from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.report.diagnosis import write_report
 from seatsim.scenario.loading import single
+from seatsim.schema.content import to_content
 from seatsim.simulation.inputs import BenchInputs, SeatInputs
 from seatsim.simulation.respond import respond
 
@@ -206,7 +207,7 @@ def test_a_diagnosis_lists_the_forms_that_were_tried(wrong_form, tmp_path):
     settings = wrong_form.settings._replace(damper_forms=forms)
     found = seatsim.diagnose(wrong_form.recording, OTHERS, settings=settings, damper_forms=True)
     best = found.alternatives[0]
-    content = encode_diagnosis(found)
+    content = to_content(found)
     assert best.model == "bouc_wen" and best.shrink > 0.5
     assert content["alternatives"][0]["shrink"] == best.shrink
     assert set(content["alternatives"][0]["parameters"]) == set(TRUE)

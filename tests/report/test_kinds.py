@@ -16,7 +16,7 @@ from seatsim.identification.agreement import Agreement
 from seatsim.identification.assessment import Assessment
 from seatsim.identification.information import Information, ParameterEstimate
 from seatsim.recordings.bench_tables import BenchRecord
-from seatsim.recordings.gap import Gap, NoiseFloor, ReplayedPair
+from seatsim.recordings.gap import Gap, GapFigures, ReplayedPair
 from seatsim.report.characterisation import report_characterisation
 from seatsim.report.credibility.evidence import Evidence
 from seatsim.report.gap import report_gap, say_gap
@@ -88,7 +88,7 @@ def pair(noise):
 
 
 def gap(size, floor=0.02):
-    return Gap(size, {"damper_force": size}, NoiseFloor(overall=floor, channels={"damper_force": floor}), ("a note",))
+    return Gap(size, {"damper_force": size}, GapFigures(floor, {"damper_force": floor}), ("a note",))
 
 
 def test_a_gap_says_where_it_is_largest_and_what_to_do():

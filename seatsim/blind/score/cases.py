@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypedDict
+from typing import NamedTuple
 
 from seatsim.blind.labels import Label
 from seatsim.blind.score.measures import Rate, count_true
@@ -32,7 +32,7 @@ class ScoredCase:
         return is_right(self.label, self.verdict)
 
 
-class Failure(TypedDict):
+class Failure(NamedTuple):
     """A case whose verdict is wrong, as it stands in `score.json`."""
 
     case: str
@@ -127,12 +127,19 @@ def _true_name(label: Label) -> str:
 def describe_failure(case: ScoredCase) -> Failure:
     """Return what is true of a case whose verdict is wrong, and what was said."""
     label, verdict = case.label, case.verdict
-    return {
-        "case": case.name, "kind": label["kind"], "effects": label["effects"], "forms": label.get("forms", []),
-        "materialities": label.get("materialities", []), "missing": label.get("missing", []),
-        "verdict": verdict.verdict, "named": list(verdict.causes[:NAMED]), "selected": list(verdict.selected),
-        "groups": [list(group) for group in verdict.groups], "where": list(verdict.blocks[:2]),
-    }  # fmt: skip
+    return Failure(
+        case=case.name,
+        kind=label["kind"],
+        effects=label["effects"],
+        forms=label.get("forms", []),
+        materialities=label.get("materialities", []),
+        missing=label.get("missing", []),
+        verdict=verdict.verdict,
+        named=list(verdict.causes[:NAMED]),
+        selected=list(verdict.selected),
+        groups=[list(group) for group in verdict.groups],
+        where=list(verdict.blocks[:2]),
+    )
 
 
 def pair(labels: Mapping[str, Label], verdicts: Mapping[str, Verdict]) -> list[ScoredCase]:

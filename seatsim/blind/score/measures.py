@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from seatsim.schema.content import written
+
 BINS = 10
 """Of the reliability table: each holds a tenth of all probabilities, 24 for each case."""
 Z_95 = 1.96
@@ -23,11 +25,13 @@ class Rate:
     total: int
 
     @property
+    @written("share")
     def value(self) -> float:
         """Share that is right; NaN of none."""
         return self.right / self.total if self.total else math.nan
 
     @property
+    @written()
     def interval(self) -> tuple[float, float]:
         """Wilson (1927): `(p + z^2/2n -+ z sqrt(p(1-p)/n + z^2/4n^2)) / (1 + z^2/n)`; it holds for few cases too."""
         if not self.total:
@@ -36,10 +40,6 @@ class Rate:
         centre = p + z * z / (2 * n)
         half = z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
         return (max((centre - half) / (1 + z * z / n), 0.0), min((centre + half) / (1 + z * z / n), 1.0))
-
-    def as_dict(self) -> dict[str, object]:
-        """Return count, share and interval."""
-        return {"right": self.right, "total": self.total, "share": self.value, "interval": list(self.interval)}
 
 
 def count_true(flags: Sequence[bool]) -> Rate:

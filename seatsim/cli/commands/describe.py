@@ -25,8 +25,8 @@ def describe(
     as_json: Json = False,
 ) -> None:
     """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds."""
+    from seatsim.scenario.describe import Pages, find_page, list_pages
     from seatsim.scenario.describe import describe as describe_name
-    from seatsim.scenario.describe import find_page, list_pages
 
     pages = [find_page(name)] if name else list_pages()
     if picture is not None and (not name or pages[0].kind != "damper" or picture.suffix not in ENDINGS):
@@ -37,7 +37,7 @@ def describe(
     paths = _draw_loops(name, picture) if picture else []
     for path in paths:
         wrote_one(path)
-    answer({"names": pages}, paths)
+    answer(Pages(pages), paths)
 
 
 def _draw_loops(model: str, picture: Path) -> list[Path]:

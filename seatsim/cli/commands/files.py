@@ -30,13 +30,14 @@ def new(
     as_json: Json = False,
 ) -> None:
     """Write a commented file that works as it stands, to be changed."""
+    from seatsim.cli.outputs.answers import NewAnswer
     from seatsim.cli.outputs.new_files import write_new
 
     paths = write_new(kind, Path(name))
     say(f"written: {', '.join(map(str, paths))}")
     file = name if kind == "recording" else paths[0]
     say(f"next: {NEXT[kind].format(name=Path(name).stem, file=file)}")
-    answer({"kind": kind}, paths)
+    answer(NewAnswer(kind), paths)
 
 
 def check(
@@ -45,12 +46,12 @@ def check(
     as_json: Json = False,
 ) -> None:
     """Read a file as the other commands would, without running it, and say what is wrong or doubtful."""
-    from seatsim.cli.check_files import check_file
+    from seatsim.cli.check_files import CheckedFile, check_file
 
     found = check_file(file)
     say(f"{file}: {found.kind}, no errors; {', '.join(found.holds)}")
     warn(found.warnings, "warning")
-    answer({"file": str(file), **found._asdict()})
+    answer(CheckedFile(file, found))
 
 
 def schema(
@@ -61,12 +62,12 @@ def schema(
     as_json: Json = False,
 ) -> None:
     """Print a JSON Schema, with which an editor completes and checks a file."""
-    from seatsim.cli.outputs.answers import ANSWERS, answer_schema
+    from seatsim.cli.outputs.answers import describe_answer, list_answers
     from seatsim.cli.outputs.schemas import FILES
 
-    if kind not in {**FILES, **ANSWERS}:
-        known = ", ".join([*FILES, *ANSWERS])
-        raise InputError(f"schema {kind}: no such kind{nearest(kind, [*FILES, *ANSWERS])}; permitted: {known}")
-    found = FILES[kind]() if kind in FILES else answer_schema(kind)
+    known = [*FILES, *list_answers()]
+    if kind not in known:
+        raise InputError(f"schema {kind}: no such kind{nearest(kind, known)}; permitted: {', '.join(known)}")
+    found = FILES[kind]() if kind in FILES else describe_answer(kind)
     # A schema is JSON with or without --json.
     sys.stdout.write(json.dumps(found) + "\n")

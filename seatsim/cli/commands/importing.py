@@ -50,10 +50,10 @@ def import_data(
     for note in found.notes:
         say(note)
     _doubt(found.doubts)
-    wrote(folder, found.written)
+    wrote(folder, found.paths)
     if nominal is None and found.map.rig != "road":
         say(f"before gap or diagnose: state the rig in {folder / 'nominal.yaml'}, or import with --nominal SCENARIO")
-    answer(found.as_dict(), found.written)
+    answer(found, found.paths)
 
 
 def inspect_data(
@@ -68,7 +68,7 @@ def inspect_data(
     found = _inspected(data, map_file)
     _show(found)
     _doubt(found.doubts)
-    answer(found.as_dict())
+    answer(found)
 
 
 def _inspected(data: Path, map_file: Path | None) -> Inspection:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from seatsim.cli.options import Json, OneScenario, Out, OwnCode, RecordingFolder
 from seatsim.cli.terminal import answer, say, show_progress, warn, wrote
-
-if TYPE_CHECKING:
-    from seatsim.recordings.gap import Gap
 
 
 def gap(
@@ -27,25 +24,18 @@ def gap(
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
     from seatsim.cli.gap_table import forecast_table, gap_table
-    from seatsim.cli.outputs.gap import write_gap
+    from seatsim.cli.outputs.measured import write_gap
     from seatsim.cli.show_table import show_table
-    from seatsim.recordings.forecast import forecast_gap
+    from seatsim.recordings.forecast import Forecast, forecast_gap
     from seatsim.recordings.gap import gap as find_gap
 
-    if predict is None:
-        found = find_gap(scenario, recording)
-        table, notes, content = gap_table(found), found.notes, found.as_dict()
-        drawn: Gap | None = found
-    else:
-        forecast = forecast_gap(scenario, recording, predict)
-        table, notes, content = forecast_table(forecast), forecast.notes, forecast.as_dict()
-        drawn = forecast.measured.after if forecast.measured is not None else None
-    show_table(table)
-    warn(notes)
+    found = find_gap(scenario, recording) if predict is None else forecast_gap(scenario, recording, predict)
+    show_table(forecast_table(found) if isinstance(found, Forecast) else gap_table(found))
+    warn(found.notes)
     folder = out_folder or Path("out") / f"gap-{Path(recording).name}"
-    paths = write_gap(content, drawn, scenario, recording, folder)
+    paths = write_gap(found, scenario, recording, folder)
     wrote(folder, paths)
-    answer(content, paths)
+    answer(found, paths)
 
 
 def diagnose(
@@ -70,7 +60,8 @@ def diagnose(
     as_json: Json = False,
 ) -> None:
     """Say where the gap between a recording and its nominal scenario lies, what causes it and how far it shrinks."""
-    from seatsim.cli.outputs.diagnosis import encode_diagnosis, make_tables, write_diagnosis
+    from seatsim.cli.outputs.diagnosis_tables import make_tables
+    from seatsim.cli.outputs.measured import write_diagnosis
     from seatsim.cli.show_table import show_table
     from seatsim.diagnosis.diagnose import diagnose as find_cause
     from seatsim.effects.base import EFFECTS
@@ -88,4 +79,4 @@ def diagnose(
     folder = out_folder or Path("out") / f"diagnosis-{Path(recording).resolve().name}"
     paths = write_diagnosis(diagnosis, folder)
     wrote(folder, paths)
-    answer(encode_diagnosis(diagnosis), paths)
+    answer(diagnosis, paths)

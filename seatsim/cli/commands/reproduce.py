@@ -25,7 +25,7 @@ def reproduce(
     """Run again what made a folder, and compare the bytes: exit 0 identical, 1 different."""
     from seatsim.provenance.reproduce import ANSWER
     from seatsim.provenance.reproduce import reproduce as run_again
-    from seatsim.schema.files import plain, write_json
+    from seatsim.schema.files import write_json
     from seatsim.schema.text import join_names
 
     with show_progress() as progress:
@@ -37,8 +37,8 @@ def reproduce(
         warn([f"no manifest names {join_names(found.unnamed)}: nothing is known of what made them"])
     if found.identical:
         say(f"{folder}: identical to what seatsim {found.command} writes now: {', '.join(found.compared)}")
-    path = write_json((out_folder or folder) / ANSWER, found._asdict())
+    path = write_json((out_folder or folder) / ANSWER, found)
     wrote_one(path)
-    answer({key: plain(value) for key, value in found._asdict().items()}, [path])
+    answer(found, [path])
     if not found.identical:
         raise typer.Exit(1)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from controllers.clairvoyant import ClairvoyantBounds
+from seatsim.schema.content import to_content
 
 FOUND = ClairvoyantBounds(
     np.array([1.0, 4.0]), np.array([2.0, 5.0]), np.array([1.5, 1.2]), np.array([0.5, 1.0]), np.zeros((2, 3)), 0.005
@@ -34,7 +35,7 @@ def test_the_best_is_interpolated_and_never_rises_with_travel():
 
 
 def test_the_curves_go_to_a_file_by_name_without_the_forces():
-    plain = FOUND.as_dict()
-    assert list(plain) == ["weights", "lower", "acceleration", "travel", "width"]
-    assert plain["lower"] == [2.0, 5.0] and plain["travel"] == [0.5, 1.0]
-    assert plain["width"] == pytest.approx(FOUND.width.tolist())
+    curves = to_content(FOUND)
+    assert list(curves) == ["weights", "lower", "acceleration", "travel", "width"]
+    assert curves["lower"] == [2.0, 5.0] and curves["travel"] == [0.5, 1.0]
+    assert curves["width"] == pytest.approx(FOUND.width.tolist())

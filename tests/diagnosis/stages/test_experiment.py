@@ -14,6 +14,7 @@ from seatsim.diagnosis.design.experiment import propose_experiment
 from seatsim.effects.driver import Mass
 from seatsim.effects.sensor import ClockSkew, Gain
 from seatsim.excitations.base import Floor
+from seatsim.schema.content import to_content
 from seatsim.simulation.inputs import BenchInputs, SeatInputs
 
 from .toy import CHANNELS, NUISANCES, RATE, SIZES, SKIP, TAPS, Added, add_taps, offer, place, pose, record, weigh_stated
@@ -186,8 +187,8 @@ def test_a_change_of_the_rig_says_what_its_run_states(equivalent):
     heavier = CandidateExperiment("added_mass", "add mass", still, set={"plant.driver_mass": 100.0})
     found = experiment._choose(equivalent[0], [experiment._Verdict(90.0, 0.5, heavier)], "", 1.0)
     assert found.reason.endswith("; its run in recording.yaml states set: {plant.driver_mass: 100}")
-    assert found.as_dict()["set"] == {"plant.driver_mass": 100.0} and "file" not in found.as_dict()
-    assert "set" not in experiment._propose("none", "x", "y", 1.0, 1.0).as_dict()
+    assert to_content(found)["set"] == {"plant.driver_mass": 100.0} and "file" not in to_content(found)
+    assert "set" not in to_content(experiment._propose("none", "x", "y", 1.0, 1.0))
 
 
 def verdict(separability, likeness, name, scenario=None, text="do it"):

@@ -133,9 +133,9 @@ def test_a_gap_is_raised_in_the_held_out_run_or_in_all_together(after, third, ra
     def gaps(overall):
         return SimpleNamespace(overall=overall)
 
-    held_out = SimpleNamespace(before=gaps(0.2), after=gaps(after))
-    others = [held_out, SimpleNamespace(before=gaps(0.2), after=gaps(third))]
-    assert _name_raised_gap(held_out, "a", others) == raised
+    held_out, other = (SimpleNamespace(before=gaps(0.2), after=gaps(each)) for each in (after, third))
+    held_out.by_run = [held_out, other]
+    assert _name_raised_gap(held_out, "a") == raised
 
 
 def test_effects_that_do_harm_are_given_up_beside_an_unknown_cause(objective, monkeypatch):
