@@ -160,9 +160,7 @@ def work(case: FormCase, out: Path) -> None:
         record_case(case, out)
     if not (folder / "moved.json").exists():
         write_json(folder / "moved.json", measure_movement(folder, case.record))
-    write_verdict(
-        folder / "diagnosis", lambda recording: to_content(seatsim.diagnose(recording, budget=math.inf))
-    )
+    write_verdict(folder / "diagnosis", lambda recording: to_content(seatsim.diagnose(recording, budget=math.inf)))
 
 
 def load_found(case: FormCase, out: Path) -> FoundForm:

@@ -87,7 +87,8 @@ def test_equal_figures_give_equal_files(tmp_path):
 def test_rows_become_cells_that_no_spreadsheet_computes(tmp_path, rows):
     content = rows([{"name": "=1+1", "n": 3, "x": math.nan}, {"name": "b", "n": 4, "x": 0.25}])
     [path] = write_outputs(tmp_path, {"t.csv": content})
-    assert list(csv.reader(path.read_text().splitlines())) == [["name", "n", "x"], ["'=1+1", "3", ""], ["b", "4", "0.25"]]
+    cells = list(csv.reader(path.read_text().splitlines()))
+    assert cells == [["name", "n", "x"], ["'=1+1", "3", ""], ["b", "4", "0.25"]]
 
 
 @pytest.mark.parametrize(
