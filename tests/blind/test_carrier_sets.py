@@ -125,9 +125,9 @@ def test_power_of_what_is_never_found_has_no_size() -> None:
     power = Power("sensor.gain", None, {SIZES[-1]: [Trial({"error": 0.1}, False)]})
     assert power.parameters == {}
     assert power.found == {"0.4": [False]}
-    assert Power(
-        "sensor.gain", 0.4, {0.4: [Trial({"error": -0.2}, True), Trial({"error": 0.4}, True)]}
-    ).parameters == {"error": pytest.approx(0.3)}
+    assert Power("sensor.gain", 0.4, {0.4: [Trial({"error": -0.2}, True), Trial({"error": 0.4}, True)]}).parameters == {
+        "error": pytest.approx(0.3)
+    }
 
 
 CARRIED: dict[str, Any] = {
