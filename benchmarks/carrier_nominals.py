@@ -85,7 +85,7 @@ def fit(recording: Recording, start: Nominal, free: Sequence[str], mechanisms: S
             high.append(most)
 
     def residual(x: Array) -> Array:
-        scenario = single(recording.nominal, nominal_at(start, free, mechanisms, x))
+        scenario = single(recording.nominal_file, nominal_at(start, free, mechanisms, x))
         measured, simulated = pool_runs(scenario, recording, list(recording.runs))
         return np.concatenate([(simulated[name] - measured[name]) / np.std(measured[name]) for name in measured])
 

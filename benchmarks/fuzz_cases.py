@@ -93,11 +93,10 @@ def _read_scenario(folder: Path) -> object:
 
 def _read_recording(folder: Path) -> object:
     from seatsim.recordings.recording import load_recording
-    from seatsim.scenario.loading import single
 
     recording = load_recording(folder)
     tables = [recording.table(run) for run in recording.runs]
-    return tables, single(recording.nominal)
+    return tables, recording.nominal
 
 
 def _read_bench(folder: Path) -> object:

@@ -109,7 +109,7 @@ def quick(recording: Recording) -> Recording:
 
 def fitted(rig: RigRecords, recording: Recording) -> Nominal:
     """Return the nominal scenario, its free parameters fitted to a recording's counted rows."""
-    scenario, skip = single(recording.nominal), round(LEFT_OUT * rig.sample_rate)
+    scenario, skip = recording.nominal, round(LEFT_OUT * rig.sample_rate)
     kept = np.concatenate([rig.counted(recording.table(run))[skip:] for run in recording.runs])
 
     def residual(factors: Array) -> Array:

@@ -23,7 +23,6 @@ from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.quality.coverage import shows_falling_current
 from seatsim.recordings.quality.gravity import without_gravity
 from seatsim.recordings.recording import Recording
-from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, RunError
@@ -160,7 +159,7 @@ def pose_problem(recording: Recording, pool: Executor, settings: DiagnosisSettin
         InputError: the recording or its scenario is not right, or no output stands above its noise.
     """
     recording = without_gravity(recording)
-    scenario = single(recording.nominal)
+    scenario = recording.nominal
     interval = 1.0 / recording.header.sample_rate
     parts = max(1, math.ceil(interval / COARSEST_STEP - 1e-9))
     solver = scenario.solver._replace(step=interval / parts)

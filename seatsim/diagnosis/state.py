@@ -35,7 +35,6 @@ from seatsim.diagnosis.validate import (
     shrink_by_run,
 )
 from seatsim.recordings.quality.coverage import measure_coverage
-from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import RunError
 
@@ -81,7 +80,7 @@ def validate_on_held_out(solution: Solution) -> Validation:
     calibrated, augmented = refit_without(objective, chosen, run)
     if decision.verdict == "unknown" and not chosen.parameters.terms:
         augmented = selection.nominal
-    nominal = single(problem.recording.nominal)
+    nominal = problem.recording.nominal
     rigs = Parameters(problem.nominal), calibrated.parameters, augmented.parameters
     first, second, third = (make_scenario(problem, nominal, rig) for rig in rigs)
     try:

@@ -104,7 +104,7 @@ def predict_gap(
         error, causes = read_model_error(stated, str(diagnosis)), _read_causes(stated)
         _check_augmented(augmented, stated, causes, Path(diagnosis))
     after = _simulate(augmented, recording, names)
-    before = _simulate(single(recording.nominal), recording, names)
+    before = _simulate(recording.nominal, recording, names)
     shifted = [_simulate(other, recording, names) for other in _move_parameters(augmented, causes)]
     simulated = SimulatedRigs(recording.header.sample_rate, before, after, shifted)
     return _combine(error, simulated, str(recording.folder))

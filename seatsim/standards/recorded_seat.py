@@ -13,7 +13,6 @@ from seatsim.metrics.spectra import power_spectral_density
 from seatsim.metrics.weighting import frequency_response, weight
 from seatsim.recordings.recording import HEADER, Recording
 from seatsim.rig.plant import Plant
-from seatsim.scenario.loading import single
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.text import join_names
@@ -46,7 +45,7 @@ def assess_recorded_seat(recording: Recording, classes: Sequence[SpectralClass])
     Raises:
         InputError: the recording lacks a channel, or no run of it is of a class.
     """
-    nominal = single(recording.nominal)
+    nominal = recording.nominal
     plant = None if nominal.plant is None else augment_plant(nominal.effects, nominal.plant)
     if plant is None or any(name not in recording.channels for name in NEEDED):
         raise InputError(f"{recording.folder / HEADER}: the test of a seat needs the channels {join_names(NEEDED)}")

@@ -19,7 +19,6 @@ from seatsim.diagnosis.state import _name_raised_gap, _propose_experiment, state
 from seatsim.diagnosis.validate import choose_held_out_run, make_scenario, refit_without, shrink_by_run
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.quality.coverage import measure_coverage
-from seatsim.scenario.loading import single
 from seatsim.schema.errors import RunError
 
 from .toy import CHANNELS, Added, offer, place, pose, record, weigh_stated
@@ -67,7 +66,7 @@ def test_a_solution_is_checked_on_a_run_that_its_rigs_are_fitted_without(known):
     assert np.array_equal(found.calibrated.parameters.vector, calibrated.parameters.vector)
     assert np.array_equal(found.augmented.parameters.vector, augmented.parameters.vector)
     assert found.solution is known and found.run not in found.augmented.whitened
-    nominal = single(problem.recording.nominal)
+    nominal = problem.recording.nominal
     for figures, rig in zip((found.gaps.before, found.gaps.calibrated, found.gaps.after), found.rigs, strict=True):
         expected = measure_gap(make_scenario(problem, nominal, rig), problem.recording, [found.run])
         assert figures.overall == pytest.approx(expected.overall)
