@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from seatsim.cli.interrupts import go_on
 from seatsim.cli.options import Json, Out, OwnCode, Scenarios, Settings, scenario_settings
-from seatsim.cli.start import go_on
 from seatsim.cli.terminal import answer, complain, count_progress, show_progress, warn, wrote
 from seatsim.schema.errors import InputError, SeatsimError
 from seatsim.schema.leftovers import uncut
