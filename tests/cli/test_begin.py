@@ -76,7 +76,8 @@ def test_a_command_says_that_it_was_interrupted(number, tmp_path):
 @pytest.mark.parametrize("arguments", [[], ["--json"]])
 def test_a_signal_before_signals_are_watched_is_answered_with_a_word(number, arguments):
     code = "import sys; from seatsim.cli import begin; sys.modules['seatsim.cli.interrupts'] = Now(); begin.begin()"
-    now = f"class Now:\n    end = None\n    @staticmethod\n    def watch_signals():\n        import os; os.kill(os.getpid(), {int(number)})"
+    stop = f"import os; os.kill(os.getpid(), {int(number)})"
+    now = f"class Now:\n    end = None\n    @staticmethod\n    def watch_signals():\n        {stop}"
     program = f"{now}\n{code}"
     done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, timeout=20, check=False,
                           env=os.environ | {"PYTHONPATH": str(ROOT)})  # fmt: skip
