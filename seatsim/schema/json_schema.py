@@ -99,6 +99,9 @@ def _written_schema(hint: Any, known: Schema) -> Schema:
         found = {"anyOf": [_written_schema(part, known) for part in parts]}
     elif isinstance(origin, type) and issubclass(origin, Mapping):
         found = {"type": "object", "additionalProperties": _written_schema(parts[1], known)}
+    elif origin is tuple and ... not in parts:
+        items = [_written_schema(part, known) for part in parts]
+        found = {"type": "array", "prefixItems": items, "minItems": len(items), "maxItems": len(items)}
     elif isinstance(origin, type) and issubclass(origin, Iterable):
         found = {"type": "array", "items": _written_schema(parts[0], known)}
     return found
