@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any, cast
 
 from seatsim.provenance.invocation import current_invocation
-from seatsim.provenance.manifest import describe_invocation, describe_outputs
+from seatsim.provenance.manifest import describe
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import write_json
 from seatsim.schema.guarded import expect, read_json
@@ -25,13 +26,18 @@ def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float]
     """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work."""
     invocation = current_invocation()
     parts = {path.relative_to(folder).as_posix(): path for path in sorted(folder.glob("runs/part-*.parquet"))}
-    stated = {} if invocation is None else {
-        **describe_invocation(invocation, folder), **describe_outputs({} if counts["pending"] else parts),
-    }  # fmt: skip
+    outputs = {} if counts["pending"] else parts
+    stated = {} if invocation is None else to_content(describe(invocation, folder, outputs, identity.versions))
     content = {
-        "identity": identity.digest, "versions": identity.versions, "seed": identity.seed, "counts": counts,
-        "limits": limits, "configuration": identity.configuration, "design": identity.design, **stated,
-    }  # fmt: skip
+        **stated,
+        "identity": identity.digest,
+        "versions": identity.versions,
+        "seed": identity.seed,
+        "counts": counts,
+        "limits": limits,
+        "configuration": identity.configuration,
+        "design": identity.design,
+    }
     return write_json(folder / NAME, content, lasting=True)
 
 
