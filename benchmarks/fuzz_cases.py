@@ -174,7 +174,7 @@ def _read_diagnosis(folder: Path) -> object:
 
 
 def _read_manifest(folder: Path) -> object:
-    from seatsim.provenance.reproduce import read_manifest
+    from seatsim.provenance.statement import read_manifest
 
     return read_manifest(folder)
 

@@ -19,6 +19,7 @@ from seatsim.scenario.loading import single
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
+from seatsim.schema.content import to_content
 from seatsim.schema.errors import InputError
 from seatsim.schema.notebook import show_record
 
@@ -46,7 +47,9 @@ class Gap:
     """A sentence for each warning about the recording."""
 
     def _repr_html_(self) -> str:
-        return show_record(self)
+        floor = {name: value or "not stated" for name, value in self.floor.channels.items()}
+        stated = {"overall": self.floor.overall or "not stated", "channels": floor}
+        return show_record(to_content(self) | {"floor": stated})
 
 
 class ReplayedPair(NamedTuple):

@@ -10,7 +10,7 @@ import pytest
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row
 from seatsim.characterisation.summary import Characterisation
-from seatsim.cli.gap_table import gap_table
+from seatsim.cli.outputs.diagnosis_tables import make_gap_table
 from seatsim.cli.show_table import make_plain
 from seatsim.identification.agreement import Agreement
 from seatsim.identification.assessment import Assessment
@@ -106,7 +106,7 @@ def test_noise_that_is_not_stated_is_not_printed_as_none():
     found = gap(0.3, floor=0.0)
     outline = Outline(render_report(report_gap("x", found, {"run-a": pair(20.0)}, Evidence(), "seatsim gap a b")))
     assert "no sensor noise is stated" in outline.headings[0]
-    shown = make_plain(gap_table(found)), found._repr_html_()
+    shown = make_plain(make_gap_table(found)), found._repr_html_()
     assert outline.rows("Gap over all runs")["damper force"] == ["30 %", "not stated"]
     assert all(text.count("not stated") == 2 for text in shown)
 

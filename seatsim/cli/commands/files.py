@@ -30,8 +30,8 @@ def new(
     as_json: Json = False,
 ) -> None:
     """Write a commented file that works as it stands, to be changed."""
+    from seatsim.cli.new_files import write_new
     from seatsim.cli.outputs.answers import NewAnswer
-    from seatsim.cli.outputs.new_files import write_new
 
     paths = write_new(kind, Path(name))
     say(f"written: {', '.join(map(str, paths))}")

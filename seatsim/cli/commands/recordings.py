@@ -23,14 +23,14 @@ def gap(
     as_json: Json = False,
 ) -> None:
     """Replay a scenario against a recording and print the gap with the noise floor."""
-    from seatsim.cli.gap_table import forecast_table, gap_table
+    from seatsim.cli.outputs.diagnosis_tables import make_gap_table
     from seatsim.cli.outputs.measured import write_gap
     from seatsim.cli.show_table import show_table
-    from seatsim.recordings.forecast import Forecast, forecast_gap
+    from seatsim.recordings.forecast import forecast_gap
     from seatsim.recordings.gap import gap as find_gap
 
     found = find_gap(scenario, recording) if predict is None else forecast_gap(scenario, recording, predict)
-    show_table(forecast_table(found) if isinstance(found, Forecast) else gap_table(found))
+    show_table(make_gap_table(found))
     warn(found.notes)
     folder = out_folder or Path("out") / f"gap-{Path(recording).name}"
     paths = write_gap(found, scenario, recording, folder)

@@ -1,20 +1,56 @@
-"""Diagnoses, and what they find at all, as tables on the terminal."""
+"""Gaps, diagnoses, and what diagnoses find at all, as tables on the terminal."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from rich.table import Table
 
 from seatsim.blind.carrier.power import SIZES, Power
-from seatsim.cli.gap_table import show_floor
 from seatsim.cli.show_table import make_table
 from seatsim.diagnosis.result import Diagnosis
 from seatsim.effects.base import EFFECTS
+from seatsim.recordings.forecast import Forecast
+from seatsim.recordings.gap import Gap
 from seatsim.schema.registry import is_own
 
 LISTED = 6
 """Causes in the table."""
+
+
+def make_gap_table(found: Gap) -> Table:
+    """Return the gap of each channel and overall: with the noise floor, or beside what was to be expected of it."""
+    return _make_forecast_table(found) if isinstance(found, Forecast) else _make_measured_table(found)
+
+
+def _make_measured_table(found: Gap) -> Table:
+    rows = [(name, f"{gap:.4f}", _say_floor(found.floor.channels[name])) for name, gap in found.channels.items()]
+    overall = ("overall", f"{found.overall:.4f}", _say_floor(found.floor.overall))
+    title = "gap, in standard deviations of what was measured"
+    return make_table(title, ("channel", "gap", "noise floor"), [*rows, (), overall])
+
+
+def _make_forecast_table(found: Forecast) -> Table:
+    """Return the gap to be expected before and after, beside the measured one where outputs are recorded."""
+    predicted, measured = found.predicted, found.measured
+    low, high = predicted.shrink_interval
+    title = f"expected shrink {predicted.shrink:.2f}, 90 % interval {low:.2f} to {high:.2f}"
+    gaps = {name: list(expected) for name, expected in predicted.channels.items()}
+    gaps["overall"] = [predicted.before, predicted.after]
+    if measured is not None:
+        title += f"; measured {measured.shrink:.2f}"
+        for name, row in gaps.items():
+            row += [part.get(name, math.nan) for part in (measured.channels, found.channels)]
+        gaps["overall"][2:] = [measured.before, found.overall]
+    headings = ("channel", "expected before", "expected after", "measured before", "measured after")
+    rows = [(name, *(f"{value:.4f}" for value in row)) for name, row in gaps.items()]
+    return make_table(title, headings[: len(rows[0])], [*rows[:-1], (), rows[-1]])
+
+
+def _say_floor(floor: float) -> str:
+    """Return a noise floor as a table shows it; one of 0 is that of a sensor whose noise nobody stated."""
+    return f"{floor:.4f}" if floor else "not stated"
 
 
 def make_tables(diagnosis: Diagnosis) -> list[Table]:
@@ -27,10 +63,10 @@ def _make_gap_table(diagnosis: Diagnosis) -> Table:
     gap = diagnosis.gap
     columns = (gap.before, gap.calibrated, gap.after)
     rows = [
-        (name, *(f"{column.channels[name]:.4f}" for column in columns), show_floor(gap.floor.channels[name]))
+        (name, *(f"{column.channels[name]:.4f}" for column in columns), _say_floor(gap.floor.channels[name]))
         for name in gap.before.channels
     ]
-    overall = ("overall", *(f"{column.overall:.4f}" for column in columns), show_floor(gap.floor.overall))
+    overall = ("overall", *(f"{column.overall:.4f}" for column in columns), _say_floor(gap.floor.overall))
     title = f"gap on {', '.join(diagnosis.held_out)}, in standard deviations"
     return make_table(title, ("channel", "nominal", "refitted", "with effects", "noise floor"), [*rows, (), overall])
 
