@@ -11,9 +11,8 @@ from numba import types
 
 from seatsim.effects.base import EFFECTS
 from seatsim.exchange.blocks.base import Block
-from seatsim.exchange.printing.declarations import is_row
 from seatsim.exchange.printing.values import field_names as c_names
-from seatsim.exchange.printing.values import is_empty
+from seatsim.exchange.printing.values import is_empty, is_row
 from seatsim.kernel.augmented import AugmentedDamper
 from seatsim.kernel.rig import Rig
 from seatsim.kernel.seated_body import SeatedBody

@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.importing.names import BY_UNIT, DIMENSION
-from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape
+from seatsim.recordings.quality.channels import say_implausible
+from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape, plateaus
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.quality.plausible_ranges import say_implausible
-from seatsim.recordings.quality.shapes import plateaus
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import DIMENSIONS, STANDARD_GRAVITY
 

@@ -21,5 +21,8 @@ BENCH_CHANNELS = {
 }
 CHANNELS = {"seat": SEAT_CHANNELS, "damper_bench": BENCH_CHANNELS}
 """Channels by rig, each with its unit."""
+ACCELEROMETERS = ("floor_acceleration", "frame_acceleration", "driver_acceleration")
+MOTION = (*ACCELEROMETERS, "suspension_displacement", "displacement", "velocity", "damper_force")
+"""Channels of motion and force, which swing about zero and are never at rest for long."""
 COMMANDS = ("current_command", "command_voltage")
 """Channels that are logged and not measured, so that they have no noise."""

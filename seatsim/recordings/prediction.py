@@ -20,10 +20,9 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.effects.base import EFFECTS
-from seatsim.recordings.compared import NOISE_FACTOR
 from seatsim.recordings.model_error import ModelError, read_model_error
 from seatsim.recordings.recording import Recording, load_recording
-from seatsim.recordings.replay import simulate_table
+from seatsim.recordings.replay import NOISE_FACTOR, simulate_table
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array

@@ -12,7 +12,7 @@ from seatsim.dampers.base import DAMPERS
 from seatsim.exchange import compiler
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
-from seatsim.exchange.blocks.rig_records import RigOutputs
+from seatsim.exchange.blocks.rig_motion import RigOutputs
 from seatsim.exchange.fmu import make_files, write_fmu
 from seatsim.exchange.variables import list_variables
 from seatsim.scenario.loading import load

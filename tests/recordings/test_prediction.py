@@ -9,12 +9,12 @@ import pytest
 import seatsim
 from seatsim.cli.app import main
 from seatsim.recordings import prediction
-from seatsim.recordings.compared import COMPARED
 from seatsim.recordings.forecast import has_outputs
 from seatsim.recordings.gap import measure_gap, pool_runs
 from seatsim.recordings.model_error import measure_model_error
 from seatsim.recordings.prediction import predict_gap
 from seatsim.recordings.recording import load_recording
+from seatsim.recordings.replay import COMPARED
 from seatsim.scenario.loading import single
 
 from ..faulty_recordings import edit

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.blocks.floor import GivenFloor
 from seatsim.exchange.blocks.held import nothing_held
-from seatsim.exchange.blocks.rig_motion import advance, observe, start
-from seatsim.exchange.blocks.rig_records import GivenFloor, RigInputs, RigParameters, RigState
+from seatsim.exchange.blocks.rig_motion import RigInputs, RigParameters, RigState, advance, observe, start
 from seatsim.kernel.assumed_model import AssumedModel
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.generic import scaling_at, wants_force

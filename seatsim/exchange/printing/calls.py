@@ -13,9 +13,8 @@ import numpy as np
 from numba import types
 
 from seatsim.compilation.jit import GENERIC
-from seatsim.exchange.printing.scope import Scope
-from seatsim.exchange.printing.source import lambda_of
-from seatsim.exchange.printing.tuples import address, build_tuple, element
+from seatsim.exchange.printing.program import source_of
+from seatsim.exchange.printing.scope import Scope, address, build_tuple, element
 from seatsim.exchange.printing.values import (
     BOOLEAN,
     INTEGER,
@@ -57,7 +56,7 @@ def print_call(
         return _print_library(thing.__name__, given, node, scope)
     if hasattr(thing, "py_func"):
         thing = thing.py_func
-        scope.program.keep_apart(thing)
+        scope.program.apart.add(thing)
     if thing in GENERIC:
         given = _bind(thing, given, named, node, scope) if named else given
         thing = scope.program.form(thing, tuple(value.type for value in given))
@@ -99,7 +98,7 @@ def _replace(scope: Scope, owner: Value, named: Mapping[str, Value]) -> Value:
 def _print_own(function: FunctionType, values: list[Value], scope: Scope, evaluate: Evaluate) -> Value:
     """Return the call of a function that is printed too; a lambda is put in its place."""
     if function.__name__ == "<lambda>":
-        body = lambda_of(function)
+        body = source_of(function, ast.Lambda)
         inner = Scope(scope.program, function, {})
         inner.write, inner.name = scope.write, scope.name  # type: ignore[method-assign]  # lines go to the caller
         names = [argument.arg for argument in body.args.args]

@@ -13,8 +13,7 @@ import numpy as np
 from numba import types
 
 from seatsim.exchange.printing.calls import print_call
-from seatsim.exchange.printing.scope import Scope
-from seatsim.exchange.printing.tuples import build_tuple, element, field, part
+from seatsim.exchange.printing.scope import Scope, build_tuple, element, part
 from seatsim.exchange.printing.values import (
     BOOLEAN,
     CHOICE,
@@ -120,7 +119,7 @@ def _print_attribute(node: ast.Attribute, scope: Scope) -> Value:
     if not isinstance(owner.type, types.BaseNamedTuple):
         raise scope.refuse(node, "only records and modules have attributes")
     if node.attr in owner.type.fields:
-        return field(scope, owner, node.attr)
+        return element(scope, owner, owner.type.fields.index(node.attr))
     method = getattr(owner.type.instance_class, node.attr, None)
     if method is None:
         raise scope.refuse(node, f"{owner.type.instance_class.__name__} has no such field or method")

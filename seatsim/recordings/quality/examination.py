@@ -14,13 +14,10 @@ from itertools import chain
 
 from seatsim.recordings.quality.channels import check_damage, check_ranges, check_shapes, check_sizes
 from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
-from seatsim.recordings.quality.floor_sensor import check_floor_sensor
-from seatsim.recordings.quality.gravity import without_gravity
-from seatsim.recordings.quality.issue import Issue, place_in_run, select_errors, settle_refusals
+from seatsim.recordings.quality.issue import Issue, RunUnderTest, place_in_run, select_errors, settle_refusals
 from seatsim.recordings.quality.relations import doubt_relations
-from seatsim.recordings.quality.rows import check_rows
-from seatsim.recordings.quality.run_under_test import RunUnderTest
-from seatsim.recordings.quality.runs import check_all_runs, check_clock
+from seatsim.recordings.quality.runs import check_all_runs, check_clock, check_rows
+from seatsim.recordings.quality.sensors import check_floor_sensor, without_gravity
 from seatsim.recordings.recording import Recording
 from seatsim.recordings.replay import note_unused_log
 from seatsim.scenario.loading import single

@@ -11,8 +11,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from seatsim.recordings.channel_units import SEAT_CHANNELS
-from seatsim.recordings.quality.faults import is_within_reach
+from seatsim.recordings.quality.consistency import is_within_reach
 from seatsim.recordings.quality.issue import Issue, Severity
+from seatsim.recordings.quality.residual import unlike
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import USUAL, find_conversion
 
@@ -90,9 +91,9 @@ def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
     target, frame, floor = (
         band_passed(each, rate, 0.7, min(8.0, 0.2 * rate)) for each in (slope, part[names[1]], part[names[2]])
     )
-    before = _unlike(target, frame - floor)
+    before = unlike(target, frame - floor)
     left = {
-        (channels, said, factor): _unlike(*_corrected(channels, factor, target, frame, floor))
+        (channels, said, factor): unlike(*_corrected(channels, factor, target, frame, floor))
         for channels in ((names[0],), (names[1],), (names[2],), (names[2], names[1]))
         for said, factor in _list_factors(channels[0])
     }
@@ -128,11 +129,6 @@ def _corrected(
     own = {"suspension_displacement": target, "frame_acceleration": frame, "floor_acceleration": floor}
     travel, moved, base = (factor * values if name in channels else values for name, values in own.items())
     return travel, moved - base
-
-
-def _unlike(first: Array, second: Array) -> float:
-    """Return the mean square difference over the sum of mean squares: 0 alike, 1 unrelated, 2 opposite."""
-    return float(np.sum((first - second) ** 2) / max(np.sum(first**2) + np.sum(second**2), 1e-300))
 
 
 def _scale(target: Array, relative: Array, rate: float) -> Iterator[Issue]:

@@ -18,9 +18,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.recordings.compared import COMPARED, LEFT_OUT
-from seatsim.recordings.quality.run_under_test import RunUnderTest, Table
-from seatsim.recordings.replay import replay_table
+from seatsim.recordings.quality.issue import RunUnderTest, Table
+from seatsim.recordings.replay import COMPARED, LEFT_OUT, replay_table
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import RunError
 
@@ -43,7 +42,7 @@ def consistency_residuals(run: RunUnderTest, table: Table, outputs: Table | None
     if not pairs:
         return {}
     smooth = dict(zip(pairs, filter_band(run, np.array(list(pairs.values()))), strict=True))
-    return {name: _unlike(*(pair if name == "coil_current" else smooth[name])) for name, pair in pairs.items()}
+    return {name: unlike(*(pair if name == "coil_current" else smooth[name])) for name, pair in pairs.items()}
 
 
 def _balances(run: RunUnderTest, used: Table) -> Iterator[tuple[str, tuple[Array, Array]]]:
@@ -66,8 +65,8 @@ def _slope(run: RunUnderTest, values: Array) -> Array:
     return np.asarray(np.gradient(filter_band(run, values), 1.0 / run.rate))
 
 
-def _unlike(first: Array, second: Array) -> float:
-    """Return e^2, between 0 (alike) and 2 (opposite)."""
+def unlike(first: Array, second: Array) -> float:
+    """Return e^2: 0 alike, 1 unrelated, 2 opposite."""
     size = float(np.mean(first**2) + np.mean(second**2))
     return float(np.mean((first - second) ** 2)) / size if size > 0.0 else 0.0
 

@@ -9,9 +9,9 @@ from ruamel.yaml import YAML
 
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.effects.base import EFFECTS
-from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.quality.examination import examine
 from seatsim.recordings.recording import load_recording
+from seatsim.recordings.replay import recorded_inputs
 from seatsim.scenario.loading import single
 from seatsim.simulation.augment import read_sensors
 from seatsim.simulation.damper_bench import bench_force

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.recordings.quality.faults import exchange_fault, list_faults
+from seatsim.recordings.quality.consistency import exchange_fault, list_faults
 
 RATE = 250.0
 SIGNAL = np.random.default_rng(2).standard_normal(6000).cumsum()

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from seatsim.recordings.quality.issue import RunUnderTest
 from seatsim.recordings.quality.residual import consistency_residuals, filter_band, find_delay, simulate_nominal
-from seatsim.recordings.quality.run_under_test import RunUnderTest
 from seatsim.recordings.recording import load_recording
 from seatsim.scenario.loading import single
 
