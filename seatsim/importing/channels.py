@@ -6,12 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatsim.importing.alignment import Channel
+from seatsim.importing.alignment import Channel, evened
 from seatsim.importing.clocks import Clocked
 from seatsim.importing.doubts import doubt_channel
 from seatsim.importing.import_map import PRIMITIVE, ChannelMap
 from seatsim.importing.names import quantity_of
-from seatsim.importing.resampling import evened
 from seatsim.importing.signals import LISTED
 from seatsim.importing.time_axis import Axis
 from seatsim.recordings.quality.damage import find_spikes

@@ -8,11 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.axis_doubts import doubt_time
-from seatsim.importing.group_time import check_is_history, find_clock
+from seatsim.importing.doubts import doubt_time
 from seatsim.importing.import_map import AxisMap, ImportMap
 from seatsim.importing.signals import LISTED, DataFile, Group
-from seatsim.importing.time_axis import Axis, even_axis, measured_axis, unbroken
+from seatsim.importing.time_axis import Axis, check_is_history, even_axis, find_clock, measured_axis, unbroken
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.text import name_some

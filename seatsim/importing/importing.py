@@ -7,16 +7,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.importing.assembly import Assembled, assemble, doubt_runs
-from seatsim.importing.group_time import find_clock
-from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map
-from seatsim.importing.map_text import write_map
+from seatsim.importing.assembly import Assembled, assemble, assemble_road, doubt_runs
+from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map, write_map
 from seatsim.importing.matching import propose
-from seatsim.importing.nominal import make_nominal
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.road import assemble_road
 from seatsim.importing.signals import LISTED, DataFile
-from seatsim.importing.writing import write_recording, write_road
+from seatsim.importing.time_axis import find_clock
+from seatsim.importing.writing import make_nominal, write_recording, write_road
 from seatsim.recordings.channel_units import CHANNELS, COMMANDS
 from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues

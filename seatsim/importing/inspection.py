@@ -9,16 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.axis_doubts import doubt_distance, doubt_time
-from seatsim.importing.doubts import doubt_channel
-from seatsim.importing.group_time import Clock, find_clock, is_spectrum
+from seatsim.importing.doubts import doubt_channel, doubt_distance, doubt_time
 from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of, read_columns
 from seatsim.importing.names import DIMENSION, is_of, read_name, without_unit
 from seatsim.importing.readers.reading import TextLayout, read_file
 from seatsim.importing.relations import doubt_pairs
 from seatsim.importing.signals import DataFile, Group, Signal
-from seatsim.importing.time_axis import Axis
+from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
 from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.issue import Issue

@@ -10,10 +10,10 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from seatsim.importing.group_time import check_is_history, find_clock, is_spectrum
 from seatsim.importing.import_map import AxisMap, ChannelMap, Gaps, ImportMap, Rig
 from seatsim.importing.names import DIMENSION, Meaning, is_of, read_name, without_unit
 from seatsim.importing.signals import LISTED, DataFile, Group, Signal
+from seatsim.importing.time_axis import check_is_history, find_clock, is_spectrum
 from seatsim.recordings.channel_units import CHANNELS
 from seatsim.schema.text import name_some
 from seatsim.schema.units import DIMENSIONS

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import partial
 from pathlib import Path
 
 import numpy as np
-from ruamel.yaml import YAML
 
-from seatsim.importing.assembly import Assembled
-from seatsim.importing.import_map import FILE, ImportMap
-from seatsim.importing.map_text import write_map
-from seatsim.importing.nominal import NOMINAL
-from seatsim.importing.road import DISTANCE
+from seatsim.importing.assembly import DISTANCE, Assembled
+from seatsim.importing.import_map import FILE, ImportMap, Rig, write_map
 from seatsim.provenance.manifest import write_documented
 from seatsim.recordings.channel_units import CHANNELS
+from seatsim.scenario.loading import load
 from seatsim.schema.arrays import Array
-from seatsim.schema.files import write_packed, write_whole
+from seatsim.schema.errors import InputError
+from seatsim.schema.files import write_packed, write_text
 from seatsim.schema.text import disarm
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import dump
 
 HEADER = "recording.yaml"
 ROAD, EXCITATION = "road.csv.gz", "excitation.yaml"
@@ -86,4 +86,44 @@ def write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> li
 
 
 def _write_yaml(path: Path, content: Mapping[str, object]) -> Path:
-    return write_whole(path, partial(YAML(typ="safe").dump, content))
+    return write_text(path, dump(content))
+
+
+NOMINAL = "nominal.yaml"
+KEPT = {
+    "seat": ("plant", "driver", "damper", "actuator", "temperature", "effects", "solver"),
+    "damper_bench": ("damper", "actuator", "temperature", "effects"),
+}
+"""Sections of a scenario that state its rig."""
+CURRENTS = ("current_command", "command_voltage", "coil_current")
+
+
+def make_nominal(scenario: str, rig: Rig, recorded: Collection[str]) -> Mapping[str, object]:
+    """Return the content of the nominal scenario of a rig with these recorded channels.
+
+    Where no current was recorded, the scenario's constant one is kept.
+
+    Raises:
+        InputError: the scenario is wrong, or states no constant current where none is recorded.
+    """
+    source = load(scenario)[0].source
+    if source is None:
+        raise InputError(f"{scenario}: states no rig; give the file of a scenario")
+    nominal = {key: source.data[key] for key in KEPT[rig] if key in source.data}
+    if rig == "damper_bench":
+        return nominal
+    return nominal | {"controller": _law(source, recorded), "excitation": {"kind": "recording"}}
+
+
+def _law(source: Source, recorded: Collection[str]) -> dict[str, object]:
+    if any(name in recorded for name in CURRENTS):
+        return {"law": "replay"}
+    law = source.data.get("controller")
+    current = law.get("current") if isinstance(law, Mapping) else None
+    if current is None:
+        problem = "no current was recorded, and the scenario states no constant one"
+        raise source.error(
+            ("controller",),
+            f"{problem}; write controller: {{law: constant, current: 0.0}} with the current that flowed",
+        )
+    return {"law": "replay", "current": current}

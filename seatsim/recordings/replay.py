@@ -50,11 +50,16 @@ def recorded_inputs(recording: Recording, table: Mapping[str, Array], largest_st
     """
     interval = 1.0 / recording.header.sample_rate
     if recording.header.rig == "damper_bench":
-        drives = map(table.get, ("velocity", "current_command", "command_voltage"))
-        warmth = table.get("damper_temperature")
-        noise = recording.channels["displacement"].noise_rms
         return BenchInputs(
-            interval, table["displacement"], noise, *drives, recording.voltage_gain, table.get("coil_current"), warmth
+            interval,
+            table["displacement"],
+            recording.channels["displacement"].noise_rms,
+            table.get("velocity"),
+            table.get("current_command"),
+            table.get("command_voltage"),
+            recording.voltage_gain,
+            table.get("coil_current"),
+            table.get("damper_temperature"),
         )
     steps = max(1, math.ceil(interval / largest_step - SAME_STEP))
     return SeatInputs(interpolate_floor(table, steps, interval / steps), interval)

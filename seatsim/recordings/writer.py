@@ -9,13 +9,13 @@ from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
-from ruamel.yaml import YAML
 
 from seatsim.recordings.channel_units import SEAT_CHANNELS
 from seatsim.recordings.header import USUAL, Tolerances
 from seatsim.scenario.numbers import PARAMETERS, TEMPERATURE, list_numbers
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.files import write_packed, write_together, write_whole
+from seatsim.schema.files import write_packed, write_text, write_together
+from seatsim.schema.yaml_text import dump
 from seatsim.simulation.result import Result, Run
 
 WITHOUT_NOISE: Mapping[str, float] = MappingProxyType({})
@@ -72,7 +72,7 @@ def save_recording(
         lambda part: [
             *(write_packed(part / name, partial(table.to_csv, mode="wb", index=False, float_format="%.7g"))
               for name, table in tables.items()),
-            *(write_whole(part / name, partial(YAML(typ="safe").dump, content)) for name, content in scenarios.items()),
+            *(write_text(part / name, dump(content)) for name, content in scenarios.items()),
         ],
     )  # fmt: skip
     return folder

@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from seatsim.importing.alignment import resample
 from seatsim.importing.importing import import_files
-from seatsim.importing.resampling import resample
 from seatsim.schema.errors import InputError
 
 from .helpers import read_run, write_csv

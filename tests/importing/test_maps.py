@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from seatsim.importing.import_map import read_map
+from seatsim.importing.import_map import read_map, render_map
 from seatsim.importing.importing import import_files
-from seatsim.importing.map_text import render_map
 from seatsim.importing.matching import propose
 from seatsim.importing.names import read_name
 from seatsim.importing.readers.reading import read_file

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from seatsim.importing.alignment import HELD, evened, hold
 from seatsim.importing.importing import import_files
-from seatsim.importing.resampling import HELD, evened, hold
 
 from .helpers import read_run, write_csv
 from .test_alignment import band_limited

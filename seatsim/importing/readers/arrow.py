@@ -1,16 +1,21 @@
-"""Parquet and Feather files; a column's unit stands in the metadata of its field, and a column of dates is the time."""
+"""Parquet and Feather files; a column's unit stands in the metadata of its field, and a column of dates is the time.
+
+How much the messages of a Feather file make once they are unpacked is taken from their heads alone. A message is a flat
+buffer: a table begins with the distance back to a list of 2-byte offsets, one for each field, and a field that is a
+table or a list holds the distance forward to it.
+"""
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from seatsim.importing.readers.arrow_messages import bytes_of_messages
 from seatsim.importing.readers.columns import read_column
 from seatsim.importing.readers.naming import note_left_out, stated_unit
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.signals import TIME, DataFile, Group, Signal
-from seatsim.schema.bounds import check_made
+from seatsim.schema.bounds import BYTES_OF_NUMBER, check_made
 from seatsim.schema.parquet import open_parquet
 
 if TYPE_CHECKING:
@@ -18,6 +23,14 @@ if TYPE_CHECKING:
 
 WORDS_FOR_TIME = ("time", "zeit", "temps")
 """A column of dates without such a word in its name, as an index has it, is called time."""
+KIND, HEADER = 1, 2
+"""Fields of a message: what kind of header it has, and the header."""
+DICTIONARY, BATCH = 2, 3
+"""Kinds of headers: a batch of rows, and one within a dictionary."""
+ROWS, NODES, BUFFERS, PACKING = 0, 1, 2, 3
+"""Fields of a batch: the number of its rows, its columns, where their bytes lie, and how those are packed."""
+BEFORE = 8
+"""Bytes before the first message."""
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
@@ -47,5 +60,61 @@ def _table(content: bytes) -> pa.Table:
         return open_parquet(content).read()
     from pyarrow import feather
 
-    check_made(bytes_of_messages(content), len(content), "what its columns state")
+    check_made(_bytes_of_messages(content), len(content), "what its columns state")
     return feather.read_table(pa.BufferReader(content))
+
+
+def _bytes_of_messages(content: bytes) -> int:
+    """Return how many bytes the batches of a file make: what they unpack to, or a number for each row and column.
+
+    Raises:
+        ValueError: a message is damaged.
+    """
+    import pyarrow as pa
+
+    made = 0
+    if content.startswith(b"ARROW1"):
+        for message in pa.ipc.MessageReader.open_stream(pa.BufferReader(content[BEFORE:])):
+            head = message.metadata.to_pybytes()
+            try:
+                made += _bytes_of_batch(head, message.body.to_pybytes() if message.body else b"")
+            except struct.error as error:
+                raise ValueError(f"a message ends too soon: {error}") from error
+    return made
+
+
+def _bytes_of_batch(head: bytes, body: bytes) -> int:
+    message = struct.unpack_from("<I", head)[0]
+    kind = _place(head, message, KIND)
+    if kind is None or head[kind] not in (DICTIONARY, BATCH):
+        return 0
+    batch = _follow(head, message, HEADER)
+    if head[kind] == DICTIONARY:
+        batch = _follow(head, batch, 1)
+    rows, nodes = _place(head, batch, ROWS), _follow(head, batch, NODES)
+    columns = struct.unpack_from("<I", head, nodes)[0]
+    stated = struct.unpack_from("<q", head, rows)[0] if rows is not None else 0
+    buffers = _follow(head, batch, BUFFERS)
+    unpacked = 0
+    for number in range(struct.unpack_from("<I", head, buffers)[0]):
+        offset, length = struct.unpack_from("<qq", head, buffers + 4 + 16 * number)
+        packed = _place(head, batch, PACKING) is not None and length >= BYTES_OF_NUMBER
+        unpacked += max(length, struct.unpack_from("<q", body, offset)[0] if packed else 0)
+    return int(max(unpacked, BYTES_OF_NUMBER * stated * columns))
+
+
+def _place(head: bytes, table: int, number: int) -> int | None:
+    """Return where a field of a table lies, None where it is left out."""
+    offsets = table - struct.unpack_from("<i", head, table)[0]
+    if 4 + 2 * number >= struct.unpack_from("<H", head, offsets)[0]:
+        return None
+    offset = struct.unpack_from("<H", head, offsets + 4 + 2 * number)[0]
+    return table + offset if offset else None
+
+
+def _follow(head: bytes, table: int, number: int) -> int:
+    """Return where the table or list lies to which a field leads."""
+    field = _place(head, table, number)
+    if field is None:
+        raise ValueError("a message lacks a part of its head")
+    return field + int(struct.unpack_from("<I", head, field)[0])

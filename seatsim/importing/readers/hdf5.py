@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import io
+from collections.abc import Hashable, Iterator, Mapping
+from contextlib import contextmanager
 from math import ceil, prod
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from seatsim.importing.readers.hdf5_parts import open_checked
 from seatsim.importing.readers.naming import as_text, signals_of, stated_rate, stated_unit
-from seatsim.importing.readers.reading import TextLayout
+from seatsim.importing.readers.reading import TextLayout, need
 from seatsim.importing.signals import DataFile, Group, Signal, groups_by_length
+from seatsim.schema.bounds import BYTES_OF_NUMBER, Part, check_made, check_parts
+from seatsim.schema.errors import InputError
+from seatsim.schema.guarded import is_there, read_bytes
+from seatsim.schema.tables import LARGEST_FILE
 
 if TYPE_CHECKING:
     import h5py
@@ -84,3 +89,109 @@ def _never_written(item: h5py.Dataset) -> float:
 
 def _texts(value: object) -> list[str]:
     return [as_text(each) for each in np.atleast_1d(np.asarray(value))]
+
+
+HERE = "."
+"""How a virtual data set names its own file."""
+
+
+@contextmanager
+def open_checked(path: Path, content: bytes, follows: bool = False) -> Iterator[h5py.File]:
+    """Open a file whose every part was checked; `follows` says that what its data sets refer to will be read too.
+
+    Raises:
+        InputError: it links to another file or keeps numbers there, or numbers of a virtual data set are missing.
+        TooMuchError: it states more than a file of its size may make.
+    """
+    h5py = need("h5py", "HDF5")
+    with h5py.File(io.BytesIO(content), "r") as file:
+        sources: set[Path] = set()
+        check_parts([file["/"]], lambda item: _part(item, path, len(content), follows, sources), len(content))
+        if not sources:
+            yield file
+            return
+    if path.stat().st_size != len(content):
+        raise InputError(f"{path}: is packed, and its virtual data sets lie in files beside it; unpack it")
+    with h5py.File(path, "r", locking=False) as file:  # HDF5 finds files beside a file by its path alone
+        yield file
+
+
+def _part(item: Hashable, path: Path, size: int, follows: bool, sources: set[Path]) -> Part:
+    """Return what an object makes and refers to, and add the files of its virtual data sets to `sources`."""
+    import h5py
+
+    place = f"{path}, {getattr(item, 'name', None) or 'an object without a name'}"
+    made = sum(_bytes_of(item.attrs.get_id(name)) for name in item.attrs) if isinstance(item, h5py.HLObject) else 0
+    if isinstance(item, h5py.Group):
+        return Part(made, tuple(_members(item, place)))
+    if not isinstance(item, h5py.Dataset):
+        return Part(made)
+    if item.external:
+        raise InputError(f"{place}: keeps its numbers in another file ({item.external[0][0]}), which is not read")
+    made += _bytes_of(item.id)
+    check_made(made, size, str(item.name))
+    if item.is_virtual:
+        return Part(made, tuple(_sources(item, place, path, sources)))
+    holds_references = h5py.check_ref_dtype(item.dtype) is h5py.Reference
+    return Part(made, tuple(_referred(item)) if follows and holds_references else ())
+
+
+def _bytes_of(array: Any) -> int:
+    """Return how many bytes a data set or an attribute makes."""
+    shape = array.shape or ()
+    return prod(shape) * int(max(BYTES_OF_NUMBER, array.dtype.itemsize))
+
+
+def _members(group: h5py.Group, place: str) -> Iterator[h5py.HLObject]:
+    """Yield what lies in a group."""
+    import h5py
+
+    for name in group:
+        link = group.get(name, getlink=True)
+        if isinstance(link, h5py.ExternalLink):
+            raise InputError(f"{place}: '{name}' is a link to another file ({link.filename}), which is not followed")
+        item = group.get(name)
+        if item is None:
+            raise InputError(f"{place}: '{name}' is a link to '{link.path}', which is not there")
+        yield item
+
+
+def _referred(item: h5py.Dataset) -> Iterator[h5py.HLObject]:
+    return (item.file[reference] for reference in np.ravel(item[()]) if reference)
+
+
+def _sources(item: h5py.Dataset, place: str, path: Path, sources: set[Path]) -> Iterator[h5py.HLObject]:
+    """Yield the data sets of the same file of which a virtual one is made, and check those of the files beside it."""
+    import h5py
+
+    covered = 0
+    for each in item.virtual_sources():
+        needed = each.vspace.get_select_npoints()
+        covered += needed
+        missing = f"{place}: takes numbers from '{each.dset_name}' of '{each.file_name}', which is not there"
+        if each.file_name == HERE:
+            source = item.file.get(each.dset_name)
+            if not isinstance(source, h5py.Dataset) or source.size < needed:
+                raise InputError(missing)
+            yield source
+        else:
+            beside = path.parent / each.file_name
+            if Path(each.file_name).name != each.file_name or not is_there(beside):
+                raise InputError(f"{missing}; its files must lie beside it")
+            sources.add(beside)
+            _check_source(beside, each.dset_name, needed, missing)
+    if covered < item.size:
+        raise InputError(
+            f"{place}: {item.size - covered} of its {item.size} numbers have no source; HDF5 would give zeros"
+        )
+
+
+def _check_source(path: Path, name: str, needed: int, missing: str) -> None:
+    """Check a file from which a virtual data set takes numbers, which may hold no virtual data set itself."""
+    import h5py
+
+    content = read_bytes(path, LARGEST_FILE, "a file of measured data")
+    with open_checked(path, content) as file:
+        source = file.get(name)
+        if not isinstance(source, h5py.Dataset) or source.is_virtual or source.size < needed:
+            raise InputError(missing)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.importing.readers.mat_elements import AnyArray
-from seatsim.importing.readers.mat_names import (
+from seatsim.importing.readers.mat_values import (
     ABSCISSAS,
     INDEX,
     LABELS,
@@ -23,11 +23,12 @@ from seatsim.importing.readers.mat_names import (
     TIMES,
     UNITS_OF_TIME,
     VALUES,
+    Value,
     is_vector,
     join_flat,
+    read_values,
     statements,
 )
-from seatsim.importing.readers.mat_values import Value, read_values
 from seatsim.importing.readers.naming import (
     as_text,
     bare,

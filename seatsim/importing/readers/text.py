@@ -9,13 +9,21 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from seatsim.importing.readers.columns import read_column
+from seatsim.importing.readers.columns import part_by_time, read_column
 from seatsim.importing.readers.dialect import BLANKS, MISSING, Dialect, find_dialect, kind_of, split_line
-from seatsim.importing.readers.header import Header, check_header, count_columns, first_row_of_numbers, split_header
+from seatsim.importing.readers.header import (
+    COMMENT,
+    Header,
+    Rows,
+    check_header,
+    count_columns,
+    first_row_of_numbers,
+    fit_names,
+    quote,
+    split_header,
+)
 from seatsim.importing.readers.naming import find_rate, note_left_out
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.readers.row_of_names import COMMENT, Rows, fit_names, quote
-from seatsim.importing.readers.time_pairs import part_by_time
 from seatsim.importing.signals import DataFile, Signal
 from seatsim.schema.errors import InputError
 

@@ -66,7 +66,7 @@ def measure_coverage(recording: Recording) -> Coverage:
     nominal, rate = single(recording.nominal), recording.header.sample_rate
     pools: dict[str, tuple[str, list[Array]]] = {}
     for table in tables:
-        for name, unit, values in _quantities(recording, table):
+        for name, (unit, values) in _quantities(recording, table).items():
             pools.setdefault(name, (unit, []))[1].append(values)
     visited = {name: _visited(name, unit, np.concatenate(parts)) for name, (unit, parts) in pools.items()}
     drop = _largest_drop(pools.get("current", ("A", []))[1], rate)
@@ -83,25 +83,16 @@ def shows_falling_current(recording: Recording) -> bool:
     return not recorded or _largest_drop(recorded, recording.header.sample_rate) >= least
 
 
-def _quantities(recording: Recording, table: dict[str, Array]) -> list[tuple[str, str, Array]]:
-    """Return name, unit and values of the quantities of one run."""
-    found = []
-    for channel in ("suspension_displacement", "displacement"):
-        if channel in table:
-            found.append(("travel", "m", table[channel]))
-    velocity = _velocity(recording, table)
-    if velocity is not None:
-        found.append(("velocity", "m/s", velocity))
-    current = _current(recording, table)
-    if current is not None:
-        found.append(("current", "A", current))
-    for channel, name, unit in (
-        ("damper_temperature", "temperature", "degC"),
-        ("driver_acceleration", "driver", "m/s^2"),
-    ):
-        if channel in table:
-            found.append((name, unit, table[channel]))
-    return found
+def _quantities(recording: Recording, table: dict[str, Array]) -> dict[str, tuple[str, Array]]:
+    """Return unit and values of the quantities of one run by name."""
+    found = {
+        "travel": ("m", table.get("suspension_displacement", table.get("displacement"))),
+        "velocity": ("m/s", _velocity(recording, table)),
+        "current": ("A", _current(recording, table)),
+        "temperature": ("degC", table.get("damper_temperature")),
+        "driver": ("m/s^2", table.get("driver_acceleration")),
+    }
+    return {name: (unit, values) for name, (unit, values) in found.items() if values is not None}
 
 
 def _current(recording: Recording, table: dict[str, Array]) -> Array | None:
