@@ -22,6 +22,12 @@ from seatsim.schema.registry import Record
 
 _LONGEST_NAME = 31
 """Letters that a name in a MAT file may have."""
+BLOCKS: dict[str, Callable[[Scenario], Block]] = {
+    "rig": rig_block,
+    "damper": damper_block,
+    "controller": controller_block,
+}
+"""What can be exported."""
 
 
 def export(scenario: Scenario, form: str, what: str, path: Path) -> Block:
@@ -103,12 +109,6 @@ def _is_nothing(item: object) -> bool:
     return isinstance(item, dict | np.ndarray) and len(item) == 0
 
 
-BLOCKS: dict[str, Callable[[Scenario], Block]] = {
-    "rig": rig_block,
-    "damper": damper_block,
-    "controller": controller_block,
-}
-"""What can be exported."""
 FORMATS: dict[str, Callable[[Block, Scenario, Path], None]] = {
     "fmu2": lambda block, scenario, path: write_fmu(block, 2, path),
     "fmu3": lambda block, scenario, path: write_fmu(block, 3, path),

@@ -29,6 +29,13 @@ RELATED = (
 """Channels that follow each other, though not at once: their own lag is taken into the offset."""
 OWN_LAG, UNCLEAR = 0.01, 0.05
 """s of uncertainty that a lag between related channels adds, and up to which it may be all that there is."""
+HALF, BETA, ROLL = 32, 9.0, 0.92
+"""Zero crossings of the sinc on each side, shape of the Kaiser window (stop band -90 dB), share of the band kept."""
+CHUNK = 20_000
+HELD = ("current_command", "command_voltage")
+"""Channels that hold each value until the next row."""
+SAME = 1e-6
+"""Fraction of a row by which times may differ from rows, and still need no interpolation."""
 
 
 class Channel(NamedTuple):
@@ -136,15 +143,6 @@ def _parts(a: Array, b: Array, rate: float, lag: float) -> Array:
         if len(edges) > SHORTEST * rate * 0.9 and one.std() > 0.1 * a.std() and other.std() > 0.1 * b.std():
             found.append(_lag(one, other, rate, 0.0)[0] + shift / rate)
     return np.array(found)
-
-
-HALF, BETA, ROLL = 32, 9.0, 0.92
-"""Zero crossings of the sinc on each side, shape of the Kaiser window (stop band -90 dB), share of the band kept."""
-CHUNK = 20_000
-HELD = ("current_command", "command_voltage")
-"""Channels that hold each value until the next row."""
-SAME = 1e-6
-"""Fraction of a row by which times may differ from rows, and still need no interpolation."""
 
 
 def resample(values: Array, start: float, rate: float, times: Array, new_rate: float) -> Array:

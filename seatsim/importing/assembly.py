@@ -25,6 +25,7 @@ from seatsim.schema.units import DIMENSIONS, conversion
 
 SAME_RATE = 1e-4
 """Fraction by which rates differ that are one rate by the clocks of two loggers: nothing is said of it."""
+DISTANCE = "distance_m"
 
 
 class Run(NamedTuple):
@@ -179,9 +180,6 @@ def _align(used: _Used, align: dict[str, float], notes: list[str]) -> dict[str, 
                 align[label] = found.seconds
         moved[label] = align.get(label, 0.0)
     return moved
-
-
-DISTANCE = "distance_m"
 
 
 def assemble_road(files: Sequence[DataFile], stated: ImportMap) -> tuple[dict[str, Array], list[Issue]]:

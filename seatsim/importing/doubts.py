@@ -10,13 +10,13 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.names import BY_UNIT, DIMENSION
+from seatsim.importing.names import BY_UNIT, SI_UNITS
 from seatsim.importing.time_axis import Axis
 from seatsim.recordings.quality.channels import say_implausible
 from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape, plateaus
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.arrays import Array
-from seatsim.schema.units import DIMENSIONS, STANDARD_GRAVITY
+from seatsim.schema.units import STANDARD_GRAVITY
 
 NEAR = 0.08
 """Share by which a mean may differ from gravity: tilt, scale and offset of the sensor."""
@@ -38,6 +38,10 @@ WARMING = 2.0
 """K/s; a damper's body does not warm faster."""
 SWITCHED = ("current", "voltage")
 """Quantities that rest and jump by themselves."""
+SLOWEST, FASTEST = 5.0, 200_000.0
+"""Hz; rates of loggers of vibration lie between."""
+COARSE_ROAD = 0.1
+"""m; distance of rows above which a tyre feels waves that a road does not hold."""
 
 
 def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | None) -> Iterator[Issue]:
@@ -83,7 +87,7 @@ def _of_quantity(doubter: Doubter, values: Array, quantity: str | None) -> Itera
         yield from _rest(doubter, values, mean, quantity)
     elif quantity == "temperature":
         yield from _warming(doubter, values)
-    if quantity in BY_UNIT and (text := say_implausible(values, DIMENSIONS[DIMENSION[quantity]])):
+    if quantity in BY_UNIT and (text := say_implausible(values, SI_UNITS[quantity])):
         yield doubter.say("warning", "unit", text)
 
 
@@ -122,7 +126,7 @@ def _rest(doubter: Doubter, values: Array, mean: float, quantity: str) -> Iterat
     """Yield the offset of a channel that swings about another value than zero."""
     low, high = np.quantile(values[:: max(1, len(values) // MOST_ROWS)], (0.01, 0.99))
     swing = 0.5 * float(high - low)
-    unit = DIMENSIONS[DIMENSION[quantity]]
+    unit = SI_UNITS[quantity]
     if swing > 0.0 and abs(mean) > (ABSOLUTE if quantity == "elevation" else OFF_CENTRE) * swing:
         text = f"its mean is {mean:.4g} {unit}, {abs(mean) / swing:.0%} of its swing: {ZERO[quantity]}"
         yield doubter.say("note", "offset", text)
@@ -130,12 +134,6 @@ def _rest(doubter: Doubter, values: Array, mean: float, quantity: str) -> Iterat
         yield doubter.say("note", "zeroed", "begins at exactly 0: counted from its start, its own zero is lost")
     if quantity != "elevation" and abs(mean) < CENTRED * swing:
         yield doubter.say("note", "centred", "its mean is zero: an offset was removed, and with it what it would show")
-
-
-SLOWEST, FASTEST = 5.0, 200_000.0
-"""Hz; rates of loggers of vibration lie between."""
-COARSE_ROAD = 0.1
-"""m; distance of rows above which a tyre feels waves that a road does not hold."""
 
 
 def doubt_time(axis: Axis, channel: str) -> Iterator[Issue]:

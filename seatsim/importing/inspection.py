@@ -12,7 +12,7 @@ import numpy as np
 from seatsim.importing.doubts import doubt_channel, doubt_distance, doubt_time
 from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of, read_columns
-from seatsim.importing.names import DIMENSION, is_of, read_name, without_unit
+from seatsim.importing.names import SI_UNITS, is_of, read_name, without_unit
 from seatsim.importing.readers.reading import TextLayout, read_file
 from seatsim.importing.relations import doubt_pairs
 from seatsim.importing.signals import DataFile, Group, Signal
@@ -21,7 +21,7 @@ from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.arrays import Array
-from seatsim.schema.units import DIMENSIONS, conversion
+from seatsim.schema.units import conversion
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 SPARKS = 24
@@ -135,9 +135,9 @@ def _longest_part(axis: Axis, channels: Mapping[str, Array]) -> dict[str, Array]
 def _in_si(column: Column) -> tuple[Array, str | None]:
     """Return values in SI units with what they are, or as they stand and None where the unit is not known."""
     quantity, unit = column.meaning.quantity, column.meaning.unit
-    if quantity not in DIMENSION:
+    if quantity not in SI_UNITS:
         return column.signal.values, None
-    wanted = DIMENSIONS[DIMENSION[quantity]]
+    wanted = SI_UNITS[quantity]
     is_own_name = without_unit(column.signal.name, "") in {*SEAT_CHANNELS, *BENCH_CHANNELS}
     if not unit and is_own_name:
         return column.signal.values, quantity

@@ -23,6 +23,12 @@ ROUNDED, SHARED = 1.05, 2.0
 """Deviation from even spacing, in steps of the stamps, that is one of rounding; and where rows share a stamp."""
 WHOLE = 2e-6
 """Relative deviation from a whole number of Hz up to which a rate is that number: time stamps are rounded."""
+SLOWEST, FASTEST = 20.0, 50_000.0
+"""Hz; a column of time without unit is in s where its rows are between these rates, else its unit is asked for."""
+SAME_RATE = 0.01
+"""Fraction by which the rates of two columns of the same time may differ."""
+EXACT = 0.25
+"""Largest deviation from even spacing, in steps, of times that are rounded to their last digit."""
 
 
 class Axis(NamedTuple):
@@ -108,15 +114,6 @@ def _resolution(times: Array, steps: Array) -> float:
 def _whole_rate(rate: float, near: float = WHOLE) -> float:
     """Return a rate, or the whole number of Hz that it is apart from rounding."""
     return float(round(rate)) if round(rate) and abs(rate / round(rate) - 1.0) < near else float(f"{rate:.8g}")
-
-
-SLOWEST, FASTEST = 20.0, 50_000.0
-"""Hz; a column of time without unit is in s where its rows are between these rates, else its unit is asked for."""
-
-SAME_RATE = 0.01
-"""Fraction by which the rates of two columns of the same time may differ."""
-EXACT = 0.25
-"""Largest deviation from even spacing, in steps, of times that are rounded to their last digit."""
 
 
 class Clock(NamedTuple):

@@ -24,6 +24,13 @@ HEADER = "recording.yaml"
 ROAD, EXCITATION = "road.csv.gz", "excitation.yaml"
 SPEED = 12.0
 """m/s at which the excitation drives on an imported road until another is stated."""
+NOMINAL = "nominal.yaml"
+KEPT = {
+    "seat": ("plant", "driver", "damper", "actuator", "temperature", "effects", "solver"),
+    "damper_bench": ("damper", "actuator", "temperature", "effects"),
+}
+"""Sections of a scenario that state its rig."""
+CURRENTS = ("current_command", "command_voltage", "coil_current")
 
 
 def write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
@@ -87,15 +94,6 @@ def write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> li
 
 def _write_yaml(path: Path, content: Mapping[str, object]) -> Path:
     return write_text(path, dump(content))
-
-
-NOMINAL = "nominal.yaml"
-KEPT = {
-    "seat": ("plant", "driver", "damper", "actuator", "temperature", "effects", "solver"),
-    "damper_bench": ("damper", "actuator", "temperature", "effects"),
-}
-"""Sections of a scenario that state its rig."""
-CURRENTS = ("current_command", "command_voltage", "coil_current")
 
 
 def make_nominal(scenario: str, rig: Rig, recorded: Collection[str]) -> Mapping[str, object]:

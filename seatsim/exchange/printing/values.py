@@ -10,17 +10,23 @@ from numba import types
 
 from seatsim.schema.errors import InputError
 
+REAL, INTEGER, BOOLEAN, NOTHING = types.float64, types.int64, types.boolean, types.none
+UNARY, PRODUCT, SUM, COMPARISON, LOGIC, CHOICE = range(1, 7)
+"""Ranks of C's operators, from the one that binds most; 0 is a name, a literal or a call."""
+_TAKEN = """
+auto break case char const continue default do double else enum extern float for goto if inline int long register
+restrict return short signed sizeof static struct switch typedef union unsigned void volatile while real R main
+read write time signal exp log pow tanh sin cos tan atan sqrt fabs floor ceil fmod abs round div index gamma
+y0 y1 yn j0 j1 jn remove rename link select least greatest
+"""
+"""Words of C and of its library."""
+
 
 class _Unknown:
     """What is only known when the code runs."""
 
 
 UNKNOWN = _Unknown()
-REAL, INTEGER, BOOLEAN, NOTHING = types.float64, types.int64, types.boolean, types.none
-
-
-UNARY, PRODUCT, SUM, COMPARISON, LOGIC, CHOICE = range(1, 7)
-"""Ranks of C's operators, from the one that binds most; 0 is a name, a literal or a call."""
 
 
 class NotPrintableError(InputError):
@@ -97,15 +103,6 @@ def field_names(kind: types.Type) -> tuple[str, ...]:
     """Return the C names of a record's fields, or of a tuple of several types."""
     cls = getattr(kind, "instance_class", None)
     return tuple(map(identifier, cls._fields)) if cls else tuple(f"item{k}" for k in range(len(kind)))
-
-
-_TAKEN = """
-auto break case char const continue default do double else enum extern float for goto if inline int long register
-restrict return short signed sizeof static struct switch typedef union unsigned void volatile while real R main
-read write time signal exp log pow tanh sin cos tan atan sqrt fabs floor ceil fmod abs round div index gamma
-y0 y1 yn j0 j1 jn remove rename link select least greatest
-"""
-"""Words of C and of its library."""
 
 
 def identifier(name: str) -> str:

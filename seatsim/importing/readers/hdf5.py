@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 COLUMNS = ("columns", "names", "channels", "channel_names", "column_names")
 """Attributes that name the columns of a matrix."""
+HERE = "."
+"""How a virtual data set names its own file."""
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
@@ -89,10 +91,6 @@ def _never_written(item: h5py.Dataset) -> float:
 
 def _texts(value: object) -> list[str]:
     return [as_text(each) for each in np.atleast_1d(np.asarray(value))]
-
-
-HERE = "."
-"""How a virtual data set names its own file."""
 
 
 @contextmanager

@@ -34,6 +34,17 @@ NOTHING = "-"
 """What stands in place of a unit where none is stated."""
 MOSTLY = 0.75
 """Share of the rows from the first one on, as far as the table was looked at, that belong to it."""
+COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+)\s*")
+"""What begins a remark; names may stand in one."""
+COMMENT_OR_SEMICOLON = re.compile(r"^\s*(?:#+|%+|//+|!+|;)\s*")
+LABEL = re.compile(r"^(?:headers?|columns?|fields?|names?|channels?|spalten|colonnes)\s*[:=,;\t ]\s*", re.IGNORECASE)
+"""A word before the names that says that they follow."""
+QUOTED = 120
+"""Letters of a line that an error quotes."""
+LEFT_OUT = ("", "comment", "comments", "remark", "remarks", "kommentar", "bemerkung", "commentaire")
+"""Last names of a line, in lower case, that may have no cells in the rows: LabVIEW writes `Comment`."""
+ROW = "row"
+"""Name of a first column of row numbers or labels, which has none in the file."""
 
 
 class Header(NamedTuple):
@@ -140,19 +151,6 @@ def first_row_of_numbers(rows: Sequence[Sequence[Kind]], place: str) -> int:
 def _belongs(row: Sequence[Kind], numeric: Sequence[int]) -> bool:
     texts = sum(row[column] is False for column in numeric)
     return any(row) and row[numeric[0]] is not False and 2 * texts <= len(numeric)
-
-
-COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+)\s*")
-"""What begins a remark; names may stand in one."""
-COMMENT_OR_SEMICOLON = re.compile(r"^\s*(?:#+|%+|//+|!+|;)\s*")
-LABEL = re.compile(r"^(?:headers?|columns?|fields?|names?|channels?|spalten|colonnes)\s*[:=,;\t ]\s*", re.IGNORECASE)
-"""A word before the names that says that they follow."""
-QUOTED = 120
-"""Letters of a line that an error quotes."""
-LEFT_OUT = ("", "comment", "comments", "remark", "remarks", "kommentar", "bemerkung", "commentaire")
-"""Last names of a line, in lower case, that may have no cells in the rows: LabVIEW writes `Comment`."""
-ROW = "row"
-"""Name of a first column of row numbers or labels, which has none in the file."""
 
 
 class Rows(NamedTuple):

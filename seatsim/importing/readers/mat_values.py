@@ -32,6 +32,25 @@ REFERENCE = 0xDD000000
 MOST_OBJECTS = LEAST // BYTES_OF_PART
 _UNITS_OF_TABLE = ("varUnits", "VariableUnits")
 """Attributes with which mat-io states the units of a table."""
+VALUES = ("values", "data", "signal", "samples", "y", "ydata")
+LABELS = ("label", "signalname", "channelname", "name", "title", "blockname")
+TIMES = ("time", "t", "zeit", "temps", "timestamp", "timestamps", "tout")
+ABSCISSAS = (*TIMES, "x", "xdata")
+STARTS = ("x0", "xoffset", "xorg", "start")
+"""Fields of a structure that is a channel: its values, its name, its times in s, and the time in s of its first value.
+Names stand here without underscores and capitals."""
+INDEX = "xindex"
+"""Field that says which of several vectors of times a channel has, counted from 1 (dSPACE)."""
+TIME_INFO = "timeinfo"
+UNITS_OF_TIME = ("xunit", "xunits", "unitx", "timeunit", "timeunits")
+"""A structure that states the unit of times, and fields that do."""
+BESIDE = (TIME_INFO, "header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
+"""Structures that state something of what stands beside them."""
+ENDING = re.compile(
+    r"^(.+?)_(data|values|header|unit|units|time|name|label|fs|dt|dx|x0|samplerate|xdelta)$", re.IGNORECASE
+)
+"""A flat variable that is part of a channel: the name of the channel, and which part it is."""
+TIME_WITHIN = re.compile(r"^(.*?)_?time_(.*)$", re.IGNORECASE)
 
 
 def read_values(path: Path, content: bytes) -> dict[str, Value]:
@@ -155,27 +174,6 @@ class _Plain:
         if len(units) == len(frame.columns):
             columns["units"] = {str(name): str(unit) for name, unit in zip(frame, units, strict=True)}
         return columns
-
-
-VALUES = ("values", "data", "signal", "samples", "y", "ydata")
-LABELS = ("label", "signalname", "channelname", "name", "title", "blockname")
-TIMES = ("time", "t", "zeit", "temps", "timestamp", "timestamps", "tout")
-ABSCISSAS = (*TIMES, "x", "xdata")
-STARTS = ("x0", "xoffset", "xorg", "start")
-"""Fields of a structure that is a channel: its values, its name, its times in s, and the time in s of its first value.
-Names stand here without underscores and capitals."""
-INDEX = "xindex"
-"""Field that says which of several vectors of times a channel has, counted from 1 (dSPACE)."""
-TIME_INFO = "timeinfo"
-UNITS_OF_TIME = ("xunit", "xunits", "unitx", "timeunit", "timeunits")
-"""A structure that states the unit of times, and fields that do."""
-BESIDE = (TIME_INFO, "header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
-"""Structures that state something of what stands beside them."""
-ENDING = re.compile(
-    r"^(.+?)_(data|values|header|unit|units|time|name|label|fs|dt|dx|x0|samplerate|xdelta)$", re.IGNORECASE
-)
-"""A flat variable that is part of a channel: the name of the channel, and which part it is."""
-TIME_WITHIN = re.compile(r"^(.*?)_?time_(.*)$", re.IGNORECASE)
 
 
 def join_flat(variables: Mapping[str, Value]) -> dict[str, Value]:

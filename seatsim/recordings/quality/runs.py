@@ -30,6 +30,10 @@ NOISY = 1e-4
 NOTHING = np.empty(0)
 STEP = 16.0
 """A step of the travel over lost rows is so many times as large as what its steps usually differ by."""
+SLOWEST, FASTEST = 10.0, 200_000.0
+"""Hz; rates of loggers of vibration lie between: below, nothing of a seat's resonances is left."""
+SHORTEST, SHORT = 4.0, 10.0
+"""s; compared time of all runs together below which nothing can be diagnosed, or not well."""
 
 
 def check_rows(run: RunUnderTest) -> Iterator[Issue]:
@@ -112,12 +116,6 @@ def check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     if is_noisy and not any(entry.noise_rms for entry in recording.channels.values()):
         text = "no noise_rms is stated, of this channel or any other"
         yield issue_in_all_runs("note", "noise", f"{text}; thresholds hang on it: state that of each sensor", channel)
-
-
-SLOWEST, FASTEST = 10.0, 200_000.0
-"""Hz; rates of loggers of vibration lie between: below, nothing of a seat's resonances is left."""
-SHORTEST, SHORT = 4.0, 10.0
-"""s; compared time of all runs together below which nothing can be diagnosed, or not well."""
 
 
 def check_clock(run: RunUnderTest) -> Iterator[Issue]:

@@ -30,6 +30,32 @@ DISPLACED = 1.0
 """Mean over half the range from the 1st to the 99th percentile above which a channel hardly passes through zero."""
 ABOUT_ZERO = ("suspension_displacement", "displacement", "velocity", "damper_force")
 """Other channels that swing about zero, or not far from it."""
+NOISE_OFF = 3.0
+"""Factor by which the noise may differ from what is stated."""
+WHITE = 0.9
+"""Share of the level of third differences that fourth ones have at least where both are of white noise."""
+GROWS = 1.5
+"""Ratio of the levels in the liveliest and the calmest fifth of windows above which it grows with the motion."""
+REPEATS = 0.67
+"""Share of the level seen that the difference of two repeats has at most where what is seen repeats itself."""
+FLOOR = "floor_acceleration"
+"""Channel of the floor's accelerometer, whose error acts like a motion of the floor."""
+WINDOW, FEWEST = 0.032, 6
+"""Seconds over which a slope is fitted, and least rows."""
+STILL = 3.0
+"""Stillness above which a sensor does not follow the floor; faultless ones have 0.9 to 2."""
+FINE = 32
+"""Points between two rows at which slopes are taken, so that a sine is sampled at many phases."""
+FASTEST = 0.98
+"""Share of rises below the one that has to stand out from the noise, lest the floor is too slow to tell."""
+NEAR_ZERO = 0.1
+"""Share of its standard deviation within which a record is near zero."""
+BIN, BESIDE = 7.0, 3
+"""Width in noise of the bins in which values at an extreme, and in that many bins beside it, are counted."""
+LEAST = 1e-9
+"""m/s^2 of noise that a record has at least."""
+PILED, FEW = 5.0, 12
+"""Ratio of rows at an extreme to rows in a bin beside it above which it is a limit, and least rows at a limit."""
 
 
 def without_gravity(recording: Recording) -> Recording:
@@ -71,16 +97,6 @@ def check_constants(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
                 unit = runs[0].recording.channels[channel].unit
                 text = f"its mean is {mean:.3g} {unit}, {abs(mean) / swing:.0%} of its swing; check the sensor's zero"
                 yield issue_in_all_runs("note", "offset", text, channel)
-
-
-NOISE_OFF = 3.0
-"""Factor by which the noise may differ from what is stated."""
-WHITE = 0.9
-"""Share of the level of third differences that fourth ones have at least where both are of white noise."""
-GROWS = 1.5
-"""Ratio of the levels in the liveliest and the calmest fifth of windows above which it grows with the motion."""
-REPEATS = 0.67
-"""Share of the level seen that the difference of two repeats has at most where what is seen repeats itself."""
 
 
 def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
@@ -140,26 +156,6 @@ def _not_of_the_sensor(seen: Level, repeated: Sequence[Array], rate: float) -> s
     if any(measure_level(values, rate).fourth < REPEATS * seen.fourth for values in repeated):
         return "comes again when the excitation is repeated"
     return ""
-
-
-FLOOR = "floor_acceleration"
-"""Channel of the floor's accelerometer, whose error acts like a motion of the floor."""
-WINDOW, FEWEST = 0.032, 6
-"""Seconds over which a slope is fitted, and least rows."""
-STILL = 3.0
-"""Stillness above which a sensor does not follow the floor; faultless ones have 0.9 to 2."""
-FINE = 32
-"""Points between two rows at which slopes are taken, so that a sine is sampled at many phases."""
-FASTEST = 0.98
-"""Share of rises below the one that has to stand out from the noise, lest the floor is too slow to tell."""
-NEAR_ZERO = 0.1
-"""Share of its standard deviation within which a record is near zero."""
-BIN, BESIDE = 7.0, 3
-"""Width in noise of the bins in which values at an extreme, and in that many bins beside it, are counted."""
-LEAST = 1e-9
-"""m/s^2 of noise that a record has at least."""
-PILED, FEW = 5.0, 12
-"""Ratio of rows at an extreme to rows in a bin beside it above which it is a limit, and least rows at a limit."""
 
 
 def check_floor_sensor(run: RunUnderTest) -> Iterator[Issue]:
