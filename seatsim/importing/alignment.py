@@ -7,10 +7,12 @@ standard error of the offsets that parts of the record show by themselves, and a
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
+from seatsim.recordings.channel_units import ACCELEROMETERS
 from seatsim.recordings.quality.relations import band_passed
 from seatsim.schema.arrays import Array
 
@@ -22,10 +24,7 @@ AHEAD = 0.2
 """s by which the offset of a part may differ from that of the whole."""
 DRIFT = 4.0
 """Standard errors by which the last part may differ from the first, before the clocks run apart."""
-RELATED = (
-    ("current_command", "coil_current"), ("floor_acceleration", "frame_acceleration"),
-    ("frame_acceleration", "driver_acceleration"), ("floor_acceleration", "driver_acceleration"),
-)  # fmt: skip
+RELATED = (("current_command", "coil_current"), *combinations(ACCELEROMETERS, 2))
 """Channels that follow each other, though not at once: their own lag is taken into the offset."""
 OWN_LAG, UNCLEAR = 0.01, 0.05
 """s of uncertainty that a lag between related channels adds, and up to which it may be all that there is."""
@@ -66,8 +65,8 @@ def estimate_offset(first: Mapping[str, Channel], second: Mapping[str, Channel])
     """Return the offset of the second group's clock, by the pair of channels that are most alike; None without any."""
     pairs = [(name, name, 0.0) for name in first if name in second]
     if not pairs:
-        pairs = [(a, b, OWN_LAG) for one, other in RELATED for a, b in ((one, other), (other, one))
-                 if a in first and b in second]  # fmt: skip
+        both = (pair for one, other in RELATED for pair in ((one, other), (other, one)))
+        pairs = [(a, b, OWN_LAG) for a, b in both if a in first and b in second]
     found = [offset for pair in pairs if (offset := _of_pair(first[pair[0]], second[pair[1]], pair)) is not None]
     best = max(found, key=lambda offset: abs(offset.correlation), default=None)
     return best if best is not None and abs(best.correlation) >= LEAST else None

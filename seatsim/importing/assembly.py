@@ -34,6 +34,11 @@ class Run(NamedTuple):
     name: str
     table: dict[str, Array]
 
+    @property
+    def rows(self) -> int:
+        """Rows of its table."""
+        return len(next(iter(self.table.values())))
+
 
 class Assembled(NamedTuple):
     """The runs at one rate in Hz, the map as it was used, what was done in sentences, and doubts about the data."""

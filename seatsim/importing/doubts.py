@@ -26,7 +26,7 @@ ZERO = {
     "force": "gas force, preload or the zero of the load cell",
     "displacement": "the zero of the sensor; in the map, offset moves it and remove_mean centres each run",
     "elevation": "an absolute elevation",
-}  # fmt: skip
+}
 """What the mean of a quantity that swings may be."""
 OFF_CENTRE, CENTRED, ABSOLUTE = 0.02, 1e-4, 5.0
 """Mean as a share of the swing: from which an offset is said, below which one was removed, and of a height."""

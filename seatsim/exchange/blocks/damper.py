@@ -142,9 +142,7 @@ def damper_block(scenario: Scenario) -> Block:
         notes.append(f"the delay of {coil.delay:g} s from command to coil is not part of the damper; delay the command")
     if isinstance(start_temperature, Thermal):
         notes.append("the damper does not warm up by itself; its temperature is an input")
-
-    return Block(
-        f"{scenario.name} damper", f"MR damper with its coil: {name}", parameters, inputs, DamperState(0.0, z, 1),
-        start, observe, advance, scenario.solver.step, False, tuple(classes_of(damper)),
-        ("coil.delay", "coil.resistance"), tuple(notes),
-    )  # fmt: skip
+    title, said, rest = f"{scenario.name} damper", f"MR damper with its coil: {name}", DamperState(0.0, z, 1)
+    parts, texts = tuple(classes_of(damper)), (("coil.delay", "coil.resistance"), tuple(notes))
+    step = scenario.solver.step
+    return Block(title, said, parameters, inputs, rest, start, observe, advance, step, False, parts, *texts)

@@ -44,10 +44,10 @@ def rig_block(scenario: Scenario) -> Block:
             f" {LONGEST_DELAY} at most; take a longer solver.step"
         )
     heated = setup.timing.self_heating
-    parameters = RigParameters(
-        setup.rig, setup.coil, setup.factors, setup.thermal, setup.law, setup.inverse_model, setup.sensors,
-        setup.max_command, heated, setup.timing.tolerance, setup.timing.step, setup.timing.sample_every,
-    )  # fmt: skip
+    rig = setup.rig, setup.coil, setup.factors, setup.thermal
+    control_parts = setup.law, setup.inverse_model, setup.sensors, setup.max_command
+    timing = setup.timing.tolerance, setup.timing.step, setup.timing.sample_every
+    parameters = RigParameters(*rig, *control_parts, heated, *timing)
     temperature = setup.thermal.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
     inputs = RigInputs(temperature=float(temperature))
     variable = setup.law, setup.inverse_model.damper, setup.sensors
@@ -56,11 +56,10 @@ def rig_block(scenario: Scenario) -> Block:
     hidden += ["temperature"] if heated else ["thermal", "coil.resistance"]
     hidden += [] if control.sensors else ["displacement_noise", "frame_noise", "driver_noise", "floor_noise"]
     hidden += [] if specification_of(type(control.law)).replays else ["replayed_command"]
-    return Block(
-        f"{scenario.name} rig", "suspension seat with driver, MR damper, coil and control law", parameters, inputs,
-        _rest(scenario, control, parameters, inputs, initial, late), start, observe, advance, setup.timing.step, True,
-        parts, tuple(hidden), tuple(_left_out(scenario)),
-    )  # fmt: skip
+    name, said = f"{scenario.name} rig", "suspension seat with driver, MR damper, coil and control law"
+    rest, step = _rest(scenario, control, parameters, inputs, initial, late), setup.timing.step
+    texts = tuple(hidden), tuple(_left_out(scenario))
+    return Block(name, said, parameters, inputs, rest, start, observe, advance, step, True, parts, *texts)
 
 
 def _rest(scenario: Scenario, control: Control, p: RigParameters, u: RigInputs, initial: State, late: int) -> RigState:
@@ -73,8 +72,8 @@ def _rest(scenario: Scenario, control: Control, p: RigParameters, u: RigInputs, 
     is_followed = isinstance(p.inverse_model, AssumedModel) and wants_force(p.law)
     followed: State = initial_state(type(p.inverse_model.damper)) if is_followed else ()
     law_state, commands = initial_state(type(control.law)), (0.0,) * (late + 2)
-    return RigState(now, 0.0, u.temperature, 0.0, sensed, followed, law_state, commands, none, 0, GivenFloor(),
-                    nothing_held())  # fmt: skip
+    states = sensed, followed, law_state, commands
+    return RigState(now, 0.0, u.temperature, 0.0, *states, none, 0, GivenFloor(), nothing_held())
 
 
 def _left_out(scenario: Scenario) -> list[str]:

@@ -30,10 +30,7 @@ from seatsim.exchange.printing.values import (
 )
 
 Evaluate = Callable[[ast.expr, Scope], Value]
-MATHS = (
-    "exp", "log", "sqrt", "sin", "cos", "tan", "atan", "tanh", "sinh", "cosh", "expm1", "copysign", "hypot", "atan2",
-    "pow",
-)  # fmt: skip
+MATHS = "exp log sqrt sin cos tan atan tanh sinh cosh expm1 copysign hypot atan2 pow"
 """Functions of `math` that C has under the same name."""
 
 
@@ -152,6 +149,6 @@ def _print_library(  # noqa: PLR0911 - one return per function
         return Value(f"{name}({listed})", BOOLEAN, plain=False)
     if name in ("floor", "ceil"):
         return Value(f"(int)r_{name}({listed})", INTEGER, plain=False, rank=UNARY)
-    if name in MATHS:
+    if name in MATHS.split():
         return Value(f"r_{name}({listed})", REAL, plain=False)
     raise scope.refuse(node, f"'{name}' has no counterpart in C")

@@ -31,10 +31,8 @@ STAMP = re.compile(rf"(?:{DATE})(?:[ T_,-]+{CLOCK})?(?:Z| ?UTC|[+-]\d\d:?\d\d)?|
 """A date, a time of day, or both."""
 BLANKS = re.compile(rf'"[^"]*"|(?:(?<![^\s]){SIGN} +(?=[.,\d]))?[^\s"]+')
 """A cell of a table that is parted by blanks; one may stand between a sign and its number."""
-LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | {
-    "m/s2", "m/s²", "mm/s2", "°c", "c", "k", "f", "hz", "-", "sec", "in", "lb", "kg", "bar", "pa", "deg", "rad", "°",
-    "1/s", "rpm", "w", "%",
-}  # fmt: skip
+OTHER_UNITS = """m/s2 m/s² mm/s2 °c c k f hz - sec in lb kg bar pa deg rad ° 1/s rpm w %"""
+LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | set(OTHER_UNITS.split())
 WITH_UNIT = re.compile(r"(\S.*?[\d.,])\s+([^\W\d_][^\s\d]*[²2]?|%|°C?)")
 """A number with its unit in the same cell."""
 LEADING_ZERO = re.compile(r"0\d+")

@@ -13,7 +13,7 @@ import numpy as np
 
 from seatsim.importing.readers.naming import as_text, signals_of, stated_rate, stated_unit
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import DataFile, Group, Signal, groups_by_length
+from seatsim.importing.signals import Channels, DataFile, Signal
 from seatsim.schema.bounds import BYTES_OF_NUMBER, Part, check_made, check_parts
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import is_there, read_bytes
@@ -35,13 +35,14 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         InputError: a link leads out of the file, or numbers of a virtual data set are missing.
     """
     notes: list[str] = []
+    gathered = Channels()
     with open_checked(path, content) as file:
-        groups = tuple(_groups("", file, {}, notes))
-    return DataFile(path, "", groups, tuple(notes))
+        _gather("", file, {}, gathered, notes)
+    return DataFile(path, "", gathered.groups(), tuple(notes))
 
 
-def _groups(name: str, folder: h5py.Group, above: Mapping[str, object], notes: list[str]) -> Iterator[Group]:
-    """Yield the data sets of a folder, then those of the folders in it; `above` holds what was stated of all."""
+def _gather(name: str, folder: h5py.Group, above: Mapping[str, object], gathered: Channels, notes: list[str]) -> None:
+    """Gather the data sets of a folder, then those of the folders in it; `above` holds what was stated of all."""
     import h5py
 
     stated = {**above, **folder.attrs}
@@ -60,10 +61,10 @@ def _groups(name: str, folder: h5py.Group, above: Mapping[str, object], notes: l
             stated = {**stated, **{each: value for each, value in item.attrs.items() if each.lower() not in COLUMNS}}
             if not found:
                 notes.append(f"'{item.name}' is left out: it holds no vector or matrix of real numbers")
-    if signals:
-        yield from groups_by_length(name, signals, stated_rate(stated))
+    for signal in signals:
+        gathered.add(name, signal, stated_rate(stated))
     for title, item in inner:
-        yield from _groups(title, item, stated, notes)
+        _gather(title, item, stated, gathered, notes)
 
 
 def _signals(key: str, item: h5py.Dataset, notes: list[str]) -> list[Signal]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from seatsim.importing.readers.reading import TextLayout
 from seatsim.importing.readers.text import as_utf8
-from seatsim.importing.signals import DataFile, Group, Signal, add_channels
+from seatsim.importing.signals import Channels, DataFile, Group, Signal
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
@@ -71,7 +71,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         table = _table(segment, separator, head.get("Decimal_Separator", "").strip(separator).strip() or ".")
         for column, piece in _pieces(segment, table, head.get("X_Columns", "One").strip(separator).strip(), path):
             pieces.setdefault((column, piece.signal.name, piece.signal.unit), []).append(piece)
-    return DataFile(path, "", tuple(_join(list(pieces.values()))))
+    return DataFile(path, "", _join(list(pieces.values())))
 
 
 def _segments(lines: Sequence[str], separator: str) -> Iterator[_Segment]:
@@ -99,10 +99,9 @@ def _table(segment: _Segment, separator: str, decimal: str) -> Array:
     columns = [column for column in range(len(segment.names)) if column not in remarks]
     if not segment.rows:
         return np.empty((0, len(segment.names)))
-    frame = pd.read_csv(
-        io.StringIO("\n".join(segment.rows)), sep=separator, decimal=decimal, header=None, index_col=False,
-        names=range(len(segment.names)), dtype=dict.fromkeys(columns, np.float64),
-    )  # fmt: skip
+    numbers, text = dict.fromkeys(columns, np.float64), io.StringIO("\n".join(segment.rows))
+    names = range(len(segment.names))
+    frame = pd.read_csv(text, sep=separator, decimal=decimal, index_col=False, names=names, dtype=numbers)
     table = np.full(frame.shape, np.nan)
     table[:, columns] = frame[columns]
     return table
@@ -142,15 +141,15 @@ def _begins(segment: _Segment) -> list[np.datetime64 | None]:
     return moments
 
 
-def _join(channels: Sequence[Sequence[_Piece]]) -> list[Group]:
+def _join(channels: Sequence[Sequence[_Piece]]) -> tuple[Group, ...]:
     """Return channels as groups of the same times, counted from the first moment that any of them states."""
     first = min((each.begins for pieces in channels for each in pieces if each.begins is not None), default=None)
-    groups: list[Group] = []
+    gathered = Channels()
     for pieces in channels:
         times = [_since(first, each) for each in pieces]
         signal = pieces[0].signal._replace(values=np.concatenate([each.signal.values for each in pieces]))
-        add_channels(groups, signal.name, np.concatenate(times), [signal])
-    return groups if len(groups) != 1 else [groups[0]._replace(name="")]
+        gathered.add_timed("", np.concatenate(times), [signal])
+    return gathered.groups()
 
 
 def _since(first: np.datetime64 | None, piece: _Piece) -> Array:

@@ -7,7 +7,7 @@ those of a channel share the beginning of their names (`Channel_1_Data`, `Channe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -40,7 +40,7 @@ from seatsim.importing.readers.naming import (
     stated_unit,
 )
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import TIME, DataFile, Group, Signal, add_channels
+from seatsim.importing.signals import TIME, Channels, DataFile, Signal
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import DIMENSIONS, find_conversion
 
@@ -62,25 +62,15 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     reader = _Reader()
     reader.read_structure("", "", join_flat(read_values(path, content)), _Clock())
     notes = note_left_out("left out, as they hold no columns of real numbers", reader.left_out)
-    return DataFile(path, "", tuple(reader.groups()), notes)
+    return DataFile(path, "", reader.gathered.groups(), notes)
 
 
 class _Reader:
-    """Gathers the channels of a file: `timed` by their times, `even` by structure, length and clock."""
+    """Gathers the channels of a file, by their times, or by structure, length, rate and start."""
 
     def __init__(self) -> None:
-        self.timed: list[Group] = []
-        self.even: dict[tuple[str, int, _Clock], list[Signal]] = {}
+        self.gathered = Channels()
         self.left_out: list[str] = []
-
-    def groups(self) -> Iterator[Group]:
-        """Yield the groups; those of one structure are called after a channel too."""
-        even = [Group(name, tuple(held), clock.rate, clock.start) for (name, _, clock), held in self.even.items()]
-        every = [*even, *self.timed]
-        names = [group.name for group in every]
-        for group in every:
-            is_one = names.count(group.name) == 1
-            yield group if is_one else group._replace(name=f"{group.name}, {group.signals[-1].name}".strip(", "))
 
     def read_structure(self, name: str, label: str, held: Structure, above: _Clock) -> None:
         """Take the channels of a structure, which is called `label` where it does not say how."""
@@ -92,7 +82,7 @@ class _Reader:
             signals = signals_of(label or channel, np.asarray(held[channel]), stated_unit(stated))
             self._add(name, signals, _own_clock(own, above, stated), name or channel)
             return
-        before = len(self.timed) + len(self.even)
+        before = len(self.gathered)
         clock = own if own.times or own.rate else above
         inner = {key: value for key, value in held.items() if isinstance(value, dict | list)}
         vectors = {key: value for key, value in held.items() if isinstance(value, np.ndarray) and value.size > 1}
@@ -102,7 +92,7 @@ class _Reader:
         for key, below in inner.items():
             if bare(key) not in ABSCISSAS or not own.times:
                 self._read_inner(name, key, label if bare(key) in VALUES else key, below, clock)
-        is_empty = len(self.timed) + len(self.even) == before
+        is_empty = len(self.gathered) == before
         for key, value in held.items():
             if value is None or (is_empty and isinstance(value, np.ndarray) and value.size == 0):
                 self.left_out.append(f"{name}.{key}".strip("."))
@@ -136,9 +126,9 @@ class _Reader:
         for signal in signals:
             times = next((each for each in clock.times if len(each) == len(signal.values)), None)
             if times is not None:
-                add_channels(self.timed, name, times, [signal])
+                self.gathered.add_timed(name, times, [signal])
             else:
-                self.even.setdefault((name, len(signal.values), clock._replace(times=())), []).append(signal)
+                self.gathered.add(name, signal, clock.rate, clock.start)
 
 
 def _own_clock(own: _Clock, above: _Clock, stated: Structure) -> _Clock:

@@ -15,7 +15,7 @@ import numpy as np
 
 from seatsim.importing.readers.naming import note_left_out
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import DataFile, Group, Signal, add_channels
+from seatsim.importing.signals import Channels, DataFile, Signal
 from seatsim.schema.bounds import Part, check_made, check_parts
 
 BEGIN = 64
@@ -44,7 +44,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         vars(need(f"asammdf.blocks.mdf_v{version}", "MDF"))[f"MDF{version}"].__del__ = _close
     vars(asammdf.blocks.mdf_v4)["debug_channel"] = lambda *_: None  # it prints a channel that cannot be read
     check_blocks(content)
-    groups: list[Group] = []
+    gathered = Channels()
     left_out: list[str] = []
     with asammdf.MDF(io.BytesIO(content)) as file:
         check_made(sum(_bytes_of(group) for group in file.groups), len(content), "what its groups state")
@@ -57,8 +57,8 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
             left_out += [each.name for each in chosen if each.samples.dtype.kind not in "fiu" or each.samples.ndim != 1]
             if found:
                 signals = [Signal(each.name, each.unit or "", each.samples.astype(np.float64)) for each in found]
-                add_channels(groups, f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
-    return DataFile(path, "", tuple(groups), note_left_out("channels that hold no single numbers", left_out))
+                gathered.add_timed(f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
+    return DataFile(path, "", gathered.groups(), note_left_out("channels that hold no single numbers", left_out))
 
 
 def _bytes_of(group: Any) -> int:

@@ -73,9 +73,12 @@ FORMATS = (
 """Formats in the order in which they are tried."""
 KNOWN = ", ".join(each.name for each in FORMATS)
 NOT_TABLES = {
-    b"%PDF": "a PDF", b"\x89PNG": "a picture", b"\xff\xd8\xff": "a picture", b"\x7fELF": "a program",
+    b"%PDF": "a PDF",
+    b"\x89PNG": "a picture",
+    b"\xff\xd8\xff": "a picture",
+    b"\x7fELF": "a program",
     b"\xd0\xcf\x11\xe0": "an Excel file of the old kind (.xls): save it as .xlsx",
-}  # fmt: skip
+}
 MARKUP = {
     re.compile(rb"\s*[{\[]\s*(?:[\[{\"}\]]|-?\d)"): "a JSON file",
     re.compile(rb"\s*<(?:\?xml|!doctype|html|[a-z]+[ >])", re.IGNORECASE): "an XML or HTML file",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import logging
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,12 +11,12 @@ import numpy as np
 
 from seatsim.importing.readers.naming import scalar, signals_of, stated_unit
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.importing.signals import Channels, DataFile
 from seatsim.schema.bounds import BYTES_OF_PART, check_made
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:
-    from nptdms import TdmsChannel, TdmsGroup
+    from nptdms import TdmsChannel
 
 START = "wf_start_time"
 NEVER_SET = np.datetime64("1904-01-02")
@@ -43,26 +42,19 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     channels = [channel for group in file.groups() for channel in group.channels()]
     starts = [start for channel in channels if (start := _start_time(channel)) is not None]
     notes: list[str] = []
-    groups = tuple(group for each in file.groups() for group in _groups(each, min(starts, default=None), notes))
+    gathered, first = Channels(), min(starts, default=None)
+    for group in file.groups():
+        for channel in group.channels():
+            step, begin = _step(channel), _start(channel, first)
+            signals = signals_of(channel.name, channel[:], stated_unit(channel.properties)) if len(channel) else []
+            if not signals:
+                notes.append(f"'{channel.name}' is left out: it holds no column of numbers")
+            for signal in signals:
+                gathered.add(group.name, signal, 1.0 / step if step else None, begin)
     lacking = [each.name for each in channels if len(each) and _step(each) and _start_time(each) is None]
     if starts and lacking:
         notes.append(f"no {START} is stated of {', '.join(lacking)}: laid beside the channel that begins first")
-    return DataFile(path, "", groups, tuple(notes))
-
-
-def _groups(group: TdmsGroup, first: np.datetime64 | None, notes: list[str]) -> Iterator[Group]:
-    parts: dict[tuple[int, float | None, float | None], list[Signal]] = {}
-    for channel in group.channels():
-        step, start = _step(channel), _start(channel, first)
-        signals = signals_of(channel.name, channel[:], stated_unit(channel.properties)) if len(channel) else []
-        if not signals:
-            notes.append(f"'{channel.name}' is left out: it holds no column of numbers")
-        for signal in signals:
-            rate = 1.0 / step if step else None
-            parts.setdefault((len(signal.values), rate, start), []).append(signal)
-    for (_, rate, start), signals in parts.items():
-        name = group.name if len(parts) == 1 else f"{group.name}, {signals[0].name}"
-        yield Group(name, tuple(signals), rate, start)
+    return DataFile(path, "", gathered.groups(), tuple(notes))
 
 
 def _step(channel: TdmsChannel) -> float | None:

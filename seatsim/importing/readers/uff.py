@@ -11,18 +11,16 @@ import numpy as np
 
 from seatsim.importing.readers.naming import note_left_out
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import DataFile, Group, Signal, add_channels
+from seatsim.importing.signals import Channels, DataFile, Signal
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import DIMENSIONS, conversion
 
 FUNCTION = 58
 """Type of a data set that is a function."""
-FUNCTIONS = (
-    "a general function", "a time response", "an auto spectrum", "a cross spectrum", "a frequency response",
-    "a transmissibility", "a coherence", "an auto correlation", "a cross correlation", "a power spectral density",
-    "an energy spectral density", "a probability density", "a spectrum",
-)  # fmt: skip
+FUNCTIONS = """a general function, a time response, an auto spectrum, a cross spectrum, a frequency response,
+a transmissibility, a coherence, an auto correlation, a cross correlation, a power spectral density,
+an energy spectral density, a probability density, a spectrum""".replace("\n", " ").split(", ")
 """What functions are by the number of their type; those over time are the first two."""
 OVER_TIME, TIME_AXIS = (0, 1), (0, 17)
 """Types of functions, and of the quantity along the abscissa (0 is not stated)."""
@@ -37,8 +35,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     pyuff = need("pyuff", "UFF58")
     if not content.rstrip().endswith(b"-1"):
         raise InputError(f"{path}: its last data set has no end (-1); the file is truncated: export it again")
-    even: dict[tuple[int, float, float], list[Signal]] = {}
-    uneven: list[Group] = []
+    gathered = Channels()
     others = []
     with tempfile.NamedTemporaryFile(suffix=".uff") as file:  # pyuff reads names of files alone
         file.write(content)
@@ -53,13 +50,11 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
                 continue
             signal, times = _signal(f"{path}, data set {index + 1}", held)
             if held.get("abscissa_spacing") == 0:
-                add_channels(uneven, signal.name, times, [signal])
+                gathered.add_timed("", times, [signal])
             else:
                 step = round(float(np.mean(np.diff(times))), 12) if len(times) > 1 else 0.0
-                even.setdefault((len(times), step, float(times[0]) if len(times) else 0.0), []).append(signal)
-    groups = [Group("", tuple(signals), 1.0 / step if step else None, start)
-              for (_, step, start), signals in even.items()]  # fmt: skip
-    return DataFile(path, "", (*groups, *uneven), note_left_out("left out, as they are no responses over time", others))
+                gathered.add("", signal, 1.0 / step if step else None, float(times[0]) if len(times) else 0.0)
+    return DataFile(path, "", gathered.groups(), note_left_out("left out, as they are no responses over time", others))
 
 
 def _why_not(kind: int, held: Mapping[str, object]) -> str:

@@ -106,9 +106,16 @@ def _check_relations(run: RunUnderTest) -> Iterator[Issue]:
 
 
 CHECKS = (
-    check_ranges, check_exchanged_currents, check_shapes, check_damage, check_rows, check_floor_sensor,
-    check_consistency, check_sizes, _check_relations,
-)  # fmt: skip
+    check_ranges,
+    check_exchanged_currents,
+    check_shapes,
+    check_damage,
+    check_rows,
+    check_floor_sensor,
+    check_consistency,
+    check_sizes,
+    _check_relations,
+)
 """Checks of one run, in their order."""
 
 

@@ -67,10 +67,8 @@ def without_gravity(recording: Recording) -> Recording:
         tables = [recording.table(run) for run in recording.runs]
     except InputError:
         return recording
-    means = {
-        name: float(np.mean(np.concatenate([table[name] for table in tables])))
-        for name in ACCELEROMETERS if name in recording.channels
-    }  # fmt: skip
+    recorded = [name for name in ACCELEROMETERS if name in recording.channels]
+    means = {name: float(np.mean(np.concatenate([table[name] for table in tables]))) for name in recorded}
     found = {name: mean for name, mean in means.items() if abs(abs(mean) / STANDARD_GRAVITY - 1.0) <= NEAR_GRAVITY}
     return dataclasses.replace(recording, removed=MappingProxyType(found)) if found else recording
 
