@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from seatsim.compilation.cached import compiled
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import DAMPERS
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block
 from seatsim.exchange.blocks.damper import DamperInputs, advance, damper_block, observe
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.exchange.blocks.rig_motion import RigOutputs

@@ -12,11 +12,10 @@ from typing import Any, cast
 import numba
 from numba import types
 
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import RATES, Block, Variable, list_variables
 from seatsim.exchange.printing.functions import print_function
 from seatsim.exchange.printing.program import Program
 from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, is_row, is_tuple, number
-from seatsim.exchange.variables import RATES, Variable, list_variables
 from seatsim.schema.files import write_text
 
 SAMPLES = 200

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block

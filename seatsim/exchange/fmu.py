@@ -15,10 +15,9 @@ from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import seatsim
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block, Variable, list_variables
 from seatsim.exchange.c_source import print_model, print_variables, resource
 from seatsim.exchange.compiler import compile_library
-from seatsim.exchange.variables import Variable, list_variables
 from seatsim.schema.files import write_whole
 from seatsim.schema.leftovers import temporary_folder
 

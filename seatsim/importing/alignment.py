@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.recordings.channel_units import ACCELEROMETERS
 from seatsim.recordings.quality.relations import band_passed
+from seatsim.recordings.recording import ACCELEROMETERS
 from seatsim.schema.arrays import Array
 
 PARTS, SHORTEST = 6, 2.0

@@ -15,9 +15,9 @@ from seatsim.importing.clocks import SHORTEST_RUN, Clocked, clock_groups, split_
 from seatsim.importing.doubts import doubt_channel, doubt_distance
 from seatsim.importing.import_map import ImportMap
 from seatsim.importing.signals import LISTED, DataFile
-from seatsim.recordings.channel_units import CHANNELS
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
+from seatsim.recordings.recording import CHANNELS
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.text import name_some

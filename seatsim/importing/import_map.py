@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, cast
 
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.recordings.channel_units import CHANNELS
+from seatsim.recordings.recording import CHANNELS
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
 from seatsim.schema.files import write_text

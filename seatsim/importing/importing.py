@@ -14,11 +14,10 @@ from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import LISTED, DataFile
 from seatsim.importing.time_axis import find_clock
 from seatsim.importing.writing import make_nominal, write_recording, write_road
-from seatsim.recordings.channel_units import CHANNELS, COMMANDS
 from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.recording import load_recording
+from seatsim.recordings.recording import CHANNELS, COMMANDS, load_recording
 from seatsim.schema.errors import InputError
 from seatsim.schema.leftovers import temporary_folder
 from seatsim.schema.text import name_some

@@ -17,9 +17,9 @@ from seatsim.importing.readers.reading import TextLayout, read_file
 from seatsim.importing.relations import doubt_pairs
 from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
-from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import conversion
 

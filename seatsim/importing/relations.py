@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.quality.relations import MOST_ROWS, kind_of, read_gain, regress
+from seatsim.recordings.quality.relations import MOST_ROWS, find_delay, kind_of, read_gain, regress
 from seatsim.schema.arrays import Array
 
 ALIKE = 0.9
@@ -100,7 +100,7 @@ def _still(motion: Array, rows: int) -> list[int]:
 
 
 def _delayed(first: str, second: str, one: Array, other: Array, rate: float) -> Iterator[Issue]:
-    rows, alike = delay_rows(one, other, round(0.2 * rate))
+    rows, alike = find_delay(other, one, round(0.2 * rate))
     if alike > ALIKE and abs(rows) >= 2:
         late, early = (second, first) if rows > 0 else (first, second)
         yield Issue(
@@ -109,13 +109,3 @@ def _delayed(first: str, second: str, one: Array, other: Array, rate: float) -> 
             f"{late}: follows {early} by {1e3 * abs(rows) / rate:.3g} ms (correlation {alike:.3f})",
             late,
         )
-
-
-def delay_rows(first: Array, second: Array, most: int) -> tuple[int, float]:
-    """Return by how many rows the second follows the first, at most `most`, and their correlation there."""
-    size = 1 << (len(first) + most).bit_length()
-    product = np.fft.irfft(np.conj(np.fft.rfft(first, size)) * np.fft.rfft(second, size), size)
-    lags = np.concatenate([product[-most:], product[: most + 1]]) if most else product[:1]
-    at = int(np.argmax(lags))
-    norm = float(np.linalg.norm(first) * np.linalg.norm(second))
-    return at - most, float(lags[at]) / norm if norm else 0.0

@@ -11,7 +11,7 @@ import numpy as np
 from seatsim.importing.assembly import DISTANCE, Assembled
 from seatsim.importing.import_map import FILE, ImportMap, Rig, write_map
 from seatsim.provenance.manifest import write_documented
-from seatsim.recordings.channel_units import CHANNELS
+from seatsim.recordings.recording import CHANNELS
 from seatsim.recordings.writer import NOMINAL, state_nominal, write_files
 from seatsim.scenario.loading import load
 from seatsim.schema.arrays import Array

@@ -1,4 +1,4 @@
-"""A recording of a rig: `recording.yaml`, its nominal scenario, and a table per run."""
+"""A recording of a rig: `recording.yaml`, its nominal scenario, a table per run, and the channels that it may have."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
-from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.header import Header, RunEntry, check_against, read_runs, read_tolerances
 from seatsim.scenario.loading import single
 from seatsim.scenario.numbers import change_numbers, list_numbers
@@ -21,6 +20,34 @@ from seatsim.schema.tables import numbers, read_table
 from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import build, check_keys, mapping
 from seatsim.schema.yaml_source import Source
+
+SEAT_CHANNELS = {
+    "floor_acceleration": "m/s^2",
+    "frame_acceleration": "m/s^2",
+    "driver_acceleration": "m/s^2",
+    "suspension_displacement": "m",
+    "damper_force": "N",
+    "current_command": "A",
+    "coil_current": "A",
+    "damper_temperature": "degC",
+}
+BENCH_CHANNELS = {
+    "displacement": "m",
+    "velocity": "m/s",
+    "damper_force": "N",
+    "current_command": "A",
+    "command_voltage": "V",
+    "coil_current": "A",
+    "damper_temperature": "degC",
+}
+CHANNELS = {"seat": SEAT_CHANNELS, "damper_bench": BENCH_CHANNELS}
+"""Channels by rig, each with its unit."""
+ACCELEROMETERS = ("floor_acceleration", "frame_acceleration", "driver_acceleration")
+MOTION = (*ACCELEROMETERS, "suspension_displacement", "displacement", "velocity", "damper_force")
+"""Channels of motion and force, which swing about zero and are never at rest for long."""
+COMMANDS = ("current_command", "command_voltage")
+"""Channels that are logged and not measured, so that they have no noise."""
+
 
 HEADER = "recording.yaml"
 KEYS = (*Header._fields, "runs", "channels", "actuator", "note")

@@ -10,9 +10,8 @@ from types import MappingProxyType
 import numpy as np
 import pandas as pd
 
-from seatsim.recordings.channel_units import SEAT_CHANNELS
 from seatsim.recordings.header import USUAL, Tolerances
-from seatsim.recordings.recording import HEADER
+from seatsim.recordings.recording import HEADER, SEAT_CHANNELS
 from seatsim.scenario.numbers import PARAMETERS, TEMPERATURE, list_numbers
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest

@@ -12,7 +12,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from seatsim.compilation.jit import jit
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block
 from seatsim.kernel.assumed_model import AssumedModel, follow_state, model_scaling
 from seatsim.kernel.generic import take, update, wants_force
 from seatsim.kernel.inverse import CELLS

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import DAMPERS
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, advance_state
 from seatsim.kernel.generic import scaling_at

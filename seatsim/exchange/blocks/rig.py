@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block
 from seatsim.exchange.blocks.floor import GivenFloor
 from seatsim.exchange.blocks.held import nothing_held
 from seatsim.exchange.blocks.rig_motion import RigInputs, RigParameters, RigState, advance, observe, start

@@ -47,28 +47,28 @@ class TextLayout(NamedTuple):
 
 
 class Format(NamedTuple):
-    """A format: the module that reads it, how its files begin, and how they may end."""
+    """A format: the function that reads it, with its module, how its files begin, and how they may end."""
 
     name: str
-    module: str
+    reader: str
     begins: tuple[bytes, ...]
     endings: tuple[str, ...]
 
 
 FORMATS = (
-    Format("Parquet", "arrow", (b"PAR1",), (".parquet", ".pq")),
-    Format("Feather", "arrow", (b"ARROW1", b"FEA1"), (".feather", ".arrow")),
-    Format("XLSX", "xlsx", (), (".xlsx", ".xlsm")),
-    Format("MAT v7.3", "matlab", (b"MATLAB 7.3 MAT-file",), ()),
-    Format("MAT v5", "matlab", (b"MATLAB 5.0 MAT-file",), (".mat",)),
-    Format("HDF5", "hdf5", (HDF5,), (".h5", ".hdf5", ".hdf")),
-    Format("MDF", "mdf", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
-    Format("LVM", "lvm", (b"LabVIEW Measurement",), ()),
-    Format("TDMS", "tdms", (b"TDSm",), (".tdms",)),
-    Format("UFF", "uff", (b"    -1",), (".uff", ".unv")),
-    Format("RPC III", "rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
-    Format("OpenCRG", "opencrg", (b"$CT", b"$ROAD_CRG", b"* "), (".crg",)),
-    Format("CSV", "text", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
+    Format("Parquet", "tables.read_arrow", (b"PAR1",), (".parquet", ".pq")),
+    Format("Feather", "tables.read_arrow", (b"ARROW1", b"FEA1"), (".feather", ".arrow")),
+    Format("XLSX", "tables.read_xlsx", (), (".xlsx", ".xlsm")),
+    Format("MAT v7.3", "matlab.read", (b"MATLAB 7.3 MAT-file",), ()),
+    Format("MAT v5", "matlab.read", (b"MATLAB 5.0 MAT-file",), (".mat",)),
+    Format("HDF5", "hdf5.read", (HDF5,), (".h5", ".hdf5", ".hdf")),
+    Format("MDF", "mdf.read", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
+    Format("LVM", "labview.read_lvm", (b"LabVIEW Measurement",), ()),
+    Format("TDMS", "labview.read_tdms", (b"TDSm",), (".tdms",)),
+    Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
+    Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
+    Format("OpenCRG", "opencrg.read", (b"$CT", b"$ROAD_CRG", b"* "), (".crg",)),
+    Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
 )
 """Formats in the order in which they are tried."""
 KNOWN = ", ".join(each.name for each in FORMATS)
@@ -96,9 +96,10 @@ def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
     """
     content = _content(path)
     found = _recognise(path, content)
-    reader = import_module(f"seatsim.importing.readers.{found.module}")
+    module, _, function = found.reader.partition(".")
+    read = getattr(import_module(f"seatsim.importing.readers.{module}"), function)
     try:
-        file: DataFile = reader.read(path, content, layout or TextLayout())
+        file: DataFile = read(path, content, layout or TextLayout())
     except InputError:
         raise
     except TooMuchError as error:
@@ -160,7 +161,7 @@ def _recognise(path: Path, content: bytes) -> Format:
             return each
     ending = next((each for each in FORMATS if path.name.lower().endswith(each.endings)), None)
     if ending is not None and ending.name != "CSV":
-        version = ", of version 4 (save it by -v7)" if ending.module == "matlab" else ""
+        version = ", of version 4 (save it by -v7)" if ending.name == "MAT v5" else ""
         raise InputError(f"{path}: does not begin as {ending.name} does; it is damaged{version}, or has a wrong ending")
     if not _is_text(head):
         raise InputError(f"{path}: is no table in a known format; permitted: {KNOWN}")

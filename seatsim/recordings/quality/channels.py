@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.recordings.channel_units import ACCELEROMETERS, MOTION
 from seatsim.recordings.quality.damage import (
     NOTABLE,
     REGULAR,
@@ -19,6 +18,7 @@ from seatsim.recordings.quality.damage import (
     quantum,
 )
 from seatsim.recordings.quality.issue import Issue, RunUnderTest, is_at_rest, place_in_run
+from seatsim.recordings.recording import ACCELEROMETERS, MOTION
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import conversion
 

@@ -12,19 +12,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.recordings.channel_units import BENCH_CHANNELS, MOTION, SEAT_CHANNELS
 from seatsim.recordings.quality.issue import LATE, Issue, RunUnderTest, Severity, Table
-from seatsim.recordings.quality.residual import consistency_residuals, filter_band, find_delay, simulate_nominal
-from seatsim.recordings.replay import LEFT_OUT
+from seatsim.recordings.quality.relations import (
+    consistency_residuals,
+    filter_band,
+    find_delay,
+    is_within_reach,
+)
+from seatsim.recordings.recording import BENCH_CHANNELS, MOTION, SEAT_CHANNELS
+from seatsim.recordings.replay import LEFT_OUT, replay_table
 from seatsim.schema.arrays import Array
+from seatsim.schema.errors import RunError
 from seatsim.schema.units import USUAL, conversion
 
 TOGETHER = (("floor_acceleration", "frame_acceleration", "driver_acceleration"), ("displacement", "velocity"))
 """Channels whose axis may point down for all of them."""
 LONGEST_DELAY = 0.5
 """s; largest delay that is sought: half a period of the slowest motion considered."""
-USUAL_REACH, EFFECTS_REACH = 5.0, {"damper_force": 30.0}
-"""Factor by which effects may change the size of a channel; a damper without its current has a tenth of its force."""
 SAME_PHASE = 0.05
 """Share that one gain and phase leave of a channel below which it is another one at a single frequency, so that effects
 that change both of them in size and phase look like an exchange."""
@@ -47,6 +51,14 @@ CHANGED = 0.05
 """Least change of a residual that counts as an influence of the correction."""
 AS_GOOD = 0.1
 """Difference to the largest fall of the residual within which another fault explains the run equally well."""
+
+
+def simulate_nominal(run: RunUnderTest, table: Table) -> Table | None:
+    """Return the nominal outputs that are compared, driven by a table's inputs; None where there is no solution."""
+    try:
+        return replay_table(run.nominal, run.recording, table)
+    except RunError:
+        return None
 
 
 class DataFault(NamedTuple):
@@ -97,12 +109,6 @@ def _is_near(run: RunUnderTest, outputs: Table) -> bool:
         if c in MOTION
     }
     return bool(sizes) and all(is_within_reach(channel, size) for channel, size in sizes.items())
-
-
-def is_within_reach(channel: str, factor: float) -> bool:
-    """Return whether an effect of the library may change the size of a channel by a factor."""
-    reach = EFFECTS_REACH.get(channel, USUAL_REACH)
-    return 1.0 / reach < factor < reach
 
 
 def _scaled(channels: Sequence[str], factor: float) -> Callable[[Table], Table]:

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.recordings.channel_units import COMMANDS
 from seatsim.recordings.quality.issue import Issue, RunUnderTest, Severity
+from seatsim.recordings.recording import COMMANDS
 from seatsim.schema.arrays import Array
 
 WINDOW, FEWEST, LEAST_WINDOWS = 0.5, 50, 4

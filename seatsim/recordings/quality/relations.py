@@ -1,21 +1,27 @@
-"""What channels of a seat or a bench show of each other: signs and units that no law of motion permits.
+"""What channels of a seat or a bench show of each other, and how well they fit a simulation.
 
-Nothing of the rig is needed: accelerations contradict the travel, a damper's force does work on the motion, a channel
-that follows another one does so with the wrong sign or size.
+Signs and units that no law of motion permits need nothing of the rig. The consistency residual of a run is the sum of
+`e(a, b)^2 = rms(a - b)^2 / (rms(a)^2 + rms(b)^2)` (0 alike, 1 unrelated or of another size, 2 opposite) over
+
+    each compared channel against the simulation (the coil current at all frequencies),
+    x'' against frame acceleration - floor acceleration (a bench: x' against velocity),
+    Fd against -(ms zs'' + m zc'' + kf x + cf x'),
+
+between 0.5 and 8 Hz, where the channels are recorded: in this band even a rough nominal agrees with its seat.
 """
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from seatsim.recordings.channel_units import SEAT_CHANNELS
-from seatsim.recordings.quality.consistency import is_within_reach
-from seatsim.recordings.quality.issue import Issue, Severity
-from seatsim.recordings.quality.residual import unlike
+from seatsim.recordings.quality.issue import Issue, RunUnderTest, Severity, Table
+from seatsim.recordings.recording import SEAT_CHANNELS
+from seatsim.recordings.replay import COMPARED, LEFT_OUT
 from seatsim.schema.arrays import Array
-from seatsim.schema.units import USUAL, find_conversion
+from seatsim.schema.units import USUAL, conversion
 
 ALIKE = 0.9
 """Correlation from which a factor between two sides of an equation is meant."""
@@ -30,6 +36,8 @@ SURELY_ALIKE, FAR = 0.97, 0.3
 """Correlation of a coil with its command, and share by which a factor differs from one, that no effect gives."""
 NEAR = 0.25
 """Share by which a factor may differ from that of a unit."""
+USUAL_REACH, EFFECTS_REACH = 5.0, {"damper_force": 30.0}
+"""Factor by which effects may change the size of a channel; a damper without its current has a tenth of its force."""
 
 
 def doubt_relations(table: Mapping[str, Array], rate: float) -> Iterator[Issue]:
@@ -115,11 +123,11 @@ def _list_factors(channel: str) -> Iterator[tuple[str, float]]:
     """Yield what may be wrong with the scale of a channel, with the factor that corrects it."""
     wanted = SEAT_CHANNELS[channel]
     for unit in USUAL[wanted]:
-        found = find_conversion(unit, wanted)
-        if found is not None:
-            said = "" if unit == wanted else f"it reads as if in {unit}"
-            signed = " and ".join(filter(None, (said, "its sign is swapped")))
-            yield from ((text, factor) for text, factor in ((said, found.factor), (signed, -found.factor)) if text)
+        factor = conversion(unit, wanted).factor
+        said = "" if unit == wanted else f"it reads as if in {unit}"
+        if said:
+            yield said, factor
+        yield " and ".join(filter(None, (said, "its sign is swapped"))), -factor
 
 
 def _corrected(
@@ -167,7 +175,79 @@ def read_gain(gain: float, unit: str) -> str:
     if abs(abs(gain) - 1.0) < NEAR:
         return sign
     for other in USUAL[unit]:
-        found = find_conversion(other, unit)
-        if found is not None and abs(abs(gain) * found.factor - 1.0) < NEAR:
+        if abs(abs(gain) * conversion(other, unit).factor - 1.0) < NEAR:
             return f"it reads as if in {other}" + (f", and {sign}" if sign else "")
     return sign
+
+
+def is_within_reach(channel: str, factor: float) -> bool:
+    """Return whether an effect of the library may change the size of a channel by a factor."""
+    reach = EFFECTS_REACH.get(channel, USUAL_REACH)
+    return 1.0 / reach < factor < reach
+
+
+def consistency_residuals(run: RunUnderTest, table: Table, outputs: Table | None) -> dict[str, float]:
+    """Return e^2 of each compared channel (1 where there is no simulation) and of each balance between channels."""
+    skip = round(LEFT_OUT * run.rate)
+    used = {name: values[skip:] for name, values in table.items()}
+    compared = [name for name in COMPARED[run.recording.header.rig] if name in used]
+    pairs = {name: (used[name], np.zeros_like(used[name]) if outputs is None else outputs[name]) for name in compared}
+    pairs |= _balances(run, used)
+    if not pairs:
+        return {}
+    smooth = dict(zip(pairs, filter_band(run, np.array(list(pairs.values()))), strict=True))
+    return {name: unlike(*(pair if name == "coil_current" else smooth[name])) for name, pair in pairs.items()}
+
+
+def _balances(run: RunUnderTest, used: Table) -> Iterator[tuple[str, tuple[Array, Array]]]:
+    """Yield name and both sides of each equation between recorded channels alone."""
+    plant = run.nominal.plant
+    travel = used.get("suspension_displacement")
+    if {"displacement", "velocity"} <= set(used):
+        yield "velocity balance", (_slope(run, used["displacement"]), used["velocity"])
+    if plant is None or travel is None or "frame_acceleration" not in used:
+        return
+    frame, speed = used["frame_acceleration"], _slope(run, travel)
+    yield "motion balance", (_slope(run, speed), frame - used["floor_acceleration"])
+    if {"damper_force", "driver_acceleration"} <= set(used):
+        inertia = plant.frame_mass * frame + plant.driver_mass * used["driver_acceleration"]
+        spring = plant.suspension_stiffness * travel + plant.suspension_damping * speed
+        yield "force balance", (used["damper_force"], -inertia - spring)
+
+
+def _slope(run: RunUnderTest, values: Array) -> Array:
+    return np.asarray(np.gradient(filter_band(run, values), 1.0 / run.rate))
+
+
+def unlike(first: Array, second: Array) -> float:
+    """Return e^2: 0 alike, 1 unrelated, 2 opposite."""
+    size = float(np.mean(first**2) + np.mean(second**2))
+    return float(np.mean((first - second) ** 2)) / size if size > 0.0 else 0.0
+
+
+def filter_band(run: RunUnderTest, values: Array) -> Array:
+    """Return values, shape (..., N), between 0.5 and 8 Hz (a bench: below 8 Hz, without their mean)."""
+    from scipy.signal import sosfiltfilt
+
+    sections, rows = _filter(run.rate, run.recording.header.rig == "seat"), values.shape[-1]
+    swinging = values - np.mean(values, axis=-1, keepdims=True)
+    return np.asarray(sosfiltfilt(sections, swinging, padlen=min(3 * rows // 4, 100)))
+
+
+@functools.cache
+def _filter(rate: float, on_seat: bool) -> Array:
+    from scipy.signal import butter
+
+    high = min(8.0, 0.4 * rate)
+    edges = (min(0.5, 0.5 * high), high) if on_seat else high
+    return np.asarray(butter(2, edges, "bandpass" if on_seat else "lowpass", fs=rate, output="sos"))
+
+
+def find_delay(first: Array, second: Array, most: int) -> tuple[int, float]:
+    """Return the delay of the first relative to the second in rows, and their correlation at that delay."""
+    from scipy.signal import correlate
+
+    product = correlate(first, second, mode="full", method="fft")[len(second) - 1 - most : len(second) + most]
+    size = float(np.linalg.norm(first) * np.linalg.norm(second))
+    peak = int(np.argmax(product))
+    return peak - most, float(product[peak]) / size if size > 0.0 else 0.0

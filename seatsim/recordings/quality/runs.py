@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from seatsim.recordings.channel_units import MOTION
 from seatsim.recordings.quality.damage import AROUND, find_spikes, is_fine, measure_level
 from seatsim.recordings.quality.issue import LATE, Issue, RunUnderTest, Severity, issue_in_all_runs
-from seatsim.recordings.quality.residual import filter_band, find_delay
+from seatsim.recordings.quality.relations import filter_band, find_delay
 from seatsim.recordings.quality.sensors import check_constants, check_noise
+from seatsim.recordings.recording import MOTION
 from seatsim.recordings.replay import LEAST_ROWS, LEFT_OUT
 from seatsim.rig.temperature import Thermal
 from seatsim.schema.arrays import Array

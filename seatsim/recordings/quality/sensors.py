@@ -14,10 +14,9 @@ from types import MappingProxyType
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from seatsim.recordings.channel_units import ACCELEROMETERS
 from seatsim.recordings.quality.damage import SILENT, Level, measure_level, quantum
 from seatsim.recordings.quality.issue import Issue, RunUnderTest, is_at_rest, issue_in_all_runs
-from seatsim.recordings.recording import Recording
+from seatsim.recordings.recording import ACCELEROMETERS, Recording
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import STANDARD_GRAVITY
