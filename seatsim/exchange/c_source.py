@@ -18,7 +18,7 @@ from seatsim.exchange.printing.program import Program
 from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, is_row, is_tuple, number
 from seatsim.schema.files import write_text
 
-SAMPLES = 200
+_SAMPLES = 200
 """Samples of the test vector."""
 _SIZES = {
     0.02: "displacement",
@@ -40,7 +40,7 @@ def resource(name: str) -> str:
     return (files("seatsim.exchange") / "c" / name).read_text(encoding="utf-8")
 
 
-def fill(name: str, words: Mapping[str, str]) -> str:
+def _fill(name: str, words: Mapping[str, str]) -> str:
     """Return the text of such a file with its `@WORD@`s replaced, those that are in the words themselves left alone."""
     return re.sub(r"@(\w+)@", lambda found: words[found[1]], resource(name))
 
@@ -73,7 +73,7 @@ def print_model(block: Block) -> str:
     ]
     words = {"START": start, "OBSERVE": observe, "ADVANCE": advance}
     words |= {"FIXED_STEP": str(int(block.fixed_step)), "STEP": repr(block.step)}
-    model = fill("model.h", names | words)
+    model = _fill("model.h", names | words)
     return "\n".join([resource("prelude.h"), program.source(), *constants, "", model])
 
 
@@ -86,7 +86,7 @@ def print_variables(variables: Sequence[Variable]) -> str:
         f" {_limit(v.low)}, {_limit(v.high)}, {rate}}},"
         for v, rate in zip(variables, rates, strict=True)
     ]
-    return fill("variables.h", {"ROWS": "\n".join(rows)})
+    return _fill("variables.h", {"ROWS": "\n".join(rows)})
 
 
 def _call(
@@ -137,7 +137,7 @@ def print_c(block: Block) -> str:
         "NOTES": "".join(f"\n   Note: {note}." for note in block.notes),
         "INPUTS": _list_of(inputs),
         "OUTPUTS": _list_of(outputs),
-        "SAMPLES": str(SAMPLES),
+        "SAMPLES": str(_SAMPLES),
         "FED": _rows(fed),
         "EXPECTED": _rows(expected),
         "FEED": "".join(f"        m.{v.place} = (real)fed[k][{j}];\n" for j, v in enumerate(inputs)),
@@ -147,7 +147,7 @@ def print_c(block: Block) -> str:
         "INPUT_COUNT": str(len(inputs)),
         "OUTPUT_COUNT": str(len(outputs)),
     }
-    return fill("file.c", words | {"MODEL": print_model(block)})
+    return _fill("file.c", words | {"MODEL": print_model(block)})
 
 
 def _list_of(variables: list[Variable]) -> str:
@@ -159,7 +159,7 @@ def _test_vector(
 ) -> Iterator[tuple[list[float], list[float]]]:
     """Yield the inputs of each sample and the outputs after it, computed by the Python functions themselves."""
     parameters, given, state = block.parameters, block.inputs, block.initial
-    for k in range(SAMPLES):
+    for k in range(_SAMPLES):
         values = {v.name: _signal(v, j, k * block.step) for j, v in enumerate(inputs)}
         given = given._replace(**values)
         if k == 0:

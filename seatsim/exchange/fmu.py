@@ -21,14 +21,14 @@ from seatsim.exchange.compiler import compile_library
 from seatsim.schema.files import write_whole
 from seatsim.schema.leftovers import temporary_folder
 
-FIRST_DAY = (1980, 1, 1, 0, 0, 0)
+_FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 """The date of the files in the archive, so that the same model gives the same archive."""
-LONGEST_NAME = 60
+_LONGEST_NAME = 60
 """Letters of a block's name that its files are called by, from its end."""
-FOLDERS = {"Linux": "linux", "Darwin": "darwin", "Windows": "win"}
-TYPES = {float: ("Real", "Float64"), int: ("Integer", "Int32"), bool: ("Boolean", "Boolean")}
+_FOLDERS = {"Linux": "linux", "Darwin": "darwin", "Windows": "win"}
+_TYPES = {float: ("Real", "Float64"), int: ("Integer", "Int32"), bool: ("Boolean", "Boolean")}
 """Names of types in versions 2.0 and 3.0."""
-ENDINGS = {"Linux": ".so", "Darwin": ".dylib", "Windows": ".dll"}
+_ENDINGS = {"Linux": ".so", "Darwin": ".dylib", "Windows": ".dll"}
 
 
 def write_fmu(block: Block, version: int, path: Path) -> None:
@@ -44,7 +44,7 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
             (Path(folder) / Path(name).name).write_bytes(content)
         library = Path(folder) / "library"
         compile_library(Path(folder) / f"fmi{version}.c", library)
-        binary = f"binaries/{_platform_folder(version)}/{identifier(block)}{ENDINGS.get(platform.system(), '.so')}"
+        binary = f"binaries/{_platform_folder(version)}/{identifier(block)}{_ENDINGS.get(platform.system(), '.so')}"
         files[binary] = library.read_bytes()
     write_whole(path, lambda part: _pack(files, part))
 
@@ -52,7 +52,7 @@ def write_fmu(block: Block, version: int, path: Path) -> None:
 def _pack(files: Mapping[str, bytes], path: Path) -> None:
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
-            archive.writestr(zipfile.ZipInfo(name, FIRST_DAY), content, zipfile.ZIP_DEFLATED)
+            archive.writestr(zipfile.ZipInfo(name, _FIRST_DAY), content, zipfile.ZIP_DEFLATED)
 
 
 def make_files(block: Block, version: int) -> dict[str, bytes]:
@@ -70,7 +70,7 @@ def make_files(block: Block, version: int) -> dict[str, bytes]:
 
 def identifier(block: Block) -> str:
     """Return the name of a block as C permits it, and as a part of a file's name."""
-    name = re.sub(r"\W+", "_", block.name, flags=re.ASCII).strip("_")[-LONGEST_NAME:]
+    name = re.sub(r"\W+", "_", block.name, flags=re.ASCII).strip("_")[-_LONGEST_NAME:]
     return f"m_{name}" if name[:1].isdigit() else name
 
 
@@ -78,9 +78,9 @@ def _platform_folder(version: int) -> str:
     """Return the folder of this platform's library as the version of the standard names it."""
     system = platform.system()
     if version == 2:
-        return FOLDERS.get(system, "linux") + ("64" if sys.maxsize > 2**32 else "32")
+        return _FOLDERS.get(system, "linux") + ("64" if sys.maxsize > 2**32 else "32")
     machine = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())
-    return f"{machine}-{'windows' if system == 'Windows' else FOLDERS.get(system, 'linux')}"
+    return f"{machine}-{'windows' if system == 'Windows' else _FOLDERS.get(system, 'linux')}"
 
 
 class _Unit(NamedTuple):
@@ -129,9 +129,9 @@ def _add_variables(root: Element, variables: Sequence[Variable], is_second: bool
         place, meaning = {"name": v.name, "valueReference": str(number)}, {"description": v.meaning}
         if is_second:
             scalar = SubElement(listed, "ScalarVariable", place | _kind(v) | meaning)
-            SubElement(scalar, TYPES[type(v.value)][0], _numbers(v))
+            SubElement(scalar, _TYPES[type(v.value)][0], _numbers(v))
         else:
-            SubElement(listed, TYPES[type(v.value)][1], place | meaning | _kind(v) | _numbers(v))
+            SubElement(listed, _TYPES[type(v.value)][1], place | meaning | _kind(v) | _numbers(v))
     outputs = [k for k, v in enumerate(variables) if v.causality == "output"]
     if is_second:
         for name in ("Outputs", "InitialUnknowns"):

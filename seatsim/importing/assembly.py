@@ -23,7 +23,7 @@ from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.text import name_some
 from seatsim.schema.units import DIMENSIONS, conversion
 
-SAME_RATE = 1e-4
+_SAME_RATE = 1e-4
 """Fraction by which rates differ that are one rate by the clocks of two loggers: nothing is said of it."""
 DISTANCE = "distance_m"
 
@@ -161,7 +161,7 @@ def _tabulate(
             continue
         each = held[name]
         how, take = ("each value held", hold) if name in HELD else ("band-limited", partial(resample, new_rate=rate))
-        if abs(each.rate / rate - 1.0) > SAME_RATE:
+        if abs(each.rate / rate - 1.0) > _SAME_RATE:
             notes.append(f"{name}: resampled from {each.rate:.6g} to {rate:.6g} Hz, {how}")
         table[name] = take(each.values, each.start - entry.delay, each.rate, times)
     return table

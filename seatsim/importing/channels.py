@@ -20,7 +20,7 @@ from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.text import name_some
 from seatsim.schema.units import conversion
 
-SLOWER = 0.9
+_SLOWER = 0.9
 """Share of the rows of its table below which a channel has a rate of its own."""
 
 
@@ -116,7 +116,7 @@ def _evened(name: str, values: Array, times: Array, axis: Axis) -> Channel:
     """Return values on an even time base, with their own rate."""
     start, rate = float(times[0]), axis.rate
     share = (axis.times[-1] - axis.times[0]) / (times[-1] - start) * (len(times) - 1) / (len(axis.times) - 1)
-    if share < SLOWER:  # a slow channel in a fast table
+    if share < _SLOWER:  # a slow channel in a fast table
         rate *= float(share)
     if axis.is_even:
         return Channel(values, start, rate)

@@ -20,10 +20,10 @@ from seatsim.schema.yaml_text import dump
 
 Rig = Literal["seat", "damper_bench", "road"]
 Gaps = Literal["split", "fill"]
-AS_FOUND = TextLayout()
+_AS_FOUND = TextLayout()
 """Layout of a text table that is left to be found."""
 FILE = "map.yaml"
-DRIVES = {"seat": "floor_acceleration", "damper_bench": "displacement"}
+_DRIVES = {"seat": "floor_acceleration", "damper_bench": "displacement"}
 """Channel without which no recording of a rig can be replayed."""
 PRIMITIVE = {("m/s^2", 1): "m/s", ("m/s^2", 2): "m", ("m/s", 1): "m"}
 """Unit of what is differentiated so many times, by the unit of the derivative."""
@@ -94,7 +94,7 @@ class ImportMap:
     time: AxisMap | None = None
     sample_rate: float | None = None
     distance: AxisMap | None = None
-    csv: TextLayout = AS_FOUND
+    csv: TextLayout = _AS_FOUND
     resample: float | None = None
     runs: dict[str, list[str]] = field(default_factory=dict)
     gaps: Gaps | None = None
@@ -149,8 +149,8 @@ def _channels(data: Mapping[str, object], rig: Rig, source: Source) -> dict[str,
         if (channels[name].column is None) == (channels[name].value is None):
             raise source.error(("channels", name), "give either the name of its column, or value for a constant")
         _check_unit(name, channels[name], CHANNELS[rig][name] if rig in CHANNELS else "m", source)
-    if rig in DRIVES and DRIVES[rig] not in channels:
-        raise source.error(("channels",), f"channel '{DRIVES[rig]}' is missing; it drives the simulation of this rig")
+    if rig in _DRIVES and _DRIVES[rig] not in channels:
+        raise source.error(("channels",), f"channel '{_DRIVES[rig]}' is missing; it drives the simulation of this rig")
     return channels
 
 

@@ -22,7 +22,7 @@ from seatsim.schema.errors import InputError
 from seatsim.schema.leftovers import temporary_folder
 from seatsim.schema.text import name_some
 
-OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
+_OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
 
 """Most columns that are named as left out."""
@@ -96,7 +96,7 @@ def _data_files(paths: Sequence[Path]) -> list[Path]:
     for path in paths:
         if path.is_dir():
             inside = sorted(each for each in path.iterdir() if each.is_file() and not each.name.startswith("."))
-            found += [each for each in inside if not each.name.lower().endswith(OWN_FILES)]
+            found += [each for each in inside if not each.name.lower().endswith(_OWN_FILES)]
         else:
             found.append(path)
     if not found:

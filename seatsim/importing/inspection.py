@@ -24,9 +24,9 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.units import conversion
 
 BLOCKS = "▁▂▃▄▅▆▇█"
-SPARKS = 24
+_SPARKS = 24
 """Letters of a sparkline."""
-RARE = 0.01
+_RARE = 0.01
 """Share of rows in which a channel repeats itself, above which it is too coarse to show rows written twice."""
 
 
@@ -163,7 +163,7 @@ def summarise(signal: Signal, unit: str, channel: str | None, rate: float | None
 
 def _spark_of(values: Array) -> str:
     """Return the range of a channel over its length, as a line of blocks: each is as high as the swing there."""
-    edges = np.unique(np.linspace(0, len(values), SPARKS + 1).astype(int))
+    edges = np.unique(np.linspace(0, len(values), _SPARKS + 1).astype(int))
     pieces = [values[a:b] for a, b in pairwise(edges)]
     swing = np.array([float(np.ptp(piece)) if len(piece) > 1 else 0.0 for piece in pieces])
     if swing.max() == 0.0:
@@ -175,7 +175,7 @@ def _repeated_rows(file: DataFile) -> Iterator[Issue]:
     """Yield rows that repeat the row before in every channel, where at least three vary from row to row."""
     for group in file.groups:
         steps = [np.diff(s.values) == 0.0 for s in group.signals if read_name(s.name).quantity != "time"]
-        varying = [same for same in steps if np.mean(same) < RARE]
+        varying = [same for same in steps if np.mean(same) < _RARE]
         if len(varying) < 3:
             continue
         rows = np.flatnonzero(np.all(steps, axis=0)) + 1

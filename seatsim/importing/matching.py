@@ -18,8 +18,8 @@ from seatsim.recordings.recording import CHANNELS
 from seatsim.schema.text import name_some
 from seatsim.schema.units import USUAL
 
-NEEDED = {"seat": ("floor_acceleration",), "damper_bench": ("displacement", "damper_force"), "road": ()}
-BENCH_ONLY = ("displacement", "velocity", "command_voltage")
+_NEEDED = {"seat": ("floor_acceleration",), "damper_bench": ("displacement", "damper_force"), "road": ()}
+_BENCH_ONLY = ("displacement", "velocity", "command_voltage")
 
 
 class Column(NamedTuple):
@@ -57,7 +57,7 @@ def propose(files: Sequence[DataFile], rig: Rig | None = None) -> Proposal:
             entry, problem = _entry(name, candidates[name], CHANNELS[chosen][name])
             channels[name] = entry
             open_ends += [problem] if problem else []
-        elif name in NEEDED[chosen]:
+        elif name in _NEEDED[chosen]:
             open_ends.append(_missing(name, columns, channels))
             channels[name] = ChannelMap()
     if "command_voltage" in channels:
@@ -124,7 +124,7 @@ def _seat_channel(meaning: Meaning) -> str | None:
         return f"{meaning.place}_acceleration" if meaning.place and not meaning.is_lateral else None
     if meaning.quantity == "displacement" and not meaning.is_command and meaning.place != "floor":
         return "suspension_displacement"
-    return None if meaning.quantity in BENCH_ONLY or meaning.quantity == "voltage" else _damper_channel(meaning)
+    return None if meaning.quantity in _BENCH_ONLY or meaning.quantity == "voltage" else _damper_channel(meaning)
 
 
 def _bench_channel(meaning: Meaning) -> str | None:

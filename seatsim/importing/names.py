@@ -19,7 +19,7 @@ def _read_table(words: Mapping[str, str]) -> Mapping[str, tuple[str, ...]]:
     return {name: tuple(listed.split()) for name, listed in words.items()}
 
 
-QUANTITIES = _read_table(
+_QUANTITIES = _read_table(
     {
         "acceleration": "acceleration accel acc a beschleunigung beschl ax ay az accx accy accz acz jiasudu",
         "displacement": "displacement disp stroke travel position deflection weg federweg einfederung hub auslenkung"
@@ -38,7 +38,7 @@ QUANTITIES = _read_table(
     }
 )
 """Words for what a column holds; for a velocity before a displacement, since `x` alone is one."""
-PLACES = _read_table(
+_PLACES = _read_table(
     {
         "frame": "frame rahmen gestell oberteil cadre chassis kuangjia zs",
         "floor": "floor base boden kabine cabin cab plancher cabine diban platform plattform table ground basis"
@@ -48,32 +48,32 @@ PLACES = _read_table(
     }
 )
 """Words for where a sensor is; the first place that fits counts, so that a seat's frame is a frame."""
-AXES = _read_table(
+_AXES = _read_table(
     {
         "x": "x ax accx longitudinal fore laengs langs",
         "y": "y ay accy lateral quer",
         "z": "z az accz acz vertical vertikal",
     }
 )
-COMMANDS, OTHERS = _read_table(
+_COMMANDS, _OTHERS = _read_table(
     {
         "command": "command commanded cmd soll setpoint sollwert consigne commande zhiling target ref demand",
         "other": "ambient umgebung room raum engine motor",
     }
 ).values()
-DAMPERS = ("damper", "dampfer", "daempfer", "amortisseur", "zuni", "load cell", "mrd")
+_DAMPERS = ("damper", "dampfer", "daempfer", "amortisseur", "zuni", "load cell", "mrd")
 """Words for commands, for axes, for what belongs to no seat, and for its damper."""
 SI_UNITS = dict.fromkeys(("displacement", "distance", "elevation"), "m") | DIMENSIONS
 """SI units of the quantities that have one."""
-TIMES = dict.fromkeys(("ms", "msec", "millis", "milliseconds"), "ms") | dict.fromkeys(
+_TIMES = dict.fromkeys(("ms", "msec", "millis", "milliseconds"), "ms") | dict.fromkeys(
     ("sec", "secs", "seconds", "sekunden", "secondes"), "s"
 )
 """Units of time that are names of a column by themselves."""
 BY_UNIT = ("acceleration", "velocity", "displacement", "force", "current", "voltage", "temperature")
 """Quantities that a unit alone tells, where no word does."""
-SHORT_UNIT = re.compile("m?[AV]|k?N|daN|[gCKF]|[cmu]?m|[mu]?s|s2")
+_SHORT_UNIT = re.compile("m?[AV]|k?N|daN|[gCKF]|[cmu]?m|[mu]?s|s2")
 """Units that end names and could be taken for words."""
-LONG = 4
+_LONG = 4
 """Letters from which a word counts inside another one."""
 
 
@@ -102,16 +102,16 @@ class Meaning(NamedTuple):
 def read_name(name: str, unit: str = "") -> Meaning:
     """Return what the name of a column says, with the unit that its file states beside it."""
     plain, words = _plain(name), _words(name)
-    if any(_has(word, plain, words) for word in OTHERS):
+    if any(_has(word, plain, words) for word in _OTHERS):
         return Meaning(None)
     quantity, stated = _read_quantity(name, unit)
     return Meaning(
         quantity,
-        _first(PLACES, plain, words),
-        any(_has(word, plain, words) for word in COMMANDS),
-        next((axis for axis, known in AXES.items() if words & {*known}), None),
+        _first(_PLACES, plain, words),
+        any(_has(word, plain, words) for word in _COMMANDS),
+        next((axis for axis, known in _AXES.items() if words & {*known}), None),
         stated,
-        any(_has(word, plain, words) for word in DAMPERS),
+        any(_has(word, plain, words) for word in _DAMPERS),
     )
 
 
@@ -120,8 +120,8 @@ def _read_quantity(name: str, unit: str) -> tuple[str | None, str]:
 
     A letter gives way to a unit of something else: `v2` in m/s^2 is an acceleration. A whole word does not.
     """
-    if not unit and _plain(name).strip() in TIMES:
-        return "time", TIMES[_plain(name).strip()]
+    if not unit and _plain(name).strip() in _TIMES:
+        return "time", _TIMES[_plain(name).strip()]
     sure, letters = _rank(name)
     if not unit:
         named = next(((each, found) for each in (*sure, *letters) if (found := unit_of_name(name, each))), None)
@@ -139,13 +139,13 @@ def _read_quantity(name: str, unit: str) -> tuple[str | None, str]:
 def _rank(name: str) -> tuple[list[str], list[str]]:
     """Return the quantities that words of a name mean, whole words and long ones first; then those of letters."""
     plain, words = _plain(name), _words(name)
-    longs = {each: [word for word in known if len(word) >= LONG] for each, known in QUANTITIES.items()}
+    longs = {each: [word for word in known if len(word) >= _LONG] for each, known in _QUANTITIES.items()}
     alone = [each for each, known in longs.items() if words & {*known}]
     inside = {each: max((len(word) for word in known if word in plain), default=0) for each, known in longs.items()}
     parts = sorted((each for each in inside if inside[each] and each not in alone), key=lambda each: -inside[each])
     sure = [*alone, *parts]
     both = (_words(_before_unit(name)), words)
-    letters = [each for some in both for each, known in QUANTITIES.items() if some & {*known} and each not in sure]
+    letters = [each for some in both for each, known in _QUANTITIES.items() if some & {*known} and each not in sure]
     return sure, list(dict.fromkeys(letters))
 
 
@@ -170,7 +170,7 @@ def unit_of_name(name: str, quantity: str) -> str:
         if len(parts) > count:
             unit = "_".join(parts[-count:]).replace("_", "/", 1)
             # A long word is no unit, and need not be looked up in a large table.
-            if all(len(part) <= LONG for part in parts[-count:]) and not unit.isdigit() and is_of(unit, quantity):
+            if all(len(part) <= _LONG for part in parts[-count:]) and not unit.isdigit() and is_of(unit, quantity):
                 return unit
     return ""
 
@@ -178,7 +178,7 @@ def unit_of_name(name: str, quantity: str) -> str:
 def _before_unit(name: str) -> str:
     """Return a name without the short units that end it: the `A` of `i_A` is none for an acceleration."""
     parts = re.split(r"[ _]+", name.strip())
-    while len(parts) > 1 and SHORT_UNIT.fullmatch(parts[-1]):
+    while len(parts) > 1 and _SHORT_UNIT.fullmatch(parts[-1]):
         parts.pop()
     return "_".join(parts)
 
@@ -194,13 +194,13 @@ def _first(words_by_name: Mapping[str, Iterable[str]], plain: str, words: set[st
     """Return the name of which a long word is in a text, else that of which a short word stands alone."""
     for long in (True, False):
         for name, known in words_by_name.items():
-            if any((len(word) >= LONG) == long and _has(word, plain, words) for word in known):
+            if any((len(word) >= _LONG) == long and _has(word, plain, words) for word in known):
                 return name
     return None
 
 
 def _has(word: str, plain: str, words: set[str]) -> bool:
-    return word in words or (len(word) >= LONG and word in plain)
+    return word in words or (len(word) >= _LONG and word in plain)
 
 
 def _plain(name: str) -> str:

@@ -21,10 +21,10 @@ from seatsim.schema.text import disarm
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import dump
 
-ROAD, EXCITATION = "road.csv.gz", "excitation.yaml"
-SPEED = 12.0
+_ROAD, _EXCITATION = "road.csv.gz", "excitation.yaml"
+_SPEED = 12.0
 """m/s at which the excitation drives on an imported road until another is stated."""
-CURRENTS = ("current_command", "command_voltage", "coil_current")
+_CURRENTS = ("current_command", "command_voltage", "coil_current")
 
 
 def write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
@@ -57,15 +57,15 @@ def write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> li
 
     frame = pd.DataFrame({str(disarm(name)): values for name, values in road.items()})
     tracks = [name for name in frame if name != DISTANCE]
-    table = {"kind": "table", "path": ROAD, "distance_column": DISTANCE}
-    excitation = {"excitation": {**table, "column": tracks[len(tracks) // 2], "speed": SPEED}}
+    table = {"kind": "table", "path": _ROAD, "distance_column": DISTANCE}
+    excitation = {"excitation": {**table, "column": tracks[len(tracks) // 2], "speed": _SPEED}}
     write_table = partial(frame.to_csv, mode="wb", index=False, float_format="%.9g")
     return write_documented(
         folder,
         lambda part: [
-            write_packed(part / ROAD, write_table),
+            write_packed(part / _ROAD, write_table),
             write_map(part / FILE, stated),
-            write_text(part / EXCITATION, dump(excitation)),
+            write_text(part / _EXCITATION, dump(excitation)),
         ],
     )
 
@@ -85,7 +85,7 @@ def make_nominal(scenario: str, rig: Rig, recorded: Collection[str]) -> Mapping[
 
 
 def _law(source: Source, recorded: Collection[str]) -> dict[str, object]:
-    if any(name in recorded for name in CURRENTS):
+    if any(name in recorded for name in _CURRENTS):
         return {"law": "replay"}
     law = source.data.get("controller")
     current = law.get("current") if isinstance(law, Mapping) else None

@@ -50,11 +50,11 @@ COMMANDS = ("current_command", "command_voltage")
 
 
 HEADER = "recording.yaml"
-KEYS = (*Header._fields, "runs", "channels", "actuator", "note")
+_KEYS = (*Header._fields, "runs", "channels", "actuator", "note")
 
-KEPT = 32
+_KEPT = 32
 """Number of files kept in memory while they are unchanged, since every simulation of a run reads them again."""
-Stamp = tuple[int, int, int] | None
+_Stamp = tuple[int, int, int] | None
 
 
 class ChannelEntry(NamedTuple):
@@ -124,7 +124,7 @@ class Recording:
         return change_numbers(scenario, changes, _nominal_numbers(self.nominal, _stamp(self.nominal)))
 
 
-def _stamp(path: Path) -> Stamp:
+def _stamp(path: Path) -> _Stamp:
     """Return a value that changes with the content of a file, None where there is no file."""
     try:
         status = path.stat()
@@ -146,19 +146,19 @@ def load_recording(folder: str | Path) -> Recording:
     return recording
 
 
-@lru_cache(maxsize=KEPT)
-def _nominal_numbers(path: Path, stamp: Stamp) -> Mapping[str, float]:
+@lru_cache(maxsize=_KEPT)
+def _nominal_numbers(path: Path, stamp: _Stamp) -> Mapping[str, float]:
     return list_numbers(single(path))
 
 
-@lru_cache(maxsize=KEPT)
-def _load(folder: Path, stamp: Stamp) -> tuple[Recording, Source]:
+@lru_cache(maxsize=_KEPT)
+def _load(folder: Path, stamp: _Stamp) -> tuple[Recording, Source]:
     if not is_there(folder / HEADER):
         lacks = "holds no recording.yaml" if folder.is_dir() else "no such folder with a recording.yaml"
         raise InputError(f"{folder}: {lacks}; give the folder of a recording, which seatsim import makes of your files")
     source = Source(folder / HEADER)
     data = source.data
-    check_keys(data, KEYS, source, ())
+    check_keys(data, _KEYS, source, ())
     stated = {name: data[name] for name in Header._fields if name in data}
     if "parameter_tolerance" in stated:
         stated["parameter_tolerance"] = read_tolerances(stated["parameter_tolerance"], source)
@@ -194,8 +194,8 @@ def _channels(
     return channels, conversions
 
 
-@lru_cache(maxsize=KEPT)
-def _read_table(path: Path, channels: tuple[str, ...], stamp: Stamp) -> dict[str, Array]:
+@lru_cache(maxsize=_KEPT)
+def _read_table(path: Path, channels: tuple[str, ...], stamp: _Stamp) -> dict[str, Array]:
     frame = read_table(path)
     if len(frame) < 2:
         raise InputError(f"{path}: holds {len(frame)} rows; a run has at least two")

@@ -25,7 +25,7 @@ LEAST_ROWS = 6
 """Rows that must remain after the seconds left out; a quintic spline through a bench's displacement needs as many."""
 NOISE_FACTOR = 3.0
 """A channel is compared where its standard deviation is at least this many times its noise."""
-SAME_STEP = 1e-9
+_SAME_STEP = 1e-9
 """Part of a step by which a row interval may exceed a whole number of steps, as an allowance for rounding."""
 
 
@@ -61,7 +61,7 @@ def recorded_inputs(recording: Recording, table: Mapping[str, Array], largest_st
             table.get("coil_current"),
             table.get("damper_temperature"),
         )
-    steps = max(1, math.ceil(interval / largest_step - SAME_STEP))
+    steps = max(1, math.ceil(interval / largest_step - _SAME_STEP))
     return SeatInputs(interpolate_floor(table, steps, interval / steps), interval)
 
 

@@ -20,10 +20,10 @@ from seatsim.schema.yaml_text import dump
 from seatsim.simulation.result import Result, Run
 
 NOMINAL = "nominal.yaml"
-OF_DAMPER = ("damper", "actuator", "temperature", "effects")
-RIG = ("plant", "driver", *OF_DAMPER, "solver")
+_OF_DAMPER = ("damper", "actuator", "temperature", "effects")
+_RIG = ("plant", "driver", *_OF_DAMPER, "solver")
 """Sections of a scenario that state its rig; on a bench those of the damper alone."""
-WITHOUT_NOISE: Mapping[str, float] = MappingProxyType({})
+_WITHOUT_NOISE: Mapping[str, float] = MappingProxyType({})
 
 
 def save_recording(
@@ -32,7 +32,7 @@ def save_recording(
     channels: Sequence[str],
     tolerance: Tolerances = USUAL,
     model_error: float | None = None,
-    noise: Mapping[str, float] = WITHOUT_NOISE,
+    noise: Mapping[str, float] = _WITHOUT_NOISE,
 ) -> Path:
     """Write the runs of one simulated seat as a recording, one row a step, and return its folder.
 
@@ -94,9 +94,9 @@ def write_files(
 
 def state_nominal(content: Mapping[str, object], rig: str, law: Mapping[str, object]) -> dict[str, object]:
     """Return the nominal scenario of a recording: what of a scenario's content states the rig, driven by the record."""
-    stated = {key: content[key] for key in RIG if key in content}
+    stated = {key: content[key] for key in _RIG if key in content}
     if rig == "damper_bench":
-        return {key: value for key, value in stated.items() if key in OF_DAMPER}
+        return {key: value for key, value in stated.items() if key in _OF_DAMPER}
     return stated | {"controller": law, "excitation": {"kind": "recording"}}
 
 

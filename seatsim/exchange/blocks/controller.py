@@ -27,7 +27,7 @@ from seatsim.schema.fields import param
 from seatsim.schema.registry import initial_state, specification_of
 from seatsim.simulation.simulate import set_up
 
-UNSCALED = TemperatureScaling()
+_UNSCALED = TemperatureScaling()
 
 
 class ControllerParameters(NamedTuple):
@@ -101,7 +101,7 @@ def advance(
     followed = _follow(p, state, y) if wants_force(p.law) and state.sample > 0 else state.followed
     grid = np.empty(CELLS + 1)
     decided = command_current(
-        p.law, p.inverse_model, p.damper_ratio, p.max_command, y, UNSCALED, followed, state.law_state, grid
+        p.law, p.inverse_model, p.damper_ratio, p.max_command, y, _UNSCALED, followed, state.law_state, grid
     )
     later = ControllerState(
         y.displacement, y.velocity, y.current, sensed, followed, update(p.law, y, state.law_state), decided[0],
@@ -114,7 +114,7 @@ def advance(
 def _follow(p: ControllerParameters, state: ControllerState, y: Measurement) -> State:
     """Return the state of the inverse's damper at this sample, from that at the last one."""
     ratio, h = p.damper_ratio, p.sample_time / p.divisions
-    scaling = model_scaling(p.inverse_model, UNSCALED, y.temperature)
+    scaling = model_scaling(p.inverse_model, _UNSCALED, y.temperature)
     z = state.followed
     for part in range(p.divisions):
         a, b = part / p.divisions, (part + 1) / p.divisions

@@ -21,7 +21,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import param
 from seatsim.simulation.augment import augment_coil, augment_damper, augment_factors, select_in_loop
 
-ROUNDING = 1e-9
+_ROUNDING = 1e-9
 """Share of a step by which a length may exceed a whole number of steps, for the sake of rounding."""
 
 
@@ -69,7 +69,7 @@ def advance(
     p: DamperParameters, u: DamperInputs, state: DamperState, age: float, length: float
 ) -> tuple[DamperState, bool]:
     """Return the state `length` seconds later and whether it is finite; the length is divided into equal steps."""
-    steps = max(1, math.ceil(length / p.step - ROUNDING))
+    steps = max(1, math.ceil(length / p.step - _ROUNDING))
     h = length / steps
     factors = scaling_at(p.temperature_factors, u.temperature)
     now, good = state, True

@@ -23,7 +23,7 @@ from seatsim.schema.registry import initial_state, specification_of
 from seatsim.simulation.effect_hooks import FRAME_FORCE, READING, TEMPERATURE, TRUTH
 from seatsim.simulation.simulate import set_up
 
-LONGEST_DELAY = 256
+_LONGEST_DELAY = 256
 """Most steps that a command is held back, since every one of them is a number of the state."""
 
 
@@ -38,10 +38,10 @@ def rig_block(scenario: Scenario) -> Block:
         raise InputError(f"{scenario.name}: a damper bench has no rig; export its damper with --what damper")
     setup, initial = set_up(scenario, plant, control, False, False)
     late = math.floor(setup.coil.delay / setup.timing.step + ROUNDING)
-    if late > LONGEST_DELAY:
+    if late > _LONGEST_DELAY:
         raise InputError(
             f"{scenario.name}: a delay of {setup.coil.delay:g} s is {late} steps, and an exported rig holds"
-            f" {LONGEST_DELAY} at most; take a longer solver.step"
+            f" {_LONGEST_DELAY} at most; take a longer solver.step"
         )
     heated = setup.timing.self_heating
     rig = setup.rig, setup.coil, setup.factors, setup.thermal

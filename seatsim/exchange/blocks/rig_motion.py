@@ -27,7 +27,7 @@ from seatsim.rig.state import CUSHION_DISPLACEMENT, CUSHION_VELOCITY, DAMPER_WOR
 from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling, Thermal
 from seatsim.schema.fields import param
 
-SAME = 1e-9
+_SAME = 1e-9
 """Relative difference of a disturbance from what it was to become, up to which it is the same but for rounding."""
 
 
@@ -213,7 +213,7 @@ def _differs(now: Disturbance, expected: Disturbance) -> bool:
     """Return whether a disturbance is another one than the last step ended with, by more than rounding."""
     floor, frame, driver = now.floor - expected.floor, now.frame_force - expected.frame_force, now.driver_force
     size = abs(floor) + abs(frame) + abs(driver - expected.driver_force)
-    return size > SAME * (1.0 + abs(expected.floor) + abs(expected.frame_force) + abs(expected.driver_force))
+    return size > _SAME * (1.0 + abs(expected.floor) + abs(expected.frame_force) + abs(expected.driver_force))
 
 
 def observe(p: RigParameters, u: RigInputs, state: RigState, age: float) -> RigOutputs:

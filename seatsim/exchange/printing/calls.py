@@ -29,13 +29,13 @@ from seatsim.exchange.printing.values import (
     number,
 )
 
-Evaluate = Callable[[ast.expr, Scope], Value]
-MATHS = "exp log sqrt sin cos tan atan tanh sinh cosh expm1 copysign hypot atan2 pow"
+_Evaluate = Callable[[ast.expr, Scope], Value]
+_MATHS = "exp log sqrt sin cos tan atan tanh sinh cosh expm1 copysign hypot atan2 pow"
 """Functions of `math` that C has under the same name."""
 
 
 def print_call(
-    callee: Value, given: list[Value], named: Mapping[str, Value], node: ast.Call, scope: Scope, evaluate: Evaluate
+    callee: Value, given: list[Value], named: Mapping[str, Value], node: ast.Call, scope: Scope, evaluate: _Evaluate
 ) -> Value:
     """Return the value of a call."""
     if callee.type is not None or callee.known is None:
@@ -92,7 +92,7 @@ def _replace(scope: Scope, owner: Value, named: Mapping[str, Value]) -> Value:
     return build_tuple(scope, items, owner.type.instance_class)
 
 
-def _print_own(function: FunctionType, values: list[Value], scope: Scope, evaluate: Evaluate) -> Value:
+def _print_own(function: FunctionType, values: list[Value], scope: Scope, evaluate: _Evaluate) -> Value:
     """Return the call of a function that is printed too; a lambda is put in its place."""
     if function.__name__ == "<lambda>":
         body = source_of(function, ast.Lambda)
@@ -149,6 +149,6 @@ def _print_library(  # noqa: PLR0911 - one return per function
         return Value(f"{name}({listed})", BOOLEAN, plain=False)
     if name in ("floor", "ceil"):
         return Value(f"(int)r_{name}({listed})", INTEGER, plain=False, rank=UNARY)
-    if name in MATHS.split():
+    if name in _MATHS.split():
         return Value(f"r_{name}({listed})", REAL, plain=False)
     raise scope.refuse(node, f"'{name}' has no counterpart in C")

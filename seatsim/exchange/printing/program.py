@@ -26,7 +26,7 @@ from seatsim.exchange.printing.values import (
 )
 from seatsim.schema.arrays import Array
 
-N = TypeVar("N", bound=ast.AST)
+_N = TypeVar("_N", bound=ast.AST)
 
 
 class Printed(NamedTuple):
@@ -106,7 +106,7 @@ def origin(function: Callable[..., object]) -> str:
     return f"{function.__module__}.{function.__qualname__}" + (f": {words}" if words else "")
 
 
-def source_of(function: FunctionType, kind: type[N]) -> N:
+def source_of(function: FunctionType, kind: type[_N]) -> _N:
     """Return the definition of a function, or of a lambda, the only one of its line.
 
     Raises:

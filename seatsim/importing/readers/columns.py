@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-MOST_TEXTS = 0.5
+_MOST_TEXTS = 0.5
 """Share of the rows that are no numbers from which a column is one of texts."""
-DAY = 86400.0
-AMBIGUOUS = rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}[.,]\d{{3}}"
+_DAY = 86400.0
+_AMBIGUOUS = rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}[.,]\d{{3}}"
 """A number that may have a decimal sign, or one between thousands."""
 
 
@@ -43,7 +43,7 @@ class Cells(NamedTuple):
     @property
     def is_date(self) -> bool:
         """Say whether these are dates without a time of day."""
-        return self.unit == "s" and not (self.values[np.isfinite(self.values)] % DAY).any()
+        return self.unit == "s" and not (self.values[np.isfinite(self.values)] % _DAY).any()
 
 
 def read_column(column: pa.ChunkedArray, decimal: str) -> Cells | None:
@@ -90,15 +90,15 @@ def _read_texts(texts: pd.Series[str], decimal: str) -> Cells | None:
     found = _numbers(plain, decimal)
     if not np.isfinite(found).all():
         found = max(found, _numbers(plain, "," if decimal == "." else "."), key=lambda each: np.isfinite(each).sum())
-    if np.isnan(found).sum() <= MOST_TEXTS * len(found):
-        parted = plain[plain.str.fullmatch(AMBIGUOUS, na=False) & (np.abs(found) >= 1e3)]
+    if np.isnan(found).sum() <= _MOST_TEXTS * len(found):
+        parted = plain[plain.str.fullmatch(_AMBIGUOUS, na=False) & (np.abs(found) >= 1e3)]
         return Cells(found, parted=f"'{parted.iloc[0]}'" if len(parted) else "")
     parts = plain.str.extract(rf"^{WITH_UNIT.pattern}$")
     if parts[1].nunique() == 1 and parts[1].dropna().iloc[0].lower() in LISTED_UNITS:
         found = _numbers(parts[0], decimal)
         return Cells(found, parts[1].dropna().iloc[0]) if np.isfinite(found).any() else None
     times = _read_stamps(plain)
-    return None if np.isnan(times).sum() > MOST_TEXTS * len(times) else Cells(times, "s")
+    return None if np.isnan(times).sum() > _MOST_TEXTS * len(times) else Cells(times, "s")
 
 
 def _numbers(texts: pd.Series[str], decimal: str) -> Array:
@@ -126,7 +126,7 @@ def _read_stamps(texts: pd.Series[str]) -> Array:
         return np.asarray(since.reindex(texts.index) if len(since) == len(texts) else np.full(len(texts), np.nan))
     days = _days(parts["date"])
     clock = _clock_seconds(parts["clock"])
-    total = np.where(parts["date"].isna(), 0.0, DAY * days) + np.where(parts["clock"].isna(), 0.0, clock)
+    total = np.where(parts["date"].isna(), 0.0, _DAY * days) + np.where(parts["clock"].isna(), 0.0, clock)
     total = np.where(parts["date"].isna() & parts["clock"].isna(), np.nan, total)
     there = np.flatnonzero(np.isfinite(total))
     return total - total[there[0]] if len(there) else total

@@ -22,9 +22,9 @@ from seatsim.schema.tables import LARGEST_FILE
 if TYPE_CHECKING:
     import h5py
 
-COLUMNS = ("columns", "names", "channels", "channel_names", "column_names")
+_COLUMNS = ("columns", "names", "channels", "channel_names", "column_names")
 """Attributes that name the columns of a matrix."""
-HERE = "."
+_HERE = "."
 """How a virtual data set names its own file."""
 
 
@@ -58,7 +58,7 @@ def _gather(name: str, folder: h5py.Group, above: Mapping[str, object], gathered
         else:
             found = _signals(key, item, notes)
             signals += found
-            stated = {**stated, **{each: value for each, value in item.attrs.items() if each.lower() not in COLUMNS}}
+            stated = {**stated, **{each: value for each, value in item.attrs.items() if each.lower() not in _COLUMNS}}
             if not found:
                 notes.append(f"'{item.name}' is left out: it holds no vector or matrix of real numbers")
     for signal in signals:
@@ -75,7 +75,7 @@ def _signals(key: str, item: h5py.Dataset, notes: list[str]) -> list[Signal]:
     if item.dtype.names is not None:
         table = item[()]
         return [signal for name in item.dtype.names for signal in signals_of(name, np.asarray(table[name]))]
-    columns = next((_texts(value) for each, value in attributes.items() if each.lower() in COLUMNS), [])
+    columns = next((_texts(value) for each, value in attributes.items() if each.lower() in _COLUMNS), [])
     units = next((_texts(value) for each, value in attributes.items() if each.lower() == "units"), [])
     return signals_of(key, item[()], stated_unit(attributes), columns, units)
 
@@ -168,7 +168,7 @@ def _sources(item: h5py.Dataset, place: str, path: Path, sources: set[Path]) -> 
         needed = each.vspace.get_select_npoints()
         covered += needed
         missing = f"{place}: takes numbers from '{each.dset_name}' of '{each.file_name}', which is not there"
-        if each.file_name == HERE:
+        if each.file_name == _HERE:
             source = item.file.get(each.dset_name)
             if not isinstance(source, h5py.Dataset) or source.size < needed:
                 raise InputError(missing)

@@ -26,13 +26,13 @@ from seatsim.schema.errors import InputError
 if TYPE_CHECKING:
     from nptdms import TdmsChannel
 
-START = "wf_start_time"
-NEVER_SET = np.datetime64("1904-01-02")
+_START = "wf_start_time"
+_NEVER_SET = np.datetime64("1904-01-02")
 """LabVIEW counts from 1904 on: a start before this was never set."""
-END, SPECIAL, END_SPECIAL = "***End_of_Header***", "***Start_Special***", "***End_Special***"
-X, REMARK, NEXT = "X_Value", "Comment", "Channels"
+_END, _SPECIAL, _END_SPECIAL = "***End_of_Header***", "***Start_Special***", "***End_Special***"
+_X, _REMARK, _NEXT = "X_Value", "Comment", "Channels"
 """Names of columns that are no channels, and the key with which the header of a segment begins."""
-ABSOLUTE = 1e8
+_ABSOLUTE = 1e8
 """s; a larger x counts from the year 1904, not from the moment that the segment states."""
 
 
@@ -66,7 +66,7 @@ def read_tdms(path: Path, content: bytes, layout: TextLayout) -> DataFile:
                 gathered.add(group.name, signal, 1.0 / step if step else None, begin)
     lacking = [each.name for each in channels if len(each) and _step(each) and _start_time(each) is None]
     if starts and lacking:
-        notes.append(f"no {START} is stated of {', '.join(lacking)}: laid beside the channel that begins first")
+        notes.append(f"no {_START} is stated of {', '.join(lacking)}: laid beside the channel that begins first")
     return DataFile(path, "", gathered.groups(), tuple(notes))
 
 
@@ -83,8 +83,8 @@ def _start(channel: TdmsChannel, first: np.datetime64 | None) -> float | None:
 
 
 def _start_time(channel: TdmsChannel) -> np.datetime64 | None:
-    stated = channel.properties.get(START)
-    return stated if isinstance(stated, np.datetime64) and stated > NEVER_SET else None
+    stated = channel.properties.get(_START)
+    return stated if isinstance(stated, np.datetime64) and stated > _NEVER_SET else None
 
 
 class _Segment(NamedTuple):
@@ -105,7 +105,7 @@ class _Segment(NamedTuple):
 
     def channels(self) -> list[int]:
         """Return the columns of the channels."""
-        return [column for column, name in enumerate(self.names) if column and name not in (X, REMARK, "")]
+        return [column for column, name in enumerate(self.names) if column and name not in (_X, _REMARK, "")]
 
 
 class _Piece(NamedTuple):
@@ -124,7 +124,7 @@ def read_lvm(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     """
     lines = as_utf8(content, layout.encoding).decode(errors="replace").splitlines()
     separator = next((line[9] for line in lines[:20] if line.startswith("Separator") and line[9:]), "\t")
-    first = next((number for number, line in enumerate(lines) if line.startswith(END)), len(lines))
+    first = next((number for number, line in enumerate(lines) if line.startswith(_END)), len(lines))
     head = {key: value for key, _, value in (line.partition(separator) for line in lines[:first])}
     pieces: dict[tuple[int, str, str], list[_Piece]] = {}
     for segment in _segments(lines[first + 1 :], separator):
@@ -140,11 +140,11 @@ def _segments(lines: Sequence[str], separator: str) -> Iterator[_Segment]:
     rest = iter(lines)
     for line in rest:
         key, *cells = line.split(separator)
-        if key == SPECIAL:
-            list(takewhile(lambda each: not each.startswith(END_SPECIAL), rest))
-        elif key == END:
+        if key == _SPECIAL:
+            list(takewhile(lambda each: not each.startswith(_END_SPECIAL), rest))
+        elif key == _END:
             names = [name.strip() for name in next(rest, "").split(separator)]
-            rows = list(takewhile(lambda row: row.strip() and not row.startswith(NEXT + separator), rest))
+            rows = list(takewhile(lambda row: row.strip() and not row.startswith(_NEXT + separator), rest))
             yield _Segment(header, names, rows)
             header = {}
         elif key:
@@ -155,7 +155,7 @@ def _table(segment: _Segment, separator: str, decimal: str) -> Array:
     """Return the numbers of a segment, shape (rows, columns), NaN where a cell is empty."""
     import pandas as pd
 
-    remarks = [column for column, name in enumerate(segment.names) if name == REMARK]
+    remarks = [column for column, name in enumerate(segment.names) if name == _REMARK]
     columns = [column for column in range(len(segment.names)) if column not in remarks]
     if not segment.rows:
         return np.empty((0, len(segment.names)))
@@ -186,8 +186,8 @@ def _pieces(segment: _Segment, table: Array, x_columns: str, path: Path) -> Iter
         own_x = {"Multi": column - 1, "One": 0 if step == longest or np.isnan(step) else None}.get(x_columns)
         times = table[: len(values), own_x] if own_x is not None else zero + step * np.arange(len(values))
         if np.isnan(times).any():
-            raise InputError(f"{path}, {segment.names[column]}: states neither {X} nor Delta_X in every row")
-        is_absolute = len(times) > 0 and times[0] > ABSOLUTE
+            raise InputError(f"{path}, {segment.names[column]}: states neither {_X} nor Delta_X in every row")
+        is_absolute = len(times) > 0 and times[0] > _ABSOLUTE
         signal = Signal(segment.names[column], unit, values)
         yield column, _Piece(signal, np.asarray(times, dtype=np.float64), None if is_absolute else begins)
 

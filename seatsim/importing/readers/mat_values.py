@@ -25,11 +25,11 @@ from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
 Value: TypeAlias = "AnyArray | str | dict[str, Value] | list[Value] | None"
 """Numbers, a text, a structure, cells or structures of many; None for what is none of these."""
 
-REFERRED, SUBSYSTEM = "#refs#", "#subsystem#"
+_REFERRED, _SUBSYSTEM = "#refs#", "#subsystem#"
 """Folders of a file of version 7.3 that hold what its cells and structures refer to, and what its objects hold."""
-REFERENCE = 0xDD000000
+_REFERENCE = 0xDD000000
 """First number of an array that tells which object it is."""
-MOST_OBJECTS = LEAST // BYTES_OF_PART
+_MOST_OBJECTS = LEAST // BYTES_OF_PART
 _UNITS_OF_TABLE = ("varUnits", "VariableUnits")
 """Attributes with which mat-io states the units of a table."""
 VALUES = ("values", "data", "signal", "samples", "y", "ydata")
@@ -44,13 +44,13 @@ INDEX = "xindex"
 TIME_INFO = "timeinfo"
 UNITS_OF_TIME = ("xunit", "xunits", "unitx", "timeunit", "timeunits")
 """A structure that states the unit of times, and fields that do."""
-BESIDE = (TIME_INFO, "header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
+_BESIDE = (TIME_INFO, "header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
 """Structures that state something of what stands beside them."""
-ENDING = re.compile(
+_ENDING = re.compile(
     r"^(.+?)_(data|values|header|unit|units|time|name|label|fs|dt|dx|x0|samplerate|xdelta)$", re.IGNORECASE
 )
 """A flat variable that is part of a channel: the name of the channel, and which part it is."""
-TIME_WITHIN = re.compile(r"^(.*?)_?time_(.*)$", re.IGNORECASE)
+_TIME_WITHIN = re.compile(r"^(.*?)_?time_(.*)$", re.IGNORECASE)
 
 
 def read_values(path: Path, content: bytes) -> dict[str, Value]:
@@ -71,12 +71,12 @@ def read_values(path: Path, content: bytes) -> dict[str, Value]:
 def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
     with open_checked(path, content, follows=True) as file:
         reader = _need_matio("matio.v7.matreader7", "MAT v7.3").MatRead7(file)
-        if SUBSYSTEM in file:
-            reader.subsystem = _subsystem(reader.read_struct(file[SUBSYSTEM]), "<")
+        if _SUBSYSTEM in file:
+            reader.subsystem = _subsystem(reader.read_struct(file[_SUBSYSTEM]), "<")
         found: dict[str, Value] = {}
         plain = _Plain(len(content))
         for name in file:
-            if name not in (REFERRED, SUBSYSTEM):
+            if name not in (_REFERRED, _SUBSYSTEM):
                 try:
                     found[name] = plain.of(reader.read_h5_data(file[name]))
                 except NotImplementedError:  # no variable of MATLAB
@@ -101,12 +101,12 @@ def _subsystem(held: AnyArray, order: str) -> Any:
     base = _need_matio("matio.subsystem", "a table or another object of MATLAB").MatSubsystem
 
     class Bounded(base):  # type: ignore[misc, valid-type]
-        left = MOST_OBJECTS
+        left = _MOST_OBJECTS
 
         def load_opaque_object(self, metadata: Any, type_system: Any, classname: Any = None) -> object:
             self.left -= 1
             if self.left < 0:
-                raise ValueError(f"its objects hold each other more than {MOST_OBJECTS} times")
+                raise ValueError(f"its objects hold each other more than {_MOST_OBJECTS} times")
             _check_reference(metadata)
             return super().load_opaque_object(metadata, type_system, classname)
 
@@ -121,7 +121,7 @@ def _check_reference(numbers: Any) -> None:
     """Raise ValueError where an array states more objects than it has numbers."""
     if isinstance(numbers, np.ndarray) and numbers.dtype.kind == "u" and numbers.size > 2:
         flat = numbers.ravel()
-        if flat[0] == REFERENCE and np.prod(flat[2 : 2 + int(flat[1])], dtype=float) > flat.size:
+        if flat[0] == _REFERENCE and np.prod(flat[2 : 2 + int(flat[1])], dtype=float) > flat.size:
             raise ValueError("an array of objects states more of them than it has")
 
 
@@ -190,7 +190,7 @@ def join_flat(variables: Mapping[str, Value]) -> dict[str, Value]:
 
 def _owner(name: str, variables: Mapping[str, Value]) -> tuple[str, str] | None:
     """Return the channel of which a variable is a part, and which part; None where it is one of itself."""
-    ending = ENDING.match(name)
+    ending = _ENDING.match(name)
     if ending:
         beginning, part = ending[1], ending[2].lower()
         if is_vector(variables.get(beginning)):
@@ -198,7 +198,7 @@ def _owner(name: str, variables: Mapping[str, Value]) -> tuple[str, str] | None:
         siblings = (variables.get(f"{beginning}_{each}") for each in ("data", "Data", "DATA", "values", "Values"))
         if beginning not in variables and any(is_vector(each) for each in siblings):
             return beginning, part
-    within = TIME_WITHIN.match(name)
+    within = _TIME_WITHIN.match(name)
     partner = f"{within[1]}_{within[2]}".strip("_") if within else ""
     return (partner, "time") if is_vector(variables.get(partner)) else None
 
@@ -212,7 +212,7 @@ def statements(structure: Mapping[str, Value]) -> dict[str, Value]:
     """Return the fields of a structure, and those of the structures in it that state something of the others."""
     stated: dict[str, Value] = {}
     for name, value in structure.items():
-        if bare(name) in BESIDE and isinstance(value, dict):
+        if bare(name) in _BESIDE and isinstance(value, dict):
             is_of_time = bare(name) == TIME_INFO
             stated |= {each: held for each, held in value.items() if not (is_of_time and bare(each) in UNITS)}
     return stated | dict(structure)

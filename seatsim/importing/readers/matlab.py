@@ -44,8 +44,8 @@ from seatsim.importing.signals import TIME, Channels, DataFile, Signal
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import DIMENSIONS, find_conversion
 
-Structure = Mapping[str, Value]
-LATEST = 1e7
+_Structure = Mapping[str, Value]
+_LATEST = 1e7
 """s; a start that is larger is a date."""
 
 
@@ -72,7 +72,7 @@ class _Reader:
         self.gathered = Channels()
         self.left_out: list[str] = []
 
-    def read_structure(self, name: str, label: str, held: Structure, above: _Clock) -> None:
+    def read_structure(self, name: str, label: str, held: _Structure, above: _Clock) -> None:
         """Take the channels of a structure, which is called `label` where it does not say how."""
         stated = statements(held)
         channel = _channel_of(held)
@@ -131,7 +131,7 @@ class _Reader:
                 self.gathered.add(name, signal, clock.rate, clock.start)
 
 
-def _own_clock(own: _Clock, above: _Clock, stated: Structure) -> _Clock:
+def _own_clock(own: _Clock, above: _Clock, stated: _Structure) -> _Clock:
     """Return the clock of a channel: its own times or rate, else those above it, of which it may name one."""
     if own.times or own.rate:
         return own
@@ -141,7 +141,7 @@ def _own_clock(own: _Clock, above: _Clock, stated: Structure) -> _Clock:
     return above
 
 
-def _channel_of(held: Structure) -> str | None:
+def _channel_of(held: _Structure) -> str | None:
     """Return the field that holds the values of a channel, None where a structure is no channel."""
     key = next((each for name in VALUES for each in held if bare(each) == name and is_vector(held[each])), None)
     if key is None:
@@ -151,7 +151,7 @@ def _channel_of(held: Structure) -> str | None:
     return key if all(each == key or bare(each) in ABSCISSAS for each in others) else None
 
 
-def _times(held: Structure, names: Sequence[str]) -> tuple[Array, ...]:
+def _times(held: _Structure, names: Sequence[str]) -> tuple[Array, ...]:
     """Return the vectors of times that a structure holds under such names, or as the values of channels in it."""
     found: list[Array] = []
     for key, value in held.items():
@@ -170,7 +170,7 @@ def _rises(vector: AnyArray) -> bool:
     return bool((steps >= 0.0).all() and (steps > 0.0).any())
 
 
-def _clock(held: Structure, stated: Structure, names: Sequence[str]) -> _Clock:
+def _clock(held: _Structure, stated: _Structure, names: Sequence[str]) -> _Clock:
     """Return what a structure states of time, in s and Hz."""
     info = next((value for key, value in held.items() if bare(key) == TIME_INFO and isinstance(value, dict)), {})
     unit = stated_text(stated, UNITS_OF_TIME) or stated_unit(info)
@@ -181,6 +181,6 @@ def _clock(held: Structure, stated: Structure, names: Sequence[str]) -> _Clock:
     return _Clock(times, stated_rate(stated, factor), factor * start if start is not None else None)
 
 
-def _start(stated: Structure) -> float | None:
+def _start(stated: _Structure) -> float | None:
     found = (scalar(value) for key, value in stated.items() if bare(key) in STARTS)
-    return next((each for each in found if each is not None and abs(each) < LATEST), None)
+    return next((each for each in found if each is not None and abs(each) < _LATEST), None)

@@ -30,19 +30,19 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from openpyxl.worksheet._read_only import ReadOnlyWorksheet
 
-MOST_ROWS = 2**20
-BYTES_OF_CELL = 64
+_MOST_ROWS = 2**20
+_BYTES_OF_CELL = 64
 """Bytes that a cell takes in memory as Python holds it."""
-Cell = str | float | int | bool | datetime.datetime | datetime.date | datetime.time | datetime.timedelta | None
-WORDS_FOR_TIME = ("time", "zeit", "temps")
+_Cell = str | float | int | bool | datetime.datetime | datetime.date | datetime.time | datetime.timedelta | None
+_WORDS_FOR_TIME = ("time", "zeit", "temps")
 """A column of dates without such a word in its name, as an index has it, is called time."""
-KIND, HEADER = 1, 2
+_KIND, _HEADER = 1, 2
 """Fields of a message: what kind of header it has, and the header."""
-DICTIONARY, BATCH = 2, 3
+_DICTIONARY, _BATCH = 2, 3
 """Kinds of headers: a batch of rows, and one within a dictionary."""
-ROWS, NODES, BUFFERS, PACKING = 0, 1, 2, 3
+_ROWS, _NODES, _BUFFERS, _PACKING = 0, 1, 2, 3
 """Fields of a batch: the number of its rows, its columns, where their bytes lie, and how those are packed."""
-BEFORE = 8
+_BEFORE = 8
 """Bytes before the first message."""
 
 
@@ -64,7 +64,7 @@ def read_xlsx(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     return DataFile(path, "", tuple(groups), tuple(notes))
 
 
-def _rows(sheet: ReadOnlyWorksheet, size: int) -> list[Sequence[Cell]]:
+def _rows(sheet: ReadOnlyWorksheet, size: int) -> list[Sequence[_Cell]]:
     """Return the rows of a sheet that hold something, of equal length.
 
     Raises:
@@ -72,21 +72,21 @@ def _rows(sheet: ReadOnlyWorksheet, size: int) -> list[Sequence[Cell]]:
     """
     # The stated dimensions may be anything; without them a row is as long as its last cell.
     sheet.reset_dimensions()
-    rows: list[Sequence[Cell]] = []
+    rows: list[Sequence[_Cell]] = []
     cells = 0
     for number, row in enumerate(sheet.iter_rows(values_only=True)):
-        if number >= MOST_ROWS:
-            raise TooMuchError(f"the sheet {sheet.title} states more than {MOST_ROWS} rows, the most that Excel has")
+        if number >= _MOST_ROWS:
+            raise TooMuchError(f"the sheet {sheet.title} states more than {_MOST_ROWS} rows, the most that Excel has")
         if any(cell is not None for cell in row):
             rows.append(row)
             cells += len(row)
-            check_made(BYTES_OF_CELL * cells, size, f"the sheet {sheet.title}")
+            check_made(_BYTES_OF_CELL * cells, size, f"the sheet {sheet.title}")
     width = max((len(row) for row in rows), default=0)
-    check_made(BYTES_OF_CELL * width * len(rows), size, f"the sheet {sheet.title}")
+    check_made(_BYTES_OF_CELL * width * len(rows), size, f"the sheet {sheet.title}")
     return [(*row, *[None] * (width - len(row))) for row in rows]
 
 
-def _group(title: str, rows: Sequence[Sequence[Cell]], place: str, layout: TextLayout) -> tuple[Group, list[str]]:
+def _group(title: str, rows: Sequence[Sequence[_Cell]], place: str, layout: TextLayout) -> tuple[Group, list[str]]:
     """Return the columns of numbers, and the names of the others."""
     first = layout.header
     if first is None:
@@ -102,17 +102,17 @@ def _group(title: str, rows: Sequence[Sequence[Cell]], place: str, layout: TextL
     return Group(title, tuple(signal for signal in signals if signal.name not in empty)), left_out
 
 
-def _is_number(cell: Cell) -> bool:
+def _is_number(cell: _Cell) -> bool:
     return isinstance(cell, int | float | datetime.datetime | datetime.time) and not isinstance(cell, bool)
 
 
-def _values(cells: Sequence[Cell]) -> Array:
+def _values(cells: Sequence[_Cell]) -> Array:
     """Return cells as numbers, times in s since the first of them, NaN for what is neither."""
     first = next((cell for cell in cells if isinstance(cell, datetime.datetime)), None)
     return np.array([_number(cell, first) for cell in cells], dtype=np.float64)
 
 
-def _number(cell: Cell, first: datetime.datetime | None) -> float:
+def _number(cell: _Cell, first: datetime.datetime | None) -> float:
     if isinstance(cell, datetime.datetime) and first is not None:
         return (cell - first).total_seconds()
     if isinstance(cell, datetime.time):
@@ -138,7 +138,7 @@ def read_arrow(path: Path, content: bytes, layout: TextLayout) -> DataFile:
             left_out.append(name)
             continue
         if cells.unit == "s":
-            name = name if has_time or any(word in name.lower() for word in WORDS_FOR_TIME) else TIME
+            name = name if has_time or any(word in name.lower() for word in _WORDS_FOR_TIME) else TIME
             has_time = True
         signals.append(Signal(name, cells.unit or unit, cells.values))
     groups = (Group("", tuple(signals)),) if signals else ()
@@ -166,7 +166,7 @@ def _bytes_of_messages(content: bytes) -> int:
 
     made = 0
     if content.startswith(b"ARROW1"):
-        for message in pa.ipc.MessageReader.open_stream(pa.BufferReader(content[BEFORE:])):
+        for message in pa.ipc.MessageReader.open_stream(pa.BufferReader(content[_BEFORE:])):
             head = message.metadata.to_pybytes()
             try:
                 made += _bytes_of_batch(head, message.body.to_pybytes() if message.body else b"")
@@ -177,20 +177,20 @@ def _bytes_of_messages(content: bytes) -> int:
 
 def _bytes_of_batch(head: bytes, body: bytes) -> int:
     message = struct.unpack_from("<I", head)[0]
-    kind = _place(head, message, KIND)
-    if kind is None or head[kind] not in (DICTIONARY, BATCH):
+    kind = _place(head, message, _KIND)
+    if kind is None or head[kind] not in (_DICTIONARY, _BATCH):
         return 0
-    batch = _follow(head, message, HEADER)
-    if head[kind] == DICTIONARY:
+    batch = _follow(head, message, _HEADER)
+    if head[kind] == _DICTIONARY:
         batch = _follow(head, batch, 1)
-    rows, nodes = _place(head, batch, ROWS), _follow(head, batch, NODES)
+    rows, nodes = _place(head, batch, _ROWS), _follow(head, batch, _NODES)
     columns = struct.unpack_from("<I", head, nodes)[0]
     stated = struct.unpack_from("<q", head, rows)[0] if rows is not None else 0
-    buffers = _follow(head, batch, BUFFERS)
+    buffers = _follow(head, batch, _BUFFERS)
     unpacked = 0
     for number in range(struct.unpack_from("<I", head, buffers)[0]):
         offset, length = struct.unpack_from("<qq", head, buffers + 4 + 16 * number)
-        packed = _place(head, batch, PACKING) is not None and length >= BYTES_OF_NUMBER
+        packed = _place(head, batch, _PACKING) is not None and length >= BYTES_OF_NUMBER
         unpacked += max(length, struct.unpack_from("<q", body, offset)[0] if packed else 0)
     return int(max(unpacked, BYTES_OF_NUMBER * stated * columns))
 

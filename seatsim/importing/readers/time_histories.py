@@ -22,23 +22,23 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import DIMENSIONS, conversion
 
-FUNCTION = 58
+_FUNCTION = 58
 """Type of a data set that is a function."""
-FUNCTIONS = """a general function, a time response, an auto spectrum, a cross spectrum, a frequency response,
+_FUNCTIONS = """a general function, a time response, an auto spectrum, a cross spectrum, a frequency response,
 a transmissibility, a coherence, an auto correlation, a cross correlation, a power spectral density,
 an energy spectral density, a probability density, a spectrum""".replace("\n", " ").split(", ")
 """What functions are by the number of their type; those over time are the first two."""
-OVER_TIME, TIME_AXIS = (0, 1), (0, 17)
+_OVER_TIME, _TIME_AXIS = (0, 1), (0, 17)
 """Types of functions, and of the quantity along the abscissa (0 is not stated)."""
-OF_LINE = 6
+_OF_LINE = 6
 """Values of a line, up to which the last one is filled with zeros."""
-NAMES = ("rsp_ent_name", "id1", "id5", "ordinate_axis_lab", "id2")
-NONE = ("", "none", "notset", "not set", "general", "unknown")
-RECORD, KEYWORD, BLOCK = 128, 32, 512
-FULL_SCALE = 32768
-ORDERS = {"BINARY_IEEE_LITTLE_END": "<", "BINARY_IEEE_BIG_END": ">", "BINARY": "<"}
-TYPES = {"SHORT_INTEGER": "i2", "FLOATING_POINT": "f4"}
-NEEDED = ("NUM_HEADER_BLOCKS", "CHANNELS", "DELTA_T", "PTS_PER_FRAME", "PTS_PER_GROUP", "FRAMES")
+_NAMES = ("rsp_ent_name", "id1", "id5", "ordinate_axis_lab", "id2")
+_NONE = ("", "none", "notset", "not set", "general", "unknown")
+_RECORD, _KEYWORD, _BLOCK = 128, 32, 512
+_FULL_SCALE = 32768
+_ORDERS = {"BINARY_IEEE_LITTLE_END": "<", "BINARY_IEEE_BIG_END": ">", "BINARY": "<"}
+_TYPES = {"SHORT_INTEGER": "i2", "FLOATING_POINT": "f4"}
+_NEEDED = ("NUM_HEADER_BLOCKS", "CHANNELS", "DELTA_T", "PTS_PER_FRAME", "PTS_PER_GROUP", "FRAMES")
 
 
 def read_uff(path: Path, content: bytes, layout: TextLayout) -> DataFile:
@@ -54,7 +54,7 @@ def read_uff(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         sets = pyuff.UFF(file.name)
         kinds = [int(kind) for kind in sets.get_set_types()]
         for index, kind in enumerate(kinds):
-            held = cast("Mapping[str, object]", sets.read_sets(index)) if kind == FUNCTION else {}
+            held = cast("Mapping[str, object]", sets.read_sets(index)) if kind == _FUNCTION else {}
             reason = _why_not(kind, held)
             if reason:
                 others.append(f"data set {index + 1} is {reason}")
@@ -70,12 +70,12 @@ def read_uff(path: Path, content: bytes, layout: TextLayout) -> DataFile:
 
 def _why_not(kind: int, held: Mapping[str, object]) -> str:
     """Return what a data set is if it is no response over time, else an empty text."""
-    if kind != FUNCTION:
+    if kind != _FUNCTION:
         return f"no function, but of type {kind}"
     function, axis = (int(cast("int", held[key]) or 0) for key in ("func_type", "abscissa_spec_data_type"))
-    if function not in OVER_TIME:
-        return FUNCTIONS[function] if 0 < function < len(FUNCTIONS) else f"a function of type {function}"
-    return "" if axis in TIME_AXIS else f"a function over {str(held['abscissa_axis_lab']).strip() or axis}"
+    if function not in _OVER_TIME:
+        return _FUNCTIONS[function] if 0 < function < len(_FUNCTIONS) else f"a function of type {function}"
+    return "" if axis in _TIME_AXIS else f"a function over {str(held['abscissa_axis_lab']).strip() or axis}"
 
 
 def _signal(place: str, held: Mapping[str, object]) -> tuple[Signal, Array]:
@@ -84,9 +84,9 @@ def _signal(place: str, held: Mapping[str, object]) -> tuple[Signal, Array]:
     stated = int(cast("int", held["num_pts"]))
     if min(len(values), len(times)) < stated:
         raise InputError(f"{place}: has {len(values)} of {stated} values; the file is truncated: export it again")
-    if len(values) >= stated + OF_LINE:
+    if len(values) >= stated + _OF_LINE:
         raise InputError(f"{place}: has {len(values)} values where it states {stated}; correct the number of them")
-    name = next((str(held[key]).strip() for key in NAMES if str(held.get(key, "")).strip().lower() not in NONE), "")
+    name = next((str(held[key]).strip() for key in _NAMES if str(held.get(key, "")).strip().lower() not in _NONE), "")
     node = f"{held.get('rsp_node', '')}:{held.get('rsp_dir', '')}"
     unit = _unit(held, "ordinate_axis_units_lab")
     of_time = conversion(_unit(held, "abscissa_axis_units_lab") or "s", DIMENSIONS["time"]).factor
@@ -95,7 +95,7 @@ def _signal(place: str, held: Mapping[str, object]) -> tuple[Signal, Array]:
 
 def _unit(held: Mapping[str, object], key: str) -> str:
     unit = str(held.get(key, "")).strip()
-    return "" if unit.lower() in NONE else unit
+    return "" if unit.lower() in _NONE else unit
 
 
 def _array(held: Mapping[str, object], key: str) -> Array:
@@ -117,11 +117,11 @@ def read_rpc(path: Path, content: bytes, layout: TextLayout) -> DataFile:
             f"{path}: states {count} channels of {frames} frames of {per_frame} points; each is at least 1"
         )
     kind, order = header.get("DATA_TYPE", "SHORT_INTEGER"), header.get("FORMAT", "BINARY")
-    if kind not in TYPES or order not in ORDERS:
-        permitted = f"{', '.join(TYPES)} in {', '.join(ORDERS)}"
+    if kind not in _TYPES or order not in _ORDERS:
+        permitted = f"{', '.join(_TYPES)} in {', '.join(_ORDERS)}"
         raise InputError(f"{path}: numbers are {kind} in {order}; permitted: {permitted}")
-    values = np.frombuffer(content[int(header["NUM_HEADER_BLOCKS"]) * BLOCK :], dtype="u1")
-    table = _demultiplex(path, values, ORDERS[order] + TYPES[kind], (count, frames * per_frame, per_group))
+    values = np.frombuffer(content[int(header["NUM_HEADER_BLOCKS"]) * _BLOCK :], dtype="u1")
+    table = _demultiplex(path, values, _ORDERS[order] + _TYPES[kind], (count, frames * per_frame, per_group))
     scales = [_scale(header, number, kind) for number in range(1, count + 1)]
     signals = tuple(
         Signal(
@@ -147,16 +147,16 @@ def _kept(table: Array, per_frame: int) -> tuple[int, tuple[str, ...]]:
 
 def _header(path: Path, content: bytes) -> dict[str, str]:
     header: dict[str, str] = {}
-    for start in range(0, len(content) - RECORD + 1, RECORD):
-        record = content[start : start + RECORD]
+    for start in range(0, len(content) - _RECORD + 1, _RECORD):
+        record = content[start : start + _RECORD]
         key, value = (
-            part.split(b"\0")[0].decode("cp1252", "replace").strip() for part in (record[:KEYWORD], record[KEYWORD:])
+            part.split(b"\0")[0].decode("cp1252", "replace").strip() for part in (record[:_KEYWORD], record[_KEYWORD:])
         )
         if key:
             header[key] = value
-        if start // RECORD + 1 >= int(header.get("NUM_PARAMS", "3")):
+        if start // _RECORD + 1 >= int(header.get("NUM_PARAMS", "3")):
             break
-    missing = [key for key in NEEDED if key not in header]
+    missing = [key for key in _NEEDED if key not in header]
     if missing:
         raise InputError(f"{path}: its header states no {missing[0]}; it is no RPC III time history, or truncated")
     return header
@@ -177,4 +177,4 @@ def _demultiplex(path: Path, raw: np.ndarray, kind: str, shape: tuple[int, int, 
 def _scale(header: Mapping[str, str], number: int, kind: str) -> float:
     if kind == "FLOATING_POINT":
         return 1.0
-    return float(header[f"SCALE.CHAN_{number}"]) * float(header.get("INT_FULL_SCALE", FULL_SCALE)) / FULL_SCALE
+    return float(header[f"SCALE.CHAN_{number}"]) * float(header.get("INT_FULL_SCALE", _FULL_SCALE)) / _FULL_SCALE

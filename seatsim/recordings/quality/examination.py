@@ -24,7 +24,7 @@ from seatsim.scenario.loading import single
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.schema.errors import InputError
 
-ORDER = ("error", "warning", "note")
+_ORDER = ("error", "warning", "note")
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def examine(recording: Recording) -> Examination:
         # Most of their time goes into simulations, which leave the interpreter free.
         with ThreadPoolExecutor() as pool:
             issues += merge_issues(list(chain.from_iterable(pool.map(_each, runs))), len(runs))
-    return Examination(sorted(issues, key=lambda issue: ORDER.index(issue.severity)))
+    return Examination(sorted(issues, key=lambda issue: _ORDER.index(issue.severity)))
 
 
 def refuse(examination: Examination) -> None:

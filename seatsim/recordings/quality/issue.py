@@ -19,7 +19,7 @@ LATE = 0.05
 
 A smaller delay of a sensor or logger is a cause of a gap (sensor.lag, sensor.clock_skew) for the diagnosis to find.
 """
-AT_REST = 3.0
+_AT_REST = 3.0
 """Standard deviation, over the stated noise, up to which a channel is taken to be at rest: noise is stated roughly."""
 Severity = Literal["error", "warning", "note"]
 
@@ -69,7 +69,7 @@ def select_errors(issues: Sequence[Issue]) -> list[Issue]:
 
 def is_at_rest(values: Array, noise: float) -> bool:
     """Say whether values show hardly more than their noise."""
-    return float(np.std(values)) <= AT_REST * noise
+    return float(np.std(values)) <= _AT_REST * noise
 
 
 class RunUnderTest(NamedTuple):

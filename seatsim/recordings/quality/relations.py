@@ -23,20 +23,20 @@ from seatsim.recordings.replay import COMPARED, LEFT_OUT
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import USUAL, conversion
 
-ALIKE = 0.9
+_ALIKE = 0.9
 """Correlation from which a factor between two sides of an equation is meant."""
 MOST_ROWS = 120_000
 """Rows from which relations are computed."""
-TINY_FORCE, MOVED = 5.0, 1e-3
+_TINY_FORCE, _MOVED = 5.0, 1e-3
 """N that a damper exceeds once it is moved by so many m."""
-OPEN, CLOSED, AS_GOOD = 0.05, 0.1, 2.0
+_OPEN, _CLOSED, _AS_GOOD = 0.05, 0.1, 2.0
 """Difference of two sides of an equation from which they contradict each other, share of it that a correction leaves at
 most, and ratio to the least that is left up to which another correction does as well."""
-SURELY_ALIKE, FAR = 0.97, 0.3
+_SURELY_ALIKE, _FAR = 0.97, 0.3
 """Correlation of a coil with its command, and share by which a factor differs from one, that no effect gives."""
-NEAR = 0.25
+_NEAR = 0.25
 """Share by which a factor may differ from that of a unit."""
-USUAL_REACH, EFFECTS_REACH = 5.0, {"damper_force": 30.0}
+_USUAL_REACH, _EFFECTS_REACH = 5.0, {"damper_force": 30.0}
 """Factor by which effects may change the size of a channel; a damper without its current has a tenth of its force."""
 
 
@@ -57,10 +57,10 @@ def _copies(
     first, second, unit = named
     if first in part and second in part:
         gain, alike = regress(part[first], part[second], rate, *band)
-        if alike > ALIKE and (said := read_gain(gain, unit)):
+        if alike > _ALIKE and (said := read_gain(gain, unit)):
             text = f"{second}: is {gain:.3g} times {first} below {band[1]:g} Hz: {said}, or that of {first} is wrong"
             yield Issue("warning", kind_of(gain), text, second)
-        elif unit == "A" and alike > SURELY_ALIKE and gain > 1.0 + FAR:
+        elif unit == "A" and alike > _SURELY_ALIKE and gain > 1.0 + _FAR:
             text = f"{second}: is {gain:.3g} times {first} below {band[1]:g} Hz; the scale of one of both is wrong"
             yield Issue("warning", "scale", text, second)
 
@@ -77,7 +77,7 @@ def _force(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
         return
     travel, force = part[name], part["damper_force"]
     largest, stroke = float(np.max(np.abs(force))), float(np.max(np.abs(travel)))
-    if largest < TINY_FORCE and stroke > MOVED:
+    if largest < _TINY_FORCE and stroke > _MOVED:
         text = f"damper_force: is {largest:.3g} N at most over a stroke of {1e3 * stroke:.3g} mm; is it in kN?"
         yield Issue("warning", "unit", text, "damper_force")
     speed = np.gradient(travel, 1.0 / rate)
@@ -99,16 +99,16 @@ def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
     target, frame, floor = (
         band_passed(each, rate, 0.7, min(8.0, 0.2 * rate)) for each in (slope, part[names[1]], part[names[2]])
     )
-    before = unlike(target, frame - floor)
+    before = _unlike(target, frame - floor)
     left = {
-        (channels, said, factor): unlike(*_corrected(channels, factor, target, frame, floor))
+        (channels, said, factor): _unlike(*_corrected(channels, factor, target, frame, floor))
         for channels in ((names[0],), (names[1],), (names[2],), (names[2], names[1]))
         for said, factor in _list_factors(channels[0])
     }
     least = min(left.values())
-    is_closed = before > OPEN and least < CLOSED * before
+    is_closed = before > _OPEN and least < _CLOSED * before
     for channels, said, factor in left if is_closed else ():
-        if left[channels, said, factor] > AS_GOOD * least:
+        if left[channels, said, factor] > _AS_GOOD * least:
             continue
         severity: Severity = "warning" if is_within_reach(channels[0], factor) else "error"
         of_both = ": of both" if len(channels) > 1 else ":"
@@ -142,10 +142,10 @@ def _corrected(
 def _scale(target: Array, relative: Array, rate: float) -> Iterator[Issue]:
     """Yield that the travel's second derivative is frame - floor acceleration but for a factor, where it is."""
     product, power = float(target @ relative), float(relative @ relative)
-    if product <= ALIKE * float(np.linalg.norm(target)) * power**0.5:
+    if product <= _ALIKE * float(np.linalg.norm(target)) * power**0.5:
         return
     gain = product / power
-    if not 1.0 - FAR < gain < 1.0 / (1.0 - FAR):
+    if not 1.0 - _FAR < gain < 1.0 / (1.0 - _FAR):
         text = f"its second derivative is {gain:.3g} times frame - floor acceleration: its scale is wrong by that"
         other = f", or that of the accelerations, or the sample rate, which then is {rate / gain**0.5:.4g} Hz"
         yield Issue("warning", "scale", f"suspension_displacement: {text}{other}", "suspension_displacement")
@@ -172,17 +172,17 @@ def regress(expected: Array, measured: Array, rate: float, low: float = 0.5, hig
 def read_gain(gain: float, unit: str) -> str:
     """Return what a gain of values in a unit means; empty where it is close to one, or means nothing."""
     sign = "its sign is swapped" if gain < 0.0 else ""
-    if abs(abs(gain) - 1.0) < NEAR:
+    if abs(abs(gain) - 1.0) < _NEAR:
         return sign
     for other in USUAL[unit]:
-        if abs(abs(gain) * conversion(other, unit).factor - 1.0) < NEAR:
+        if abs(abs(gain) * conversion(other, unit).factor - 1.0) < _NEAR:
             return f"it reads as if in {other}" + (f", and {sign}" if sign else "")
     return sign
 
 
 def is_within_reach(channel: str, factor: float) -> bool:
     """Return whether an effect of the library may change the size of a channel by a factor."""
-    reach = EFFECTS_REACH.get(channel, USUAL_REACH)
+    reach = _EFFECTS_REACH.get(channel, _USUAL_REACH)
     return 1.0 / reach < factor < reach
 
 
@@ -196,7 +196,7 @@ def consistency_residuals(run: RunUnderTest, table: Table, outputs: Table | None
     if not pairs:
         return {}
     smooth = dict(zip(pairs, filter_band(run, np.array(list(pairs.values()))), strict=True))
-    return {name: unlike(*(pair if name == "coil_current" else smooth[name])) for name, pair in pairs.items()}
+    return {name: _unlike(*(pair if name == "coil_current" else smooth[name])) for name, pair in pairs.items()}
 
 
 def _balances(run: RunUnderTest, used: Table) -> Iterator[tuple[str, tuple[Array, Array]]]:
@@ -219,7 +219,7 @@ def _slope(run: RunUnderTest, values: Array) -> Array:
     return np.asarray(np.gradient(filter_band(run, values), 1.0 / run.rate))
 
 
-def unlike(first: Array, second: Array) -> float:
+def _unlike(first: Array, second: Array) -> float:
     """Return e^2: 0 alike, 1 unrelated, 2 opposite."""
     size = float(np.mean(first**2) + np.mean(second**2))
     return float(np.mean((first - second) ** 2)) / size if size > 0.0 else 0.0

@@ -19,20 +19,20 @@ from seatsim.rig.temperature import Thermal
 from seatsim.schema.arrays import Array
 from seatsim.schema.tables import numbers, read_table
 
-LEAST_FINE = 2
+_LEAST_FINE = 2
 """Channels with noise finer than their resolution from which on no two rows are alike by chance."""
-LEAST_REPEATED = 4
+_LEAST_REPEATED = 4
 """Rows written twice from which on they are said: fewer shift no signal by more than a few milliseconds."""
-BEYOND_CHANCE = 5.0
+_BEYOND_CHANCE = 5.0
 """Ratio to the number of rows that channels repeat together by chance from which rows were written twice."""
-NOISY = 1e-4
+_NOISY = 1e-4
 """Noise as a share of the swing above which it is that of a sensor, and not of arithmetic."""
-NOTHING = np.empty(0)
-STEP = 16.0
+_NOTHING = np.empty(0)
+_STEP = 16.0
 """A step of the travel over lost rows is so many times as large as what its steps usually differ by."""
-SLOWEST, FASTEST = 10.0, 200_000.0
+_SLOWEST, _FASTEST = 10.0, 200_000.0
 """Hz; rates of loggers of vibration lie between: below, nothing of a seat's resonances is left."""
-SHORTEST, SHORT = 4.0, 10.0
+_SHORTEST, _SHORT = 4.0, 10.0
 """s; compared time of all runs together below which nothing can be diagnosed, or not well."""
 
 
@@ -41,7 +41,7 @@ def check_rows(run: RunUnderTest) -> Iterator[Issue]:
     yield from _doubled(run)
     travel = "suspension_displacement" if "suspension_displacement" in run.table else "displacement"
     if travel in run.table:
-        steps = find_spikes(np.diff(run.table[travel]), STEP)
+        steps = find_spikes(np.diff(run.table[travel]), _STEP)
         if len(steps):
             text = (
                 f"steps at {steps[0] / run.rate:.4g} s (row {steps[0] + 1}), where no inertia lets it; rows were lost"
@@ -51,7 +51,7 @@ def check_rows(run: RunUnderTest) -> Iterator[Issue]:
 
 
 def _doubled(run: RunUnderTest) -> Iterator[Issue]:
-    if sum(is_fine(run, channel) for channel in MOTION if channel in run.table) < LEAST_FINE:
+    if sum(is_fine(run, channel) for channel in MOTION if channel in run.table) < _LEAST_FINE:
         return
     again = find_repeated_rows(np.array([values for values in run.table.values() if np.ptp(values) > 0.0]))
     if len(again):
@@ -73,19 +73,19 @@ def find_repeated_rows(channels: Array) -> NDArray[np.intp]:
     order = np.argsort(marks, kind="stable")
     distances, counts = np.unique(np.diff(order)[np.diff(marks[order]) == 0.0], return_counts=True)
     found = [np.empty(0, dtype=np.intp)]
-    for distance in distances[counts >= np.maximum(distances, LEAST_REPEATED)]:
+    for distance in distances[counts >= np.maximum(distances, _LEAST_REPEATED)]:
         equal, by_chance = (marks[lag:] == marks[:-lag] for lag in (distance, distance + 1))
         alone = (values[:, distance:] == values[:, :-distance]) & ~equal
         together = np.sum(np.prod(uniform_filter1d(alone.astype(float), AROUND, axis=1), axis=0))
-        if np.sum(equal) >= LEAST_REPEATED + 2 * np.sum(by_chance) + BEYOND_CHANCE * together:
+        if np.sum(equal) >= _LEAST_REPEATED + 2 * np.sum(by_chance) + _BEYOND_CHANCE * together:
             ends = np.flatnonzero(np.diff(np.concatenate([[False], equal, [False]])))
             blocks = zip(ends[::2], ends[1::2], strict=True)
             rows = [np.arange(first, end) + distance for first, end in blocks if end - first >= distance]
-            found += rows if sum(map(len, rows)) >= LEAST_REPEATED else []
+            found += rows if sum(map(len, rows)) >= _LEAST_REPEATED else []
     return np.unique(np.concatenate(found))
 
 
-def check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
+def _check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Report that nothing states the current, or that no noise is stated of any channel."""
     recording, nominal = runs[0].recording, runs[0].nominal
     source = nominal.source
@@ -101,8 +101,8 @@ def check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         yield issue_in_all_runs(
             "warning", "current", f"{text}; 0 A is taken: write controller.current", "current_command"
         )
-    command = [run.table.get("current_command", NOTHING) for run in runs]
-    flowing = [run.table.get("coil_current", NOTHING) for run in runs]
+    command = [run.table.get("current_command", _NOTHING) for run in runs]
+    flowing = [run.table.get("coil_current", _NOTHING) for run in runs]
     if (
         any(each.size for each in command)
         and not any(map(np.any, command))
@@ -112,7 +112,7 @@ def check_stated(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         yield issue_in_all_runs("warning", "current", text, "current_command")
     channel = next((name for name in MOTION if name in recording.channels), "")
     seen = measure_level(runs[0].table[channel], runs[0].rate).fourth if channel else 0.0
-    is_noisy = NOISY * np.std(runs[0].table[channel]) < seen < np.inf if channel else False
+    is_noisy = _NOISY * np.std(runs[0].table[channel]) < seen < np.inf if channel else False
     if is_noisy and not any(entry.noise_rms for entry in recording.channels.values()):
         text = "no noise_rms is stated, of this channel or any other"
         yield issue_in_all_runs("note", "noise", f"{text}; thresholds hang on it: state that of each sensor", channel)
@@ -130,7 +130,7 @@ def check_clock(run: RunUnderTest) -> Iterator[Issue]:
     jumps = np.flatnonzero(~is_even)
     mean = float(np.mean(steps[is_even])) if is_even.any() else 0.0
     typical = float(np.median(steps))
-    if not SLOWEST <= run.rate <= FASTEST:
+    if not _SLOWEST <= run.rate <= _FASTEST:
         apart = f"rows are {interval:.5g} s apart, {run.rate:.5g} Hz, which no logger of a seat has"
         yield run.issue("error", "rate", f"{apart}; is the time in ms? state its unit and import again", "time")
     elif not (abs(typical - 1.0) <= 0.3 and abs(mean - 1.0) <= 0.005):
@@ -145,7 +145,7 @@ def check_clock(run: RunUnderTest) -> Iterator[Issue]:
 
 def check_all_runs(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     """Report faults that need all runs together."""
-    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, check_constants, check_stated, _fahrenheit):
+    for check in (_length, _duplicates, _repeats, _at_rest, check_noise, check_constants, _check_stated, _fahrenheit):
         yield from check(runs)
 
 
@@ -156,9 +156,9 @@ def _length(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
             text = f"lasts {left + LEFT_OUT:.3g} s and its first second is left out; remove or record anew"
             yield run.issue("error", "short", text)
     total = sum(seconds)
-    if total < SHORT:
-        text = f"{total:.3g} s remain to compare, at least {SHORT:g} s are wanted; record more"
-        yield issue_in_all_runs("warning" if total >= SHORTEST else "error", "short", text)
+    if total < _SHORT:
+        text = f"{total:.3g} s remain to compare, at least {_SHORT:g} s are wanted; record more"
+        yield issue_in_all_runs("warning" if total >= _SHORTEST else "error", "short", text)
     if len(runs) == 1:
         text = "is the only run, so that no other excitation checks the verdict; record a second run"
         yield runs[0].issue("warning", "single", text)

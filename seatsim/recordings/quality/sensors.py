@@ -21,39 +21,39 @@ from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.units import STANDARD_GRAVITY
 
-NEAR_GRAVITY = 0.05
+_NEAR_GRAVITY = 0.05
 """Share by which a mean may differ from gravity: tilt of the sensor, error of its scale, and its own offset."""
-OFFSET = 0.2
+_OFFSET = 0.2
 """m/s^2; mean from which an offset is said: a motion of 24 s that has it ends at 5 m/s."""
-DISPLACED = 1.0
+_DISPLACED = 1.0
 """Mean over half the range from the 1st to the 99th percentile above which a channel hardly passes through zero."""
-ABOUT_ZERO = ("suspension_displacement", "displacement", "velocity", "damper_force")
+_ABOUT_ZERO = ("suspension_displacement", "displacement", "velocity", "damper_force")
 """Other channels that swing about zero, or not far from it."""
-NOISE_OFF = 3.0
+_NOISE_OFF = 3.0
 """Factor by which the noise may differ from what is stated."""
-WHITE = 0.9
+_WHITE = 0.9
 """Share of the level of third differences that fourth ones have at least where both are of white noise."""
-GROWS = 1.5
+_GROWS = 1.5
 """Ratio of the levels in the liveliest and the calmest fifth of windows above which it grows with the motion."""
-REPEATS = 0.67
+_REPEATS = 0.67
 """Share of the level seen that the difference of two repeats has at most where what is seen repeats itself."""
 FLOOR = "floor_acceleration"
 """Channel of the floor's accelerometer, whose error acts like a motion of the floor."""
-WINDOW, FEWEST = 0.032, 6
+_WINDOW, _FEWEST = 0.032, 6
 """Seconds over which a slope is fitted, and least rows."""
-STILL = 3.0
+_STILL = 3.0
 """Stillness above which a sensor does not follow the floor; faultless ones have 0.9 to 2."""
-FINE = 32
+_FINE = 32
 """Points between two rows at which slopes are taken, so that a sine is sampled at many phases."""
-FASTEST = 0.98
+_FASTEST = 0.98
 """Share of rises below the one that has to stand out from the noise, lest the floor is too slow to tell."""
-NEAR_ZERO = 0.1
+_NEAR_ZERO = 0.1
 """Share of its standard deviation within which a record is near zero."""
-BIN, BESIDE = 7.0, 3
+_BIN, _BESIDE = 7.0, 3
 """Width in noise of the bins in which values at an extreme, and in that many bins beside it, are counted."""
-LEAST = 1e-9
+_LEAST = 1e-9
 """m/s^2 of noise that a record has at least."""
-PILED, FEW = 5.0, 12
+_PILED, _FEW = 5.0, 12
 """Ratio of rows at an extreme to rows in a bin beside it above which it is a limit, and least rows at a limit."""
 
 
@@ -68,7 +68,7 @@ def without_gravity(recording: Recording) -> Recording:
         return recording
     recorded = [name for name in ACCELEROMETERS if name in recording.channels]
     means = {name: float(np.mean(np.concatenate([table[name] for table in tables]))) for name in recorded}
-    found = {name: mean for name, mean in means.items() if abs(abs(mean) / STANDARD_GRAVITY - 1.0) <= NEAR_GRAVITY}
+    found = {name: mean for name, mean in means.items() if abs(abs(mean) / STANDARD_GRAVITY - 1.0) <= _NEAR_GRAVITY}
     return dataclasses.replace(recording, removed=MappingProxyType(found)) if found else recording
 
 
@@ -80,17 +80,17 @@ def check_constants(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
     for channel in ACCELEROMETERS:
         if channel in runs[0].table:
             mean = float(np.mean(np.concatenate([run.table[channel] for run in runs])))
-            if abs(mean) > OFFSET:
+            if abs(mean) > _OFFSET:
                 text = (
                     f"its mean is {mean:.3g} m/s^2, an offset: a seat that stays where it is has no mean acceleration"
                 )
                 yield issue_in_all_runs("note", "offset", text, channel)
-    for channel in ABOUT_ZERO:
+    for channel in _ABOUT_ZERO:
         if channel in runs[0].table:
             values = np.concatenate([run.table[channel] for run in runs])
             low, high = np.quantile(values, (0.01, 0.99))
             mean, swing = float(np.mean(values)), 0.5 * float(high - low)
-            if abs(mean) > DISPLACED * swing > 0.0:
+            if abs(mean) > _DISPLACED * swing > 0.0:
                 unit = runs[0].recording.channels[channel].unit
                 text = f"its mean is {mean:.3g} {unit}, {abs(mean) / swing:.0%} of its swing; check the sensor's zero"
                 yield issue_in_all_runs("note", "offset", text, channel)
@@ -106,15 +106,15 @@ def check_noise(runs: Sequence[RunUnderTest]) -> Iterator[Issue]:
         repeated = _repeated(runs, channel)
         all_of = _all_of(repeated)
         text = f"noise_rms is stated as {stated:g}, but about {seen.fourth:.2g} is seen"
-        is_too_small = seen.third > NOISE_OFF * stated and seen.fourth > WHITE * seen.third
+        is_too_small = seen.third > _NOISE_OFF * stated and seen.fourth > _WHITE * seen.third
         if is_too_small and (reason := _not_of_the_sensor(seen, repeated, runs[0].rate)):
             yield issue_in_all_runs("note", "noise", f"{text}, which {reason}: it is no noise of the sensor", channel)
         elif is_too_small:
             yield issue_in_all_runs("warning", "noise", f"{text}; correct it, all thresholds hang on it", channel)
-        elif all_of < stated / NOISE_OFF:
+        elif all_of < stated / _NOISE_OFF:
             text = f"noise_rms is stated as {stated:g}, but repeats differ by {all_of:.2g} only"
             yield issue_in_all_runs("warning", "noise", f"{text}; correct it, all thresholds hang on it", channel)
-        elif seen.fourth < stated / NOISE_OFF and not all_of >= stated / NOISE_OFF:
+        elif seen.fourth < stated / _NOISE_OFF and not all_of >= stated / _NOISE_OFF:
             yield _less_is_seen(runs, channel, seen, stated)
 
 
@@ -122,7 +122,7 @@ def _less_is_seen(runs: Sequence[RunUnderTest], channel: str, seen: Level, state
     """Return what less noise at high frequencies than is stated means: nothing where a filter took it."""
     values = np.concatenate([run.table[channel] for run in runs])
     least = max(SILENT * 0.5 * float(np.ptp(values)), quantum(values) / 12**0.5)
-    if seen.fourth < max(least, WHITE * seen.third):
+    if seen.fourth < max(least, _WHITE * seen.third):
         text = f"of the stated noise_rms {stated:g} next to nothing is left at high frequencies: it was filtered"
         return issue_in_all_runs("note", "noise", f"{text}, and what is left below them cannot be seen", channel)
     text = f"noise_rms is stated as {stated:g}, but about {seen.fourth:.2g} is seen at high frequencies"
@@ -148,9 +148,9 @@ def _all_of(repeated: Sequence[Array]) -> float:
 
 def _not_of_the_sensor(seen: Level, repeated: Sequence[Array], rate: float) -> str:
     """Return why what is seen is not the sensor's noise, an empty string where it may be."""
-    if seen.lively > GROWS * seen.calm:
+    if seen.lively > _GROWS * seen.calm:
         return "grows with the motion"
-    if any(measure_level(values, rate).fourth < REPEATS * seen.fourth for values in repeated):
+    if any(measure_level(values, rate).fourth < _REPEATS * seen.fourth for values in repeated):
         return "comes again when the excitation is repeated"
     return ""
 
@@ -170,10 +170,10 @@ def follows_floor(recording: Recording) -> bool:
 
 def _faults(values: Array, noise: float, rate: float) -> list[tuple[str, str]]:
     """Return kind and text of the issues of a record; nothing where the floor is at rest."""
-    noise = max(noise, LEAST)
+    noise = max(noise, _LEAST)
     if is_at_rest(values, noise):
         return []
-    if _stillness(values, noise, max(FEWEST, round(WINDOW * rate))) > STILL:
+    if _stillness(values, noise, max(_FEWEST, round(_WINDOW * rate))) > _STILL:
         return [("steps", "stands still at values other than zero, as a sensor does that has steps or play; repair it")]
     limits = _limits(values, noise)
     return [("limit", f"stands still about its extreme {at:.4g}; it is clipped: widen its range") for at in limits]
@@ -184,9 +184,9 @@ def _limits(values: Array, noise: float) -> list[float]:
     piled = []
     for sign in (1.0, -1.0):
         extreme = float(np.max(sign * values))
-        edges = extreme - BIN * noise * np.arange(BESIDE + 1, -1, -1)
+        edges = extreme - _BIN * noise * np.arange(_BESIDE + 1, -1, -1)
         *beside, at = np.histogram(sign * values, edges)[0]
-        if at >= max(FEW, PILED * np.mean(beside)):
+        if at >= max(_FEW, _PILED * np.mean(beside)):
             piled.append(sign * extreme)
     return piled
 
@@ -195,13 +195,13 @@ def _stillness(values: Array, noise: float, rows: int) -> float:
     time = np.arange(rows) - (rows - 1) / 2.0
     windows = sliding_window_view(values, rows)
     rises = windows @ time * rows / (time @ time)
-    between = np.linspace(0.0, len(rises) - 1.0, FINE * len(rises))
-    means, room = windows.mean(axis=1), BIN * noise
+    between = np.linspace(0.0, len(rises) - 1.0, _FINE * len(rises))
+    means, room = windows.mean(axis=1), _BIN * noise
     within = (means > np.min(values) + room) & (means < np.max(values) - room)
-    counted = np.repeat(within & (np.abs(means) > NEAR_ZERO * np.std(values)), FINE)
+    counted = np.repeat(within & (np.abs(means) > _NEAR_ZERO * np.std(values)), _FINE)
     unit = 2.0 * noise * np.sqrt(12.0 / rows)
-    if np.quantile(np.abs(rises), FASTEST) < 3.0 * unit:
+    if np.quantile(np.abs(rises), _FASTEST) < 3.0 * unit:
         return 0.0
     size = np.abs(np.interp(between, np.arange(len(rises)), rises))[counted]
     still, beside = np.sum(size < unit), np.sum((size >= unit) & (size < 3.0 * unit))
-    return float(2.0 * still / max(beside, FINE))
+    return float(2.0 * still / max(beside, _FINE))
