@@ -163,11 +163,8 @@ def _print_power(base: Value, exponent: Value, scope: Scope) -> Value:
 
 def _print_unary(op: ast.unaryop, value: Value, node: ast.AST, scope: Scope) -> Value:
     if isinstance(op, ast.Not):
-        return (
-            number(not value.known)
-            if is_known(value)
-            else Value(f"!{within(value, 0)}", BOOLEAN, plain=False, rank=UNARY)
-        )
+        opposite = Value(f"!{within(value, 0)}", BOOLEAN, plain=False, rank=UNARY)
+        return number(not value.known) if is_known(value) else opposite
     if not isinstance(op, ast.USub) or not _is_number(value):
         raise scope.refuse(node, "this operation has no counterpart")
     if is_known(value):
@@ -248,8 +245,5 @@ def _array_element(owner: Value, indices: list[Value], scope: Scope) -> Value:
     rest = owner.shape[len(indices) :]
     if not rest:
         return Value(f"{owner.code}[{' + '.join(terms)}]", REAL)
-    return Value(
-        f"({within(owner, SUM)} + {' + '.join(terms)})",
-        types.Array(REAL, len(rest), "C", readonly=not owner.type.mutable),
-        shape=rest,
-    )
+    kind = types.Array(REAL, len(rest), "C", readonly=not owner.type.mutable)
+    return Value(f"({within(owner, SUM)} + {' + '.join(terms)})", kind, shape=rest)

@@ -43,6 +43,9 @@ _SCORED = 50
 _DISAGREEING = 0.9
 """Weight of a way to read a table in which the line above its rows has another number of cells."""
 
+_QUOTED = 120
+"""Letters of a line that an error quotes."""
+
 Kind = bool | None
 """True for a cell that holds a number or a time, None for one that holds nothing, False for a text."""
 
@@ -137,3 +140,9 @@ def _count(cell: str, decimal: str) -> float:
     if PLAIN[decimal].fullmatch(cell) or _STAMP.fullmatch(cell):
         return 0.5 if _LEADING_ZERO.fullmatch(cell) else 1.0
     return (1.0 if decimal in cell else 0.5) if THOUSANDS[decimal].fullmatch(cell) else 0.0
+
+
+def quote(line: str) -> str:
+    """Return a line as an error quotes it."""
+    text = line.strip()
+    return f"'{text}'" if len(text) <= _QUOTED else f"'{text[:_QUOTED]}...'"

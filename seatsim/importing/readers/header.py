@@ -21,6 +21,7 @@ from seatsim.importing.readers.dialect import (
     Kind,
     find_body,
     kind_of,
+    quote,
     split_line,
 )
 from seatsim.schema.errors import InputError
@@ -39,8 +40,6 @@ COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+)\s*")
 _COMMENT_OR_SEMICOLON = re.compile(r"^\s*(?:#+|%+|//+|!+|;)\s*")
 _LABEL = re.compile(r"^(?:headers?|columns?|fields?|names?|channels?|spalten|colonnes)\s*[:=,;\t ]\s*", re.IGNORECASE)
 """A word before the names that says that they follow."""
-_QUOTED = 120
-"""Letters of a line that an error quotes."""
 _LEFT_OUT = ("", "comment", "comments", "remark", "remarks", "kommentar", "bemerkung", "commentaire")
 """Last names of a line, in lower case, that may have no cells in the rows: LabVIEW writes `Comment`."""
 _ROW = "row"
@@ -247,9 +246,3 @@ def _ways(text: str, delimiter: str, is_remark: bool) -> Iterator[Callable[[str]
         yield lambda text: [cell.strip('"') for cell in BLANKS.findall(text)]
         yield lambda text: re.split(r"\s+(?![\[({</])", text.strip())
         yield lambda text: re.split(r"\s{2,}|\t", text.strip())
-
-
-def quote(line: str) -> str:
-    """Return a line as an error quotes it."""
-    text = line.strip()
-    return f"'{text}'" if len(text) <= _QUOTED else f"'{text[:_QUOTED]}...'"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from seatsim.importing.readers.columns import part_by_time, read_column
-from seatsim.importing.readers.dialect import BLANKS, MISSING, Dialect, find_dialect, kind_of, split_line
+from seatsim.importing.readers.dialect import BLANKS, MISSING, Dialect, find_dialect, kind_of, quote, split_line
 from seatsim.importing.readers.header import (
     COMMENT,
     Header,
@@ -19,7 +19,6 @@ from seatsim.importing.readers.header import (
     count_columns,
     first_row_of_numbers,
     fit_names,
-    quote,
     split_header,
 )
 from seatsim.importing.readers.naming import find_rate, note_left_out

@@ -13,7 +13,7 @@ between 0.5 and 8 Hz, where the channels are recorded: in this band even a rough
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -40,7 +40,7 @@ _USUAL_REACH, _EFFECTS_REACH = 5.0, {"damper_force": 30.0}
 """Factor by which effects may change the size of a channel; a damper without its current has a tenth of its force."""
 
 
-def doubt_relations(table: Mapping[str, Array], rate: float) -> Iterator[Issue]:
+def doubt_relations(table: Table, rate: float) -> Iterator[Issue]:
     """Yield signs and units of a seat's or a bench's channels that contradict the laws of motion, whatever the rig."""
     part = {name: values[:MOST_ROWS] - float(np.mean(values[:MOST_ROWS])) for name, values in table.items()}
     yield from _force(part, rate)
@@ -50,9 +50,7 @@ def doubt_relations(table: Mapping[str, Array], rate: float) -> Iterator[Issue]:
     yield from _copies(part, rate, ("current_command", "coil_current", "A"), (0.0, 2.0))
 
 
-def _copies(
-    part: Mapping[str, Array], rate: float, named: tuple[str, str, str], band: tuple[float, float]
-) -> Iterator[Issue]:
+def _copies(part: Table, rate: float, named: tuple[str, str, str], band: tuple[float, float]) -> Iterator[Issue]:
     """Yield what it means that a channel is another one in a band, but for its sign or its unit."""
     first, second, unit = named
     if first in part and second in part:
@@ -70,7 +68,7 @@ def kind_of(gain: float) -> str:
     return "sign" if gain < 0.0 else "unit"
 
 
-def _force(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
+def _force(part: Table, rate: float) -> Iterator[Issue]:
     """Yield a damper force that drives the motion, where it opposes extension and dissipates, or that is tiny."""
     name = "displacement" if "displacement" in part else "suspension_displacement"
     if name not in part or "damper_force" not in part:
@@ -87,7 +85,7 @@ def _force(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
         yield Issue("warning", "sign", text, "damper_force")
 
 
-def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
+def _motion(part: Table, rate: float) -> Iterator[Issue]:
     """Name the signs and units with which the travel's second derivative is frame - floor acceleration.
 
     No effect on a rig does what a swapped sign or a unit beyond the reach of effects does here: it is an error.
@@ -96,9 +94,8 @@ def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
     if not set(names) <= set(part):
         return
     slope = np.gradient(np.gradient(part[names[0]], 1.0 / rate), 1.0 / rate)
-    target, frame, floor = (
-        band_passed(each, rate, 0.7, min(8.0, 0.2 * rate)) for each in (slope, part[names[1]], part[names[2]])
-    )
+    sides = slope, part[names[1]], part[names[2]]
+    target, frame, floor = (band_passed(each, rate, 0.7, min(8.0, 0.2 * rate)) for each in sides)
     before = _unlike(target, frame - floor)
     left = {
         (channels, said, factor): _unlike(*_corrected(channels, factor, target, frame, floor))
