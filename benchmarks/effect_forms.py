@@ -35,8 +35,7 @@ from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.effects.base import EFFECTS
 from seatsim.excitations.recording import interpolate_floor
-from seatsim.recordings.channel_units import SEAT_CHANNELS
-from seatsim.recordings.recording import load_recording
+from seatsim.recordings.recording import SEAT_CHANNELS, load_recording
 from seatsim.recordings.writer import save_recording
 from seatsim.scenario.scenario import Control
 from seatsim.schema.fields import field_names

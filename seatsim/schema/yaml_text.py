@@ -227,3 +227,20 @@ def _short(text: str) -> str:
 
 def _line(event: yaml.Event) -> int:
     return int(event.start_mark.line) + 1
+
+
+def dump(content: object) -> str:
+    """Return the YAML of mappings, lists and plain values in their order, innermost ones in one line each."""
+    return str(
+        yaml.dump(content, None, _Dumper, default_flow_style=None, sort_keys=False, allow_unicode=True, width=9999)
+    )
+
+
+def _represent_text(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
+    """Return a text such that `parse` reads it as one: `1e5` stands in quotation marks."""
+    is_other = text and (text in _WORDS or _WHOLE.fullmatch(text) or _FLOAT.fullmatch(text))
+    return dumper.represent_scalar("tag:yaml.org,2002:str", text, style="'" if is_other else None)
+
+
+_Dumper = type("_Dumper", (yaml.SafeDumper,), {})
+yaml.add_representer(str, _represent_text, _Dumper)

@@ -30,8 +30,8 @@ def export(
     as_json: Json = False,
 ) -> None:
     """Write a scenario's rig, damper or controller for other programs: as an FMU, as C, or as a MAT file."""
+    from seatsim.exchange.block import list_variables
     from seatsim.exchange.export import export as write
-    from seatsim.exchange.variables import list_variables
     from seatsim.scenario.loading import load
 
     run = _choose(scenario, load(scenario, scenario_settings(settings)), variant)

@@ -38,9 +38,8 @@ def import_data(
     as_json: Json = False,
 ) -> None:
     """Make a recording of CSV, Parquet, Feather, XLSX, HDF5, MAT, MDF, TDMS, UFF58, RPC III or OpenCRG files."""
-    from seatsim.importing.import_map import FILE
+    from seatsim.importing.import_map import FILE, render_map
     from seatsim.importing.importing import import_files
-    from seatsim.importing.map_text import render_map
 
     with show_progress():
         found = import_files(files, folder, map_file, nominal)
