@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import shlex
 import sys
 import traceback
 import warnings
@@ -29,10 +28,9 @@ from seatsim.cli.commands.runs import compare, run
 from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.sweeps import sweep, sweep_report
 from seatsim.cli.commands.synthesis import synthesise
-from seatsim.cli.terminal import answer_as_json, answer_error, complain, fail, print_any_letter, warn
+from seatsim.cli.terminal import answer_as_json, answer_error, fail, print_any_letter, refuse, warn
 from seatsim.compilation.reasons import explain, is_compilation
 from seatsim.schema.errors import InputError, SeatsimError
-from seatsim.schema.modules import MissingModuleError
 
 UsageError: Any = typer.BadParameter.__bases__[0]
 """What is raised for options and arguments that a command does not have, before any of them is read."""
@@ -132,8 +130,7 @@ def main() -> None:
         _refuse_settings_of_libraries()
         app(prog_name="seatsim")
     except SeatsimError as error:
-        fail(str(error))
-        _show_command_with_file(error)
+        refuse(error)
         sys.exit(error.exit_status)
     except KeyboardInterrupt:
         fail("interrupted")
@@ -172,13 +169,3 @@ def _refuse_settings_of_libraries() -> None:
     for name in (".numba_config.yaml", "matplotlibrc"):
         if Path(name).exists():
             raise InputError(f"{name}: changes how libraries work in this folder; start seatsim in another one")
-
-
-def _show_command_with_file(error: BaseException) -> None:
-    """Print this command with `--with FILE`, where a module is missing whose file lies where it is named."""
-    cause: BaseException | None = error
-    while cause is not None and not isinstance(cause, MissingModuleError):
-        cause = cause.__cause__
-    if cause is not None and cause.file is not None:
-        words = ["seatsim", *sys.argv[1:], "--with", str(cause.file)]
-        complain(f"if you trust that file: {shlex.join(words)}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -14,6 +15,8 @@ from typing import TextIO
 from rich.console import Console
 
 from seatsim.compilation.watch import watch_compilation
+from seatsim.schema.errors import SeatsimError, list_sentences
+from seatsim.schema.modules import MissingModuleError
 from seatsim.schema.text import cut_words, make_printable
 
 
@@ -101,17 +104,30 @@ def complain(text: str) -> None:
     err.print(make_printable(text), style="red", markup=False, highlight=False, soft_wrap=True)
 
 
-def fail(text: str) -> None:
+def fail(*texts: str) -> None:
     """Print why a command came to its end: on standard error, and as the one object where `--json` asks for it."""
-    text = cut_words(text)
-    complain(f"error: {text}")
-    answer_error(text)
+    short = [cut_words(text) for text in texts]
+    for text in short:
+        complain(f"error: {text}")
+    answer_error(*short)
 
 
-def answer_error(text: str) -> None:
+def refuse(error: SeatsimError, everything: bool = False) -> None:
+    """Print what is wrong first, or `everything` that is, and this command with `--with FILE` where it lacks a file."""
+    sentences = list_sentences(error)
+    fail(*sentences[: None if everything else 1])
+    cause: BaseException | None = error
+    while cause is not None and not isinstance(cause, MissingModuleError):
+        cause = cause.__cause__
+    if cause is not None and cause.file is not None:
+        words = ["seatsim", *sys.argv[1:], "--with", str(cause.file)]
+        complain(f"if you trust that file: {shlex.join(words)}")
+
+
+def answer_error(first: str, *others: str) -> None:
     """Print why a command came to its end as the one object, where `--json` asks for it."""
     if out.quiet:
-        _write_line(json.dumps({"error": text}))
+        _write_line(json.dumps({"error": first, **({"errors": [first, *others]} if others else {})}))
 
 
 def _write_line(text: str) -> None:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.schema.arrays import Array
+from seatsim.schema.json_schema import Schema, mapping_schema
 from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath, parse_value
@@ -152,3 +153,20 @@ def _read_choice(stated: object, source: Source, where: KeyPath) -> Callable[[Ar
 
 def _log(value: float) -> float:
     return math.log(value) if value > 0 else -math.inf
+
+
+def axis_schema() -> Schema:
+    """Return the JSON Schema of the values of a key."""
+    number: Schema = {"type": "number"}
+    pair: Schema = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
+    ends = {"low": number, "high": number}
+    steps: Schema = {"from": number, "to": number, "steps": {"type": "integer", "minimum": 2, "maximum": MOST_STEPS}}
+    choice: Schema = {"type": "object", "additionalProperties": number}
+    forms = [
+        mapping_schema(steps, steps),
+        mapping_schema({"uniform": pair}, ("uniform",)),
+        mapping_schema({"normal": pair, **ends}, ("normal",)),
+        mapping_schema({"lognormal": pair, **ends}, ("lognormal",)),
+        mapping_schema({"choice": choice}, ("choice",)),
+    ]
+    return {"anyOf": [{"type": "array", "minItems": 1}, *forms]}

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from seatsim.excitations.base import Excitation
 from seatsim.scenario.plausibility import list_doubts
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, list_sentences, raise_all
 from seatsim.sweeps.plan import Plan
 
 MOST_FLOORS = 40
@@ -38,7 +38,7 @@ def check_plan(plan: Plan) -> list[str]:
                 with scenario.placed("excitation"):
                     scenario.excitation.floor(scenario.solver.step, scenario.seed)
         except InputError as error:
-            raise InputError(f"{error} (run {run} of {plan.runs})") from error
+            raise_all([InputError(f"{said} (run {run} of {plan.runs})") for said in list_sentences(error)])
         doubts |= dict.fromkeys(list_doubts(scenario))
     return list(doubts)
 

@@ -8,6 +8,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import NamedTuple
 
+from seatsim.scenario.numbers import find_unit
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.leftovers import uncut
 from seatsim.sweeps.checks import check_plan
@@ -28,7 +29,6 @@ from seatsim.sweeps.parts import (
     write_outcomes,
 )
 from seatsim.sweeps.plan import Plan, make_plan
-from seatsim.sweeps.units import find_unit
 
 FLUSH = 1.0
 """Seconds between two times at which unfinished parts are written: what a killed process may lose."""

@@ -1,5 +1,6 @@
 """Fifty and more wrong scenario files: each one clear error with its place, exit status 2, nothing written."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,7 @@ import pytest
 from seatsim.cli.app import main
 from seatsim.scenario.describe import describe
 from seatsim.scenario.loading import load
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, list_sentences
 
 GOOD = """\
 name: good
@@ -139,6 +140,34 @@ def test_a_wrong_file_is_one_clear_error(old, new, expected, tmp_path, monkeypat
     for part in expected:
         assert part in printed.err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["wrong.yaml"]
+
+
+EVERY_SECTION = (1, 15, 18, 34, 36, 42, 54, 61, 64, 67)
+"""Cases of which each is in a part of the file of its own."""
+
+
+def test_check_says_all_that_is_wrong_with_a_file_and_run_what_is_first(tmp_path, monkeypatch, capsys):
+    text, expected = GOOD, []
+    for number in EVERY_SECTION:
+        old, new, said = CASES[number]
+        assert old in text, number
+        text, expected = text.replace(old, new, 1), [*expected, *(part for part in said if "line" not in part)]
+    (tmp_path / "wrong.yaml").write_text(text)
+    status, printed = run_main(monkeypatch, capsys, "check", str(tmp_path / "wrong.yaml"))
+    assert status == 2 and all(part in printed.err for part in expected)
+    every = printed.err.splitlines()
+    assert [line.startswith("error: ") for line in every] == [True] * len(EVERY_SECTION)
+    assert run_main(monkeypatch, capsys, "run", str(tmp_path / "wrong.yaml"))[1].err.splitlines() == every[:1]
+    _, printed = run_main(monkeypatch, capsys, "check", str(tmp_path / "wrong.yaml"), "--json")
+    found = json.loads(printed.out)
+    assert found["error"] == found["errors"][0] and len(found["errors"]) == len(EVERY_SECTION)
+
+
+def test_what_follows_from_a_misspelt_key_is_not_said_twice(tmp_path):
+    (tmp_path / "wrong.yaml").write_text(GOOD.replace("frame_mass", "fram_mass").replace("rate:", "rat:"))
+    with pytest.raises(InputError) as caught:
+        load(tmp_path / "wrong.yaml")
+    assert len(list_sentences(caught.value)) == 2
 
 
 @pytest.mark.parametrize("arguments", [

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from seatsim.cli.options import Json, OwnCode
-from seatsim.cli.terminal import answer, say, warn
+from seatsim.cli.terminal import answer, refuse, say, warn
 from seatsim.schema.errors import InputError, nearest
 
 NEXT = {
@@ -47,7 +47,11 @@ def check(
     """Read a file as the other commands would, without running it, and say what is wrong or doubtful."""
     from seatsim.cli.check_files import check_file
 
-    found = check_file(file)
+    try:
+        found = check_file(file)
+    except InputError as error:
+        refuse(error, everything=True)
+        raise typer.Exit(error.exit_status) from error
     say(f"{file}: {found.kind}, no errors; {', '.join(found.holds)}")
     warn(found.warnings, "warning")
     answer({"file": str(file), **found._asdict()})
