@@ -14,7 +14,7 @@ from rich.table import Table
 from threadpoolctl import threadpool_limits
 
 from seatsim.blind.labels import KINDS, Label
-from seatsim.blind.processes import run_jobs
+from seatsim.schema.processes import run_jobs
 from seatsim.blind.score.measures import Rate
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import read_verdict

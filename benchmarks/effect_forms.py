@@ -28,7 +28,7 @@ from typical_effects import FORMS
 
 import seatsim
 from controllers.laws.constant import Replay
-from seatsim.blind.processes import run_jobs
+from seatsim.schema.processes import run_jobs
 from seatsim.blind.score.verdicts import NAMING, Verdict, read_verdict
 from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.diagnosis.problem import pose_problem

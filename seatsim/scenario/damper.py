@@ -37,7 +37,7 @@ def read_damper(values: object, source: Source, keys: KeyPath, extra: tuple[str,
     with gathered(errors):
         cls = chosen_class(DAMPERS, stated, "model", source, keys)
         specification = DAMPERS.specification_of(cls)
-        required, hint = (), ""
+        hint, required = "", tuple[str, ...]()
         if specification.complete:
             name, required = stated["model"], field_names(cls)
             lists = f"seatsim describe {name} lists them"

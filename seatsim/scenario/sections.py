@@ -118,7 +118,7 @@ def _read_control(values: object, source: Source) -> Control:
     with gathered(errors):
         sample_time = _read_sample_time(stated.get("sample_time"), source)
     raise_all(errors)
-    return Control(cast("Law", law), sample_time, inverse, sensors)
+    return Control(law, sample_time, inverse, sensors)
 
 
 def _read_sample_time(value: object, source: Source) -> float | None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Mapping
 from contextlib import closing
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from seatsim.scenario.numbers import find_unit
 from seatsim.schema.errors import InputError, RunError
@@ -14,6 +15,7 @@ from seatsim.schema.leftovers import uncut
 from seatsim.sweeps.checks import check_plan
 from seatsim.sweeps.definition import SweepDefinition, read_definition
 from seatsim.sweeps.engines.base import Engine, Work
+from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.identity import identify_sweep
 from seatsim.sweeps.lock import hold_file, hold_folder
 from seatsim.sweeps.manifest import check_resumable, count_states, write_manifest
@@ -29,6 +31,10 @@ from seatsim.sweeps.parts import (
     write_outcomes,
 )
 from seatsim.sweeps.plan import Plan, make_plan
+from seatsim.sweeps.read import read_sweep
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 FLUSH = 1.0
 """Seconds between two times at which unfinished parts are written: what a killed process may lose."""
@@ -132,6 +138,25 @@ def execute(
                 write_manifest(folder, identity, definition.limits, counts)
     failures = [f"run {run}: {reason}" for run, state, reason in found if state == FAILED]
     return SweepResult(folder, identity.digest, counts, failures)
+
+
+def sweep(file: str | Path, out: str | Path, jobs: int | None = None, resume: bool = False) -> pd.DataFrame:
+    """Carry out a sweep file on this machine, keep its rows in the folder `out`, and return them.
+
+    Args:
+        file: the sweep file.
+        out: the folder, as `seatsim sweep --out` has it.
+        jobs: runs at once; all processors where it is not stated.
+        resume: go on with the sweep in the folder.
+
+    Returns:
+        The rows as `seatsim.read_sweep` returns them.
+
+    Raises:
+        InputError: the file is wrong, or the folder holds a sweep and `resume` is not set, or another sweep.
+    """
+    execute(prepare(Path(file)), Path(out), LocalEngine(jobs or os.cpu_count() or 1), resume)
+    return read_sweep(out)
 
 
 class _Rows:

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 import seatsim
-from seatsim.blind.processes import run_jobs
 from seatsim.cli.app import main
 from seatsim.scenario.describe import describe
 from seatsim.schema.modules import MissingModuleError, import_named, use, use_all, used_files
+from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import find, names
 
 ROOT = Path(__file__).resolve().parents[2]

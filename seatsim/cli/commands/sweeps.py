@@ -103,7 +103,7 @@ def sweep_report(
     from seatsim.metrics.table import SHORT
 
     with show_progress():
-        report = report_sweep(folder, out_folder or folder)
+        report = report_sweep(folder, out_folder)
     say(report.sentence)
     for row in report.exceeded[:EXCEEDED_SHOWN]:
         who = "".join(f"{value}: " for value in row.group.values())

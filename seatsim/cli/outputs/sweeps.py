@@ -25,12 +25,14 @@ class SweepReport(NamedTuple):
     paths: list[Path]
 
 
-def report_sweep(folder: Path, out: Path) -> SweepReport:
-    """Write the report of a sweep to a folder.
+def report_sweep(folder: str | Path, out: str | Path | None = None) -> SweepReport:
+    """Write the report of a sweep to the folder `out`, or to that of the sweep.
 
     Raises:
         InputError: the folder holds no sweep, or none of its runs has ended.
     """
+    folder = Path(folder)
+    out = Path(out or folder)
     rows = read_rows(folder)
     quantiles, found, exceeded = tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows)
     sensitivities = tabulate_sensitivities(found)

@@ -20,7 +20,6 @@ from seatsim.provenance.versions import list_versions
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.modules import started_elsewhere, use_all, used_files
 from seatsim.sweeps.engines.base import Work, simulate_one
-from seatsim.sweeps.engines.memory import keep_freed_memory
 from seatsim.sweeps.identity import LIBRARIES, list_differences
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Selection
@@ -170,5 +169,4 @@ def _simulate(task: _Task) -> list[Outcome]:
             " go on with --resume"
         )
     selection, histories = task.selection, task.histories
-    keep_freed_memory()
     return [simulate_one(selection.plan, inner, number, histories) for number, inner in selection.runs]
