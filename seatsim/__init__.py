@@ -17,6 +17,7 @@ from importlib import import_module
 # As in `seatsim.cli.begin`: type checkers know the name, and `typing` is not loaded for it.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    __version__: str
     from matplotlib.figure import Figure
 
     from seatsim.characterisation.summary import characterise as characterise
