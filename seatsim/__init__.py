@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from seatsim.standards.seat_rows import SeatTest as SeatTest
     from seatsim.standards.seat_test import seat_test as seat_test
     from seatsim.sweeps.execute import sweep as sweep
-    from seatsim.sweeps.read import read_sweep as read_sweep
+    from seatsim.sweeps.parts import read_sweep as read_sweep
 
     sweep_report = report_sweep
 
@@ -79,7 +79,7 @@ _HOMES = {
     "standards.seat_rows": "SeatTest",
     "standards.seat_test": "seat_test",
     "sweeps.execute": "sweep",
-    "sweeps.read": "read_sweep",
+    "sweeps.parts": "read_sweep",
 }
 """The public names of each module; `public=own` of one that is called otherwise in its module."""
 _HOME = {name.partition("=")[0]: (home, name.rpartition("=")[2]) for home in _HOMES for name in _HOMES[home].split()}

@@ -17,17 +17,12 @@ from typer.core import TyperCommand, TyperGroup
 
 from seatsim.cli.commands.blind import blind
 from seatsim.cli.commands.dampers import characterise, identify
-from seatsim.cli.commands.describe import describe
-from seatsim.cli.commands.exchange import export
-from seatsim.cli.commands.explore import explore
-from seatsim.cli.commands.files import check, new, schema
-from seatsim.cli.commands.importing import import_data, inspect_data
-from seatsim.cli.commands.recordings import diagnose, gap
-from seatsim.cli.commands.reproduce import reproduce
+from seatsim.cli.commands.files import check, describe, new, reproduce, schema
+from seatsim.cli.commands.recordings import diagnose, gap, import_data, inspect_data
 from seatsim.cli.commands.runs import compare, run
+from seatsim.cli.commands.scenarios import explore, export, synthesise
 from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.sweeps import sweep, sweep_report
-from seatsim.cli.commands.synthesis import synthesise
 from seatsim.cli.terminal import answer_as_json, answer_error, fail, print_any_letter, refuse, warn
 from seatsim.compilation.reasons import explain, is_compilation
 from seatsim.schema.errors import InputError, SeatsimError

@@ -9,9 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from seatsim.cosimulation.archive import unpack
 from seatsim.cosimulation.damper import FmuDamper
-from seatsim.cosimulation.description import CO_SIMULATION, UnitDescription, describe_unit, need_fmpy
+from seatsim.cosimulation.description import CO_SIMULATION, UnitDescription, describe_unit, need_fmpy, unpack
 from seatsim.cosimulation.integrated import IntegratedUnit
 from seatsim.cosimulation.running import RunningUnit
 from seatsim.schema.errors import InputError

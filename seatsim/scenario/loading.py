@@ -1,4 +1,7 @@
-"""From a scenario file to scenarios: one for each variant and each value of a sweep."""
+"""From a scenario file to scenarios: one for each variant and each value of a sweep.
+
+A file is at its path, or among the examples that ship with seatsim.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,37 @@ from typing import Any
 
 from seatsim.scenario.checks import require_variants
 from seatsim.scenario.expansion import expand
-from seatsim.scenario.finding import find_file
 from seatsim.scenario.published import check_published
 from seatsim.scenario.scenario import Scenario
 from seatsim.scenario.sections import NEEDED, NEEDED_BY_A_SEAT, OF_ALL_RUNS, SECTIONS
 from seatsim.schema.errors import InputError, gathered, nearest, raise_all
+from seatsim.schema.guarded import is_there
 from seatsim.schema.validation import check_keys
 from seatsim.schema.yaml_source import Source
+
+EXAMPLES = (Path(__file__).parents[1] / "examples", Path(__file__).parents[2] / "scenarios")
+"""The examples: within an installed package, or beside the package in a clone."""
+
+
+def find_file(path: Path) -> Path:
+    """Return the path of a scenario file, or of the example that has this name.
+
+    Raises:
+        InputError: there is neither.
+    """
+    if is_there(path):
+        return path
+    if not path.is_absolute():
+        inside = Path(*path.parts[1:]) if path.parts[:1] == ("scenarios",) else path
+        for folder in EXAMPLES:
+            for name in (inside, inside.with_name(f"{inside.name}.yaml")):
+                if is_there(folder / name):
+                    return folder / name
+    found = {path.relative_to(folder) for folder in EXAMPLES if folder.is_dir() for path in folder.rglob("*.yaml")}
+    known = sorted(str(path.with_suffix("")) for path in found if "data" not in path.parts)
+    near = nearest(path, [*known, *(str(file) for file in path.parent.glob("*.yaml"))])
+    raise InputError(f"{path}: no such file{near}; give the path of a scenario, or an example: {', '.join(known)}")
+
 
 MOST_ERRORS = 20
 """Runs of a file of which it is said what is wrong with them."""

@@ -20,10 +20,9 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.schema.bounds import TooMuchError, check_made
+from seatsim.schema.bounds import TooMuchError, check_made, check_memory
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import in_mib, read_bytes
-from seatsim.schema.memory import check_memory
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple, cast, get_args
 
 from seatsim.metrics.table import METRICS
-from seatsim.scenario.finding import find_file
+from seatsim.scenario.loading import find_file
 from seatsim.schema.errors import InputError, gathered, nearest, raise_all
 from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, head_schema, mapping_schema

@@ -12,26 +12,24 @@ from typing import TYPE_CHECKING, NamedTuple
 from seatsim.scenario.numbers import find_unit
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.leftovers import uncut
-from seatsim.sweeps.checks import check_plan
 from seatsim.sweeps.definition import SweepDefinition, read_definition
 from seatsim.sweeps.engines.base import Engine, Work
 from seatsim.sweeps.engines.local import LocalEngine
+from seatsim.sweeps.folder import check_resumable, count_states, hold_file, hold_folder, write_manifest
 from seatsim.sweeps.identity import identify_sweep
-from seatsim.sweeps.lock import hold_file, hold_folder
-from seatsim.sweeps.manifest import check_resumable, count_states, write_manifest
 from seatsim.sweeps.outcome import FAILED, Outcome
 from seatsim.sweeps.parts import (
     make_schema,
     part_of,
     read_outcomes,
     read_states,
+    read_sweep,
     remove_unfinished,
     runs_of,
     varied_keys,
     write_outcomes,
 )
-from seatsim.sweeps.plan import Plan, make_plan
-from seatsim.sweeps.read import read_sweep
+from seatsim.sweeps.plan import Plan, check_plan, make_plan
 
 if TYPE_CHECKING:
     import pandas as pd

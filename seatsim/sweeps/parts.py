@@ -16,14 +16,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from seatsim.metrics.table import METRICS
-from seatsim.schema.arrow_arrays import store_numbers, store_texts
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import remove_left, write_whole
-from seatsim.schema.parquet import open_parquet
+from seatsim.schema.parquet import open_parquet, store_numbers, store_texts
+from seatsim.sweeps.folder import read_manifest
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Plan
 
 if TYPE_CHECKING:
+    import pandas as pd
     import pyarrow as pa
 
 RUNS_OF_PART = 200
@@ -161,3 +162,35 @@ def _store(values: Sequence[object], kind: pa.DataType) -> pa.Array:
 def as_text(value: object) -> str:
     """Return any value of a scenario as text."""
     return value if isinstance(value, str) else json.dumps(value, default=str)
+
+
+def read_sweep(folder: str | Path) -> pd.DataFrame:
+    """Return the rows of a sweep so far, one for each run that has ended, by number.
+
+    Columns are `run`, `state` (done, failed, unverified), `reason`, `seed`, every varied key and every metric in SI
+    units; a figure that does not exist is NaN, as are all of a failed run. `frame.attrs["units"]` holds units.
+
+    Raises:
+        InputError: the folder holds no sweep, or none of its runs has ended.
+    """
+    import pyarrow as pa
+
+    folder = Path(folder)
+    read_manifest(folder)
+    parts = sorted(folder.glob("runs/part-*.parquet"))
+    if not parts:
+        raise InputError(f"{folder}: no run of this sweep has ended; go on with it with --resume")
+    tables = [read_part(part) for part in parts]
+    try:
+        table = pa.concat_tables(tables)
+    except pa.ArrowInvalid as error:
+        raise InputError(f"{folder}: holds parts of different sweeps: {error}; choose another folder") from error
+    frame: pd.DataFrame = table.to_pandas()
+    frame.attrs["units"] = units_of(table.schema)
+    return frame
+
+
+def units_of(schema: pa.Schema) -> dict[str, str]:
+    """Return the units of the columns that have one."""
+    stated = {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in schema}
+    return {name: unit for name, unit in stated.items() if unit}

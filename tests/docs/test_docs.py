@@ -145,7 +145,8 @@ def test_how_often_a_diagnosis_is_right_is_stated_on_one_page_only():
 def test_every_dependency_of_the_core_is_needed_and_says_what_for():
     stated = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]
     names = [re.match(r"[\w.-]+", each)[0] for each in stated]
-    table = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("| library | for |")[2].partition("\n\n")[0]
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    table = page.partition("| library | for |")[2].partition("\n\n")[0]
     assert re.findall(r"^\| ([\w.-]+) \| \S", table, re.MULTILINE) == names
     files = [path for package in ("seatsim", "controllers") for path in (ROOT / package).rglob("*.py")]
     source = "\n".join(path.read_text(encoding="utf-8") for path in files)

@@ -14,7 +14,7 @@ from seatsim.schema.errors import InputError
 from seatsim.sweeps import parts
 from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.execute import Share
-from seatsim.sweeps.lock import hold_file, hold_folder
+from seatsim.sweeps.folder import hold_file, hold_folder
 
 from .conftest import MASSES, bytes_of
 
@@ -159,7 +159,7 @@ def test_a_changed_scenario_is_named_and_more_runs_are_added(write_sweep, carry_
 
 
 def test_the_lock_names_its_owner(write_sweep, carry_out, tmp_path):
-    code = "import sys, time; from pathlib import Path; from seatsim.sweeps.lock import hold_folder\n" \
+    code = "import sys, time; from pathlib import Path; from seatsim.sweeps.folder import hold_folder\n" \
            "with hold_folder(Path(sys.argv[1])): print('held', flush=True); time.sleep(60)"  # fmt: skip
     with subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "out")], stdout=subprocess.PIPE) as other:
         other.stdout.readline()

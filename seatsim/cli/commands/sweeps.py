@@ -47,9 +47,9 @@ def sweep(
     as_json: Json = False,
 ) -> None:
     """Simulate a scenario with many values of its keys, and keep the metrics of every run."""
-    from seatsim.sweeps.engines.choice import open_engine
+    from seatsim.sweeps.engines.base import open_engine
     from seatsim.sweeps.execute import execute, prepare, read_share
-    from seatsim.sweeps.manifest import say_ended
+    from seatsim.sweeps.folder import say_ended
     from seatsim.sweeps.slurm import write_slurm
 
     folder = out_folder or Path("out") / file.stem

@@ -10,9 +10,7 @@ from seatsim.provenance.manifest import write_documented
 from seatsim.report.sweep import state_importance, write_sweep_report
 from seatsim.schema.files import write_together, write_whole
 from seatsim.schema.text import disarm
-from seatsim.sweeps.statistics.exceedance import Exceedance, count_exceedances
-from seatsim.sweeps.statistics.inputs import read_rows
-from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
+from seatsim.sweeps.statistics.rows import Exceedance, count_exceedances, read_rows, tabulate_quantiles
 from seatsim.sweeps.statistics.sensitivity import Sensitivities, analyse_sensitivity, tabulate_sensitivities
 
 

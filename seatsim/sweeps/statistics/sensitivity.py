@@ -27,7 +27,7 @@ from seatsim.sweeps.statistics.chaos import (
     make_key_basis,
     predict_left_out,
 )
-from seatsim.sweeps.statistics.inputs import SweepRows, is_number
+from seatsim.sweeps.statistics.rows import SweepRows, is_number
 
 if TYPE_CHECKING:
     import pandas as pd
