@@ -9,6 +9,7 @@ import traceback
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import chain
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -29,7 +30,6 @@ from seatsim.schema.errors import InputError, SeatsimError
 
 UsageError: Any = typer.BadParameter.__bases__[0]
 """What is raised for options and arguments that a command does not have, before any of them is read."""
-ASKED = "seatsim.json"
 TRACEBACK = "SEATSIM_TRACEBACK"
 """Set in the environment, it lets Python print what led to an error that was not foreseen."""
 
@@ -57,7 +57,7 @@ class _Commands(TyperGroup):
     """The commands; what is wrong with their options is one object where `--json` stands among them."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        ctx.meta[ASKED] = "--json" in args
+        answer_as_json("--json" in args)
         return super().parse_args(ctx, args)
 
     def make_context(self, *arguments: Any, **options: Any) -> Any:
@@ -65,7 +65,6 @@ class _Commands(TyperGroup):
             return super().make_context(*arguments, **options)
 
     def invoke(self, ctx: Any) -> object:
-        answer_as_json(ctx.meta[ASKED])
         try:
             with _interrupts_said():
                 return super().invoke(ctx)
@@ -80,7 +79,6 @@ def _interrupts_said() -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        answer_as_json("--json" in sys.argv)
         fail("interrupted")
         raise typer.Exit(130) from None
 
@@ -88,12 +86,16 @@ def _interrupts_said() -> Iterator[None]:
 app = typer.Typer(
     cls=_Commands,
     help="Simulate semi-active MR-damper seats and compare what is done to them.",
-    no_args_is_help=True, pretty_exceptions_enable=False,
-)  # fmt: skip
-for command in (
-    run, compare, sweep, sweep_report, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test,
-    export, new, check, schema, explore, reproduce,
-):  # fmt: skip
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+GROUPS = (
+    (run, compare, sweep, sweep_report, synthesise),
+    (gap, diagnose, characterise, identify, describe),
+    (comfort, seat_test, export),
+    (new, check, schema, explore, reproduce),
+)
+for command in chain.from_iterable(GROUPS):
     app.command(cls=_Command)(command)
 app.command("import", cls=_Command)(import_data)
 app.command("inspect")(inspect_data)
@@ -120,6 +122,7 @@ def _seatsim(
 def main() -> None:
     """Run the command line: exit 0 done, 1 a run failed, 2 bad input (nothing written)."""
     print_any_letter()
+    # Python would print a line of seatsim's own code with each warning, and no color.
     warnings.showwarning = lambda message, *_, **__: warn([str(message)], "warning")
     try:
         _refuse_settings_of_libraries()

@@ -65,11 +65,13 @@ Settings = Annotated[
 OwnCode = Annotated[
     list[Path] | None,
     typer.Option(
-        "--with", metavar="FILE.py", callback=_use_files,
+        "--with",
+        metavar="FILE.py",
+        callback=_use_files,
         help="Run a file of your own, whose classes are then known by the names in their decorators, or a damper's"
         " FMU; may be given several times.",
     ),
-]  # fmt: skip
+]
 Json = Annotated[
     bool,
     # Eager, so that an error in another option is an object, too.

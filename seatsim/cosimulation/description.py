@@ -31,8 +31,11 @@ UNPACKED = 4
 LARGEST_DESCRIPTION = 16 * 2**20
 MOST_FILES = 10_000
 DESCRIPTION = "modelDescription.xml"
-SYSTEMS = {"Linux": ("linux", "linux", ".so"), "Darwin": ("darwin", "darwin", ".dylib"),
-           "Windows": ("win", "windows", ".dll")}  # fmt: skip
+SYSTEMS = {
+    "Linux": ("linux", "linux", ".so"),
+    "Darwin": ("darwin", "darwin", ".dylib"),
+    "Windows": ("win", "windows", ".dll"),
+}
 """Names of an operating system in versions 2 and 3, and the ending of its libraries."""
 MACHINES = {"AMD64": "x86_64", "arm64": "aarch64", "x86_64": "x86_64", "aarch64": "aarch64"}
 
@@ -120,8 +123,12 @@ def unpack(path: Path, version: int, identifier: str) -> Iterator[tuple[Path, Pa
 
 
 QUANTITIES = {
-    "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "current": "A", "temperature": "degC",
-}  # fmt: skip
+    "displacement": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s^2",
+    "current": "A",
+    "temperature": "degC",
+}
 """What an input of a damper may take, in its unit: motion positive in extension, current of the coil."""
 FORCE = "force"
 REAL = ("Real", "Float64")

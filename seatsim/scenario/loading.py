@@ -17,6 +17,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.scenario.sections import NEEDED, NEEDED_BY_A_SEAT, OF_ALL_RUNS, SECTIONS
 from seatsim.schema.errors import InputError, gathered, nearest, raise_all
 from seatsim.schema.guarded import is_there
+from seatsim.schema.text import join_names
 from seatsim.schema.validation import check_keys
 from seatsim.schema.yaml_source import Source
 
@@ -46,6 +47,7 @@ def find_file(path: Path) -> Path:
 
 MOST_ERRORS = 20
 """Runs of a file of which it is said what is wrong with them."""
+_WHOLE = ("plant", *NEEDED, "controller", "excitation")
 
 
 def load(scenario: str | Path | Mapping[str, object], settings: Mapping[str, object] | None = None) -> list[Scenario]:
@@ -94,8 +96,7 @@ def read_scenario(source: Source, label: Mapping[str, object]) -> Scenario:
         check_published(source, list(label))
     for key in NEEDED + (NEEDED_BY_A_SEAT if set(NEEDED_BY_A_SEAT) & set(data) else ()):
         if key not in data:
-            errors.append(source.error((), f"key '{key}' is missing; a scenario has plant, damper, actuator,"
-                                           " temperature, controller and excitation"))  # fmt: skip
+            errors.append(source.error((), f"key '{key}' is missing; a scenario has {join_names(_WHOLE)}"))
     found = _read(source, [key for key in SECTIONS if key in data], errors)
     raise_all(errors)
     return Scenario(**{"name": source.path.stem} | found, label=label, source=source)

@@ -41,8 +41,11 @@ def record_schema(record: type, required: Iterable[str] | None = None) -> Schema
 def mapping_schema(properties: Mapping[str, object], required: Iterable[str] = ()) -> Schema:
     """Return the schema of a mapping that has these keys and no others."""
     return {
-        "type": "object", "properties": dict(properties), "required": list(required), "additionalProperties": False,
-    }  # fmt: skip
+        "type": "object",
+        "properties": dict(properties),
+        "required": list(required),
+        "additionalProperties": False,
+    }
 
 
 def name_schema(kind: str) -> Schema:

@@ -15,14 +15,15 @@ from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath, parse_value
 
 DISTRIBUTIONS = {
-    "uniform": "[low, high]", "normal": "[mean, standard deviation]",
-    "lognormal": "[mean, standard deviation of the log]", "choice": "{value: probability, ...}",
-}  # fmt: skip
+    "uniform": "[low, high]",
+    "normal": "[mean, standard deviation]",
+    "lognormal": "[mean, standard deviation of the log]",
+    "choice": "{value: probability, ...}",
+}
 """Names of distributions, and what each takes."""
-FORMS = (
-    "a list, {from: A, to: B, steps: N}, or a distribution: "
-    + ", ".join(f"{name}: {takes}" for name, takes in DISTRIBUTIONS.items())
-)  # fmt: skip
+FORMS = "a list, {from: A, to: B, steps: N}, or a distribution: " + ", ".join(
+    f"{name}: {takes}" for name, takes in DISTRIBUTIONS.items()
+)
 MOST_STEPS = 1_000_000
 """Of a range; more would be a slip of the keyboard."""
 SLIGHTLY = 1e-9
@@ -75,8 +76,9 @@ def _read_range(stated: Mapping[str, object], source: Source, where: KeyPath) ->
     check_keys(stated, ("from", "to", "steps"), source, where)
     for name in ("from", "to", "steps"):
         if not is_finite_number(stated.get(name)):
-            raise source.error((*where, name), f"{stated.get(name)!r} is not a finite number; a range is"
-                                               " {from: A, to: B, steps: N}")  # fmt: skip
+            raise source.error(
+                (*where, name), f"{stated.get(name)!r} is not a finite number; a range is {{from: A, to: B, steps: N}}"
+            )
     steps, ends = stated["steps"], [stated["from"], stated["to"]]
     if not isinstance(steps, int) or not 2 <= steps <= MOST_STEPS:
         raise source.error(

@@ -83,13 +83,24 @@ def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float]
     """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work."""
     invocation = current_invocation()
     parts = {path.relative_to(folder).as_posix(): path for path in sorted(folder.glob("runs/part-*.parquet"))}
-    stated = {} if invocation is None else {
-        **describe_invocation(invocation, folder), **describe_outputs({} if counts["pending"] else parts),
-    }  # fmt: skip
+    stated = (
+        {}
+        if invocation is None
+        else {
+            **describe_invocation(invocation, folder),
+            **describe_outputs({} if counts["pending"] else parts),
+        }
+    )
     content = {
-        "identity": identity.digest, "versions": identity.versions, "seed": identity.seed, "counts": counts,
-        "limits": limits, "configuration": identity.configuration, "design": identity.design, **stated,
-    }  # fmt: skip
+        "identity": identity.digest,
+        "versions": identity.versions,
+        "seed": identity.seed,
+        "counts": counts,
+        "limits": limits,
+        "configuration": identity.configuration,
+        "design": identity.design,
+        **stated,
+    }
     return write_json(folder / NAME, content, lasting=True)
 
 
@@ -148,10 +159,12 @@ def check_resumable(folder: Path, identity: Identity, plan: Plan, resume: bool) 
         return
     fixed = [_without_growing(each) for each in (old["configuration"], identity.configuration)]
     differences = [
-        *list_differences({"seed": old["seed"], "versions": old["versions"]},
-                          {"seed": identity.seed, "versions": dict(identity.versions)}),
+        *list_differences(
+            {"seed": old["seed"], "versions": old["versions"]},
+            {"seed": identity.seed, "versions": dict(identity.versions)},
+        ),
         *list_differences(fixed[0], fixed[1]),
-    ]  # fmt: skip
+    ]
     only_adds = plan.runs >= counts["runs"] and digest_design(plan, counts["runs"]) == old["design"]
     if not only_adds:
         differences += list_differences(_growing(old["configuration"]), _growing(identity.configuration))

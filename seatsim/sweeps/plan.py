@@ -132,8 +132,11 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
     runs = math.prod(factors.values())
     if runs > MOST_RUNS:
         shown = " x ".join(f"{number} {name}" for name, number in factors.items() if number > 1)
-        raise definition.source.error((), f"makes {runs} runs ({shown}); permitted: at most {MOST_RUNS}. Vary fewer"
-                                          " keys, or draw 'runs' points with design: sobol")  # fmt: skip
+        raise definition.source.error(
+            (),
+            f"makes {runs} runs ({shown}); permitted: at most {MOST_RUNS}. Vary fewer"
+            " keys, or draw 'runs' points with design: sobol",
+        )
     foresee(runs)
     columns = resolve_design(definition)
     for key in columns:
@@ -179,8 +182,11 @@ def check_plan(plan: Plan) -> list[str]:
 
 def _list_telling_runs(plan: Plan) -> Iterator[int]:
     per_point = len(plan.bases)
-    numbers = {key: [float(str(value)) for value in values] for key, values in plan.columns.items()
-               if all(_is_number(value) for value in values)}  # fmt: skip
+    numbers = {
+        key: [float(str(value)) for value in values]
+        for key, values in plan.columns.items()
+        if all(_is_number(value) for value in values)
+    }
     others = [values for key, values in plan.columns.items() if key not in numbers]
     combinations: dict[str, list[int]] = {}
     for point in range(plan.points):

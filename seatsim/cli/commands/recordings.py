@@ -184,11 +184,17 @@ def _table(title: str, channels: list[ChannelSummary]) -> Table:
         table.add_column(name, justify="left" if name in ("unit", "swing", "is") else "right", no_wrap=True)
     for each in channels:
         cells = {
-            "unit": escape(each.unit) or "?", "Hz": "" if each.rate is None else f"{each.rate:.6g}",
-            "RMS": f"{each.rms:.4g}", "least": f"{each.low:.4g}", "greatest": f"{each.high:.4g}",
+            "unit": escape(each.unit) or "?",
+            "Hz": "" if each.rate is None else f"{each.rate:.6g}",
+            "RMS": f"{each.rms:.4g}",
+            "least": f"{each.low:.4g}",
+            "greatest": f"{each.high:.4g}",
             "noise": "" if each.noise is None else f"{each.noise:.2g}",
-            "swing": each.spark, "mean": f"{each.mean:.4g}", "is": each.channel or "", "rows": str(each.rows),
-        }  # fmt: skip
+            "swing": each.spark,
+            "mean": f"{each.mean:.4g}",
+            "is": each.channel or "",
+            "rows": str(each.rows),
+        }
         table.add_row(escape(each.name), *(cells[name] for name in COLUMNS))
     return table
 

@@ -108,7 +108,9 @@ def sweep_report(
     for row in report.exceeded[:EXCEEDED_SHOWN]:
         who = "".join(f"{value}: " for value in row.group.values())
         unit = f" {row.unit}".removesuffix(" -")
-        say(f"{who}{SHORT.get(row.metric, row.metric)} above {row.limit:g}{unit}: {row.exceeding} of {row.runs} runs,"
-            f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)")  # fmt: skip
+        say(
+            f"{who}{SHORT.get(row.metric, row.metric)} above {row.limit:g}{unit}: {row.exceeding} of {row.runs} runs,"
+            f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)"
+        )
     wrote(out_folder or folder, report.paths)
     answer(encode_report(report), report.paths)

@@ -72,8 +72,10 @@ def make_basis(columns: Sequence[Array | Sequence[object]], degree: Degree) -> B
     parts: list[tuple[Array, tuple[int, ...]]] = [(np.ones((len(single[0]), 1)), ())]
     parts += [(functions, (key,)) for key, functions in enumerate(single)]
     for (first, a), (second, b) in combinations(enumerate(single), 2) if degree.product else ():
-        short = [functions[:, : degree.product] if _is_polynomial(columns[k]) else functions for k, functions in
-                 ((first, a), (second, b))]  # fmt: skip
+        short = [
+            functions[:, : degree.product] if _is_polynomial(columns[k]) else functions
+            for k, functions in ((first, a), (second, b))
+        ]
         product = (short[0][:, :, None] * short[1][:, None, :]).reshape(len(a), -1)
         parts.append((product, (first, second)))
     return Basis(np.hstack([values for values, _ in parts]), list(_name_columns(parts)))

@@ -104,9 +104,18 @@ def tabulate_quantiles(rows: SweepRows) -> pd.DataFrame:
                 continue
             quantiles = dict(zip(NAMES, values.quantile(list(SHARES)), strict=True))
             found.append(
-                {**group, "metric": metric, "unit": rows.units[metric], "runs": len(values), "mean": values.mean(),
-                 "std": values.std(), "min": values.min(), **quantiles, "max": values.max()}
-            )  # fmt: skip
+                {
+                    **group,
+                    "metric": metric,
+                    "unit": rows.units[metric],
+                    "runs": len(values),
+                    "mean": values.mean(),
+                    "std": values.std(),
+                    "min": values.min(),
+                    **quantiles,
+                    "max": values.max(),
+                }
+            )
     return pd.DataFrame(found)
 
 

@@ -86,8 +86,11 @@ def analyse_sensitivity(rows: SweepRows) -> Sensitivities:
     columns = [usable[key].to_numpy() for key in keys]
     pair = _find_dependent(columns)
     if pair is not None:
-        return Sensitivities([], f"{keys[pair[0]]} and {keys[pair[1]]} vary together; shares of variance need keys that"
-                                 " vary independently (cross, lhs, sobol)")  # fmt: skip
+        return Sensitivities(
+            [],
+            f"{keys[pair[0]]} and {keys[pair[1]]} vary together; shares of variance need keys that"
+            " vary independently (cross, lhs, sobol)",
+        )
     complete = [name for name in rows.metrics if usable[name].notna().all() and _varies(usable[name].to_numpy())]
     if not complete:
         return Sensitivities([], "no metric varies")
@@ -160,9 +163,16 @@ def _resample(basis: Basis, metrics: Array, draw: NDArray[np.intp]) -> Iterator[
 
 
 def _make_row(
-    usable: pd.DataFrame, metric: str, key: str, number: int, basis: Basis, expansion: Expansion,
-    resampled: Sequence[Expansion], column: int, explained: float,
-) -> Sensitivity:  # fmt: skip
+    usable: pd.DataFrame,
+    metric: str,
+    key: str,
+    number: int,
+    basis: Basis,
+    expansion: Expansion,
+    resampled: Sequence[Expansion],
+    column: int,
+    explained: float,
+) -> Sensitivity:
     first, total = _indices(basis, expansion, number, column)
     drawn = np.array([_indices(basis, each, number, column) for each in resampled] or [(np.nan, np.nan)])
     lows, highs = np.quantile(drawn, 0.025, axis=0), np.quantile(drawn, 0.975, axis=0)
