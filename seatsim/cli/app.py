@@ -7,7 +7,7 @@ import os
 import sys
 import traceback
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
@@ -89,13 +89,13 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-GROUPS = (
+_GROUPS: tuple[tuple[Callable[..., None], ...], ...] = (
     (run, compare, sweep, sweep_report, synthesise),
     (gap, diagnose, characterise, identify, describe),
     (comfort, seat_test, export),
     (new, check, schema, explore, reproduce),
 )
-for command in chain.from_iterable(GROUPS):
+for command in chain.from_iterable(_GROUPS):
     app.command(cls=_Command)(command)
 app.command("import", cls=_Command)(import_data)
 app.command("inspect")(inspect_data)

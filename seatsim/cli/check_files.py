@@ -40,7 +40,7 @@ TRIED = (0.01, 0.1, 0.5)
 """Displacement [m], velocity [m/s] and current [A] at which a damper is asked for its force."""
 
 
-def try_class(kind: str, name: str, cls: type) -> list[str]:
+def _try_class(kind: str, name: str, cls: type) -> list[str]:
     """Return what is doubtful about a class after a tenth of a second on the seat of an example.
 
     Raises:
@@ -167,7 +167,7 @@ def _check_code(path: Path) -> Checked:
     module = path.stem
     own = [(kind, name) for kind in KINDS for name in names(kind) if find(kind, name).__module__ == module]
     warnings = [] if own else ["no class is registered: put a decorator such as @damper(...) before it"]
-    warnings += [sentence for kind, name in own for sentence in try_class(kind, name, find(kind, name))]
+    warnings += [sentence for kind, name in own for sentence in _try_class(kind, name, find(kind, name))]
     return Checked("own code", [f"{kind} {name}" for kind, name in own], warnings)
 
 

@@ -45,8 +45,8 @@ COLUMNS = (
 )
 COMPARED = COLUMNS[:-1]
 """Columns of which the smallest value is the best."""
-UNVERIFIED_MARK = " *"
-UNVERIFIED_NOTE = "* not verified, and never the best: a warning says why"
+_UNVERIFIED_MARK = " *"
+_UNVERIFIED_NOTE = "* not verified, and never the best: a warning says why"
 
 
 def comparison(runs: Sequence[Run], title: str) -> Table:
@@ -60,12 +60,12 @@ def comparison(runs: Sequence[Run], title: str) -> Table:
     for column in columns:
         table.add_column(column.heading, justify="right", vertical="bottom", no_wrap=True)
     if any(run.unverified for run in runs):
-        table.caption, table.caption_justify = UNVERIFIED_NOTE, "left"
+        table.caption, table.caption_justify = _UNVERIFIED_NOTE, "left"
     groups = group_by_condition((run.scenario, run) for run in runs if not run.unverified)
     best = {id(run): group for group in groups for run in group if len(group) > 1}
     for run in runs:
         cells = [escape(_label(run, key)) for key in labels]
-        cells[0] += UNVERIFIED_MARK if run.unverified else ""
+        cells[0] += _UNVERIFIED_MARK if run.unverified else ""
         rivals = best.get(id(run), [])
         cells += [
             _cell(run, column, _best(rivals, column.metric) if column in COMPARED else None) for column in columns

@@ -28,10 +28,10 @@ class _Terminal(Console):
 
     def on_broken_pipe(self) -> None:
         """Go on without printing."""
-        drop_output(sys.stdout if not self.stderr else sys.stderr)
+        _drop_output(sys.stdout if not self.stderr else sys.stderr)
 
 
-def drop_output(stream: TextIO) -> None:
+def _drop_output(stream: TextIO) -> None:
     """Let what is still printed to a stream whose reader has gone away go nowhere."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, stream.fileno())
@@ -48,7 +48,7 @@ def print_any_letter() -> None:
 out = _Terminal(emoji=False)
 err = _Terminal(emoji=False, stderr=True)
 
-COMPILING = "compiling (first time only)"
+_COMPILING = "compiling (first time only)"
 Report = Callable[[str], None]
 """Is called with what is being done."""
 Count = Callable[[int, int], None]
@@ -138,7 +138,7 @@ def _write_line(text: str) -> None:
         sys.stdout.write(f"{text}\n")
         sys.stdout.flush()
     except BrokenPipeError:
-        drop_output(sys.stdout)
+        _drop_output(sys.stdout)
 
 
 @contextmanager
@@ -147,7 +147,7 @@ def count_progress(title: str, total: int | None = None) -> Iterator[Count]:
     from rich.progress import Progress
 
     with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
-        compiling = progress.add_task(COMPILING, total=None, visible=False)
+        compiling = progress.add_task(_COMPILING, total=None, visible=False)
         task = progress.add_task(title, total=total)
 
         def tell(parts: int) -> None:
@@ -173,4 +173,4 @@ def show_progress() -> Iterator[Report]:
 
 
 def _describe_parts(parts: int) -> str:
-    return f"{COMPILING}: {parts} functions"
+    return f"{_COMPILING}: {parts} functions"

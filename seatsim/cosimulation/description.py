@@ -28,16 +28,16 @@ from seatsim.schema.validation import is_finite_number
 
 UNPACKED = 4
 """What an archive holds may be this much larger than the largest archive."""
-LARGEST_DESCRIPTION = 16 * 2**20
+_LARGEST_DESCRIPTION = 16 * 2**20
 MOST_FILES = 10_000
 DESCRIPTION = "modelDescription.xml"
-SYSTEMS = {
+_SYSTEMS = {
     "Linux": ("linux", "linux", ".so"),
     "Darwin": ("darwin", "darwin", ".dylib"),
     "Windows": ("win", "windows", ".dll"),
 }
 """Names of an operating system in versions 2 and 3, and the ending of its libraries."""
-MACHINES = {"AMD64": "x86_64", "arm64": "aarch64", "x86_64": "x86_64", "aarch64": "aarch64"}
+_MACHINES = {"AMD64": "x86_64", "arm64": "aarch64", "x86_64": "x86_64", "aarch64": "aarch64"}
 
 
 @contextmanager
@@ -73,14 +73,14 @@ def _check_entries(path: Path, entries: list[zipfile.ZipInfo]) -> None:
         raise InputError(f"{path}: has no {DESCRIPTION}, so that it is no functional mock-up unit")
 
 
-def read_description(path: Path, archive: zipfile.ZipFile) -> bytes:
+def _read_description(path: Path, archive: zipfile.ZipFile) -> bytes:
     """Return the text of `modelDescription.xml`, without what an XML parser could be made to follow.
 
     Raises:
         InputError: it is too large, or declares a document type.
     """
-    if archive.getinfo(DESCRIPTION).file_size > LARGEST_DESCRIPTION:
-        raise InputError(f"{path}: its {DESCRIPTION} has more than {in_mib(LARGEST_DESCRIPTION)}")
+    if archive.getinfo(DESCRIPTION).file_size > _LARGEST_DESCRIPTION:
+        raise InputError(f"{path}: its {DESCRIPTION} has more than {in_mib(_LARGEST_DESCRIPTION)}")
     text = archive.read(DESCRIPTION)
     if b"<!DOCTYPE" in text or b"<!ENTITY" in text:
         raise InputError(f"{path}: its {DESCRIPTION} declares a document type, which the standard does not have")
@@ -93,8 +93,8 @@ def find_library(path: Path, archive: zipfile.ZipFile, version: int, identifier:
     Raises:
         InputError: there is none; the error names the platforms that the unit is for.
     """
-    older, newer, ending = SYSTEMS.get(platform.system(), SYSTEMS["Linux"])
-    machine = MACHINES.get(platform.machine(), platform.machine())
+    older, newer, ending = _SYSTEMS.get(platform.system(), _SYSTEMS["Linux"])
+    machine = _MACHINES.get(platform.machine(), platform.machine())
     here = f"{older}{64 if sys.maxsize > 2**32 else 32}" if version == 2 else f"{machine}-{newer}"
     name = f"binaries/{here}/{identifier}{ending}"
     if name in archive.namelist():
@@ -132,11 +132,11 @@ QUANTITIES = {
 """What an input of a damper may take, in its unit: motion positive in extension, current of the coil."""
 FORCE = "force"
 REAL = ("Real", "Float64")
-SETTABLE = {"Real": float, "Float64": float, "Integer": int, "Int32": int, "Boolean": bool}
+_SETTABLE = {"Real": float, "Float64": float, "Integer": int, "Int32": int, "Boolean": bool}
 """Types of parameters that a scenario may state."""
 
 
-CO_SIMULATION, MODEL_EXCHANGE = "CoSimulation", "ModelExchange"
+CO_SIMULATION, _MODEL_EXCHANGE = "CoSimulation", "ModelExchange"
 
 
 class UnitDescription(NamedTuple):
@@ -173,7 +173,7 @@ def describe_unit(path: Path) -> UnitDescription:
     from fmpy.model_description import read_model_description
 
     with open_archive(path) as archive:
-        text = read_description(path, archive)
+        text = _read_description(path, archive)
         stated = re.search(rb"""fmiVersion\s*=\s*["']([^"']*)""", text)
         version = {b"2": 2, b"3": 3}.get(stated[1].partition(b".")[0]) if stated else None
         if version is None:
@@ -187,7 +187,7 @@ def describe_unit(path: Path) -> UnitDescription:
         model = described.coSimulation or described.modelExchange
         if model is None:
             raise InputError(f"{path}: is neither for co-simulation nor for model exchange, as a damper must be")
-        kind = CO_SIMULATION if described.coSimulation else MODEL_EXCHANGE
+        kind = CO_SIMULATION if described.coSimulation else _MODEL_EXCHANGE
         identifier = str(model.modelIdentifier)
         find_library(path, archive, version, identifier)
     saves = getattr(model, "canGetAndSetFMUstate", False) or getattr(model, "canGetAndSetFMUState", False)
@@ -217,7 +217,7 @@ def find_variable(unit: UnitDescription, name: str, causality: str) -> Any:
     found = unit.variables[name]
     if found.causality != causality:
         raise InputError(f"'{name}' is declared as {found.causality}, not as {causality}{nearest(name, fitting)}")
-    types = tuple(SETTABLE) if causality == "parameter" else REAL
+    types = tuple(_SETTABLE) if causality == "parameter" else REAL
     if found.type not in types or getattr(found, "dimensions", None):
         kind = f"an array of {found.type}" if getattr(found, "dimensions", None) else str(found.type)
         raise InputError(f"'{name}' is declared as {kind}; permitted: {', '.join(types)}")
@@ -231,7 +231,7 @@ def check_parameter(unit: UnitDescription, name: str, value: object) -> float:
         InputError: it is not.
     """
     found = find_variable(unit, name, "parameter")
-    kind = SETTABLE[found.type]
+    kind = _SETTABLE[found.type]
     if not (isinstance(value, bool) if kind is bool else is_finite_number(value) and kind(value) == value):
         word = {float: "a number", int: "a whole number", bool: "true or false"}[kind]
         raise InputError(f"{value!r} is not permitted; '{name}' is {word}")

@@ -45,7 +45,7 @@ def find_file(path: Path) -> Path:
     raise InputError(f"{path}: no such file{near}; give the path of a scenario, or an example: {', '.join(known)}")
 
 
-MOST_ERRORS = 20
+_MOST_ERRORS = 20
 """Runs of a file of which it is said what is wrong with them."""
 _WHOLE = ("plant", *NEEDED, "controller", "excitation")
 
@@ -67,7 +67,7 @@ def load(scenario: str | Path | Mapping[str, object], settings: Mapping[str, obj
     for content, label in expand(source, settings or {}):
         with gathered(errors):
             scenarios.append(read_scenario(content, label))
-        if len(errors) == MOST_ERRORS:
+        if len(errors) == _MOST_ERRORS:
             break
     raise_all(errors)
     variants = {one.label["variant"]: None for one in scenarios if "variant" in one.label}

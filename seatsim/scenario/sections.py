@@ -42,9 +42,9 @@ from seatsim.schema.yaml_text import KeyPath
 if TYPE_CHECKING:
     from seatsim.excitations.base import Excitation
 
-LARGEST_SEED = 2**63 - 1
+_LARGEST_SEED = 2**63 - 1
 """The largest whole number that a column of a table holds."""
-LONGEST_SAMPLE_TIME = 1.0
+_LONGEST_SAMPLE_TIME = 1.0
 """Seconds between two samples of a law."""
 FILES = (("controller", "design"), ("excitation", "path"))
 """Section and key under which a scenario names a file, from its own folder."""
@@ -86,8 +86,8 @@ def _read_name(value: object, source: Source) -> str:
 
 
 def _read_seed(value: object, source: Source) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= LARGEST_SEED:
-        needed = f"a whole number of at least 0 and at most {LARGEST_SEED}"
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _LARGEST_SEED:
+        needed = f"a whole number of at least 0 and at most {_LARGEST_SEED}"
         raise source.error(("seed",), f"{value!r} is not permitted; it must be {needed}{sweep_hint(value, ('seed',))}")
     return value
 
@@ -124,7 +124,7 @@ def _read_control(values: object, source: Source) -> Control:
 def _read_sample_time(value: object, source: Source) -> float | None:
     if value is None:
         return None
-    if not (is_finite_number(value) and 0 < value <= LONGEST_SAMPLE_TIME):
+    if not (is_finite_number(value) and 0 < value <= _LONGEST_SAMPLE_TIME):
         keys = ("controller", "sample_time")
         raise source.error(keys, f"{value!r} is not permitted; it must be 0 to 1 s{sweep_hint(value, keys)}")
     return value
@@ -145,7 +145,7 @@ _CONTROL: Mapping[str, Callable[[], Schema]] = {
     "sample_time": lambda: {
         "type": "number",
         "exclusiveMinimum": 0,
-        "maximum": LONGEST_SAMPLE_TIME,
+        "maximum": _LONGEST_SAMPLE_TIME,
         "unit": "s",
         "description": "time between two samples of the law [s]",
     },

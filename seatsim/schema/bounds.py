@@ -80,7 +80,7 @@ def check_parts(roots: Iterable[Hashable], part: Callable[[Hashable], Part], siz
     check_made(sum(made[each] for each in top), size)
 
 
-NUMBERS_OF_STEP = 60
+_NUMBERS_OF_STEP = 60
 """Numbers that a simulated step takes: inputs, channels of the history, and copies of some."""
 
 
@@ -94,7 +94,7 @@ def check_memory(size: float, what: str, remedy: str) -> None:
 def check_steps(steps: float) -> None:
     """Raise InputError where a simulation of so many steps does not fit into the memory."""
     shown = f"{steps:,.0f}".replace(",", " ")
-    check_memory(8.0 * NUMBERS_OF_STEP * steps, f"{shown} steps", "shorten the run, or raise solver.step")
+    check_memory(8.0 * _NUMBERS_OF_STEP * steps, f"{shown} steps", "shorten the run, or raise solver.step")
 
 
 def find_available() -> int | None:

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 
 LONGEST = 200
 """Letters of a name from which on none is sought that is near: that takes ever longer, and it is none."""
-LONGEST_MESSAGE = 2000
+_LONGEST_MESSAGE = 2000
 
 
 class SeatsimError(Exception):
@@ -25,7 +25,7 @@ class SeatsimError(Exception):
 
     def __init__(self, message: str) -> None:
         said = " ".join(message.splitlines())
-        super().__init__(said if len(said) <= LONGEST_MESSAGE else f"{said[:1000]} ... {said[-500:]}")
+        super().__init__(said if len(said) <= _LONGEST_MESSAGE else f"{said[:1000]} ... {said[-500:]}")
 
 
 class InputError(SeatsimError):

@@ -15,14 +15,14 @@ from typing import TextIO
 
 from seatsim.schema.errors import InputError, OutputError
 
-LARGEST_JSON = 64 * 2**20
-ReadWatcher = Callable[[Path, bytes], None]
+_LARGEST_JSON = 64 * 2**20
+_ReadWatcher = Callable[[Path, bytes], None]
 """Is called with the path and the content of a file that was read."""
-_watchers: list[ReadWatcher] = []
+_watchers: list[_ReadWatcher] = []
 
 
 @contextmanager
-def watch_reads(tell: ReadWatcher) -> Iterator[None]:
+def watch_reads(tell: _ReadWatcher) -> Iterator[None]:
     """Call `tell` with every file that is read meanwhile, on any thread, so that the inputs of an answer are known."""
     _watchers.append(tell)
     try:
@@ -88,7 +88,7 @@ def read_json(path: Path, what: str) -> object:
     Raises:
         InputError: it cannot be read, or is no JSON.
     """
-    content = read_bytes(path, LARGEST_JSON, what)
+    content = read_bytes(path, _LARGEST_JSON, what)
     try:
         value: object = json.loads(content)
     except (ValueError, RecursionError) as error:

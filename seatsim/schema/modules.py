@@ -49,7 +49,7 @@ UNIT = ".fmu"
 """Ending of the name of a functional mock-up unit."""
 LARGEST_UNIT = 256 * 2**20
 """Bytes that such a file may have."""
-SAFE_PATH = "PYTHONSAFEPATH"
+_SAFE_PATH = "PYTHONSAFEPATH"
 HOME = Path(__file__).resolve().parents[2]
 """The folder that seatsim lies in."""
 _used: dict[str, _UsedFile] = {}
@@ -169,15 +169,15 @@ def started_elsewhere() -> Iterator[None]:
 
     The child of a spawn is started with `python -c`, which searches it first, even for modules of Python itself.
     """
-    previous = os.environ.get(SAFE_PATH)
-    os.environ[SAFE_PATH] = "1"
+    previous = os.environ.get(_SAFE_PATH)
+    os.environ[_SAFE_PATH] = "1"
     try:
         yield
     finally:
         if previous is None:
-            del os.environ[SAFE_PATH]
+            del os.environ[_SAFE_PATH]
         else:
-            os.environ[SAFE_PATH] = previous
+            os.environ[_SAFE_PATH] = previous
 
 
 def _read(path: Path) -> bytes:

@@ -25,12 +25,12 @@ from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import YamlError, parse_value
 from seatsim.sweeps.axes import Axis, axis_schema, read_axis
 
-DesignName = Literal["cross", "zip", "lhs", "sobol", "table"]
-DESIGNS: tuple[str, ...] = get_args(DesignName)
+_DesignName = Literal["cross", "zip", "lhs", "sobol", "table"]
+_DESIGNS: tuple[str, ...] = get_args(_DesignName)
 KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
 MOST_RUNS = 10_000_000
 """Runs of a sweep: their numbers have this many digits, and more would be a slip of the keyboard."""
-LARGEST_DESIGN = 2**30
+_LARGEST_DESIGN = 2**30
 """Bytes of a table of runs."""
 
 
@@ -50,7 +50,7 @@ class SweepDefinition(NamedTuple):
     source: Source
     scenario: Source
     seed: int
-    design: DesignName
+    design: _DesignName
     runs: int | None
     replicates: int
     axes: tuple[Axis, ...]
@@ -117,13 +117,13 @@ def is_sweep(data: Mapping[str, object]) -> bool:
     return "scenario" in data and bool({"vary", "table", "design"} & set(data))
 
 
-def _read_design(source: Source) -> DesignName:
+def _read_design(source: Source) -> _DesignName:
     name = source.data.get("design", "cross")
-    if name not in DESIGNS:
+    if name not in _DESIGNS:
         raise source.error(
-            ("design",), f"{name!r} is not permitted{nearest(name, DESIGNS)}; permitted: {', '.join(DESIGNS)}"
+            ("design",), f"{name!r} is not permitted{nearest(name, _DESIGNS)}; permitted: {', '.join(_DESIGNS)}"
         )
-    return cast("DesignName", name)
+    return cast("_DesignName", name)
 
 
 def _read_scenario(source: Source) -> Source:
@@ -170,7 +170,7 @@ def _read_table(source: Source) -> Table | None:
         raise source.error(("table",), "design 'table' needs the path of a CSV file whose columns are keys")
     path = source.path.parent / stated
     try:
-        text = read_bytes(path, LARGEST_DESIGN, "a CSV file").decode("utf-8-sig")
+        text = read_bytes(path, _LARGEST_DESIGN, "a CSV file").decode("utf-8-sig")
         rows = list(csv.reader(text.splitlines()))
     except (UnicodeDecodeError, csv.Error, InputError) as error:
         raise source.error(("table",), f"{path} cannot be read: {error}") from error
@@ -197,7 +197,7 @@ def sweep_schema() -> Schema:
     keys = {
         "scenario": {"anyOf": [TEXT, BY_KEY]},
         "seed": {"type": "integer", "minimum": 0, "description": "every draw of the design derives from it"},
-        "design": {"enum": list(DESIGNS)},
+        "design": {"enum": list(_DESIGNS)},
         "runs": {**whole, "description": "points of lhs and sobol; draws of cross and zip"},
         "replicates": {**whole, "description": "runs of each point with other seeds of the scenario"},
         "vary": {"type": "object", "additionalProperties": axis_schema()},

@@ -34,7 +34,7 @@ from seatsim.sweeps.plan import Plan, check_plan, make_plan
 if TYPE_CHECKING:
     import pandas as pd
 
-FLUSH = 1.0
+_FLUSH = 1.0
 """Seconds between two times at which unfinished parts are written: what a killed process may lose."""
 Progress = Callable[[int, int], None]
 """Is called with how many runs have ended, and of how many."""
@@ -64,7 +64,7 @@ def read_share(text: str) -> Share:
     return Share(int(number), int(of))
 
 
-class SweepResult(NamedTuple):
+class _SweepResult(NamedTuple):
     """A sweep after a command: its folder, its identity, runs by state, and reasons of the first runs that failed."""
 
     folder: Path
@@ -73,7 +73,7 @@ class SweepResult(NamedTuple):
     failures: list[str]
 
 
-class PreparedSweep(NamedTuple):
+class _PreparedSweep(NamedTuple):
     """A sweep file and its runs, checked; `doubts` say what is permitted but unusual."""
 
     definition: SweepDefinition
@@ -81,7 +81,7 @@ class PreparedSweep(NamedTuple):
     doubts: list[str]
 
 
-def prepare(path: Path, foresee: Callable[[int], None] = lambda runs: None) -> PreparedSweep:
+def prepare(path: Path, foresee: Callable[[int], None] = lambda runs: None) -> _PreparedSweep:
     """Read a sweep file, resolve its design and check its values; nothing runs.
 
     `foresee` is called with the number of runs before the design is resolved.
@@ -91,18 +91,18 @@ def prepare(path: Path, foresee: Callable[[int], None] = lambda runs: None) -> P
     """
     definition = read_definition(path)
     plan = make_plan(definition, foresee)
-    return PreparedSweep(definition, plan, check_plan(plan))
+    return _PreparedSweep(definition, plan, check_plan(plan))
 
 
 def execute(
-    prepared: PreparedSweep,
+    prepared: _PreparedSweep,
     folder: Path,
     engine: Engine,
     resume: bool = False,
     keep_histories: bool = False,
     share: Share | None = None,
     progress: Progress = lambda done, runs: None,
-) -> SweepResult:
+) -> _SweepResult:
     """Carry out a sweep, or what is missing of it with `resume`, and keep its rows in a folder.
 
     On an interrupt what has ended is kept. A `share` is a part of the sweep that other commands complete.
@@ -135,7 +135,7 @@ def execute(
                 counts = count_states((state for _, state, _ in found), plan.runs)
                 write_manifest(folder, identity, definition.limits, counts)
     failures = [f"run {run}: {reason}" for run, state, reason in found if state == FAILED]
-    return SweepResult(folder, identity.digest, counts, failures)
+    return _SweepResult(folder, identity.digest, counts, failures)
 
 
 def sweep(file: str | Path, out: str | Path, jobs: int | None = None, resume: bool = False) -> pd.DataFrame:
@@ -195,7 +195,7 @@ class _Rows:
             if len(self._open[part]) == len(self._runs(part)):
                 self._write(part)
                 del self._open[part]
-        if time.monotonic() - self._flushed > FLUSH:
+        if time.monotonic() - self._flushed > _FLUSH:
             self.flush()
 
     def flush(self) -> None:

@@ -42,7 +42,7 @@ def runs_of(part: int, runs: int) -> range:
     return range(part * RUNS_OF_PART, min((part + 1) * RUNS_OF_PART, runs))
 
 
-def part_path(folder: Path, part: int) -> Path:
+def _part_path(folder: Path, part: int) -> Path:
     """Return the file of a part."""
     return folder / "runs" / f"part-{part:06d}.parquet"
 
@@ -78,14 +78,14 @@ def read_states(folder: Path, runs: int) -> Iterator[tuple[int, str, str]]:
 
 
 def _read_columns(folder: Path, part: int, names: Sequence[str]) -> Mapping[str, list[Any]]:
-    path = part_path(folder, part)
+    path = _part_path(folder, part)
     if not path.exists():
         return {name: [] for name in names}
-    table = read_part(path, names)
+    table = _read_part(path, names)
     return {name: table.column(name).to_pylist() for name in names}
 
 
-def read_part(path: Path, names: Sequence[str] | None = None) -> pa.Table:
+def _read_part(path: Path, names: Sequence[str] | None = None) -> pa.Table:
     """Return the rows of a part, with these columns or with all.
 
     Raises:
@@ -106,12 +106,12 @@ def write_outcomes(folder: Path, part: int, plan: Plan, schema: pa.Schema, outco
     """Write the outcomes of a part, which takes the place of what it held; `schema` is that of `make_schema`."""
     import pyarrow.parquet as pq
 
-    table = make_table(plan, schema, sorted(outcomes, key=lambda outcome: outcome.run))
+    table = _make_table(plan, schema, sorted(outcomes, key=lambda outcome: outcome.run))
     write = partial(pq.write_table, table, compression="zstd", compression_level=1)
-    return write_whole(part_path(folder, part), write, lasting=True)
+    return write_whole(_part_path(folder, part), write, lasting=True)
 
 
-def make_table(plan: Plan, schema: pa.Schema, outcomes: Sequence[Outcome]) -> pa.Table:
+def _make_table(plan: Plan, schema: pa.Schema, outcomes: Sequence[Outcome]) -> pa.Table:
     """Return outcomes with the values of their runs as a table."""
     import pyarrow as pa
 
@@ -180,17 +180,17 @@ def read_sweep(folder: str | Path) -> pd.DataFrame:
     parts = sorted(folder.glob("runs/part-*.parquet"))
     if not parts:
         raise InputError(f"{folder}: no run of this sweep has ended; go on with it with --resume")
-    tables = [read_part(part) for part in parts]
+    tables = [_read_part(part) for part in parts]
     try:
         table = pa.concat_tables(tables)
     except pa.ArrowInvalid as error:
         raise InputError(f"{folder}: holds parts of different sweeps: {error}; choose another folder") from error
     frame: pd.DataFrame = table.to_pandas()
-    frame.attrs["units"] = units_of(table.schema)
+    frame.attrs["units"] = _units_of(table.schema)
     return frame
 
 
-def units_of(schema: pa.Schema) -> dict[str, str]:
+def _units_of(schema: pa.Schema) -> dict[str, str]:
     """Return the units of the columns that have one."""
     stated = {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in schema}
     return {name: unit for name, unit in stated.items() if unit}

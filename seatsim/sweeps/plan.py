@@ -146,7 +146,7 @@ def make_plan(definition: SweepDefinition, foresee: Callable[[int], None] = lamb
     return Plan(bases, columns, places, len(next(iter(columns.values()))), definition.replicates)
 
 
-MOST_FLOORS = 40
+_MOST_FLOORS = 40
 """Floors that are made to see whether they can be; more would take longer than the message is worth."""
 MOST_LEVELS = 1000
 """Different numbers of a key from which on only the least and the greatest are looked at."""
@@ -170,7 +170,7 @@ def check_plan(plan: Plan) -> list[str]:
         try:
             scenario = plan.scenario(run)
             asked = (type(scenario.excitation), repr((scenario.excitation, scenario.solver.step)))
-            if scenario.excitation is not None and asked not in floors and len(floors) < MOST_FLOORS:
+            if scenario.excitation is not None and asked not in floors and len(floors) < _MOST_FLOORS:
                 floors.add(asked)
                 with scenario.placed("excitation"):
                     scenario.excitation.floor(scenario.solver.step, scenario.seed)

@@ -11,7 +11,7 @@ from seatsim.schema.files import make_folder, write_text
 from seatsim.sweeps.parts import part_of
 from seatsim.sweeps.plan import Plan
 
-MOST_TASKS = 256
+_MOST_TASKS = 256
 """Tasks of an array, well below the 1001 that Slurm permits unless it is configured otherwise."""
 SCRIPT = """\
 #!/bin/bash
@@ -47,7 +47,7 @@ def write_slurm(
     text = SCRIPT.format(
         runs=plan.runs,
         command=shlex.join(words),
-        tasks=min(part_of(plan.runs - 1) + 1, MOST_TASKS),
+        tasks=min(part_of(plan.runs - 1) + 1, _MOST_TASKS),
         **{key: shlex.quote(name) for key, name in names.items()},
     )
     return write_text(script, text)

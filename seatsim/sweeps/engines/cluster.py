@@ -35,7 +35,7 @@ LONGEST_SEARCH = 10
 
 
 @contextmanager
-def open_cluster(jobs: int, address: str | None) -> Iterator[ClusterEngine]:
+def open_cluster(jobs: int, address: str | None) -> Iterator[_ClusterEngine]:
     """Connect with the scheduler at an address, or start a cluster of `jobs` processes, which ends with the block.
 
     Raises:
@@ -49,10 +49,10 @@ def open_cluster(jobs: int, address: str | None) -> Iterator[ClusterEngine]:
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with _embed(jobs) if address is None else _connect(address) as client:
         _await_workers(client)
-        yield ClusterEngine(client)
+        yield _ClusterEngine(client)
 
 
-class ClusterEngine(NamedTuple):
+class _ClusterEngine(NamedTuple):
     """Simulates runs on the dask cluster of a client."""
 
     client: Client

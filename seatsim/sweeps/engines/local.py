@@ -22,13 +22,13 @@ from seatsim.schema.processes import open_pool
 from seatsim.sweeps.engines.base import Work, simulate_one
 from seatsim.sweeps.outcome import Outcome
 
-BATCH, LONGEST_BATCH = 20, 0.2
+BATCH, _LONGEST_BATCH = 20, 0.2
 """Most runs that a process is given at once, and seconds that they may take: so much is lost where it is killed."""
 SHARES = 4
 """Towards the end a batch is this part of what is left for each worker, so that all of them end together."""
-AT_HAND = 2
+_AT_HAND = 2
 """Batches that a process has, one of which it works on."""
-MOST_LOST = 3
+_MOST_LOST = 3
 """Times that processes may be lost before the sweep ends: others get their runs, which may be what ends them."""
 
 
@@ -121,9 +121,9 @@ class _Crew:
             # Without the scenarios that the plan keeps: the thread adds to them at any time.
             work = Work(replace(self._work.plan), (), self._work.histories)
             self._pool = self._ends.enter_context(open_pool(self._processes, partial(_take_work, work)))
-        longest = min(BATCH, LONGEST_BATCH // pace)
+        longest = min(BATCH, _LONGEST_BATCH // pace)
         size = int(max(1, min(longest, len(self._waiting) // (SHARES * self._engine.jobs))))
-        while self._waiting and len(self._given) - (self._here is not None) < AT_HAND * self._processes:
+        while self._waiting and len(self._given) - (self._here is not None) < _AT_HAND * self._processes:
             batch = [self._waiting.popleft() for _ in range(min(size, len(self._waiting)))]
             self._given[self._pool.submit(_simulate, batch)] = batch
 
@@ -132,7 +132,7 @@ class _Crew:
         self._lost += 1
         self._ends.pop_all().close()
         self._ends.enter_context(threadpool_limits(1))
-        if self._lost > MOST_LOST:
+        if self._lost > _MOST_LOST:
             raise RunError(
                 f"processes were lost {self._lost} times, mostly for want of memory; what has ended is kept: go on with"
                 " --resume and fewer --jobs"

@@ -119,7 +119,7 @@ def tabulate_quantiles(rows: SweepRows) -> pd.DataFrame:
     return pd.DataFrame(found)
 
 
-DEFAULT_LIMITS: Mapping[str, float] = {"driver_acceleration_weighted": ACTION.a8, "end_stop_hits": 0.0}
+_DEFAULT_LIMITS: Mapping[str, float] = {"driver_acceleration_weighted": ACTION.a8, "end_stop_hits": 0.0}
 """Where a sweep states none: the action value of 2002/44/EC for a day of eight hours of this vibration, and any hit."""
 
 
@@ -141,7 +141,7 @@ def count_exceedances(rows: SweepRows) -> list[Exceedance]:
     """Return how often each limit of the sweep is exceeded, by group; a run without the metric does not count."""
     from scipy.stats import binomtest
 
-    limits = rows.manifest["limits"] or DEFAULT_LIMITS
+    limits = rows.manifest["limits"] or _DEFAULT_LIMITS
     found = []
     for group, runs in group_rows(rows):
         for metric, limit in limits.items():
