@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Mapping
-from typing import cast
+from typing import Any, cast
 
 from seatsim.dampers.base import Damper
-from seatsim.rig.coil import Coil
 from seatsim.rig.control import Law
-from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
+from seatsim.scenario.sections import SECTIONS
 from seatsim.schema.errors import nearest
 from seatsim.schema.fields import FieldSpecification, bounds, describe, field_names, replace_fields
 from seatsim.schema.registry import Record
@@ -49,15 +48,12 @@ def set_number(scenario: Scenario, key: str, value: float) -> Scenario:
     if not section:
         return dataclasses.replace(scenario, temperature=value)
     record = replace_fields(_records(scenario)[section], {name: value})
-    if isinstance(record, Plant):
-        return dataclasses.replace(scenario, plant=record)
-    if isinstance(record, Coil):
-        return dataclasses.replace(scenario, coil=record)
-    if isinstance(record, Thermal):
-        return dataclasses.replace(scenario, temperature=record)
     if section == LAW and scenario.control is not None:
         return dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, law=cast("Law", record)))
-    return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=cast("Damper", record)))
+    if section == "damper.parameters":
+        return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=cast("Damper", record)))
+    changed: dict[str, Any] = {SECTIONS[section].field or section: record}
+    return dataclasses.replace(scenario, **changed)
 
 
 def change_numbers(scenario: Scenario, changes: Mapping[str, float], nominal: Mapping[str, float]) -> Scenario:

@@ -125,7 +125,11 @@ class _Crew:
         size = int(max(1, min(longest, len(self._waiting) // (SHARES * self._engine.jobs))))
         while self._waiting and len(self._given) - (self._here is not None) < _AT_HAND * self._processes:
             batch = [self._waiting.popleft() for _ in range(min(size, len(self._waiting)))]
-            self._given[self._pool.submit(_simulate, batch)] = batch
+            try:
+                self._given[self._pool.submit(_simulate, batch)] = batch
+            except BrokenProcessPool:
+                self._waiting.extendleft(reversed(batch))
+                return self._lose_pool()
 
     def _lose_pool(self) -> None:
         """Take back the runs of a pool of which a process was lost, so that the next one gets them."""
