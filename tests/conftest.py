@@ -65,13 +65,16 @@ def benchmark():
 
 
 @pytest.fixture
-def seatsim_command(monkeypatch, capsys):
+def seatsim_command(capsys):
     """Call the whole program and return its exit status, standard output and standard error."""
 
     def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["seatsim", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stopped:
-            main()
+        before, sys.argv = sys.argv, ["seatsim", *map(str, arguments)]
+        try:
+            with pytest.raises(SystemExit) as stopped:
+                main()
+        finally:
+            sys.argv = before
         return stopped.value.code, *capsys.readouterr()
 
     return call

@@ -23,10 +23,10 @@ LONGEST_NUMBER = 40
 """Digits of a whole number: twice what any seed has."""
 _TOO_DEEP = f"lists and mappings nest more than {DEEPEST} deep"
 
-Scalar: TypeAlias = str | int | float | bool | None
+_Scalar: TypeAlias = str | int | float | bool | None
 KeyPath = tuple[str | int, ...]
 
-_WORDS: dict[str, Scalar] = {
+_WORDS: dict[str, _Scalar] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
     **dict.fromkeys(("true", "True", "TRUE"), True),
     **dict.fromkeys(("false", "False", "FALSE"), False),
@@ -59,7 +59,7 @@ class _Node(NamedTuple):
     """
 
     line: int
-    value: Scalar | list[_Node] | dict[str, tuple[int, _Node]]
+    value: _Scalar | list[_Node] | dict[str, tuple[int, _Node]]
     merged: tuple[_Node, ...] = ()
     size: int = 1
 
@@ -204,7 +204,7 @@ def _events(text: str) -> Iterator[yaml.Event]:
         raise YamlError(f"character {error.character!r} is not permitted in YAML", line) from error
 
 
-def _read_scalar(text: str, line: int) -> Scalar:
+def _read_scalar(text: str, line: int) -> _Scalar:
     """Return a scalar without quotes as YAML 1.2 means it."""
     if text in _WORDS:
         return _WORDS[text]

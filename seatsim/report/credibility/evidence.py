@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from seatsim.identification.identify import Identification
     from seatsim.recordings.gap import Gap
     from seatsim.standards.seat_rows import SeatTest
-    from seatsim.sweeps.statistics.exceedance import Exceedance
-    from seatsim.sweeps.statistics.inputs import SweepRows
+    from seatsim.sweeps.statistics.rows import Exceedance, SweepRows
     from seatsim.sweeps.statistics.sensitivity import Sensitivities
 
 COMFORT = "driver_acceleration_weighted"
