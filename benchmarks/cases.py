@@ -14,7 +14,6 @@ from rich.table import Table
 from threadpoolctl import threadpool_limits
 
 from seatsim.blind.labels import KINDS, Label
-from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.measures import Rate
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import read_verdict
@@ -23,6 +22,7 @@ from seatsim.diagnosis.noise import NoiseWeights, weigh_uniformly
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import write_json
+from seatsim.schema.processes import run_jobs
 
 Array = NDArray[np.float64]
 EncodedDiagnosis = Mapping[str, object]

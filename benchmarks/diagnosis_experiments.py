@@ -28,7 +28,6 @@ import seatsim
 from seatsim.blind.make.draw_case import Case, CaseSpecification, draw_case
 from seatsim.blind.make.folder import encode_recording, write_folder
 from seatsim.blind.make.unfinished import case_name
-from seatsim.blind.processes import run_jobs
 from seatsim.blind.truth.experiment import Experiment, RunPlan, read_channels, simulate_run
 from seatsim.blind.truth.faults.scenario import Changes
 from seatsim.blind.truth.physics.control_laws import SCHEDULE
@@ -38,6 +37,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.result import Content, Diagnosis, ProposedExperiment
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.files import write_json
+from seatsim.schema.processes import run_jobs
 
 CELL, LOG = ("damper_force",), ("coil_current",)
 WITHOUT: Mapping[str, tuple[str, ...]] = {

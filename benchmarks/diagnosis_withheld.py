@@ -29,7 +29,6 @@ from seatsim.blind.labels import Label
 from seatsim.blind.make.draw_case import CaseSpecification
 from seatsim.blind.make.make import draw_files, make_case
 from seatsim.blind.make.unfinished import case_name
-from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.diagnosis.candidates import list_candidates
 from seatsim.diagnosis.design.collinearity import fit_member
@@ -44,6 +43,7 @@ from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.content import to_content
 from seatsim.schema.files import write_json
+from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import names
 
 IMITATED = 1.0 - DecisionSettings().explained

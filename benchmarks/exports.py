@@ -28,12 +28,12 @@ from numpy.typing import NDArray
 from seatsim.compilation.cached import compiled
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import DAMPERS
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block
 from seatsim.exchange.blocks.damper import DamperInputs, advance, damper_block, observe
 from seatsim.exchange.blocks.rig import rig_block
-from seatsim.exchange.blocks.rig_records import RigOutputs
+from seatsim.exchange.blocks.rig_motion import RigOutputs
+from seatsim.exchange.c_source import print_model
 from seatsim.exchange.compiler import undefined_symbols
-from seatsim.exchange.model_source import print_model
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import DamperChoice, Scenario
 from seatsim.schema.errors import InputError

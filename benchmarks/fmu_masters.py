@@ -23,10 +23,9 @@ from exports import STEP, floor_of, motion
 from fmu_host import run_unit
 from numpy.typing import NDArray
 
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block, list_variables
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
-from seatsim.exchange.variables import list_variables
 from seatsim.scenario.loading import load
 
 Array = NDArray[np.float64]

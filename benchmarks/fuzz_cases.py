@@ -120,9 +120,7 @@ def _read_floor(folder: Path) -> object:
 
 def _read_rows(folder: Path) -> object:
     from seatsim.report.sweep import report_sweep
-    from seatsim.sweeps.statistics.exceedance import count_exceedances
-    from seatsim.sweeps.statistics.inputs import read_rows
-    from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
+    from seatsim.sweeps.statistics.rows import count_exceedances, read_rows, tabulate_quantiles
     from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity
 
     rows = read_rows(folder)

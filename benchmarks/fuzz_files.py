@@ -100,7 +100,7 @@ def make_map() -> bytes:
 
 def make_unit() -> bytes:
     """Return a functional mock-up unit with a library that is none."""
-    from seatsim.cosimulation.archive import DESCRIPTION
+    from seatsim.cosimulation.description import DESCRIPTION
 
     variable = (
         '<ScalarVariable name="{}" valueReference="{}" causality="{}" variability="{}"><Real {}/></ScalarVariable>'

@@ -31,10 +31,9 @@ from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
 import seatsim
-from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
-from seatsim.recordings.compared import LEFT_OUT
 from seatsim.recordings.gap import pool_runs
-from seatsim.recordings.recording import ChannelEntry, Recording, load_recording
+from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Recording, load_recording
+from seatsim.recordings.replay import LEFT_OUT
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import bounds, replace_fields

@@ -31,11 +31,11 @@ from typing import NamedTuple
 import numpy as np
 from loop_alone import loop_of
 from numpy.typing import NDArray
+from seatsim.sweeps.engines.memory import keep_freed_memory
 
 from seatsim.cli.outputs.simulated import write_sweep_report
 from seatsim.sweeps.engines.base import simulate_one
 from seatsim.sweeps.engines.local import LocalEngine
-from seatsim.sweeps.engines.memory import keep_freed_memory
 from seatsim.sweeps.execute import execute, prepare
 from seatsim.sweeps.plan import Plan
 

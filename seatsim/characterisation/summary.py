@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Annotated, NamedTuple
 
 from seatsim.characterisation.cycles import find_cycles
@@ -10,7 +11,7 @@ from seatsim.characterisation.measured_steps import measure_responses
 from seatsim.characterisation.response import Response
 from seatsim.characterisation.rows import Row, summarise_aperiodic_record, summarise_record
 from seatsim.characterisation.steps import find_plateaus
-from seatsim.recordings.bench_tables import BenchRecord, unused_columns
+from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 from seatsim.schema.content import Form
 from seatsim.schema.notebook import show_record
 
@@ -57,12 +58,14 @@ def _list_names(names: Sequence[str]) -> str:
     return ", ".join(names) if len(names) <= 3 else f"{names[0]} and {len(names) - 1} more"
 
 
-def characterise(records: Sequence[BenchRecord], name: str, source: str = "") -> Characterisation:
-    """Return what bench records show before anything is modelled.
+def characterise(data: str | Path | Sequence[BenchRecord], name: str = "", source: str = "") -> Characterisation:
+    """Return what bench records, or the tables of a folder, show before anything is modelled.
 
     A record whose current rests at several levels, with steady cycles at one of them, has a row for each such stretch;
     any other record has one row.
     """
+    records = load_bench(data) if isinstance(data, str | Path) else data
+    name = name or (Path(data).stem if isinstance(data, str | Path) else records[0].name)
     rows = [row for record in records for row in _rows(record)]
     answers = [answer for record in records for answer in measure_responses(record)]
     return Characterisation(name, source or name, True, rows, answers, unused_columns(records))

@@ -35,6 +35,7 @@ def end(status: int) -> NoReturn:
         with suppress(BrokenPipeError):
             stream.flush()
     remove_leftovers(PATIENCE)
+    # Python would wait for threads: after an interrupt, for as long as the runs take that have begun.
     os._exit(128 + _received[-1] if _received else status)
 
 

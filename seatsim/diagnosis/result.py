@@ -236,5 +236,9 @@ class Diagnosis:
     model_error: ModelError | None = None
     error_budget: list[ErrorBudget] = field(default_factory=list)
 
+    def __repr__(self) -> str:
+        """Say what was found."""
+        return f"<Diagnosis {self.verdict}: {', '.join(self.selected) or 'no effect'}; {self.sentence}>"
+
     def _repr_html_(self) -> str:
         return show_record(self, "verdict", "sentence", "probability_none", "probability_unknown", "where", "causes")

@@ -122,6 +122,11 @@ class Identification(NamedTuple):
             "bench": {"displacement_origin": self.origin, "offset_per_kelvin": float(bench.offset_per_kelvin)},
         }
 
+    def __repr__(self) -> str:
+        """Name the model and its parameters."""
+        values = ", ".join(f"{each.name} {each.value:.4g} {each.unit}" for each in self.information.estimates)
+        return f"<Identification of {self.model}: {values}>"
+
     def _repr_html_(self) -> str:
         return show_record(self, "model", "train", "test", "parameters", "notes")
 

@@ -20,7 +20,7 @@ from seatsim.provenance.invocation import REPEATABLE
 from seatsim.provenance.manifest import EXAMPLE
 from seatsim.provenance.statement import MANIFEST, Manifest, read_manifest, state_file
 from seatsim.provenance.versions import list_platform, list_versions
-from seatsim.scenario.finding import EXAMPLES
+from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, RunError, nearest
 from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.leftovers import temporary_folder

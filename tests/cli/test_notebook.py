@@ -15,7 +15,8 @@ GAP = Gap(0.2, {"damper_force": 0.2, "<b>": 0.1}, GapFigures(0.0, {"damper_force
 
 def test_a_gap_is_a_table_and_a_picture():
     shown = GAP._repr_html_()
-    assert "<td>channels.damper_force</td><td>0.2</td>" in shown and "<td>floor.overall</td><td>not stated</td>" in shown
+    assert "<td>channels.damper_force</td><td>0.2</td>" in shown
+    assert "<td>floor.overall</td><td>not stated</td>" in shown
     assert "<b>" not in GAP._repr_html_()
     pictures = seatsim.plot(GAP)
     assert isinstance(pictures["gap"], Figure)

@@ -15,8 +15,8 @@ from seatsim.blind.carrier.recorded import Carrier, encode_carrier, read_carrier
 from seatsim.blind.carrier.replays import MATERIAL_SHARE, Ruler
 from seatsim.blind.labels import Label
 from seatsim.blind.make.make import CaseFiles, make_set
-from seatsim.blind.processes import Progress
 from seatsim.schema.errors import InputError
+from seatsim.schema.processes import Progress
 
 UNTOUCHED = "untouched"
 """In place of an effect: the carrier as it was measured, which shows what is named without any effect put in."""

@@ -19,9 +19,9 @@ from seatsim.blind.make.compose import compose
 from seatsim.blind.make.draw_case import CaseSpecification, draw_case
 from seatsim.blind.make.folder import encode_recording, write_folder
 from seatsim.blind.make.unfinished import begin_or_resume, case_name, gather, is_finished, keep_label, keep_unseen
-from seatsim.blind.processes import Progress, run_jobs
 from seatsim.blind.sealed import seal
 from seatsim.schema.errors import InputError
+from seatsim.schema.processes import Progress, run_jobs
 
 Wanted = TypeVar("Wanted")
 

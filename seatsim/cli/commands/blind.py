@@ -116,7 +116,7 @@ def blind_power(
 
 def diagnose_all(folder: Path, count: Callable[[int, int], None]) -> None:
     """Diagnose every case of a folder that has no diagnosis yet, into `CASE/diagnosis`; may be taken up again."""
-    from seatsim.blind.processes import run_jobs
+    from seatsim.schema.processes import run_jobs
 
     cases = sorted(path.parent for path in folder.glob("case-*/recording.yaml"))
     open_cases = [case for case in cases if not (case / "diagnosis" / "diagnosis.json").exists()]

@@ -152,9 +152,8 @@ def _present(
 ) -> tuple[RunTable, list[Path]]:
     """Print the table of some runs, their bounds where wanted and the warnings; return them and their files."""
     from seatsim.cli.outputs.simulated import Brackets, RunTable, write_interrupted, write_result
-    from seatsim.cli.published_tables import published_tables
     from seatsim.cli.show_table import show_table
-    from seatsim.cli.tables import comparison
+    from seatsim.cli.tables import comparison, published_tables
     from seatsim.simulation.performance_bounds import place_runs
     from seatsim.simulation.result import Result
 

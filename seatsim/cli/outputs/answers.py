@@ -63,7 +63,7 @@ def list_answers() -> Mapping[str, object]:
     from seatsim.cli.check_files import CheckedFile
     from seatsim.cli.outputs.simulated import RunAnswer, SweepReport
     from seatsim.diagnosis.result import Diagnosis
-    from seatsim.exchange.variables import ExportedBlock
+    from seatsim.exchange.block import ExportedBlock
     from seatsim.identification.identify import Identification
     from seatsim.identification.model_benchmark import League
     from seatsim.importing.importing import Import

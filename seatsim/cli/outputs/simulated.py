@@ -17,7 +17,7 @@ from seatsim.schema.files import write_together
 from seatsim.simulation.history_table import write_histories
 from seatsim.simulation.performance_bounds import RigBounds, place_runs
 from seatsim.simulation.result import Result
-from seatsim.sweeps.statistics.exceedance import Exceedance
+from seatsim.sweeps.statistics.rows import Exceedance
 from seatsim.sweeps.statistics.sensitivity import Sensitivity
 
 MOST_KEPT = 400_000
@@ -91,18 +91,20 @@ class SweepReport(NamedTuple):
     paths: Unwritten[Sequence[Path]]
 
 
-def write_sweep_report(folder: Path, out: Path) -> SweepReport:
-    """Write `report.html`, `table.csv` and `sensitivity.csv` of a sweep to a folder, and return what they say.
+def write_sweep_report(folder: str | Path, out: str | Path | None = None) -> SweepReport:
+    """Write the report of a sweep to the folder `out`, or to that of the sweep, and return what it says.
+
+    Its files are `report.html`, `table.csv` and `sensitivity.csv`.
 
     Raises:
         InputError: the folder holds no sweep, or none of its runs has ended.
     """
     from seatsim.report.sweep import report_sweep, state_importance
-    from seatsim.sweeps.statistics.exceedance import count_exceedances
-    from seatsim.sweeps.statistics.inputs import read_rows
-    from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
+    from seatsim.sweeps.statistics.rows import count_exceedances, read_rows, tabulate_quantiles
     from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity, tabulate_sensitivities
 
+    folder = Path(folder)
+    out = Path(out or folder)
     rows = read_rows(folder)
     quantiles, found, exceeded = tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows)
     contents = {
