@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from seatsim.blind.labels import KINDS, Label
 from seatsim.blind.processes import run_jobs
-from seatsim.blind.score.measures import Rate
+from seatsim.blind.score.cases import Rate
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import read_verdict
 from seatsim.blind.sealed import unseal

@@ -27,12 +27,12 @@ from threadpoolctl import threadpool_limits
 import seatsim
 from seatsim.blind.make.draw_case import Case, CaseSpecification, draw_case
 from seatsim.blind.make.folder import encode_recording, write_folder
-from seatsim.blind.make.unfinished import case_name
+from seatsim.blind.make.make import case_name
 from seatsim.blind.processes import run_jobs
 from seatsim.blind.truth.experiment import Experiment, RunPlan, read_channels, simulate_run
-from seatsim.blind.truth.faults.scenario import Changes
-from seatsim.blind.truth.physics.control_laws import SCHEDULE
-from seatsim.blind.truth.physics.rig import EXCITATION_RATE, SAMPLE_RATE
+from seatsim.blind.truth.faults import Changes
+from seatsim.blind.truth.coil import SCHEDULE
+from seatsim.blind.truth.rig import EXCITATION_RATE, SAMPLE_RATE
 from seatsim.diagnosis.design.candidate_experiments import CandidateExperiment, excite, list_candidate_experiments
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.result import Content, Diagnosis, ProposedExperiment

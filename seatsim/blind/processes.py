@@ -20,9 +20,11 @@ Progress = Callable[[int, int], None]
 
 
 def run_jobs(
-    function: Callable[[*Arguments], Result], jobs: Sequence[tuple[*Arguments]], processes: int,
+    function: Callable[[*Arguments], Result],
+    jobs: Sequence[tuple[*Arguments]],
+    processes: int,
     progress: Progress | None = None,
-) -> list[Result]:  # fmt: skip
+) -> list[Result]:
     """Call a picklable function with each tuple of arguments and return the results in order.
 
     Up to `processes` spawned processes share the jobs (a fork would copy the threads of BLAS and numba in an unknown

@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.blind.make import draw_experiment, draw_rig, folder, materiality, severity
-from seatsim.blind.make.tolerance import ToleranceRefit, bounded_least_squares
-from seatsim.blind.truth.faults.scenario import Changes, SensorFault
+from seatsim.blind.make import draw_case, draw_experiment, folder, materiality, severity
+from seatsim.blind.make.materiality import ToleranceRefit, bounded_least_squares
+from seatsim.blind.truth.faults import Changes, SensorFault
 
 from .experiments import small_experiment
 
@@ -30,7 +30,7 @@ def test_parameters_are_scattered_inside_the_width() -> None:
 
 def test_channels_are_missing_at_their_rates() -> None:
     rng = np.random.default_rng(0)
-    missing = [draw_rig.draw_missing_channels(rng) for _ in range(4000)]
+    missing = [draw_case.draw_missing_channels(rng) for _ in range(4000)]
     shares = Counter(map(len, missing))
     assert [shares[k] / 4000 for k in range(3)] == pytest.approx([0.6, 0.33, 0.07], abs=0.03)
     single = Counter(some[0] for some in missing if len(some) == 1)

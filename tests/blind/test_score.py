@@ -12,8 +12,15 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from seatsim.blind.score.cases import ScoredCase, describe_failure, missing_channels, strength_class
-from seatsim.blind.score.measures import Rate, calibration_error, reliability
+from seatsim.blind.score.cases import (
+    Rate,
+    ScoredCase,
+    calibration_error,
+    describe_failure,
+    missing_channels,
+    reliability,
+    strength_class,
+)
 from seatsim.blind.score.score import score, score_verdicts
 from seatsim.blind.score.shrink import score_shrink
 from seatsim.blind.score.tables import tables

@@ -19,10 +19,10 @@ from seatsim.blind.make.make import make
 from seatsim.blind.make.materiality import CommandedRuns
 from seatsim.blind.sealed import unseal
 from seatsim.blind.truth import vehicle_floor
+from seatsim.blind.truth.excitation import NoiseColour, colour_noise
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, read_channels, simulate_run
-from seatsim.blind.truth.faults.scenario import Changes
-from seatsim.blind.truth.noise import NoiseColour, colour_noise
-from seatsim.blind.truth.physics.rig import EXCITATION_RATE, INTEGRATION_STEP
+from seatsim.blind.truth.faults import Changes
+from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP
 
 
 def drawn(seed: int, bingham: bool = False) -> Experiment:

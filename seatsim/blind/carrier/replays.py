@@ -10,7 +10,7 @@ import numpy as np
 from ruamel.yaml import YAML
 
 from seatsim.blind.carrier.recorded import Carrier, Content, encode_carrier, number, section
-from seatsim.blind.make.tolerance import bounded_least_squares
+from seatsim.blind.make.materiality import bounded_least_squares
 from seatsim.recordings.compared import select_compared, stands_out
 from seatsim.recordings.recording import ChannelEntry, load_recording
 from seatsim.recordings.replay import replay_table

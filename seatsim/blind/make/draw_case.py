@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.labels import EFFECTS, Kind, Label, Specification
-from seatsim.blind.make.draw_experiment import SCATTER
-from seatsim.blind.make.draw_rig import FaultlessRig, draw_rig
-from seatsim.blind.make.materiality import CommandedRuns, collinearity
+from seatsim.blind.labels import EFFECTS, Kind, Label
+from seatsim.blind.make.draw_experiment import SCATTER, draw_experiment
+from seatsim.blind.make.draw_varied import draw_varied_experiment
+from seatsim.blind.make.materiality import CommandedRuns, FaultlessRig, collinearity
 from seatsim.blind.make.severity import find_severity
-from seatsim.blind.truth.experiment import CHANNELS, Experiment, read_channels, simulate_run
-from seatsim.blind.truth.faults.catalogue import SCENARIOS, scenarios_of
-from seatsim.blind.truth.faults.scenario import Changes, Context, FaultScenario, Shape
-from seatsim.blind.truth.sensors import Readings
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, read_channels, simulate_run
+from seatsim.blind.truth.faults import Changes, Context, FaultScenario, Shape
+from seatsim.blind.truth.outside_faults import SCENARIOS, scenarios_of
 from seatsim.schema.errors import RunError
 
+BINGHAM_SHARE = 0.5
+"""Of the rigs."""
+COMPLETE_SHARE, AT_MOST_ONE_MISSING = 0.6, 0.93
+"""Shares of the rigs that record every channel, and that lack at most one; the others lack two."""
+OPTIONAL = {"damper_force": 0.7, "coil_current": 0.3}
+"""Channels that a rig may lack, and how likely each is the one: a load cell is what is saved first.
+
+A fade could not be found without thermometer, so that no rig lacks it, whatever is wrong with it.
+"""
 ATTEMPTS = 8
 """Attempts with the same faults before others take their place: on some rigs an effect such as play is hardly seen."""
 EXCHANGES = 20
@@ -33,6 +42,15 @@ RAISE = 1.15
 """How much further than to the limit a fault is raised."""
 WEAKEST = 0.4
 """Materiality below which a fault is raised no faster, as response and severity are not proportional that far."""
+
+
+def draw_missing_channels(rng: Generator) -> tuple[str, ...]:
+    """Draw the channels that are not recorded: none in 60 % of cases, rarely two."""
+    u = rng.random()
+    if u < COMPLETE_SHARE:
+        return ()
+    count = 1 if u < AT_MOST_ONE_MISSING else 2
+    return tuple(str(name) for name in rng.choice(list(OPTIONAL), count, replace=False, p=list(OPTIONAL.values())))
 
 
 @dataclass(frozen=True)
@@ -51,16 +69,13 @@ class CaseSpecification:
     varied: bool = False
 
     def draw_rig(self, rng: Generator) -> Experiment:
-        """Draw a rig and its protocol, to which neither kind nor names are told."""
-        return draw_rig(rng, self.varied, self.missing, self.scatter, self.background)
-
-    def as_dict(self) -> Specification:
-        """Return it as it stands in a label."""
-        missing = None if self.missing is None else list(self.missing)
-        return {
-            "kind": self.kind, "names": list(self.names), "missing": missing, "background": self.background,
-            "scatter": self.scatter, "varied": self.varied,
-        }  # fmt: skip
+        """Draw a rig and its protocol; neither kind nor names are used, so that nothing of it tells what is wrong."""
+        gone = draw_missing_channels(rng) if self.missing is None else self.missing
+        channels = tuple(name for name in CHANNELS if name not in gone)
+        bingham = rng.random() < BINGHAM_SHARE
+        if self.varied:
+            return draw_varied_experiment(rng, bingham, channels)
+        return draw_experiment(rng, bingham, channels, self.scatter, self.background)
 
 
 @dataclass(frozen=True)
@@ -105,7 +120,7 @@ class Case:
             "sample_rate": self.experiment.sample_rate,
             "tolerance": self.experiment.tolerance,
             "rig": dict(self.experiment.nominal),
-            "order": self.specification.as_dict(),
+            "order": dataclasses.asdict(self.specification),
         }
 
 

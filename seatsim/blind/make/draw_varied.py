@@ -11,11 +11,10 @@ from numpy.random import Generator
 
 from seatsim.blind.make import draw_experiment as standard
 from seatsim.blind.make.materiality import COARSE_STEP, CommandedRuns
-from seatsim.blind.truth.excitation import draw_current_steps
+from seatsim.blind.truth import coil
+from seatsim.blind.truth.excitation import NoiseColour, draw_current_steps
 from seatsim.blind.truth.experiment import Experiment, RunPlan, simulate_run
-from seatsim.blind.truth.faults.scenario import Changes, FrameForce
-from seatsim.blind.truth.noise import NoiseColour
-from seatsim.blind.truth.physics import control_laws
+from seatsim.blind.truth.faults import Changes, FrameForce
 from seatsim.blind.truth.vehicle_floor import draw_vehicle, draw_vehicle_floor
 from seatsim.schema.arrays import Array
 
@@ -70,8 +69,7 @@ def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, .
     nominal = draw_nominal(rng, bingham)
     noise = {
         name: float(f"{value * _log_uniform(rng, 1.0 / NOISE_FACTOR, NOISE_FACTOR):.3g}")
-        for name, value in standard.NOISE.items()
-        if name in channels
+        for name, value in standard.noise_of(channels).items()
     }
     true = standard.scatter_parameters(nominal, rng, tolerance) | standard.draw_heat(rng)
     colours = {name: _draw_colour(rng) for name in noise}
@@ -100,10 +98,9 @@ def _draw_plant(rng: Generator, seat: SeatKind) -> dict[str, float]:
     """Draw masses, and from natural frequencies and damping ratios the springs and dampings."""
     ms, m = rng.uniform(*seat.frame), rng.uniform(*DRIVER)
     w, cushion = (2.0 * math.pi * rng.uniform(*band) for band in (seat.resonance, CUSHION_RESONANCE))
-    return {
-        "ms": ms, "m": m, "kf": (ms + m) * w * w, "cf": 2.0 * rng.uniform(*SUSPENSION_DAMPING) * (ms + m) * w,
-        "kc": m * cushion * cushion, "cc": 2.0 * rng.uniform(*CUSHION_DAMPING) * m * cushion,
-    }  # fmt: skip
+    suspension = {"kf": (ms + m) * w * w, "cf": 2.0 * rng.uniform(*SUSPENSION_DAMPING) * (ms + m) * w}
+    seated = {"kc": m * cushion * cushion, "cc": 2.0 * rng.uniform(*CUSHION_DAMPING) * m * cushion}
+    return {"ms": ms, "m": m, **suspension, **seated}
 
 
 def draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham: bool) -> dict[str, float]:
@@ -124,11 +121,10 @@ def draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham: 
         return damper | {"is_bingham": 1.0, "f0": 0.0, "v_ref": max(steepest, 0.002) * _log_uniform(rng, 1.0, 4.0)}
     slope, share = _log_uniform(rng, 500.0, 2500.0), rng.uniform(0.3, 0.7)
     offset = rng.random() < OFFSET_SHARE
-    return damper | {
-        "is_bingham": 0.0, "A": slope, "beta": share * slope, "gamma": (1.0 - share) * slope,
-        "n": float(rng.integers(1, 3)), "x0": 0.0, "k0": size * rng.uniform(100.0, 800.0) if offset else 0.0,
-        "f0": size * rng.uniform(-40.0, 40.0) if offset else 0.0,
-    }  # fmt: skip
+    hysteresis = {"A": slope, "beta": share * slope, "gamma": (1.0 - share) * slope, "n": float(rng.integers(1, 3))}
+    k0 = size * rng.uniform(100.0, 800.0) if offset else 0.0
+    f0 = size * rng.uniform(-40.0, 40.0) if offset else 0.0
+    return damper | {"is_bingham": 0.0, **hysteresis, "x0": 0.0, "k0": k0, "f0": f0}
 
 
 def _draw_colour(rng: Generator) -> NoiseColour:
@@ -142,7 +138,7 @@ def _draw_runs(rng: Generator, experiment: Experiment, repeat: bool) -> tuple[Ru
     """Draw three runs of one vehicle on different roads, the first again where `repeat`, and the unseen one."""
     rate, vehicle, top = experiment.sample_rate, draw_vehicle(rng), rng.uniform(0.8, 1.0)
     starts = standard.draw_temperatures(rng, 4)
-    schedule = np.array([control_laws.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
+    schedule = np.array([coil.SCHEDULE, 0.0, 0.0, 0.0, 0.0, 0.0])
     laws = [schedule, *_fit_laws(standard.draw_laws(rng), experiment), schedule]
     if rng.random() < standard.STEPPED:
         laws = [schedule] * 4

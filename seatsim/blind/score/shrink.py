@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.blind.processes import Progress, run_jobs
-from seatsim.blind.score.measures import Rate, count_true
+from seatsim.blind.score.cases import Rate, count_true
 from seatsim.blind.score.verdicts import NAMING, Verdict
 from seatsim.blind.sealed import Sealed
 from seatsim.schema.errors import SeatsimError
@@ -70,8 +70,9 @@ def score_shrink(
     ]
     predicted = [
         _compare_case(name, unseen.predicted, unseen.interval, unseen.true)
-        for name, unseen in zip(claims, found, strict=True) if unseen.predicted is not None
-    ]  # fmt: skip
+        for name, unseen in zip(claims, found, strict=True)
+        if unseen.predicted is not None
+    ]
     return dataclasses.replace(_compare(stated), predicted=_compare(predicted) if predicted else None)
 
 

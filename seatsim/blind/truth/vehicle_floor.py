@@ -8,8 +8,8 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from seatsim.blind.truth.noise import coloured_noise
-from seatsim.blind.truth.physics.rig import EXCITATION_RATE
+from seatsim.blind.truth.excitation import coloured_noise
+from seatsim.blind.truth.rig import EXCITATION_RATE
 from seatsim.schema.arrays import Array
 
 Spectrum = NDArray[np.complex128]
@@ -40,11 +40,10 @@ class Vehicle(NamedTuple):
 def draw_vehicle(rng: Generator) -> Vehicle:
     """Draw a bus, truck cab or tractor: body at 1-2.2 Hz, wheels at 8-14 Hz, a panel at 18-45 Hz, an engine."""
     radians = 2.0 * np.pi
-    return Vehicle(
-        radians * rng.uniform(1.0, 2.2), rng.uniform(0.15, 0.35), radians * rng.uniform(8.0, 14.0),
-        rng.uniform(0.08, 0.25), radians * rng.uniform(18.0, 45.0), rng.uniform(0.03, 0.15), rng.uniform(0.1, 1.0),
-        rng.uniform(22.0, 55.0), rng.uniform(0.02, 0.12),
-    )  # fmt: skip
+    body = radians * rng.uniform(1.0, 2.2), rng.uniform(0.15, 0.35)
+    wheel = radians * rng.uniform(8.0, 14.0), rng.uniform(0.08, 0.25)
+    panel = radians * rng.uniform(18.0, 45.0), rng.uniform(0.03, 0.15), rng.uniform(0.1, 1.0)
+    return Vehicle(*body, *wheel, *panel, rng.uniform(22.0, 55.0), rng.uniform(0.02, 0.12))
 
 
 def draw_vehicle_floor(rng: Generator, vehicle: Vehicle, seconds: float, bumps: float) -> Array:

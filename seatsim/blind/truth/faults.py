@@ -1,4 +1,8 @@
-"""What a fault scenario is: the effect and block it stands for, how its shape is drawn, how strong it can be."""
+"""What a fault scenario is: the effect and block it stands for, how its shape is drawn, how strong it can be.
+
+`damper_faults` and `seat_faults` hold the forms of the contract's effects, `outside_faults` what a real rig may do
+besides. None holds an equation of motion: those are in `damper`, `coil`, `seat` and `sensors`.
+"""
 
 from __future__ import annotations
 
@@ -15,10 +19,27 @@ Shape = dict[str, float]
 Value = float | tuple[float, ...]
 """One number, or one for each run."""
 ForceKind = Literal["coloured", "hum", "knock"]
-SensorFaultKind = Literal[
-    "gain", "gain_bent", "bias", "wander", "lag_second", "lag_average", "skew", "quantise", "clip", "backlash",
-    "crosstalk",
-]  # fmt: skip
+Misreading = Literal["gain", "gain_bent", "bias", "wander", "lag_second", "lag_average"]
+"""Of the contract's effects, beside a log that is skewed; others are outside the library."""
+SensorFaultKind = Misreading | Literal["skew", "quantise", "clip", "backlash", "crosstalk"]
+FAULTY_CHANNELS = (
+    "frame_acceleration",
+    "driver_acceleration",
+    "suspension_displacement",
+    "damper_force",
+    "coil_current",
+    "floor_acceleration",
+)
+"""Channels that a sensor fault can sit on, where they are recorded."""
+NEIGHBOUR = {
+    "frame_acceleration": "driver_acceleration",
+    "driver_acceleration": "frame_acceleration",
+    "suspension_displacement": "frame_acceleration",
+    "damper_force": "suspension_displacement",
+    "coil_current": "damper_force",
+    "floor_acceleration": "frame_acceleration",
+}
+"""The channel that couples into each, where channels are not kept apart."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +73,7 @@ class SensorFault:
 class Changes:
     """What departs from the nominal rig: parameters, forces on the frame, sensor faults.
 
-    `parameters` are those of `physics.parameters`, and `rate_factor`, by which the coil's true rate is multiplied.
+    `parameters` are those of `parameters`, and `rate_factor`, by which the coil's true rate is multiplied.
     """
 
     parameters: Mapping[str, Value] = field(default_factory=dict)
@@ -93,16 +114,16 @@ Build = Callable[[float, Shape, Context], Changes]
 class FaultScenario:
     """One way in which an effect, or something outside the library, may be at work.
 
-    `draw` chooses the shape; `build` turns severity and shape into changes and is off at severity zero; `span` holds
-    the severities that are plausible on a real rig, 1 being a common one. `bingham`: it needs the Bingham damper.
+    `draw` chooses the shape; `build` turns a severity above zero and a shape into changes; `span` holds the severities
+    that are plausible on a real rig, 1 being a common one. `bingham`: it needs the Bingham damper.
     """
 
     name: str
     effect: str
     block: Block
+    span: tuple[float, float]
     draw: Draw
     build: Build
-    span: tuple[float, float] = (0.02, 30.0)
     bingham: bool = False
 
     @property
@@ -111,16 +132,53 @@ class FaultScenario:
         return self.effect not in EFFECTS
 
 
-def set_parameters(**values: Value) -> Changes:
-    """Return changes of parameters only."""
-    return Changes(dict(values))
-
-
 def draw_nothing(rng: Generator, _: Context) -> Shape:
     """Return an empty shape, for scenarios that have a severity alone."""
     return {}
 
 
+def enter(
+    scenarios: dict[str, FaultScenario],
+    name: str,
+    effect: str,
+    block: Block,
+    span: tuple[float, float],
+    draw: Draw = draw_nothing,
+    bingham: bool = False,
+) -> Callable[[Build], Build]:
+    """Return what enters a function as the `build` of a scenario; their order is part of what a seed means."""
+
+    def enter_build(build: Build) -> Build:
+        scenarios[name] = FaultScenario(name, effect, block, span, draw, build, bingham)
+        return build
+
+    return enter_build
+
+
+def set_parameters(**values: Value) -> Changes:
+    """Return changes of parameters only."""
+    return Changes(dict(values))
+
+
 def draw_seed(rng: Generator) -> float:
     """Draw a seed that fits a float, as all numbers of a shape are."""
     return float(rng.integers(1, 1_000_000))
+
+
+def draw_channel(rng: Generator, context: Context) -> Shape:
+    """Draw the channel (as its place in `FAULTY_CHANNELS`), a sign, a detail and a seed."""
+    there = [k for k, name in enumerate(FAULTY_CHANNELS) if name in context.channels]
+    channel, sign = float(rng.choice(there)), float(rng.choice([-1.0, 1.0]))
+    return {"channel": channel, "sign": sign, "detail": rng.uniform(0.0, 1.0), "seed": draw_seed(rng)}
+
+
+def fault_channel(kind: SensorFaultKind, size: float, shape: Shape, context: Context) -> Changes:
+    """Return one fault on the drawn channel."""
+    name = drawn_channel(shape)
+    fault = SensorFault(kind, name, size, shape["detail"], int(shape["seed"]), context.spread[name])
+    return Changes(sensor_faults=(fault,))
+
+
+def drawn_channel(shape: Shape) -> str:
+    """Return the channel that `draw_channel` drew."""
+    return FAULTY_CHANNELS[int(shape["channel"])]

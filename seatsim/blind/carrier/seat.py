@@ -15,15 +15,16 @@ from numpy.random import Generator
 from scipy.linalg import expm
 from scipy.signal import butter, sosfiltfilt
 
-from seatsim.blind.carrier.change import Altered, Change
-from seatsim.blind.carrier.recorded import Carrier, Table, number, section
-from seatsim.blind.carrier.signals import slope
+from seatsim.blind.carrier.recorded import Altered, Carrier, Change, Table, number, section, slope
 from seatsim.schema.arrays import Array
 
 SUBSTEPS = 4
 """Of the integration in each row: friction is stiff."""
 Force = Callable[[float, float, float, float, float], tuple[float, float]]
 """Force on frame and driver from suspension x, v, cushion xc, vc and the driver's acceleration."""
+Law = Callable[[], Force]
+"""Begins a run: a force may remember what went before."""
+Parameters = Mapping[str, float]
 
 
 class SeatMotion(NamedTuple):
@@ -44,51 +45,46 @@ def draw_seat_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     motions = {run: _motion(carrier, plant, table) for run, table in carrier.tables.items()}
     travel = float(np.std(np.concatenate([m.x for m in motions.values()])))
     peak = float(np.quantile(np.abs(np.concatenate([m.x for m in motions.values()])), 0.999))
-    force = plant["suspension_stiffness"] * travel
+    stiffness, mass = plant["suspension_stiffness"], plant["driver_mass"]
+    force = stiffness * travel
     width = float(np.exp(rng.uniform(np.log(0.02), np.log(0.1)))) * travel
     stop = float(rng.uniform(0.4, 0.7)) * peak
-    seed = int(rng.integers(2**31))
-    build = Builder(carrier, plant, motions)
+    seed, step = int(rng.integers(2**31)), carrier.step
+
+    def change(effect: str, form: str, largest: float, at: Callable[[float], tuple[Parameters, Law]]) -> Change:
+        def alter(amount: float) -> Altered:
+            parameters, law = at(amount)
+            tables = {
+                run: {**table, **respond(carrier, plant, table, motions[run], law())}
+                for run, table in carrier.tables.items()
+            }
+            return Altered(dataclasses.replace(carrier, tables=tables), parameters)
+
+        return Change(effect, form, "", (0.0, largest), alter)
+
+    def stiffen(a: float) -> tuple[Parameters, Law]:
+        return {"rise": a / travel**2}, _cubic(a * stiffness / travel**2)
+
+    def push(a: float) -> tuple[Parameters, Law]:
+        return {}, _random(a * force, seed, step)
+
     return [
-        build.change("suspension.friction", "F sgn v", 1.0, lambda a: {"force": a * force},
-                     lambda a: _friction(a * force, width)),
-        build.change("suspension.progressive_spring", "cubic", 3.0, lambda a: {"rise": a / travel**2},
-                     lambda a: _cubic(a * plant["suspension_stiffness"] / travel**2)),
-        build.change("suspension.end_stop", "linear buffer", 5.0, lambda a: {},
-                     lambda a: _buffer(a * plant["suspension_stiffness"], stop)),
-        build.change("driver.mass", "heavier", 0.6, lambda a: {"change": a * plant["driver_mass"]},
-                     lambda a: _mass(a * plant["driver_mass"])),
-        build.change("floor.unmeasured_input", "random force on the frame", 3.0, lambda a: {},
-                     lambda a: _random(a * force, seed, carrier.step)),
-    ]  # fmt: skip
+        change("suspension.friction", "F sgn v", 1.0, lambda a: ({"force": a * force}, _friction(a * force, width))),
+        change("suspension.progressive_spring", "cubic", 3.0, stiffen),
+        change("suspension.end_stop", "linear buffer", 5.0, lambda a: ({}, _buffer(a * stiffness, stop))),
+        change("driver.mass", "heavier", 0.6, lambda a: ({"change": a * mass}, _mass(a * mass))),
+        change(
+            "floor.unmeasured_input",
+            "random force on the frame",
+            3.0,
+            lambda a: ({}, _random(a * force, seed, carrier.step)),
+        ),
+    ]
 
 
 def _is_linear(carrier: Carrier) -> bool:
     values = section(section(carrier.nominal, "damper"), "parameters")
     return all(number(values.get(name, 0.0)) == 0.0 for name in ("alpha_a", "alpha_b", "fc_a", "fc_b"))
-
-
-class Builder(NamedTuple):
-    """What every change of a seat needs: the carrier, its nominal plant and its recorded motion by run."""
-
-    carrier: Carrier
-    plant: Mapping[str, float]
-    motions: Mapping[str, SeatMotion]
-
-    def change(
-        self, effect: str, form: str, largest: float, parameters: Callable[[float], Mapping[str, float]],
-        force: Callable[[float], Callable[[], Force]],
-    ) -> Change:  # fmt: skip
-        """Return the change by a force law of an amount."""
-
-        def alter(amount: float) -> Altered:
-            tables = {
-                run: {**table, **respond(self.carrier, self.plant, table, self.motions[run], force(amount)())}
-                for run, table in self.carrier.tables.items()
-            }
-            return Altered(dataclasses.replace(self.carrier, tables=tables), parameters(amount))
-
-        return Change(effect, form, "", (0.0, largest), alter)
 
 
 def respond(
@@ -108,12 +104,9 @@ def respond(
         for _ in range(SUBSTEPS):
             relative = d[0], d[2], d[1] - d[0], d[3] - d[2]
             rates = A @ d
-            f = np.array(
-                force(
-                    motion.x[k] + relative[0], motion.v[k] + relative[1], motion.xc[k] + relative[2],
-                    motion.vc[k] + relative[3], motion.driver[k] + rates[3],
-                )
-            )  # fmt: skip
+            suspension = motion.x[k] + relative[0], motion.v[k] + relative[1]
+            cushion = motion.xc[k] + relative[2], motion.vc[k] + relative[3]
+            f = np.array(force(*suspension, *cushion, motion.driver[k] + rates[3]))
             rates = rates + B @ f
             d = keep @ d + drive @ f
         added["suspension_displacement"][k] = d[0]
@@ -124,10 +117,8 @@ def respond(
 def _matrices(plant: Mapping[str, float]) -> tuple[Array, Array]:
     ms, m = plant["frame_mass"], plant["driver_mass"]
     kf, cf, kc, cc = (plant[f"{part}_{law}"] for part in ("suspension", "cushion") for law in ("stiffness", "damping"))
-    A = np.array([
-        [0, 0, 1, 0], [0, 0, 0, 1],
-        [-(kf + kc) / ms, kc / ms, -(cf + cc) / ms, cc / ms], [kc / m, -kc / m, cc / m, -cc / m],
-    ])  # fmt: skip
+    frame, driver = [-(kf + kc) / ms, kc / ms, -(cf + cc) / ms, cc / ms], [kc / m, -kc / m, cc / m, -cc / m]
+    A = np.array([[0, 0, 1, 0], [0, 0, 0, 1], frame, driver])
     return A, np.array([[0, 0], [0, 0], [1 / ms, 0], [0, 1 / m]])
 
 
@@ -153,7 +144,7 @@ def simulate_linear(plant: Mapping[str, float], floor: Array, step: float) -> Se
     return SeatMotion(*found.T)
 
 
-def _friction(force: float, width: float) -> Callable[[], Force]:
+def _friction(force: float, width: float) -> Law:
     def law() -> Force:
         anchor = [0.0]
 
@@ -166,19 +157,19 @@ def _friction(force: float, width: float) -> Callable[[], Force]:
     return law
 
 
-def _cubic(rise: float) -> Callable[[], Force]:
+def _cubic(rise: float) -> Law:
     return lambda: lambda x, v, xc, vc, driver: (-rise * x**3, 0.0)
 
 
-def _buffer(stiffness: float, stop: float) -> Callable[[], Force]:
+def _buffer(stiffness: float, stop: float) -> Law:
     return lambda: lambda x, v, xc, vc, driver: (-stiffness * (max(0.0, x - stop) + min(0.0, x + stop)), 0.0)
 
 
-def _mass(change: float) -> Callable[[], Force]:
+def _mass(change: float) -> Law:
     return lambda: lambda x, v, xc, vc, driver: (0.0, -change * driver)
 
 
-def _random(size: float, seed: int, step: float) -> Callable[[], Force]:
+def _random(size: float, seed: int, step: float) -> Law:
     """Return a force with a spectrum between 1 and 8 Hz, drawn anew in every run."""
     rng = np.random.default_rng(seed)
 

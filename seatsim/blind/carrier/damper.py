@@ -7,10 +7,19 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.random import Generator
 
-from seatsim.blind.carrier.change import Altered, Change, with_tables
-from seatsim.blind.carrier.injections.coil import commanded
-from seatsim.blind.carrier.recorded import Carrier, Table, number, section
-from seatsim.blind.carrier.signals import low_pass, slide, slope
+from seatsim.blind.carrier.readings import commanded
+from seatsim.blind.carrier.recorded import (
+    Altered,
+    Carrier,
+    Change,
+    Table,
+    low_pass,
+    number,
+    section,
+    slide,
+    slope,
+    with_tables,
+)
 from seatsim.schema.arrays import Array
 
 LARGEST = 1.5

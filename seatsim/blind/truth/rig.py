@@ -13,17 +13,13 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from seatsim.blind.truth.physics import state
-from seatsim.blind.truth.physics.coil import ROUNDING, held_command, target_current, write_coil_rates
-from seatsim.blind.truth.physics.compiled import compiled
-from seatsim.blind.truth.physics.control_laws import command_of
-from seatsim.blind.truth.physics.cushion import cushion_force
-from seatsim.blind.truth.physics.damper import update_cavity
-from seatsim.blind.truth.physics.magnetisation import update_relays
-from seatsim.blind.truth.physics.mount import damper_force
-from seatsim.blind.truth.physics.occupant import occupant_force, write_occupant_rates
-from seatsim.blind.truth.physics.parameters import RigParameters
-from seatsim.blind.truth.physics.suspension import suspension_force
+from seatsim.blind.truth import state
+from seatsim.blind.truth.coil import ROUNDING, command_of, held_command, target_current, write_coil_rates
+from seatsim.blind.truth.damper import damper_force, update_cavity
+from seatsim.blind.truth.fluid import update_relays
+from seatsim.blind.truth.parameters import RigParameters
+from seatsim.blind.truth.seat import cushion_force, occupant_force, suspension_force, write_occupant_rates
+from seatsim.blind.truth.state import compiled
 from seatsim.schema.arrays import Array
 
 SAMPLE_RATE = 500.0
@@ -109,9 +105,16 @@ def _base_acceleration(y: Array, rates: Array, floor: float, reaction: float, p:
 
 @compiled
 def _write_rates(
-    y: Array, rates: Array, memory: Array, floor: float, frame_force: float, target: float, late: float,
-    p: RigParameters, acc: Array,
-) -> None:  # fmt: skip
+    y: Array,
+    rates: Array,
+    memory: Array,
+    floor: float,
+    frame_force: float,
+    target: float,
+    late: float,
+    p: RigParameters,
+    acc: Array,
+) -> None:
     """Write all rates; `acc` gets frame and driver acceleration (m/s^2) and the force at the load cell (N).
 
     An inerter (fluid inertia) adds its mass to the frame and is carried by the base; a lever transmits the damper's
@@ -138,9 +141,17 @@ def _write_rates(
 
 @compiled
 def _finish_step(
-    y: Array, memory: Array, stages: _Stages, middle: float, end: float, frame_force: float, target: float, late: float,
-    h: float, p: RigParameters,
-) -> None:  # fmt: skip
+    y: Array,
+    memory: Array,
+    stages: _Stages,
+    middle: float,
+    end: float,
+    frame_force: float,
+    target: float,
+    late: float,
+    h: float,
+    p: RigParameters,
+) -> None:
     """Advance the state from the first stage to the end of the step; the floor is given in its middle and at its end.
 
     Frame force, target and muscles stay as they were at its start: they change slowly beside a step.
