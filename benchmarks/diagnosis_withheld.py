@@ -27,8 +27,7 @@ from threadpoolctl import threadpool_limits
 
 from seatsim.blind.labels import Label
 from seatsim.blind.make.draw_case import CaseSpecification
-from seatsim.blind.make.make import draw_files, make_case
-from seatsim.blind.make.make import case_name
+from seatsim.blind.make.make import case_name, draw_files, make_case
 from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.cli.outputs.diagnosis import encode_diagnosis

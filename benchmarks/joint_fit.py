@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from carrier_nominals import quick
 from cases import Array, EncodedDiagnosis, Ranked, rank_by_figure
-from real_rigs import quick
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 

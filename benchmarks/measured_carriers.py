@@ -2,7 +2,7 @@
 
 Out of `../shared/data` are written carriers with their best nominals (`carrier_nominals`), and on each of them cases of
 `seatsim blind make --carrier`: an effect put into the measured signals. They
-are diagnosed by seatsim and, where `--methods` names them, by correlation and BIC (`diagnosis_baselines`) and a joint
+are diagnosed by seatsim and, where `--methods` names them, by the baselines (`diagnosis_baselines`) and a joint
 fit (`joint_fit`). A call broken off goes on where it stopped. Counted are, by carrier and by effect:
 
 first   the effect is the likeliest cause (under whatever verdict but `none`)
@@ -19,11 +19,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from carrier_nominals import read_gap, write_carrier
+from carrier_nominals import DATA, read_gap, write_carrier
 from cases import Diagnoser, show_progress, write_verdict
-from diagnosis_baselines import diagnose_by_bic, diagnose_by_correlation
+from diagnosis_baselines import BASELINES
 from joint_fit import diagnose_by_joint_fit
-from real_rigs import DATA
 from rich.console import Console
 from rich.table import Table
 from rig_records import list_carriers
@@ -47,21 +46,17 @@ def diagnose_by_seatsim(case: Path) -> Mapping[str, object]:
     return encode_diagnosis(seatsim.diagnose(case))
 
 
-METHODS: dict[str, Diagnoser] = {
-    "diagnosis": diagnose_by_seatsim, "joint-fit": diagnose_by_joint_fit, "bic": diagnose_by_bic,
-    "correlation": diagnose_by_correlation,
-}  # fmt: skip
+METHODS: dict[str, Diagnoser] = {"diagnosis": diagnose_by_seatsim, "joint-fit": diagnose_by_joint_fit, **BASELINES}
 
 
-def make_sets(data: Path, out: Path, cases: int, seed: int, jobs: int) -> Labels:
+def make_sets(data: Path, out: Path, only: Sequence[str] | None, cases: int, seed: int, jobs: int) -> Labels:
     """Write carriers and their cases, as far as they are not there, and return the labels."""
-    carriers = [write_carrier(records, out / "carriers") for records in list_carriers(data)]
+    chosen = [records for records in list_carriers(data) if not only or records.rig.name in only]
+    carriers = [write_carrier(records, out / "carriers") for records in chosen]
     labels: Labels = {}
     for index, carrier in enumerate(carriers):
-        folder, sealed, note = (
-            out / "cases" / carrier.name,
-            *(out / f"{carrier.name}.{end}" for end in ("sealed", "key")),
-        )
+        folder = out / "cases" / carrier.name
+        sealed, note = (out / f"{carrier.name}.{end}" for end in ("sealed", "key"))
         if not note.is_file():
             key = make_on_carrier(carrier, cases, seed + index, folder, sealed, show_progress, jobs)
             note.write_text(key)
@@ -129,13 +124,14 @@ def main() -> None:
     parser.add_argument("--data", type=Path, default=DATA)
     parser.add_argument("--out", type=Path, required=True, help="folder for carriers, cases and diagnoses")
     parser.add_argument("--cases", type=int, default=12, help="on each carrier")
+    parser.add_argument("--only", nargs="*", metavar="CARRIER", help="names of carriers")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2, help="cases that are worked on at once")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=["diagnosis"])
     args = parser.parse_args()
     if not args.data.is_dir():
         raise SystemExit(f"{args.data}: the measured data are not there; state their folder with --data")
-    labels = make_sets(args.data, args.out, args.cases, args.seed, args.jobs)
+    labels = make_sets(args.data, args.out, args.only, args.cases, args.seed, args.jobs)
     wanted = [(case / name, METHODS[name]) for name in args.methods for case in labels]
     todo = [(out, method) for out, method in wanted if not out.is_dir()]
     run_jobs(write_verdict, todo, args.jobs, show_progress)

@@ -29,10 +29,11 @@ from statistics import median
 from typing import NamedTuple
 
 import numpy as np
-from loop_alone import loop_of
 from numpy.typing import NDArray
 
 from seatsim.cli.outputs.sweeps import report_sweep
+from seatsim.scenario.scenario import Scenario
+from seatsim.simulation import simulate as simulation
 from seatsim.sweeps.engines.base import simulate_one
 from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.engines.memory import keep_freed_memory
@@ -184,6 +185,28 @@ def plot(sweeps: Sequence[Cost], reports: Sequence[Cost], fitted: NDArray[np.flo
         axes.grid(alpha=0.3)
         axes.legend()
     figure.savefig(file)
+
+
+def loop_of(scenario: Scenario, carry_all_effects: bool | None = None) -> Callable[[], object]:
+    """Simulate a scenario, and return what calls its compiled loop again."""
+    calls: list[Callable[[], object]] = []
+    compiled = simulation.__dict__["compiled"]
+
+    def record(function: object, parts: object) -> Callable[..., object]:
+        loop = compiled(function, parts)
+
+        def call(*arguments: object) -> object:
+            calls.append(lambda: loop(*arguments))
+            return loop(*arguments)
+
+        return call
+
+    simulation.__dict__["compiled"] = record
+    try:
+        simulation.simulate(scenario, carry_all_effects=carry_all_effects)
+    finally:
+        simulation.__dict__["compiled"] = compiled
+    return calls[0]
 
 
 def prepare_loops(plan: Plan, runs: int) -> Callable[[], object]:

@@ -67,7 +67,6 @@ def test_targets_are_log_uniform() -> None:
     assert np.mean(logs) == pytest.approx(0.5 * (math.log(1.1) + math.log(8.0)), abs=0.03)
 
 
-@pytest.mark.usefixtures("short")
 def test_materiality_of_a_gain_and_of_a_parameter() -> None:
     experiment, _, runs = small_experiment()
     gain = Changes(sensor_faults=(SensorFault("gain", "damper_force", 0.1),))
@@ -82,7 +81,6 @@ def test_materiality_of_a_gain_and_of_a_parameter() -> None:
     assert materiality.collinearity(np.array([1.0, 0.0]), np.array([-3.0, 4.0])) == pytest.approx(0.6)
 
 
-@pytest.mark.usefixtures("short")
 def test_a_change_inside_the_tolerance_is_explained_and_one_beyond_it_is_not() -> None:
     experiment, _, runs = small_experiment()
     refit = ToleranceRefit(experiment, runs.commands)
@@ -102,7 +100,6 @@ def test_the_bounded_refit_is_the_projection_onto_the_box() -> None:
     np.testing.assert_allclose(found, [0.4, -1.0, 0.9], atol=1e-6)
 
 
-@pytest.mark.usefixtures("short")
 def test_a_recording_holds_what_its_header_states() -> None:
     experiment, _, _ = small_experiment()
     quiet = {name: np.linspace(0.0, 1.0, 20_000) for name in folder.CHANNELS}

@@ -17,7 +17,6 @@ from seatsim.blind.truth.rig import EXCITATION_RATE, INTEGRATION_STEP, Inputs, s
 from .experiments import small_experiment
 
 
-@pytest.mark.usefixtures("short")
 @pytest.mark.parametrize("bingham", [False, True])
 def test_a_faultless_rig_replays_to_within_its_noise(bingham: bool, tmp_path: Path) -> None:
     experiment, _, _ = small_experiment(bingham)
@@ -29,7 +28,6 @@ def test_a_faultless_rig_replays_to_within_its_noise(bingham: bool, tmp_path: Pa
         assert gap.overall <= 1.1 * gap.floor["overall"]
 
 
-@pytest.mark.usefixtures("short")
 def test_the_step_is_fine_enough_for_a_steep_damper() -> None:
     experiment, _, runs = small_experiment(True)
     values = parameter_record(experiment.true)

@@ -27,7 +27,6 @@ def test_every_effect_has_two_forms_and_every_block_something_outside() -> None:
     )
 
 
-@pytest.mark.usefixtures("short")
 @pytest.mark.parametrize("bingham", [False, True])
 def test_every_form_moves_the_channels_as_it_always_did(bingham: bool) -> None:
     """A seed means the same set in every version, so what a form does to the channels is pinned, by its name."""
@@ -49,7 +48,6 @@ def test_every_form_moves_the_channels_as_it_always_did(bingham: bool) -> None:
     assert found == pytest.approx({name: known[name] for name in found}, rel=1e-5)
 
 
-@pytest.mark.usefixtures("short")
 @pytest.mark.parametrize("name", ["friction-lugre", "skew-fixed", "gain-scale", "remanence-relays"])
 def test_a_drawn_severity_is_material(name: str) -> None:
     _, context, runs = small_experiment()
@@ -65,7 +63,6 @@ def test_a_drawn_severity_is_material(name: str) -> None:
     assert runs.materiality(scenario.build(severity, shape, context), Changes())[0] == pytest.approx(size)
 
 
-@pytest.mark.usefixtures("short")
 def test_a_shifted_log_counts_by_what_the_replay_misses() -> None:
     _, context, runs = small_experiment()
     scenario = SCENARIOS["skew-fixed"]

@@ -1,29 +1,26 @@
 """Properties of every damper and of its inverse over the whole space of its parameters.
 
-    python benchmarks/parameter_space.py [--sets 10000] [--seed 0] [MODEL ...]
-
 A set is drawn within the bounds of the model's fields: over all of a bounded range, otherwise about the default, by a
 factor of e^N(0, 0.5). A law in the current is drawn again while it falls below zero within the model's range: such a
 damper is given damping or friction that pushes, and no model claims to dissipate then. Each set is moved through a
-sine of random amplitude, frequency, current and temperature, and its inverse asked for a random force. Counted are:
+sine of random amplitude, frequency, current and temperature, and its inverse asked for a random force. Found may be:
 
     finite        forces that are not finite
     dissipative   cycles that return energy
     symmetric     forces that the mirrored motion does not mirror (of sets without an offset or an asymmetric part)
     inverse       currents whose force differs from the closest one by more than 1e-6 of the range
     least         currents above the least that serves
-    refused       sets that the bench refuses with an error, as too stiff: counted, no failure
+    refused       sets that the bench refuses with an error, as too stiff: no failure
 """
 
 from __future__ import annotations
 
-import argparse
 import math
-from collections import Counter
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from seatsim.dampers.base import DamperSpecification
@@ -34,12 +31,11 @@ from seatsim.schema.fields import bounds
 from seatsim.schema.registry import find, names, specification_of
 from seatsim.simulation.damper_bench import bench_force
 
-SAMPLES, CYCLES = 120, 2
+SETS, SAMPLES, CYCLES = 4, 120, 2
 FACTORS = TemperatureFactors(-0.004, -0.009, -0.014, 20.0)
 GRID = 241
 SAME = 1e-6
 """Share of the range of forces by which an inverse may be off; its own end of a search, in N, is added."""
-FINDINGS = ("finite", "dissipative", "symmetric", "inverse", "least", "refused")
 ASYMMETRIC = ("f0", "f0_a", "f0_b", "x0", "mu", "asymmetry", "offset_share")
 """Fields that make a force asymmetric unless they are 0."""
 
@@ -167,40 +163,12 @@ def _crossing(forces: NDArray[np.float64], wanted: float) -> int | None:
     return int(found[0]) if len(found) else None
 
 
-def check(name: str, sets: int, seed: int) -> tuple[Counter[str], list[tuple[str, Case]]]:
-    """Return how often each finding occurred for a model, and the cases of all but those refused."""
-    rng = np.random.default_rng([seed, *name.encode()])
-    counts: Counter[str] = Counter()
-    cases = []
-    for _ in range(sets):
+@pytest.mark.slow
+@pytest.mark.parametrize("name", names("damper"))
+def test_a_damper_is_finite_passive_symmetric_and_inverted_for_random_parameters(name: str) -> None:
+    rng = np.random.default_rng([1, *name.encode()])
+    for _ in range(SETS):
         case = draw_case(rng, name)
         with np.errstate(all="ignore"):
-            found = check_motion(case) + check_inverse(rng, case)
-        counts.update(found)
-        cases += [(one, case) for one in found if one != "refused"]
-    return counts, cases
-
-
-def main() -> None:
-    """Print the findings by model and over all."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("models", nargs="*", metavar="MODEL")
-    parser.add_argument("--sets", type=int, default=10000)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--show", action="store_true", help="print one case of each finding")
-    options = parser.parse_args()
-    total: Counter[str] = Counter()
-    chosen = options.models or names("damper")
-    print(f"{'model':34}" + "".join(f"{one:>13}" for one in FINDINGS))
-    for name in chosen:
-        counts, cases = check(name, max(1, options.sets // len(chosen)), options.seed)
-        total += counts
-        print(f"{name:34}" + "".join(f"{counts[one]:13}" for one in FINDINGS), flush=True)
-        if options.show:
-            for finding, case in dict(cases).items():
-                print("   ", finding, case.damper, *case[2:])
-    print(f"{'all':34}" + "".join(f"{total[one]:13}" for one in FINDINGS))
-
-
-if __name__ == "__main__":
-    main()
+            found = set(check_motion(case) + check_inverse(rng, case)) - {"refused"}
+        assert not found, case

@@ -1,6 +1,6 @@
-"""A full disk at every moment: each call that writes fails once, for every command, and nothing may be half-written.
+"""A full disk at every moment: each call that writes fails once, and nothing may be half-written.
 
-    python benchmarks/write_faults.py [--only gap] [--every 1]
+    python tests/robustness/write_faults.py [--only gap] [--every 1]
 
 Each command runs once as it is, which counts its calls of open, write, fsync, mkdir, link and rename below the folder
 of its results. Then it runs as often again, and the n-th of these calls fails as on a full disk: into a folder that is
@@ -30,7 +30,7 @@ from pathlib import Path
 from typing import Any
 
 HERE = Path(__file__).resolve().parent
-EXAMPLES = HERE.parent / "scenarios"
+EXAMPLES = HERE.parents[1] / "scenarios"
 RECORDING, BENCH = EXAMPLES / "data" / "recording", EXAMPLES / "data" / "bench"
 ROOT, LIBRARY = "FAULT_ROOT", "FAULT_LIBRARY"
 SWEEP = "scenario: quickstart\nvary: {plant.driver_mass: [60, 70], excitation.duration: [1]}\n"
