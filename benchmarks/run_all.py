@@ -17,8 +17,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 SHARED = HERE.parents[1] / "shared"
 QUICK = {
-    "loop_peers": "",
-    "sweep_speed": "600",
+    "loop_peers": "--dampers bingham",
+    "sweep_speed": "300",
     "comfort_peers": "",
     "fmu_masters": "--seconds 2",
     "exact_certificates": "{out}/design/design.yaml",

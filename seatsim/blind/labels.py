@@ -7,7 +7,7 @@ from typing import Literal, Required, TypedDict, get_args
 Kind = Literal["none", "one", "two", "outside"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 """No effect, one or two effects of the library, something outside the library."""
-CarriedKind = Literal["carried", "untouched"]
+_CarriedKind = Literal["carried", "untouched"]
 """One effect on a measured recording, and such a recording as it was measured, of which nobody knows what is true."""
 Block = Literal["damper", "coil", "suspension", "cushion", "driver", "floor", "sensor"]
 BLOCKS: tuple[Block, ...] = get_args(Block)
@@ -29,7 +29,7 @@ EFFECTS = tuple(f"{block}.{name}" for block, names in _LIBRARY.items() for name 
 class Label(TypedDict, total=False):
     """What is true of a case. Lists go in parallel, one entry for each fault; a hand-made label may hold less."""
 
-    kind: Required[Kind | CarriedKind]
+    kind: Required[Kind | _CarriedKind]
     effects: Required[list[str]]
     """Effects of the library that are at work; empty outside it."""
     blocks: Required[list[str]]

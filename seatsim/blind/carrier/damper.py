@@ -24,11 +24,11 @@ from seatsim.schema.arrays import Array
 
 LARGEST = 1.5
 """Of a force, in standard deviations of the recorded one."""
-TRAVELS = (2e-5, 1.5e-4)
+_TRAVELS = (2e-5, 1.5e-4)
 """m; sliding travel of a seal, drawn log-uniform."""
-CROSSED = (0.08, 0.2)
+_CROSSED = (0.08, 0.2)
 """Share of the spread of the force at which a gap is crossed; less would need a motion faster than any recorded."""
-LEAST_LEVELS, STANDING = 3, 0.03
+_LEAST_LEVELS, STANDING = 3, 0.03
 """Levels of the current that tell a saturation from another yield force, and the share of the rows that makes one."""
 REFERENCE, LEAST_WARMING = 20.0, 10.0
 """degC at which a damper has its stated forces; K by which it must warm, else a fade is a smaller force throughout."""
@@ -54,7 +54,7 @@ def _added(carrier: Carrier, force: Forces) -> Carrier:
 
 def _seal_friction(carrier: Carrier, rng: Generator) -> Change:
     """Return Coulomb friction `F sgn v`, with the small travel over which a real seal begins to slide."""
-    size, travel = _spread(carrier), float(np.exp(rng.uniform(*np.log(TRAVELS))))
+    size, travel = _spread(carrier), float(np.exp(rng.uniform(*np.log(_TRAVELS))))
 
     def alter(amount: float) -> Altered:
         added = _added(carrier, lambda table: amount * size * slide(table["displacement"], travel))
@@ -123,7 +123,7 @@ def _free_play(carrier: Carrier, rng: Generator) -> Change:
 
     The gap is crossed where the force is a small share of its spread, since behind it every mount yields.
     """
-    soft = float(rng.uniform(*CROSSED)) * _spread(carrier)
+    soft = float(rng.uniform(*_CROSSED)) * _spread(carrier)
     travel = float(np.std(carrier.pooled("displacement")))
 
     def alter(amount: float) -> Altered:
@@ -152,7 +152,7 @@ def _saturation(carrier: Carrier) -> list[Change]:
     rate = number(section(carrier.nominal, "actuator").get("rate", 130.0))
     fixed, by_current, viscous, viscous_by_current = yields
     middle = float(np.mean(carrier.pooled("damper_force")))
-    if len(_levels(carrier.pooled(command))) < LEAST_LEVELS:
+    if len(_levels(carrier.pooled(command))) < _LEAST_LEVELS:
         return []
 
     def lost(table: Table, bend: float) -> Array:
@@ -192,7 +192,7 @@ def _fade(carrier: Carrier) -> list[Change]:
     middle = float(np.mean(carrier.pooled("damper_force")))
 
     def share(table: Table, rate: float) -> Array:
-        smooth = low_pass_temperature(table["damper_temperature"], carrier.step)
+        smooth = _low_pass_temperature(table["damper_temperature"], carrier.step)
         return 1.0 / (1.0 + rate * np.clip(smooth - REFERENCE, 0.0, None)) - 1.0
 
     def alter(amount: float) -> Altered:
@@ -201,7 +201,7 @@ def _fade(carrier: Carrier) -> list[Change]:
     return [Change("damper.thermal_fade", "force falls with temperature", "", (0.0, 0.1), alter)]
 
 
-def low_pass_temperature(values: Array, step: float) -> Array:
+def _low_pass_temperature(values: Array, step: float) -> Array:
     """Return a temperature without the noise of its sensor: a mean over 2 s."""
     width = min(len(values), max(1, round(2.0 / step)))
     padded = np.pad(values, width // 2, mode="edge")

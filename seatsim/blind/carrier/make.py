@@ -21,7 +21,7 @@ from seatsim.blind.make.make import CaseFiles, make_set
 from seatsim.blind.processes import Progress
 from seatsim.schema.errors import InputError
 
-WEAKEST, STRONGEST = 0.06, 0.3
+WEAKEST, _STRONGEST = 0.06, 0.3
 """Standard deviations of a compared channel by which a change moves it: just material, and strong."""
 MOST_RUNS = 6
 """Of a case, one of which may be withheld: a diagnosis is to take seconds."""
@@ -77,14 +77,14 @@ def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:
     return DrawnCase(change, altered, found) if fits else None
 
 
-def draw_size(rng: Generator) -> float:
+def _draw_size(rng: Generator) -> float:
     """Draw a size, log-uniform from just material to strong."""
-    return float(np.exp(rng.uniform(math.log(WEAKEST), math.log(STRONGEST))))
+    return float(np.exp(rng.uniform(math.log(WEAKEST), math.log(_STRONGEST))))
 
 
 UNTOUCHED = "untouched"
 """In place of an effect: the carrier as it was measured, which shows what is named without any effect put in."""
-LEAST_RUNS = 3
+_LEAST_RUNS = 3
 """Of a case from which on one is withheld, to compare the claimed with the true shrink."""
 
 
@@ -131,7 +131,7 @@ def draw_files(source: Path, wanted: str, rng: Generator) -> CaseFiles:
     drawn = None if wanted == UNTOUCHED else draw_case(carrier, wanted, rng)
     told = carrier if drawn is None else drawn.altered.carrier
     runs = tuple(told.tables)
-    withheld = runs[-1:] if len(runs) >= LEAST_RUNS else ()
+    withheld = runs[-1:] if len(runs) >= _LEAST_RUNS else ()
     shown = encode_carrier(told, tuple(run for run in runs if run not in withheld))
     return CaseFiles(shown, encode_carrier(told, withheld) if withheld else {}, label(drawn))
 
@@ -142,7 +142,7 @@ def draw_case(carrier: Carrier, wanted: str, rng: Generator) -> DrawnCase:
     Raises:
         InputError: no effect of a material size can be put into the carrier.
     """
-    ruler, size = Ruler(carrier), draw_size(rng)
+    ruler, size = Ruler(carrier), _draw_size(rng)
     changes = draw_changes(carrier, rng)
     tried = sorted((changes[k] for k in rng.permutation(len(changes))), key=lambda change: change.effect != wanted)
     for change in tried:

@@ -31,7 +31,7 @@ LONGEST_DELAY = 0.04
 """s"""
 FASTEST = 3000.0
 """1/s; a coil that is faster follows at once."""
-NEAR_TOP = 0.93
+_NEAR_TOP = 0.93
 """Share of the largest command from which on it counts as the limit."""
 
 
@@ -98,7 +98,7 @@ def draw_limits(carrier: Carrier, rng: Generator) -> list[Change]:
 
 def _raises(command: Array, top: float, rng: Generator) -> Array:
     """Return by which share each row is raised, 0 to 1, drawn for every pulse at the top; shape (N,)."""
-    high = command >= NEAR_TOP * top
+    high = command >= _NEAR_TOP * top
     starts = np.flatnonzero(np.diff(high.astype(int), prepend=0) == 1)
     pulse = np.cumsum(np.isin(np.arange(len(command)), starts))
     share = np.where(rng.random(len(starts) + 1) < 0.6, rng.uniform(0.3, 1.0, len(starts) + 1), 0.0)
@@ -118,8 +118,8 @@ SCALES = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement":
 """Unit of a stated offset by channel; 1 m/s^2 for an acceleration."""
 INPUTS = ("floor_acceleration", "displacement")
 LOGGED = ("current_command", "command_voltage", "coil_current")
-LARGEST_GAIN, LONGEST_LAG, LONGEST_SKEW = 0.4, 0.08, 0.04
-LARGEST_OFFSET = 2.0
+_LARGEST_GAIN, _LONGEST_LAG, _LONGEST_SKEW = 0.4, 0.08, 0.04
+_LARGEST_OFFSET = 2.0
 """Standard deviations of the channel."""
 
 
@@ -141,12 +141,14 @@ def draw_sensor_changes(carrier: Carrier, rng: Generator) -> list[Change]:
 
 def _gain(carrier: Carrier, channel: str, rng: Generator) -> Change:
     sign = -0.5 if rng.random() < 0.5 else 1.0
-    return _reading(carrier, "gain", channel, LARGEST_GAIN, lambda a: ({"error": sign * a}, lambda y: y + sign * a * y))
+    return _reading(
+        carrier, "gain", channel, _LARGEST_GAIN, lambda a: ({"error": sign * a}, lambda y: y + sign * a * y)
+    )
 
 
 def _lag(carrier: Carrier, channel: str) -> Change:
     step = carrier.step
-    return _reading(carrier, "lag", channel, LONGEST_LAG, lambda a: ({"time": a}, lambda y: low_pass(y, a, step)))
+    return _reading(carrier, "lag", channel, _LONGEST_LAG, lambda a: ({"time": a}, lambda y: low_pass(y, a, step)))
 
 
 def _offset(carrier: Carrier, channel: str, rng: Generator) -> Change:
@@ -156,7 +158,7 @@ def _offset(carrier: Carrier, channel: str, rng: Generator) -> Change:
     def at(amount: float) -> tuple[dict[str, float], Callable[[Array], Array]]:
         return {"share": size * amount / scale}, lambda y: y + size * amount
 
-    return _reading(carrier, "bias", channel, LARGEST_OFFSET, at)
+    return _reading(carrier, "bias", channel, _LARGEST_OFFSET, at)
 
 
 def _drift(carrier: Carrier, channel: str, rng: Generator) -> Change:
@@ -169,7 +171,7 @@ def _drift(carrier: Carrier, channel: str, rng: Generator) -> Change:
         drift = rate * amount
         return {"share": 0.0, "drift": drift / scale}, lambda y: y + drift * carrier.step * np.arange(len(y))
 
-    change = _reading(carrier, "bias", channel, 2.0 * LARGEST_OFFSET, at)
+    change = _reading(carrier, "bias", channel, 2.0 * _LARGEST_OFFSET, at)
     return change._replace(form="drift")
 
 
@@ -212,7 +214,7 @@ def draw_skewed_logs(carrier: Carrier, rng: Generator) -> list[Change]:
 
         return Altered(with_tables(carrier, late), {"shift": rows * carrier.step})
 
-    return [Change("sensor.clock_skew", "late log" if sign > 0 else "early log", "", (0.0, LONGEST_SKEW), alter)]
+    return [Change("sensor.clock_skew", "late log" if sign > 0 else "early log", "", (0.0, _LONGEST_SKEW), alter)]
 
 
 def _varies(carrier: Carrier, channel: str) -> bool:

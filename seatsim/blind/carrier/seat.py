@@ -18,7 +18,7 @@ from scipy.signal import butter, sosfiltfilt
 from seatsim.blind.carrier.recorded import Altered, Carrier, Change, Table, number, section, slope
 from seatsim.schema.arrays import Array
 
-SUBSTEPS = 4
+_SUBSTEPS = 4
 """Of the integration in each row: friction is stiff."""
 Force = Callable[[float, float, float, float, float], tuple[float, float]]
 """Force on frame and driver from suspension x, v, cushion xc, vc and the driver's acceleration."""
@@ -94,14 +94,14 @@ def respond(
 
     The state is d = (frame, driver, their speeds) relative to the recorded motion; exact for a force held over a step.
     """
-    step = carrier.step / SUBSTEPS
+    step = carrier.step / _SUBSTEPS
     A, B = _matrices(plant)
     M = expm(np.block([[A, B], [np.zeros((2, 6))]]) * step)
     keep, drive = M[:4, :4], M[:4, 4:]
     d, rows = np.zeros(4), len(motion.x)
     added = {name: np.zeros(rows) for name in ("frame_acceleration", "driver_acceleration", "suspension_displacement")}
     for k in range(rows):
-        for _ in range(SUBSTEPS):
+        for _ in range(_SUBSTEPS):
             relative = d[0], d[2], d[1] - d[0], d[3] - d[2]
             rates = A @ d
             suspension = motion.x[k] + relative[0], motion.v[k] + relative[1]
@@ -176,7 +176,7 @@ def _random(size: float, seed: int, step: float) -> Law:
     def law() -> Force:
         white = rng.standard_normal(round(120.0 / step))
         shaped = sosfiltfilt(butter(2, (1.0, 8.0), "bandpass", fs=1.0 / step, output="sos"), white)
-        values = iter(np.repeat(size * shaped / np.std(shaped), SUBSTEPS))
+        values = iter(np.repeat(size * shaped / np.std(shaped), _SUBSTEPS))
         return lambda x, v, xc, vc, driver: (float(next(values)), 0.0)
 
     return law

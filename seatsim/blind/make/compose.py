@@ -13,7 +13,7 @@ from seatsim.blind.truth.experiment import COMPARED
 from seatsim.blind.truth.outside_faults import scenarios_of
 from seatsim.schema.errors import InputError, nearest
 
-PRESETS = ("mixed", "varied", "null", "background")
+_PRESETS = ("mixed", "varied", "null", "background")
 BACKGROUND = 6.0
 """Random force on the frame of the preset `background`, N rms: half of that which counts as an effect of severity 1."""
 
@@ -55,7 +55,7 @@ def _kinds(cases: int, kinds: str) -> list[Kind]:
     for kind in KINDS:
         if kind == kinds:
             return [kind] * cases
-    known = (*PRESETS, *KINDS)
+    known = (*_PRESETS, *KINDS)
     raise InputError(f"kinds: {kinds!r} is not one of {', '.join(known)}{nearest(kinds, known)}")
 
 

@@ -20,26 +20,26 @@ from seatsim.schema.arrays import Array
 
 SAMPLE_RATES = (256.0, 400.0, 500.0, 512.0, 800.0, 1000.0)
 """Hz, of common loggers."""
-SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 0.01, 0.05
+_SMALLEST_TOLERANCE, _LARGEST_TOLERANCE = 0.01, 0.05
 NOISE_FACTOR = 2.0
 """Largest factor by which a channel's noise is above or below that of the usual sensors."""
-BACKGROUND_SHARE = 1.0 / 3.0
+_BACKGROUND_SHARE = 1.0 / 3.0
 """Share of the rigs that have a force on the frame beside the floor, and a repeated run that shows it."""
 BACKGROUND = (0.01, 0.03)
 """Rms of that force over that of the force between floor and frame."""
 LARGEST_BACKGROUND = 0.8
 """Materiality of that force: as strong as it were an effect it would be `floor.unmeasured_input`, and no background."""
-OFFSET_SHARE = 0.4
+_OFFSET_SHARE = 0.4
 """Share of the Bouc-Wen dampers whose accumulator has a nominal stiffness and force."""
 STEEPEST = 8000.0
 """Largest rate at which a regularised yield force may stop the frame, 1/s; the steps of the truth resolve it."""
-FEEDBACK_GAIN = 2.0
+_FEEDBACK_GAIN = 2.0
 """By which the feedback's gains are above those of the standard rig, whose floor has more low frequencies."""
 LEAST_VISCOUS = 250.0
 """N s/m; below it a damper in a mount with play is stiffer than the steps of the truth resolve."""
 
 
-class SeatKind(NamedTuple):
+class _SeatKind(NamedTuple):
     """Ranges of a kind of seat."""
 
     frame: tuple[float, float]  # kg
@@ -47,24 +47,24 @@ class SeatKind(NamedTuple):
     damper_ratio: tuple[float, float]  # stroke of the damper per suspension displacement
 
 
-SEATS = (
-    SeatKind((14.0, 28.0), (1.2, 2.2), (1.0, 1.0)),  # car seat on a suspension
-    SeatKind((28.0, 60.0), (1.0, 1.6), (0.4, 0.8)),  # truck seat on a scissor
-    SeatKind((22.0, 45.0), (1.1, 2.0), (0.8, 1.0)),  # tractor seat
+_SEATS = (
+    _SeatKind((14.0, 28.0), (1.2, 2.2), (1.0, 1.0)),  # car seat on a suspension
+    _SeatKind((28.0, 60.0), (1.0, 1.6), (0.4, 0.8)),  # truck seat on a scissor
+    _SeatKind((22.0, 45.0), (1.1, 2.0), (0.8, 1.0)),  # tractor seat
 )
 DRIVER = (50.0, 110.0)
 """kg."""
-CUSHION_RESONANCE, CUSHION_DAMPING = (3.5, 6.5), (0.12, 0.4)
+_CUSHION_RESONANCE, _CUSHION_DAMPING = (3.5, 6.5), (0.12, 0.4)
 """Hz, and damping ratio, of the driver on the cushion."""
-SUSPENSION_DAMPING = (0.03, 0.15)
+_SUSPENSION_DAMPING = (0.03, 0.15)
 """Damping ratio of the suspension without its damper."""
-STANDARD_MASS = standard.PLANT["ms"] + standard.PLANT["m"]
+_STANDARD_MASS = standard.PLANT["ms"] + standard.PLANT["m"]
 """kg, to which the standard damper fits."""
 
 
 def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, ...]) -> Experiment:
     """Draw a rig and its protocol; a third of them have a background force and a repeated run."""
-    rate, tolerance = float(rng.choice(SAMPLE_RATES)), _log_uniform(rng, SMALLEST_TOLERANCE, LARGEST_TOLERANCE)
+    rate, tolerance = float(rng.choice(SAMPLE_RATES)), _log_uniform(rng, _SMALLEST_TOLERANCE, _LARGEST_TOLERANCE)
     tolerance = float(f"{tolerance:.2g}")
     nominal = draw_nominal(rng, bingham)
     noise = {
@@ -74,7 +74,7 @@ def draw_varied_experiment(rng: Generator, bingham: bool, channels: tuple[str, .
     true = standard.scatter_parameters(nominal, rng, tolerance) | standard.draw_heat(rng)
     colours = {name: _draw_colour(rng) for name in noise}
     experiment = Experiment(nominal, true, channels, noise, (), (), rate, tolerance, colours)
-    repeat = rng.random() < BACKGROUND_SHARE
+    repeat = rng.random() < _BACKGROUND_SHARE
     experiment = dataclasses.replace(experiment, runs=_draw_runs(rng, experiment, repeat))
     return _add_background(experiment, rng) if repeat else experiment
 
@@ -85,31 +85,31 @@ def _log_uniform(rng: Generator, low: float, high: float) -> float:
 
 def draw_nominal(rng: Generator, bingham: bool) -> dict[str, float]:
     """Draw the parameters of seat, damper and coil, rounded to three digits as an owner states them."""
-    seat = SEATS[int(rng.integers(len(SEATS)))]
+    seat = _SEATS[int(rng.integers(len(_SEATS)))]
     plant = _draw_plant(rng, seat)
     ratio = round(rng.uniform(*seat.damper_ratio), 2)
-    damper = draw_damper(rng, plant, ratio, bingham)
+    damper = _draw_damper(rng, plant, ratio, bingham)
     coil = {"rate": _log_uniform(rng, 60.0, 250.0), "i_max": standard.COIL["i_max"]}
     rounded = {name: float(f"{value:.3g}") for name, value in (plant | damper | coil).items()}
     return rounded | {"damper_ratio": ratio}
 
 
-def _draw_plant(rng: Generator, seat: SeatKind) -> dict[str, float]:
+def _draw_plant(rng: Generator, seat: _SeatKind) -> dict[str, float]:
     """Draw masses, and from natural frequencies and damping ratios the springs and dampings."""
     ms, m = rng.uniform(*seat.frame), rng.uniform(*DRIVER)
-    w, cushion = (2.0 * math.pi * rng.uniform(*band) for band in (seat.resonance, CUSHION_RESONANCE))
-    suspension = {"kf": (ms + m) * w * w, "cf": 2.0 * rng.uniform(*SUSPENSION_DAMPING) * (ms + m) * w}
-    seated = {"kc": m * cushion * cushion, "cc": 2.0 * rng.uniform(*CUSHION_DAMPING) * m * cushion}
+    w, cushion = (2.0 * math.pi * rng.uniform(*band) for band in (seat.resonance, _CUSHION_RESONANCE))
+    suspension = {"kf": (ms + m) * w * w, "cf": 2.0 * rng.uniform(*_SUSPENSION_DAMPING) * (ms + m) * w}
+    seated = {"kc": m * cushion * cushion, "cc": 2.0 * rng.uniform(*_CUSHION_DAMPING) * m * cushion}
     return {"ms": ms, "m": m, **suspension, **seated}
 
 
-def draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham: bool) -> dict[str, float]:
+def _draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham: bool) -> dict[str, float]:
     """Draw a damper that fits the seat.
 
     The standard damper's force goes with the mass that it damps over the ratio, its viscous part over the ratio
     squared, and each part is off by up to a factor of 1.5.
     """
-    size = (plant["ms"] + plant["m"]) / STANDARD_MASS / ratio
+    size = (plant["ms"] + plant["m"]) / _STANDARD_MASS / ratio
     powers = {"c_a": 2.0, "c_b": 2.0, "y_a": 1.0, "y_b": 1.0}
     damper = {
         name: standard.BOUC_WEN[name] * size / ratio ** (power - 1.0) * _log_uniform(rng, 1.0 / 1.5, 1.5)
@@ -120,7 +120,7 @@ def draw_damper(rng: Generator, plant: dict[str, float], ratio: float, bingham: 
         steepest = ratio**2 * (damper["y_a"] + damper["y_b"]) / (STEEPEST * plant["ms"])
         return damper | {"is_bingham": 1.0, "f0": 0.0, "v_ref": max(steepest, 0.002) * _log_uniform(rng, 1.0, 4.0)}
     slope, share = _log_uniform(rng, 500.0, 2500.0), rng.uniform(0.3, 0.7)
-    offset = rng.random() < OFFSET_SHARE
+    offset = rng.random() < _OFFSET_SHARE
     hysteresis = {"A": slope, "beta": share * slope, "gamma": (1.0 - share) * slope, "n": float(rng.integers(1, 3))}
     k0 = size * rng.uniform(100.0, 800.0) if offset else 0.0
     f0 = size * rng.uniform(-40.0, 40.0) if offset else 0.0
@@ -159,7 +159,7 @@ def _fit_laws(laws: tuple[Array, Array], experiment: Experiment) -> tuple[Array,
     """
     skyhook, feedback = laws
     nominal = experiment.nominal
-    scale = FEEDBACK_GAIN * STANDARD_MASS / (nominal["ms"] + nominal["m"]) * nominal["damper_ratio"]
+    scale = _FEEDBACK_GAIN * _STANDARD_MASS / (nominal["ms"] + nominal["m"]) * nominal["damper_ratio"]
     return skyhook, np.concatenate([feedback[:2], scale * feedback[2:]])
 
 

@@ -16,7 +16,7 @@ from seatsim.blind.truth.excitation import colour_noise
 from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, RunPlan
 from seatsim.schema.files import write_together
 
-EPOCH = 1_600_000_000
+_EPOCH = 1_600_000_000
 """Time stamp of every file, s: the true time would reveal how long its case took to draw."""
 
 
@@ -136,8 +136,8 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
     def fill(part: Path) -> list[Path]:
         for name, content in files.items():
             (part / name).write_bytes(content)
-            os.utime(part / name, (EPOCH, EPOCH))
-        os.utime(part, (EPOCH, EPOCH))
+            os.utime(part / name, (_EPOCH, _EPOCH))
+        os.utime(part, (_EPOCH, _EPOCH))
         return [part / name for name in files]
 
     write_together(folder, fill)

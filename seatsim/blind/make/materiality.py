@@ -31,7 +31,7 @@ LEFT_OUT = 1.0
 """Seconds at the start of each run that no gap counts (contract, section 4)."""
 COARSE_STEP = 2.5e-4
 """Step of the simulations that only measure sizes, s: two and a half times as fast as those that are recorded."""
-REMEMBERED = 6
+_REMEMBERED = 6
 """Sets of motions that are kept beside the first, which is that of the rig without the fault."""
 
 
@@ -62,7 +62,7 @@ class CommandedRuns:
         """Return the motion of each run; sensor faults do not change it, so one simulation serves all of those."""
         key = repr((sorted(changes.parameters.items()), changes.frame_forces))
         if key not in self.known:
-            if len(self.known) > REMEMBERED:
+            if len(self.known) > _REMEMBERED:
                 self.known.pop(list(self.known)[1])
             self.known[key] = [
                 simulate_run(self.experiment, changes, k, self.commands[k], step=COARSE_STEP) for k in self.runs

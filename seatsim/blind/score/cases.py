@@ -16,7 +16,7 @@ from seatsim.blind.score.verdicts import Verdict, is_right
 
 BINS = 10
 """Of the reliability table: each holds a tenth of all probabilities, 24 for each case."""
-Z_95 = 1.96
+_Z_95 = 1.96
 """Standard normal quantile of a two-sided 95 % interval."""
 
 
@@ -37,7 +37,7 @@ class Rate:
         """Wilson (1927): `(p + z^2/2n -+ z sqrt(p(1-p)/n + z^2/4n^2)) / (1 + z^2/n)`; it holds for few cases too."""
         if not self.total:
             return (math.nan, math.nan)
-        z, n, p = Z_95, self.total, self.right / self.total
+        z, n, p = _Z_95, self.total, self.right / self.total
         centre = p + z * z / (2 * n)
         half = z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
         return (max((centre - half) / (1 + z * z / n), 0.0), min((centre + half) / (1 + z * z / n), 1.0))

@@ -14,7 +14,7 @@ from seatsim.schema.guarded import read_json
 
 NAMING = ("known", "ambiguous")
 """Verdicts that name effects."""
-LARGEST_GROUP = 2
+_LARGEST_GROUP = 2
 """Effects that a group may hold and still count as an answer: a workshop can check two."""
 
 
@@ -141,7 +141,7 @@ def is_right(label: Label, verdict: Verdict) -> bool:
     naming = (*NAMING, "unknown") if label["kind"] == "carried" else NAMING
     if verdict.verdict not in naming or not verdict.causes:
         return False
-    pairs = [set(group) for group in verdict.groups if len(group) <= LARGEST_GROUP]
+    pairs = [set(group) for group in verdict.groups if len(group) <= _LARGEST_GROUP]
     return verdict.causes[0] in effects or any(effects <= pair for pair in pairs)
 
 

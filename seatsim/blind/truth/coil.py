@@ -16,21 +16,21 @@ from seatsim.schema.arrays import Array
 
 ROUNDING = 1e-6
 """Of a row: a time that lies on a row but for rounding counts as that row."""
-JITTER_SEED = 3.0
-LOWEST_LIMIT = 0.05
+_JITTER_SEED = 3.0
+_LOWEST_LIMIT = 0.05
 """A; a supply that sags still delivers this."""
-SAG_TIME = 1.5
+_SAG_TIME = 1.5
 """s, over which the supply averages the current that makes it sag."""
-DROPOUT_GRID = 1e-3
+_DROPOUT_GRID = 1e-3
 """s; a dropout may begin once in each of these intervals, which are longer than any step of a simulation."""
 OFF = 0.02
 """A; below this target the driver is off and no voltage is left for the back EMF to reduce."""
-FALL_AT_LOW_CURRENT = 1.6
+_FALL_AT_LOW_CURRENT = 1.6
 """Weight of the slow fall at no current; it goes to zero at 1 A."""
 
 
 @compiled
-def repeatable_noise(k: float, seed: float) -> float:
+def _repeatable_noise(k: float, seed: float) -> float:
     """Return a number in 0..1 that depends on the whole number k and the seed alone (the usual hash of shaders).
 
     Compiled code draws no random numbers, so that a run is the same with any integration step in between.
@@ -46,7 +46,7 @@ def held_command(commands: Array, time: float, interval: float, p: RigParameters
         return float(commands[int(time / interval + ROUNDING)])
     late = p.delay
     if p.delay_jitter != 0.0:
-        late *= 1.0 + p.delay_jitter * (2.0 * repeatable_noise(math.floor(time / interval), JITTER_SEED) - 1.0)
+        late *= 1.0 + p.delay_jitter * (2.0 * _repeatable_noise(math.floor(time / interval), _JITTER_SEED) - 1.0)
     row = math.floor((time - late) / interval + ROUNDING)
     return commands[row] if row >= 0 else 0.0
 
@@ -63,7 +63,7 @@ def target_current(command: float, time: float, h: float, y: Array, memory: Arra
     if p.dead_zone > 0.0:
         target = max(target - p.dead_zone, 0.0)
     if p.limit > 0.0:
-        ceiling = max(p.limit - p.limit_sag * y[state.SAG], LOWEST_LIMIT)
+        ceiling = max(p.limit - p.limit_sag * y[state.SAG], _LOWEST_LIMIT)
         target = target / (1.0 + (target / ceiling) ** p.limit_power) ** (1.0 / p.limit_power)
     if p.dropout_interval > 0.0 and drops_out(time, h, memory, p):
         return 0.0
@@ -79,19 +79,19 @@ def drops_out(time: float, h: float, memory: Array, p: RigParameters) -> bool:
     if memory[state.DROPOUT_LEFT] > 0.0:
         memory[state.DROPOUT_LEFT] -= h
         return True
-    chance = repeatable_noise(math.floor(time / DROPOUT_GRID + ROUNDING), p.dropout_seed)
-    if chance < DROPOUT_GRID / p.dropout_interval:
+    chance = _repeatable_noise(math.floor(time / _DROPOUT_GRID + ROUNDING), p.dropout_seed)
+    if chance < _DROPOUT_GRID / p.dropout_interval:
         memory[state.DROPOUT_LEFT] = p.dropout_duration
     return False
 
 
 @compiled
-def falling_rate(i: float, aim: float, p: RigParameters) -> float:
+def _falling_rate(i: float, aim: float, p: RigParameters) -> float:
     """Return the rate of the coil, 1/s: lower while the current falls, at every current or mostly at low ones."""
     if p.fall_law == 1.0 and aim < i:
         return p.rate / (1.0 + p.fall_slow)
     if p.fall_law == 2.0 and aim < i:
-        return p.rate / (1.0 + FALL_AT_LOW_CURRENT * p.fall_slow * max(1.0 - i, 0.0))
+        return p.rate / (1.0 + _FALL_AT_LOW_CURRENT * p.fall_slow * max(1.0 - i, 0.0))
     return p.rate
 
 
@@ -105,7 +105,7 @@ def write_coil_rates(y: Array, rates: Array, target: float, v: float, p: RigPara
     aim = target
     if p.back_emf != 0.0:
         aim = max(aim - p.back_emf * abs(v) * (1.0 if aim > OFF else 0.0), 0.0)
-    rate = falling_rate(i, aim, p)
+    rate = _falling_rate(i, aim, p)
     if p.second_rate > 0.0:
         rates[state.CURRENT_2] = rate * (aim - y[state.CURRENT_2])
         rates[state.CURRENT] = p.second_rate * (y[state.CURRENT_2] - i)
@@ -120,7 +120,7 @@ def write_coil_rates(y: Array, rates: Array, target: float, v: float, p: RigPara
     else:
         rates[state.CURRENT] = rate * (aim - i)
     if p.limit_sag > 0.0:
-        rates[state.SAG] = (i - y[state.SAG]) / SAG_TIME
+        rates[state.SAG] = (i - y[state.SAG]) / _SAG_TIME
 
 
 SCHEDULE, SKYHOOK, FEEDBACK = 0.0, 1.0, 2.0
@@ -128,7 +128,7 @@ SCHEDULE, SKYHOOK, FEEDBACK = 0.0, 1.0, 2.0
 # The feedback's assumed damper model, by which it turns a force into a current: friction, N; viscous damping, N s/m;
 # yield force, N/A; rise of the viscous damping with current, N s/(m A). Near the nominal damper and never exact, as in
 # a real controller.
-FRICTION, VISCOUS, YIELD_GAIN, VISCOUS_GAIN = 40.0, 250.0, 600.0, 350.0
+FRICTION, VISCOUS, _YIELD_GAIN, _VISCOUS_GAIN = 40.0, 250.0, 600.0, 350.0
 
 
 @compiled
@@ -149,6 +149,6 @@ def command_of(law: Array, schedule: Array, row: int, y: Array, memory: Array, p
     wanted = law[2] * y[state.X] + law[3] * v + law[4] * memory[state.V_FRAME] + law[5] * memory[state.V_DRIVER]
     if wanted * v <= 0.0:
         return 0.0
-    current = (abs(wanted) - FRICTION - VISCOUS * abs(v)) / (YIELD_GAIN + VISCOUS_GAIN * abs(v))
+    current = (abs(wanted) - FRICTION - VISCOUS * abs(v)) / (_YIELD_GAIN + _VISCOUS_GAIN * abs(v))
     # a controller logs and sends four decimals
     return float(round(min(max(current, 0.0), law[1]), 4))

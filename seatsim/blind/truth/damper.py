@@ -21,22 +21,22 @@ from seatsim.blind.truth.parameters import RigParameters
 from seatsim.blind.truth.state import FASTEST, MICRO_DAMPING, bristle_rate, compiled
 from seatsim.schema.arrays import Array
 
-LEAST_GAS_COLUMN = 0.2
+_LEAST_GAS_COLUMN = 0.2
 """Of the gas column: the travel of a seat never compresses it further, and the power stays finite."""
-CAVITY_SLOPE = 0.15
+_CAVITY_SLOPE = 0.15
 """Share of the force above the opening of the cavity that the fluid still carries."""
-CAVITY_LOSS = 0.9
+_CAVITY_LOSS = 0.9
 """Largest share of the force that is lost while the cavity closes again."""
-CAVITY_SCALE = 1e-3
+_CAVITY_SCALE = 1e-3
 """m of open stroke over which that loss sets in."""
-SEAL_LOAD = 300.0
+_SEAL_LOAD = 300.0
 """N of damper force that presses the seal by one `seal_pressure`."""
-LARGEST_SEAL_LOAD = 3.0
+_LARGEST_SEAL_LOAD = 3.0
 """Loads beyond this press the seal no further."""
 
 
 @compiled
-def yield_variable(y: Array, v: float, p: RigParameters) -> float:
+def _yield_variable(y: Array, v: float, p: RigParameters) -> float:
     """Return the yield variable z: Bouc-Wen state, `tanh(v / v_ref)`, or a hysteretic stand-in for the latter."""
     if p.is_bingham == 0.0:
         return float(y[state.Z])
@@ -54,11 +54,11 @@ def gas_force(x: float, p: RigParameters) -> float:
         return -p.gas_force + p.gas_rate * (x - 0.5 * x * x / p.gas_length)
     if p.gas_force == 0.0:
         return 0.0
-    return float(-p.gas_force * max(1.0 + x / p.gas_length, LEAST_GAS_COLUMN) ** (-p.gas_exponent))
+    return float(-p.gas_force * max(1.0 + x / p.gas_length, _LEAST_GAS_COLUMN) ** (-p.gas_exponent))
 
 
 @compiled
-def viscous_damping(y: Array, v: float, p: RigParameters) -> float:
+def _viscous_damping(y: Array, v: float, p: RigParameters) -> float:
     """Return the viscous damping at the fluid's temperature, the direction and the speed, N s/m."""
     viscous = p.c_a + p.c_b * y[state.CURRENT]
     if p.fade_law != 0.0:
@@ -83,21 +83,21 @@ def yield_force(y: Array, memory: Array, z: float, p: RigParameters) -> float:
 @compiled
 def main_force(y: Array, memory: Array, x: float, v: float, p: RigParameters) -> float:
     """Return the force of fluid and field before seal and gas, N."""
-    z = yield_variable(y, v, p)
-    force = viscous_damping(y, v, p) * v + p.k0 * (x - p.x0) + yield_force(y, memory, z, p) * z + p.f0
+    z = _yield_variable(y, v, p)
+    force = _viscous_damping(y, v, p) * v + p.k0 * (x - p.x0) + yield_force(y, memory, z, p) * z + p.f0
     force += p.orifice_damping * v * abs(v) + p.field_stiffness * y[state.CURRENT] * x
     if p.bypass_share != 0.0:
         force *= 1.0 - p.bypass_share * math.exp(-((x / p.bypass_length) ** 2))
     if p.cavitation_force > 0.0:
         if v > 0.0 and force > p.cavitation_force:
-            force = p.cavitation_force + CAVITY_SLOPE * (force - p.cavitation_force)
+            force = p.cavitation_force + _CAVITY_SLOPE * (force - p.cavitation_force)
         elif v < 0.0:
-            force *= 1.0 - CAVITY_LOSS * math.tanh(memory[state.CAVITY_VOLUME] / CAVITY_SCALE)
+            force *= 1.0 - _CAVITY_LOSS * math.tanh(memory[state.CAVITY_VOLUME] / _CAVITY_SCALE)
     return float(force)
 
 
 @compiled
-def write_yield_rates(y: Array, rates: Array, v: float, p: RigParameters) -> None:
+def _write_yield_rates(y: Array, rates: Array, v: float, p: RigParameters) -> None:
     """Write the rate of the yield variable.
 
     Bouc-Wen: `z' = A v - beta v |z|^n - gamma |v| z |z|^(n-1)`; Dahl-like: `u' = |v| / length (tanh(v / v_ref) - u)`;
@@ -126,7 +126,7 @@ def seal_force(y: Array, rates: Array, v: float, force: float, p: RigParameters)
     rate = bristle_rate(y[state.SEAL], v, p.seal_length, p.seal_stribeck, p.seal_speed)
     rates[state.SEAL] = rate
     sticking = math.exp(-((v / p.seal_speed) ** 2))
-    level = p.seal_force * (1.0 + p.seal_pressure * min(abs(force) / SEAL_LOAD, LARGEST_SEAL_LOAD))
+    level = p.seal_force * (1.0 + p.seal_pressure * min(abs(force) / _SEAL_LOAD, _LARGEST_SEAL_LOAD))
     return float(level * (y[state.SEAL] + MICRO_DAMPING * sticking * rate))
 
 
@@ -140,19 +140,19 @@ def update_cavity(y: Array, memory: Array, x: float, v: float, h: float, p: RigP
         memory[state.CAVITY_VOLUME] = max(memory[state.CAVITY_VOLUME] + v * h, 0.0)
 
 
-CLOSE_ENOUGH = 0.05
+_CLOSE_ENOUGH = 0.05
 """N; a fiftieth of the load cell's noise."""
-NEWTON_STEPS = 4
+_NEWTON_STEPS = 4
 """From the last solution one or two are enough, unless the motion turns or meets the contact."""
-DIFFERENCE = 1e-4
+_DIFFERENCE = 1e-4
 """m/s, over which Newton takes the slope."""
-LEAST_SLOPE = 50.0
+_LEAST_SLOPE = 50.0
 """N s/m; below the damper's viscous damping, so that a flat stretch of the curve throws the guess nowhere."""
-LARGEST_CHANGE = 0.5
+_LARGEST_CHANGE = 0.5
 """m/s of one Newton step."""
-FASTEST_PISTON = 4.0
+_FASTEST_PISTON = 4.0
 """m/s; bracket of false position, beyond any seat."""
-BRACKET_STEPS = 40
+_BRACKET_STEPS = 40
 
 
 @compiled
@@ -174,14 +174,14 @@ def piston_speed(y: Array, memory: Array, x: float, wanted: float, p: RigParamet
     leave its bracket.
     """
     guess: float = memory[state.V_PISTON]
-    for _ in range(NEWTON_STEPS):
+    for _ in range(_NEWTON_STEPS):
         f = main_force(y, memory, x, guess, p) - wanted
-        if abs(f) < CLOSE_ENOUGH:
+        if abs(f) < _CLOSE_ENOUGH:
             memory[state.V_PISTON] = guess
             return guess
-        # multiplied by 1 / DIFFERENCE
-        slope = (main_force(y, memory, x, guess + DIFFERENCE, p) - wanted - f) * 1e4
-        guess -= min(max(f / max(slope, LEAST_SLOPE), -LARGEST_CHANGE), LARGEST_CHANGE)
+        # multiplied by 1 / _DIFFERENCE
+        slope = (main_force(y, memory, x, guess + _DIFFERENCE, p) - wanted - f) * 1e4
+        guess -= min(max(f / max(slope, _LEAST_SLOPE), -_LARGEST_CHANGE), _LARGEST_CHANGE)
     guess = bracketed_speed(y, memory, x, wanted, guess, p)
     memory[state.V_PISTON] = guess
     return guess
@@ -190,12 +190,12 @@ def piston_speed(y: Array, memory: Array, x: float, wanted: float, p: RigParamet
 @compiled
 def bracketed_speed(y: Array, memory: Array, x: float, wanted: float, guess: float, p: RigParameters) -> float:
     """Return the same by false position from a guess, halving the residual of the end that stays (Illinois)."""
-    low, high = -FASTEST_PISTON, FASTEST_PISTON
+    low, high = -_FASTEST_PISTON, _FASTEST_PISTON
     f_low = main_force(y, memory, x, low, p) - wanted
     f_high = main_force(y, memory, x, high, p) - wanted
-    for _ in range(BRACKET_STEPS):
+    for _ in range(_BRACKET_STEPS):
         f = main_force(y, memory, x, guess, p) - wanted
-        if abs(f) < CLOSE_ENOUGH:
+        if abs(f) < _CLOSE_ENOUGH:
             break
         if f > 0.0:
             high, f_high, f_low = guess, f, 0.5 * f_low
@@ -229,7 +229,7 @@ def damper_force(y: Array, rates: Array, memory: Array, x: float, speed: float, 
         v = piston_speed(y, memory, x, force, p)
     if turning or loose:
         rates[state.MOUNT] = speed - v
-    write_yield_rates(y, rates, v, p)
+    _write_yield_rates(y, rates, v, p)
     if not (loose or resting):
         force = main_force(y, memory, x, v, p)
     write_magnetisation_rate(y, rates, p)

@@ -121,7 +121,7 @@ def draw_current_steps(rng: Generator, rows: int, top: float, rate: float = SAMP
     return out
 
 
-NO_FORCE = np.zeros(1)
+_NO_FORCE = np.zeros(1)
 """A single sample, which the rig's loop takes for none."""
 
 
@@ -129,7 +129,7 @@ def frame_force(forces: Iterable[FrameForce], run: int, seconds: float) -> Array
     """Return the sum of forces in a run, shape (samples,); each has its own generator, so none changes another."""
     drawn = [force.rms * _draw_unit_force(np.random.default_rng([force.seed, run]), force, seconds) for force in forces]
     if not drawn:
-        return NO_FORCE
+        return _NO_FORCE
     total = np.zeros(round(seconds * EXCITATION_RATE))
     for values in drawn:
         total += values
@@ -139,20 +139,20 @@ def frame_force(forces: Iterable[FrameForce], run: int, seconds: float) -> Array
 def _draw_unit_force(rng: Generator, force: FrameForce, seconds: float) -> Array:
     match force.kind:
         case "coloured":
-            return draw_coloured_force(rng, seconds)
+            return _draw_coloured_force(rng, seconds)
         case "hum":
-            return draw_hum(rng, seconds, force.detail)
+            return _draw_hum(rng, seconds, force.detail)
         case "knock":
-            return draw_knocks(rng, seconds, force.detail)
+            return _draw_knocks(rng, seconds, force.detail)
 
 
-def draw_coloured_force(rng: Generator, seconds: float) -> Array:
+def _draw_coloured_force(rng: Generator, seconds: float) -> Array:
     """Return a random force of 1 N rms, from 1-2.5 Hz to 8-18 Hz."""
     low, high = rng.uniform(1.0, 2.5), rng.uniform(8.0, 18.0)
     return coloured_noise(rng, round(seconds * EXCITATION_RATE), low, high, rng.uniform(-0.3, 0.3), EXCITATION_RATE)
 
 
-def draw_hum(rng: Generator, seconds: float, hertz: float) -> Array:
+def _draw_hum(rng: Generator, seconds: float, hertz: float) -> Array:
     """Return an engine tone of about 1 N rms: its frequency wanders by 2 %, its amplitude by 25 %."""
     time = np.arange(round(seconds * EXCITATION_RATE)) / EXCITATION_RATE
     wander = 0.02 * coloured_noise(rng, time.size, 0.1, 0.4, 0.0, EXCITATION_RATE)
@@ -161,7 +161,7 @@ def draw_hum(rng: Generator, seconds: float, hertz: float) -> Array:
     return np.asarray(np.sqrt(2.0) * envelope * np.sin(phase))
 
 
-def draw_knocks(rng: Generator, seconds: float, interval: float) -> Array:
+def _draw_knocks(rng: Generator, seconds: float, interval: float) -> Array:
     """Return half-sine pulses of 60-200 ms, `interval` s apart on average (Poisson), about 1 N rms overall."""
     time = np.arange(round(seconds * EXCITATION_RATE)) / EXCITATION_RATE
     total = np.zeros(time.size)

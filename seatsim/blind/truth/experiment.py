@@ -26,7 +26,7 @@ Readings = dict[str, Array]
 """What each channel reads in a run, shape (rows,) each."""
 ROUNDING = 1e-6
 """Of a row: a time that lies on a row but for rounding counts as that row."""
-EVEN_RUN_DRIFT = 0.6
+_EVEN_RUN_DRIFT = 0.6
 """Share of the clock's drift in runs of even number: a fault that is the same in all runs is easier to find."""
 
 
@@ -46,20 +46,20 @@ def read_sensors(motion: RigMotion, floor: Array, faults: Iterable[SensorFault],
     read = {name: values.copy() for name, values in true.items()}
     for fault in faults:
         if fault.kind == "skew":
-            read["current_command"], read["coil_current"] = read_late_log(motion, fault, run)
+            read["current_command"], read["coil_current"] = _read_late_log(motion, fault, run)
         else:
             other = true[NEIGHBOUR[fault.channel]]
             read[fault.channel] = apply_fault(read[fault.channel], other, fault, run, motion.sample_rate)
     return read
 
 
-def read_late_log(motion: RigMotion, fault: SensorFault, run: int) -> tuple[Array, Array]:
+def _read_late_log(motion: RigMotion, fault: SensorFault, run: int) -> tuple[Array, Array]:
     """Return command and coil current as logged `size` seconds late; `detail` is the share that drifts away.
 
     The command is held between rows; the current is read between the steps of the integration.
     """
     time = np.arange(motion.frame.size) / motion.sample_rate
-    late = fault.size * (1.0 - fault.detail * time / time[-1] * (1.0 if run % 2 else EVEN_RUN_DRIFT))
+    late = fault.size * (1.0 - fault.detail * time / time[-1] * (1.0 if run % 2 else _EVEN_RUN_DRIFT))
     at = np.clip(time - late, 0.0, time[-1])
     rows = np.floor(at * motion.sample_rate + ROUNDING).astype(int)
     fine = np.arange(motion.fine_current.size) * (motion.command.size / (motion.sample_rate * motion.fine_current.size))
@@ -98,7 +98,7 @@ def apply_fault(  # noqa: PLR0911 - one return per fault
         case "clip":
             return np.clip(u, -size, size)
         case "backlash":
-            return follow_with_play(u, size)
+            return _follow_with_play(u, size)
         case "crosstalk":
             return u + size * other
     raise ValueError(fault.kind)
@@ -124,7 +124,7 @@ def moving_average(u: Array, delay: float, rate: float) -> Array:
     return np.convolve(padded, taps, "valid")
 
 
-def follow_with_play(u: Array, width: float) -> Array:
+def _follow_with_play(u: Array, width: float) -> Array:
     """Return what a follower with play of `width` reads."""
     out = np.empty_like(u)
     follower = u[0]

@@ -18,11 +18,11 @@ Shape = dict[str, float]
 """The drawn choices of a scenario (lengths, time constants, signs, seeds), without its severity."""
 Value = float | tuple[float, ...]
 """One number, or one for each run."""
-ForceKind = Literal["coloured", "hum", "knock"]
-Misreading = Literal["gain", "gain_bent", "bias", "wander", "lag_second", "lag_average"]
+_ForceKind = Literal["coloured", "hum", "knock"]
+_Misreading = Literal["gain", "gain_bent", "bias", "wander", "lag_second", "lag_average"]
 """Of the contract's effects, beside a log that is skewed; others are outside the library."""
-SensorFaultKind = Misreading | Literal["skew", "quantise", "clip", "backlash", "crosstalk"]
-FAULTY_CHANNELS = (
+_SensorFaultKind = _Misreading | Literal["skew", "quantise", "clip", "backlash", "crosstalk"]
+_FAULTY_CHANNELS = (
     "frame_acceleration",
     "driver_acceleration",
     "suspension_displacement",
@@ -46,7 +46,7 @@ NEIGHBOUR = {
 class FrameForce:
     """A force on the frame that no channel records: rms in N; `detail` is the tone in Hz or the interval in s."""
 
-    kind: ForceKind
+    kind: _ForceKind
     rms: float
     seed: int
     detail: float = 0.0
@@ -56,7 +56,7 @@ class FrameForce:
 class SensorFault:
     """A sensor fault: kind, channel, size (as `sensors` states), detail (0..1), seed, and the channel's spread."""
 
-    kind: SensorFaultKind
+    kind: _SensorFaultKind
     channel: str
     size: float
     detail: float = 0.0
@@ -132,7 +132,7 @@ class FaultScenario:
         return self.effect not in EFFECTS
 
 
-def draw_nothing(rng: Generator, _: Context) -> Shape:
+def _draw_nothing(rng: Generator, _: Context) -> Shape:
     """Return an empty shape, for scenarios that have a severity alone."""
     return {}
 
@@ -143,7 +143,7 @@ def enter(
     effect: str,
     block: Block,
     span: tuple[float, float],
-    draw: Draw = draw_nothing,
+    draw: Draw = _draw_nothing,
     bingham: bool = False,
 ) -> Callable[[Build], Build]:
     """Return what enters a function as the `build` of a scenario; their order is part of what a seed means."""
@@ -166,13 +166,13 @@ def draw_seed(rng: Generator) -> float:
 
 
 def draw_channel(rng: Generator, context: Context) -> Shape:
-    """Draw the channel (as its place in `FAULTY_CHANNELS`), a sign, a detail and a seed."""
-    there = [k for k, name in enumerate(FAULTY_CHANNELS) if name in context.channels]
+    """Draw the channel (as its place in `_FAULTY_CHANNELS`), a sign, a detail and a seed."""
+    there = [k for k, name in enumerate(_FAULTY_CHANNELS) if name in context.channels]
     channel, sign = float(rng.choice(there)), float(rng.choice([-1.0, 1.0]))
     return {"channel": channel, "sign": sign, "detail": rng.uniform(0.0, 1.0), "seed": draw_seed(rng)}
 
 
-def fault_channel(kind: SensorFaultKind, size: float, shape: Shape, context: Context) -> Changes:
+def fault_channel(kind: _SensorFaultKind, size: float, shape: Shape, context: Context) -> Changes:
     """Return one fault on the drawn channel."""
     name = drawn_channel(shape)
     fault = SensorFault(kind, name, size, shape["detail"], int(shape["seed"]), context.spread[name])
@@ -181,4 +181,4 @@ def fault_channel(kind: SensorFaultKind, size: float, shape: Shape, context: Con
 
 def drawn_channel(shape: Shape) -> str:
     """Return the channel that `draw_channel` drew."""
-    return FAULTY_CHANNELS[int(shape["channel"])]
+    return _FAULTY_CHANNELS[int(shape["channel"])]

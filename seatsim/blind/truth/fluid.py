@@ -13,8 +13,8 @@ REFERENCE = 20.0
 """degC at which the nominal parameters hold."""
 ZERO = 273.15
 """K at 0 degC."""
-REFERENCE_KELVIN = 293.15
-COLDEST = -15.0
+_REFERENCE_KELVIN = 293.15
+_COLDEST = -15.0
 """K below the reference, where the hyperbola of the viscosity ends before its pole."""
 
 
@@ -22,8 +22,8 @@ COLDEST = -15.0
 def viscous_factor(t: float, p: RigParameters) -> float:
     """Return viscosity at `t` degC over that at 20: Arrhenius `exp(B (1/T - 1/T20))` or `1 / (1 + b (t - 20))`."""
     if p.fade_law == 1.0:
-        return math.exp(p.fade_viscous * (1000.0 / (t + ZERO) - 1000.0 / REFERENCE_KELVIN))
-    return 1.0 / (1.0 + p.fade_viscous * max(t - REFERENCE, COLDEST))
+        return math.exp(p.fade_viscous * (1000.0 / (t + ZERO) - 1000.0 / _REFERENCE_KELVIN))
+    return 1.0 / (1.0 + p.fade_viscous * max(t - REFERENCE, _COLDEST))
 
 
 @compiled
@@ -31,7 +31,7 @@ def yield_factor(t: float, p: RigParameters) -> float:
     """Return yield stress at `t` degC over that at 20: exponential or a power of the absolute temperature."""
     if p.fade_law == 1.0:
         return math.exp(-p.fade_yield * (t - REFERENCE))
-    return float(((t + ZERO) / REFERENCE_KELVIN) ** (-p.fade_yield))
+    return float(((t + ZERO) / _REFERENCE_KELVIN) ** (-p.fade_yield))
 
 
 @compiled
@@ -43,7 +43,7 @@ def write_heat_rates(y: Array, rates: Array, power: float, p: RigParameters) -> 
     rates[state.T_THERMOMETER] = (y[state.T_HOUSING] - y[state.T_THERMOMETER]) / p.thermometer_time
 
 
-SERIES = 1e-3
+_SERIES = 1e-3
 """Argument below which the Langevin function is its own tangent, whose closed form would cancel."""
 RISE = 200.0
 """1/s, at which a decaying magnetisation follows a rising current: within a row and a half."""
@@ -66,7 +66,7 @@ def yield_current(y: Array, memory: Array, p: RigParameters) -> float:
         felt = felt / (1.0 + p.saturation_froehlich * max(felt, 0.0))
     if p.saturation_langevin != 0.0:
         u = 3.0 * felt * p.saturation_langevin
-        if u > SERIES:
+        if u > _SERIES:
             felt = (1.0 / math.tanh(u) - 1.0 / u) / p.saturation_langevin
     return felt
 

@@ -29,7 +29,7 @@ EXCITATION_RATE = 2000.0
 INTEGRATION_STEP = 1e-4
 """Longest step of the integration, s, a whole number of them in a row; a quarter of it changes no channel by more than
 0.1 % of its spread (see the tests)."""
-FORGETTING = 0.8
+_FORGETTING = 0.8
 """1/s, at which a controller's integral of an acceleration forgets, so that no offset runs away."""
 
 
@@ -177,8 +177,8 @@ def _update_memory(
     y: Array, memory: Array, relays: Array, frame: float, driver: float, h: float, p: RigParameters
 ) -> None:
     """Carry what changes once a step: the controller's velocities, the cavity, the relays."""
-    memory[state.V_FRAME] += h * (frame - FORGETTING * memory[state.V_FRAME])
-    memory[state.V_DRIVER] += h * (driver - FORGETTING * memory[state.V_DRIVER])
+    memory[state.V_FRAME] += h * (frame - _FORGETTING * memory[state.V_FRAME])
+    memory[state.V_DRIVER] += h * (driver - _FORGETTING * memory[state.V_DRIVER])
     if p.cavitation_force > 0.0:
         ratio = p.damper_ratio + p.lever_slope * y[state.X]
         update_cavity(y, memory, p.damper_ratio * y[state.X], y[state.V] * ratio, h, p)

@@ -17,12 +17,12 @@ DEEPEST = 6.0
 """Depth of an exponential buffer over its length, beyond which its force grows no further (400 times its scale)."""
 FARTHEST = 4.0
 """The same for the hyperbolic sine of the spring (27 times its scale)."""
-LEAST_FRICTION = 0.2
+_LEAST_FRICTION = 0.2
 """Of the friction at mid travel, where it falls with travel; it never changes its sign."""
 
 
 @compiled
-def stop_force(x: float, v: float, p: RigParameters) -> float:
+def _stop_force(x: float, v: float, p: RigParameters) -> float:
     """Return the buffer force: rubber `k d^1.5 (1 + loss d')`, or an exponential foam buffer; never pulls.
 
     The power 1.5 is that of Hertz' contact of a sphere; the loss is that of Hunt and Crossley (1975).
@@ -39,7 +39,7 @@ def stop_force(x: float, v: float, p: RigParameters) -> float:
 
 
 @compiled
-def spring_force(x: float, p: RigParameters) -> float:
+def _spring_force(x: float, p: RigParameters) -> float:
     """Return the spring force: linear; hardening as sinh or by a helper leaf; softening with the lever's angle."""
     force = p.kf * x
     if p.sinh_length > 0.0:
@@ -59,7 +59,7 @@ def linkage_friction(y: Array, rates: Array, p: RigParameters) -> float:
     rate = bristle_rate(y[state.FRICTION], v, p.friction_length, p.friction_stribeck, p.friction_speed)
     rates[state.FRICTION] = rate
     sticking = math.exp(-((v / p.friction_speed) ** 2))
-    level = p.friction_force * max(1.0 + p.friction_travel * y[state.X], LEAST_FRICTION)
+    level = p.friction_force * max(1.0 + p.friction_travel * y[state.X], _LEAST_FRICTION)
     return float(level * (y[state.FRICTION] + MICRO_DAMPING * sticking * rate) + p.friction_damping * v)
 
 
@@ -68,7 +68,7 @@ def suspension_force(y: Array, rates: Array, p: RigParameters) -> float:
     """Return Fs, N, and write the rates of friction, bushing (a Maxwell element) and creep (a Kelvin-Voigt element)."""
     x = y[state.X]
     v = y[state.V]
-    force = spring_force(x, p) + p.cf * v + stop_force(x, v, p)
+    force = _spring_force(x, p) + p.cf * v + _stop_force(x, v, p)
     if p.friction_force != 0.0:
         force += linkage_friction(y, rates, p)
     if p.bushing_stiffness != 0.0:
@@ -80,17 +80,17 @@ def suspension_force(y: Array, rates: Array, p: RigParameters) -> float:
     return float(force)
 
 
-DEEPEST_FOAM = 3.0
+_DEEPEST_FOAM = 3.0
 """Deflection of an exponential foam over its length, beyond which its force grows no further (19 times its scale)."""
 
 
 @compiled
-def foam_force(d: float, w: float, p: RigParameters) -> float:
+def _foam_force(d: float, w: float, p: RigParameters) -> float:
     """Return the force of foam deflected by d at speed w, N: linear, exponential, or polynomial in compression."""
     force = p.kc * d
     damping = p.cc
     if p.foam_length > 0.0:
-        u = min(max(-d / p.foam_length, -DEEPEST_FOAM), DEEPEST_FOAM)
+        u = min(max(-d / p.foam_length, -_DEEPEST_FOAM), _DEEPEST_FOAM)
         force = -p.kc * p.foam_length * (math.exp(u) - 1.0)
     if p.foam_poly != 0.0:
         u = max(-d, 0.0) / p.foam_scale
@@ -102,7 +102,7 @@ def foam_force(d: float, w: float, p: RigParameters) -> float:
 
 
 @compiled
-def limit_tension(force: float, p: RigParameters) -> float:
+def _limit_tension(force: float, p: RigParameters) -> float:
     """Return the cushion force where driver and cushion separate: its tension is limited, softly or by a power, N."""
     if p.separation_law == 1.0:
         u = (force - p.separation_force) / p.separation_width
@@ -118,7 +118,7 @@ def limit_tension(force: float, p: RigParameters) -> float:
 def cushion_force(y: Array, rates: Array, p: RigParameters) -> float:
     """Return Fc, N: foam, memory foam (a Maxwell element), friction of the cover (Dahl); all of it may separate."""
     w = y[state.W]
-    force = foam_force(y[state.Y], w, p)
+    force = _foam_force(y[state.Y], w, p)
     if p.zener_stiffness != 0.0:
         rates[state.ZENER] = w - y[state.ZENER] / p.zener_time
         force += p.zener_stiffness * y[state.ZENER]
@@ -127,7 +127,7 @@ def cushion_force(y: Array, rates: Array, p: RigParameters) -> float:
         rates[state.COVER] = rate * ((1.0 if w > 0.0 else -1.0) - y[state.COVER])
         force += p.cover_force * y[state.COVER]
     if p.separation_force > 0.0:
-        force = limit_tension(force, p)
+        force = _limit_tension(force, p)
     return float(force)
 
 
