@@ -19,8 +19,10 @@ from seatsim.blind.score.cases import Rate
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import read_verdict
 from seatsim.blind.sealed import unseal
+from seatsim.diagnosis.design.isolability import find_isolable_groups
 from seatsim.diagnosis.noise import NoiseWeights, weigh_uniformly
 from seatsim.diagnosis.problem import DiagnosisProblem
+from seatsim.recordings.recording import Recording
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import write_json
 
@@ -38,6 +40,20 @@ LEAST_NOISE = 1e-3
 """Least noise of a channel, in its standard deviations, that is taken to be stated: a weight must be finite."""
 
 
+def encode_verdict(
+    recording: Recording, kind: str, effects: Sequence[str], blocks: Sequence[str] = ()
+) -> EncodedDiagnosis:
+    """Return the content of `diagnosis.json`; blocks are those of the effects unless stated."""
+    ranked = list(dict.fromkeys([*blocks, *(effect.partition(".")[0] for effect in effects)]))
+    return {
+        "verdict": kind,
+        "where": [{"block": block, "share": 1.0 / len(ranked)} for block in ranked] if kind != "none" else [],
+        "causes": [{"effect": effect, "probability": 1.0} for effect in effects],
+        "selected": list(effects),
+        "isolable": find_isolable_groups(recording.header.rig, recording.channels),
+    }
+
+
 def rank_by_figure(pairs: Sequence[tuple[str, float]]) -> Ranked:
     """Return the effects by their largest figure."""
     best: dict[str, float] = {}
@@ -52,15 +68,12 @@ def make_parser(description: str) -> argparse.ArgumentParser:
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of `seatsim blind make`")
     parser.add_argument("--sealed", type=Path, required=True, help="its sealed file")
     parser.add_argument("--key", required=True, help="the key that `blind make` printed")
-    parser.add_argument("--cases", type=int, help="only the first so many cases of the folder")
     return parser
 
 
 def open_labels(options: argparse.Namespace) -> dict[str, Label]:
-    """Return the labels of the cases asked for."""
-    labels = unseal(options.sealed, options.key, options.folder).labels
-    present = sorted(path.parent.name for path in options.folder.glob("case-*/recording.yaml"))
-    return {name: labels[name] for name in present[: options.cases]}
+    """Return the labels of the set asked for."""
+    return unseal(options.sealed, options.key, options.folder).labels
 
 
 def diagnose_cases(base: Path, cases: Sequence[str], methods: Mapping[str, Diagnoser]) -> None:

@@ -32,6 +32,7 @@ from cases import (
     EncodedDiagnosis,
     Ranked,
     diagnose_cases,
+    encode_verdict,
     make_parser,
     open_labels,
     rank_by_figure,
@@ -40,7 +41,6 @@ from cases import (
 )
 
 from seatsim.diagnosis.candidates import list_candidates
-from seatsim.diagnosis.design.isolability import find_isolable_groups
 from seatsim.diagnosis.fit import fit
 from seatsim.diagnosis.movement import measure_movements
 from seatsim.diagnosis.objective import Evaluation, Objective
@@ -58,21 +58,6 @@ TO_THE_END = FULL._replace(selection=FULL.selection._replace(worthwhile=np.inf, 
 """Settings under which every larger set is sought, so that BIC alone says how many effects there are."""
 
 
-def encode_verdict(
-    problem: DiagnosisProblem, kind: str, effects: Sequence[str], blocks: Sequence[str] = ()
-) -> EncodedDiagnosis:
-    """Return the content of `diagnosis.json`; blocks are those of the effects unless stated."""
-    ranked = list(dict.fromkeys([*blocks, *(effect.partition(".")[0] for effect in effects)]))
-    return {
-        "verdict": kind,
-        "where": [{"block": block, "share": 1.0 / len(ranked)} for block in ranked] if kind != "none" else [],
-        "causes": [{"effect": effect, "probability": 1.0} for effect in effects],
-        "selected": list(effects),
-        "indistinguishable": [],
-        "isolable": find_isolable_groups(problem.recording.header.rig, problem.recording.channels),
-    }
-
-
 def calibrate(objective: Objective) -> Evaluation:
     """Return the nominal rig with its parameters refitted inside their tolerance."""
     evaluation = objective.evaluate([Parameters(objective.problem.nominal)])[0]
@@ -87,10 +72,11 @@ def diagnose_by_correlation(case: Path) -> EncodedDiagnosis:
         problem = pose_problem(load_recording(case), pool)
         objective = Objective(problem, weigh_stated_noise(problem))
         off, first, second = correlate(objective, calibrate(objective))
-    if first[0][1] < NAMED:
-        return encode_verdict(problem, "unknown" if off > LARGE else "none", [], [first[0][0].partition(".")[0]])
-    named = [first[0][0]] + [effect for effect, cosine in second[:1] if cosine >= NAMED_NEXT]
-    return encode_verdict(problem, "known", named)
+    best, cosine = first[0]
+    if cosine < NAMED:
+        return encode_verdict(problem.recording, "unknown" if off > LARGE else "none", [], [best.partition(".")[0]])
+    named = [best] + [effect for effect, other in second[:1] if other >= NAMED_NEXT]
+    return encode_verdict(problem.recording, "known", named)
 
 
 def list_changes(objective: Objective, calibrated: Evaluation) -> tuple[Array, list[tuple[str, Array]]]:
@@ -142,7 +128,7 @@ def diagnose_by_bic(case: Path) -> EncodedDiagnosis:
         sizes = [float(np.mean(move**2)) for move in measure_movements(problem, chosen)]
     ranked = rank_by_figure([(term.effect, size) for term, size in zip(chosen.parameters.terms, sizes, strict=True)])
     kind = "unknown" if misfit > MISFIT else "known" if ranked else "none"
-    return encode_verdict(problem, kind, [effect for effect, _ in ranked])
+    return encode_verdict(problem.recording, kind, [effect for effect, _ in ranked])
 
 
 def select_by_bic(objective: Objective) -> tuple[Evaluation, float]:
@@ -172,9 +158,9 @@ def diagnose_by_regression(case: Path) -> EncodedDiagnosis:
     ranked, left = regress_sparsely((residual / noise).ravel(), [(e, (c / noise).ravel()) for e, c in changes])
     power = float(np.mean((residual / noise) ** 2))
     if power < MISFIT:
-        return encode_verdict(problem, "none", [])
+        return encode_verdict(problem.recording, "none", [])
     named = [effect for effect, _ in ranked[:2]]
-    return encode_verdict(problem, "unknown" if left > LEFT * power or not named else "known", named)
+    return encode_verdict(problem.recording, "unknown" if left > LEFT * power or not named else "known", named)
 
 
 def regress_sparsely(target: Array, columns: Sequence[tuple[str, Array]]) -> tuple[Ranked, float]:

@@ -30,7 +30,6 @@ from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
-NANO = 10**9
 STEP = 1e-3
 
 
@@ -66,7 +65,7 @@ def run_libcosim(path: Path, block: Block, inputs: Mapping[str, Array], outputs:
     from libcosimpy.CosimSlave import CosimLocalSlave
 
     log_output_level(CosimLogLevel.WARNING)
-    execution = CosimExecution.from_step_size(round(step * NANO))
+    execution = CosimExecution.from_step_size(round(step * 1e9))
     unit = execution.add_local_slave(CosimLocalSlave(str(path), "unit"))
     given, seen = CosimManipulator.create_override(), CosimObserver.create_last_value()
     execution.add_manipulator(given)
