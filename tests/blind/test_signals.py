@@ -73,25 +73,6 @@ def faulty(kind: str, u: np.ndarray, size: float, **other: float) -> np.ndarray:
     return experiment.apply_fault(u, 10.0 + 0.0 * u, fault, 0)
 
 
-def test_sensor_faults() -> None:
-    time = np.arange(2000) / SAMPLE_RATE
-    u = 3.0 * np.sin(2.0 * np.pi * time)
-    for kind in ("gain", "gain_bent", "bias", "wander", "lag_second", "lag_average", "quantise", "clip", "backlash"):
-        np.testing.assert_array_equal(faulty(kind, u, 0.0), u)
-    np.testing.assert_allclose(faulty("gain", u, -0.2), 0.8 * u)
-    np.testing.assert_allclose(faulty("gain_bent", u, 0.2, detail=0.5, scale=2.0), u * (1 + 0.2 / (1 + u**2 / 80.0)))
-    np.testing.assert_allclose(faulty("bias", u, 2.0, detail=0.9) - u, np.linspace(2.0, 3.0, u.size))
-    wander = faulty("wander", u, 2.0, detail=0.5, seed=3) - u
-    assert np.std(wander) == pytest.approx(2.0)
-    np.testing.assert_allclose(faulty("quantise", u, 0.5) % 0.5, 0.0)
-    assert np.max(np.abs(faulty("quantise", u, 0.5) - u)) <= 0.25
-    assert np.ptp(faulty("clip", u, 2.0)) == 4.0
-    np.testing.assert_allclose(faulty("crosstalk", u, 0.1), u + 1.0)
-    play = faulty("backlash", u, 1.0)
-    assert np.max(play) == pytest.approx(2.5) and np.min(play) == pytest.approx(-2.5)
-    assert np.max(np.abs(play - u)) == pytest.approx(0.5)
-
-
 @pytest.mark.parametrize("kind", ["lag_second", "lag_average"])
 @pytest.mark.parametrize("delay", [0.003, 0.02])
 def test_lagging_sensors_delay_a_ramp_by_their_size(kind: str, delay: float) -> None:
@@ -115,10 +96,3 @@ def test_a_late_log_is_late_by_its_size() -> None:
     for run, left in ((0, 1.0 - 0.5 * 0.6), (1, 0.5)):
         read = experiment.read_sensors(motion(), np.arange(2000.0), [drifting], run)
         assert motion().current[-1] - read["coil_current"][-1] == pytest.approx(0.01 * left)
-
-
-def test_a_fault_reads_its_neighbour_and_leaves_the_motion_alone() -> None:
-    true = motion()
-    read = experiment.read_sensors(true, np.zeros(2000), [SensorFault("crosstalk", "frame_acceleration", 0.5)], 0)
-    np.testing.assert_array_equal(read["frame_acceleration"], 0.5)
-    np.testing.assert_array_equal(true.frame, 0.0)

@@ -22,8 +22,6 @@ _SUBSTEPS = 4
 """Of the integration in each row: friction is stiff."""
 Force = Callable[[float, float, float, float, float], tuple[float, float]]
 """Force on frame and driver from suspension x, v, cushion xc, vc and the driver's acceleration."""
-Law = Callable[[], Force]
-"""Begins a run: a force may remember what went before."""
 Parameters = Mapping[str, float]
 
 
@@ -51,21 +49,21 @@ def draw_seat_changes(carrier: Carrier, rng: Generator) -> list[Change]:
     stop = float(rng.uniform(0.4, 0.7)) * peak
     seed, step = int(rng.integers(2**31)), carrier.step
 
-    def change(effect: str, form: str, largest: float, at: Callable[[float], tuple[Parameters, Law]]) -> Change:
+    def change(effect: str, form: str, largest: float, at: Callable[[float], tuple[Parameters, Force]]) -> Change:
         def alter(amount: float) -> Altered:
-            parameters, law = at(amount)
+            # a force remembers what went before, so that each run begins with one of its own
             tables = {
-                run: {**table, **respond(carrier, plant, table, motions[run], law())}
+                run: {**table, **respond(carrier, plant, table, motions[run], at(amount)[1])}
                 for run, table in carrier.tables.items()
             }
-            return Altered(dataclasses.replace(carrier, tables=tables), parameters)
+            return Altered(dataclasses.replace(carrier, tables=tables), at(amount)[0])
 
         return Change(effect, form, "", (0.0, largest), alter)
 
-    def stiffen(a: float) -> tuple[Parameters, Law]:
+    def stiffen(a: float) -> tuple[Parameters, Force]:
         return {"rise": a / travel**2}, _cubic(a * stiffness / travel**2)
 
-    def push(a: float) -> tuple[Parameters, Law]:
+    def push(a: float) -> tuple[Parameters, Force]:
         return {}, _random(a * force, seed, step)
 
     return [
@@ -73,12 +71,7 @@ def draw_seat_changes(carrier: Carrier, rng: Generator) -> list[Change]:
         change("suspension.progressive_spring", "cubic", 3.0, stiffen),
         change("suspension.end_stop", "linear buffer", 5.0, lambda a: ({}, _buffer(a * stiffness, stop))),
         change("driver.mass", "heavier", 0.6, lambda a: ({"change": a * mass}, _mass(a * mass))),
-        change(
-            "floor.unmeasured_input",
-            "random force on the frame",
-            3.0,
-            lambda a: ({}, _random(a * force, seed, carrier.step)),
-        ),
+        change("floor.unmeasured_input", "random force on the frame", 3.0, push),
     ]
 
 
@@ -144,39 +137,32 @@ def simulate_linear(plant: Mapping[str, float], floor: Array, step: float) -> Se
     return SeatMotion(*found.T)
 
 
-def _friction(force: float, width: float) -> Law:
-    def law() -> Force:
-        anchor = [0.0]
+def _friction(force: float, width: float) -> Force:
+    anchor = 0.0
 
-        def friction(x: float, v: float, xc: float, vc: float, driver: float) -> tuple[float, float]:
-            anchor[0] = min(max(anchor[0], x - width), x + width)
-            return -force * (x - anchor[0]) / width, 0.0
+    def friction(x: float, v: float, xc: float, vc: float, driver: float) -> tuple[float, float]:
+        nonlocal anchor
+        anchor = min(max(anchor, x - width), x + width)
+        return -force * (x - anchor) / width, 0.0
 
-        return friction
-
-    return law
+    return friction
 
 
-def _cubic(rise: float) -> Law:
-    return lambda: lambda x, v, xc, vc, driver: (-rise * x**3, 0.0)
+def _cubic(rise: float) -> Force:
+    return lambda x, v, xc, vc, driver: (-rise * x**3, 0.0)
 
 
-def _buffer(stiffness: float, stop: float) -> Law:
-    return lambda: lambda x, v, xc, vc, driver: (-stiffness * (max(0.0, x - stop) + min(0.0, x + stop)), 0.0)
+def _buffer(stiffness: float, stop: float) -> Force:
+    return lambda x, v, xc, vc, driver: (-stiffness * (max(0.0, x - stop) + min(0.0, x + stop)), 0.0)
 
 
-def _mass(change: float) -> Law:
-    return lambda: lambda x, v, xc, vc, driver: (0.0, -change * driver)
+def _mass(change: float) -> Force:
+    return lambda x, v, xc, vc, driver: (0.0, -change * driver)
 
 
-def _random(size: float, seed: int, step: float) -> Law:
-    """Return a force with a spectrum between 1 and 8 Hz, drawn anew in every run."""
-    rng = np.random.default_rng(seed)
-
-    def law() -> Force:
-        white = rng.standard_normal(round(120.0 / step))
-        shaped = sosfiltfilt(butter(2, (1.0, 8.0), "bandpass", fs=1.0 / step, output="sos"), white)
-        values = iter(np.repeat(size * shaped / np.std(shaped), _SUBSTEPS))
-        return lambda x, v, xc, vc, driver: (float(next(values)), 0.0)
-
-    return law
+def _random(size: float, seed: int, step: float) -> Force:
+    """Return a force with a spectrum between 1 and 8 Hz, of two minutes."""
+    white = np.random.default_rng(seed).standard_normal(round(120.0 / step))
+    shaped = sosfiltfilt(butter(2, (1.0, 8.0), "bandpass", fs=1.0 / step, output="sos"), white)
+    values = iter(np.repeat(size * shaped / np.std(shaped), _SUBSTEPS))
+    return lambda x, v, xc, vc, driver: (float(next(values)), 0.0)

@@ -11,6 +11,7 @@ the best bounded refit of every nominal parameter, linear in the parameters: `mi
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -18,8 +19,8 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from seatsim.blind.make.draw_experiment import EXACT, zero_scales
-from seatsim.blind.truth.experiment import Experiment, Readings, context_of, read_channels, simulate_run
-from seatsim.blind.truth.faults import Changes
+from seatsim.blind.truth.experiment import CHANNELS, Experiment, Readings, read_channels, simulate_run
+from seatsim.blind.truth.faults import Changes, Context
 from seatsim.blind.truth.rig import RigMotion
 from seatsim.schema.arrays import Array
 
@@ -182,6 +183,21 @@ def bounded_least_squares(J: Array, g: Array) -> Array:
     """
     triangle = np.asarray(np.linalg.qr(np.column_stack([J, g]), mode="r"))
     return np.asarray(lsq_linear(triangle[:, :-1], triangle[:, -1], (-1.0, 1.0)).x)
+
+
+def context_of(experiment: Experiment, readings: Sequence[Readings]) -> Context:
+    """Return what fault scenarios may know, from the readings of the rig without them."""
+    pooled = {name: np.concatenate([run[name] for run in readings]) for name in CHANNELS}
+    driver = pooled["driver_acceleration"]
+    mass, stiffness = experiment.nominal["m"], experiment.nominal["kc"]
+    return Context(
+        spread={name: float(np.std(values)) for name, values in pooled.items()},
+        x_peak=float(np.max(np.abs(pooled["suspension_displacement"]))),
+        y_peak=mass * float(np.max(driver)) / stiffness,
+        tension_peak=mass * float(np.max(-driver)),
+        channels=experiment.channels,
+        is_bingham=experiment.is_bingham,
+    )
 
 
 class FaultlessRig:

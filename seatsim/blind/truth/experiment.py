@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ import numpy as np
 from scipy.signal import bilinear, lfilter, lfilter_zi
 
 from seatsim.blind.truth.excitation import NoiseColour, coloured_noise, frame_force
-from seatsim.blind.truth.faults import NEIGHBOUR, Changes, Context, FrameForce, SensorFault
+from seatsim.blind.truth.faults import NEIGHBOUR, Changes, FrameForce, SensorFault
 from seatsim.blind.truth.parameters import parameter_record
 from seatsim.blind.truth.rig import (
     EXCITATION_RATE,
@@ -246,18 +246,3 @@ def read_channels(experiment: Experiment, changes: Changes, run: int, motion: Ri
     """Return what the channels show of a motion, without noise, in the contract's order."""
     readings = read_sensors(motion, experiment.runs[run].floor, changes.sensor_faults, run)
     return {name: readings[name] for name in CHANNELS}
-
-
-def context_of(experiment: Experiment, readings: Sequence[Readings]) -> Context:
-    """Return what fault scenarios may know, from the readings of the rig without them."""
-    pooled = {name: np.concatenate([run[name] for run in readings]) for name in CHANNELS}
-    driver = pooled["driver_acceleration"]
-    mass, stiffness = experiment.nominal["m"], experiment.nominal["kc"]
-    return Context(
-        spread={name: float(np.std(values)) for name, values in pooled.items()},
-        x_peak=float(np.max(np.abs(pooled["suspension_displacement"]))),
-        y_peak=mass * float(np.max(driver)) / stiffness,
-        tension_peak=mass * float(np.max(-driver)),
-        channels=experiment.channels,
-        is_bingham=experiment.is_bingham,
-    )
