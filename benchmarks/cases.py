@@ -8,9 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
-from rich.console import Console
-from rich.table import Table
 from threadpoolctl import threadpool_limits
 
 from seatsim.blind.labels import KINDS, Label
@@ -99,21 +98,17 @@ def write_verdict(out: Path, method: Diagnoser) -> None:
 
 
 def show_scores(title: str, base: Path, labels: Mapping[str, Label], methods: Sequence[str]) -> None:
-    """Print one table of how often each method is right on the cases; a case without a verdict counts as wrong."""
-    table = Table(title=f"{title}, {len(labels)} cases", title_justify="left")
-    table.add_column("method")
-    for heading in ("right", *KINDS, "block first", "false alarms"):
-        table.add_column(heading, justify="right")
+    """Print how many verdicts of each method are right; a case without a verdict counts as wrong."""
+    rows = {}
     for method in methods:
         verdicts = {case: read_verdict(base / case / method / "diagnosis.json") for case in labels}
-        missing = sum(verdict.verdict == "missing" for verdict in verdicts.values())
-        if missing == len(verdicts):
-            continue
-        score = score_verdicts(labels, verdicts)
-        rates = [score.right, *(score.kinds.get(kind, Rate(0, 0)) for kind in KINDS), score.block, score.false_alarms]
-        name = f"{method} ({missing} missing)" if missing else method
-        table.add_row(name, *(f"{r.value:.3f} {r.right}/{r.total}" if r.total else "-" for r in rates))
-    Console(width=150).print(table)
+        if any(verdict.verdict != "missing" for verdict in verdicts.values()):
+            score = score_verdicts(labels, verdicts)
+            rates: dict[str, Rate] = {"right": score.right, "block first": score.block}
+            rates |= {kind: score.kinds.get(kind, Rate(0, 0)) for kind in KINDS}
+            rates["false alarms"] = score.false_alarms
+            rows[method] = {name: f"{rate.right}/{rate.total}" for name, rate in rates.items()}
+    print(f"{title}, {len(labels)} cases\n{pd.DataFrame.from_dict(rows, orient='index').to_string()}")
 
 
 def weigh_stated_noise(problem: DiagnosisProblem) -> NoiseWeights:

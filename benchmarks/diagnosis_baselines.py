@@ -2,8 +2,9 @@
 
 Each is given the rig with its parameters refitted inside their tolerance, and writes `CASE/BASELINE/diagnosis.json`;
 cases that have one are skipped. The table says how often each is right, beside `CASE/diagnosis` where that is there.
-Thresholds are for each baseline those with the most right verdicts on the first 40 of 120 development cases (11 none,
-13 one effect, 7 two, 9 outside), a second effect beside a right single one counted as wrong; chosen once, then frozen.
+Thresholds of `correlation` and `bic` are those with the most right verdicts on the first 40 of 120 development cases
+(11 none, 13 one effect, 7 two, 9 outside), a second effect beside a right single one counted as wrong; chosen once,
+then frozen. Those of `sparse` were not tuned.
 
 correlation  Cosine, by channel over all runs, of the residual with what each candidate at its start changes. The effect
     with the largest |cosine| is named from NAMED on. It is then projected out of each channel, and a second one is

@@ -18,7 +18,7 @@ HERE = Path(__file__).resolve().parent
 SHARED = HERE.parents[1] / "shared"
 QUICK = {
     "loop_peers": "--dampers bingham",
-    "sweep_speed": "300",
+    "sweep_speed": "90",
     "comfort_peers": "",
     "fmu_masters": "--seconds 2",
     "exact_certificates": "{out}/design/design.yaml",
