@@ -36,6 +36,10 @@ DRAWERS = (
     draw_limits,
     draw_seat_changes,
 )
+UNTOUCHED = "untouched"
+"""In place of an effect: the carrier as it was measured, which shows what is named without any effect put in."""
+_LEAST_RUNS = 3
+"""Of a case from which on one is withheld, to compare the claimed with the true shrink."""
 
 
 class DrawnCase(NamedTuple):
@@ -80,12 +84,6 @@ def draw_amount(ruler: Ruler, change: Change, size: float) -> DrawnCase | None:
 def _draw_size(rng: Generator) -> float:
     """Draw a size, log-uniform from just material to strong."""
     return float(np.exp(rng.uniform(math.log(WEAKEST), math.log(_STRONGEST))))
-
-
-UNTOUCHED = "untouched"
-"""In place of an effect: the carrier as it was measured, which shows what is named without any effect put in."""
-_LEAST_RUNS = 3
-"""Of a case from which on one is withheld, to compare the claimed with the true shrink."""
 
 
 def make_on_carrier(

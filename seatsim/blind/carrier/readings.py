@@ -33,6 +33,17 @@ FASTEST = 3000.0
 """1/s; a coil that is faster follows at once."""
 _NEAR_TOP = 0.93
 """Share of the largest command from which on it counts as the limit."""
+SENSORS = (
+    *("floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement"),
+    *("displacement", "damper_force", "coil_current"),
+)
+SCALES = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement": 0.01, "displacement": 0.01}
+"""Unit of a stated offset by channel; 1 m/s^2 for an acceleration."""
+INPUTS = ("floor_acceleration", "displacement")
+LOGGED = ("current_command", "command_voltage", "coil_current")
+_LARGEST_GAIN, _LONGEST_LAG, _LONGEST_SKEW = 0.4, 0.08, 0.04
+_LARGEST_OFFSET = 2.0
+"""Standard deviations of the channel."""
 
 
 def draw_delays(carrier: Carrier, rng: Generator) -> list[Change]:
@@ -108,19 +119,6 @@ def _raises(command: Array, top: float, rng: Generator) -> Array:
 def commanded(carrier: Carrier) -> str | None:
     """Return the channel that commands the coil, None where none is recorded."""
     return next((name for name in COMMANDS if name in carrier.channels), None)
-
-
-SENSORS = (
-    *("floor_acceleration", "frame_acceleration", "driver_acceleration", "suspension_displacement"),
-    *("displacement", "damper_force", "coil_current"),
-)
-SCALES = {"damper_force": 100.0, "coil_current": 0.1, "suspension_displacement": 0.01, "displacement": 0.01}
-"""Unit of a stated offset by channel; 1 m/s^2 for an acceleration."""
-INPUTS = ("floor_acceleration", "displacement")
-LOGGED = ("current_command", "command_voltage", "coil_current")
-_LARGEST_GAIN, _LONGEST_LAG, _LONGEST_SKEW = 0.4, 0.08, 0.04
-_LARGEST_OFFSET = 2.0
-"""Standard deviations of the channel."""
 
 
 def draw_sensor_changes(carrier: Carrier, rng: Generator) -> list[Change]:

@@ -29,6 +29,8 @@ Content = dict[str, object]
 """What a YAML file says."""
 DECIMALS = 12
 """Most digits after the point that are written."""
+SMOOTHING = 0.02
+"""s; window of the polynomial whose slope is the velocity."""
 
 
 @dataclass(frozen=True)
@@ -161,10 +163,6 @@ class Change(NamedTuple):
 def with_tables(carrier: Carrier, table_of: Callable[[Table], Table]) -> Carrier:
     """Return the carrier with every run replaced."""
     return dataclasses.replace(carrier, tables={run: table_of(table) for run, table in carrier.tables.items()})
-
-
-SMOOTHING = 0.02
-"""s; window of the polynomial whose slope is the velocity."""
 
 
 def slope(values: Array, step: float) -> Array:

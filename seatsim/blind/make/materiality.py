@@ -34,6 +34,10 @@ COARSE_STEP = 2.5e-4
 """Step of the simulations that only measure sizes, s: two and a half times as fast as those that are recorded."""
 _REMEMBERED = 6
 """Sets of motions that are kept beside the first, which is that of the rig without the fault."""
+SECONDS = 12.0
+"""Of each run that are looked at: half of it, as every parameter costs a simulation."""
+NEGLIGIBLE = 0.2
+"""Materiality below which a fault is not material whatever a refit takes away."""
 
 
 @dataclass
@@ -134,12 +138,6 @@ def collinearity(a: Array, b: Array) -> float:
     """Return `|a b| / (|a| |b|)` of two responses, 0..1."""
     size = float(np.linalg.norm(a) * np.linalg.norm(b))
     return abs(float(a @ b)) / size if size else 0.0
-
-
-SECONDS = 12.0
-"""Of each run that are looked at: half of it, as every parameter costs a simulation."""
-NEGLIGIBLE = 0.2
-"""Materiality below which a fault is not material whatever a refit takes away."""
 
 
 class ToleranceRefit:

@@ -18,6 +18,10 @@ BINS = 10
 """Of the reliability table: each holds a tenth of all probabilities, 24 for each case."""
 _Z_95 = 1.96
 """Standard normal quantile of a two-sided 95 % interval."""
+SIZES = (1.5, 2.5, 4.0)
+"""Upper edges, in material limits, of the classes by strength: just material, common, strong."""
+NAMED = 3
+"""Causes of a wrong verdict that are listed."""
 
 
 @dataclass(frozen=True)
@@ -86,12 +90,6 @@ def calibration_error(table: Sequence[Bin]) -> float:
 def brier_score(stated: NDArray[np.float64], true: NDArray[np.bool_]) -> float:
     """Return the mean squared difference of probability and truth (Brier 1950)."""
     return float(np.mean((stated - true) ** 2)) if stated.size else math.nan
-
-
-SIZES = (1.5, 2.5, 4.0)
-"""Upper edges, in material limits, of the classes by strength: just material, common, strong."""
-NAMED = 3
-"""Causes of a wrong verdict that are listed."""
 
 
 @dataclass(frozen=True)

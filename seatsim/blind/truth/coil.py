@@ -27,6 +27,12 @@ OFF = 0.02
 """A; below this target the driver is off and no voltage is left for the back EMF to reduce."""
 _FALL_AT_LOW_CURRENT = 1.6
 """Weight of the slow fall at no current; it goes to zero at 1 A."""
+SCHEDULE, SKYHOOK, FEEDBACK = 0.0, 1.0, 2.0
+"""Kinds of law; numbers, because compiled code reads them from the vector."""
+# The feedback's assumed damper model, by which it turns a force into a current: friction, N; viscous damping, N s/m;
+# yield force, N/A; rise of the viscous damping with current, N s/(m A). Near the nominal damper and never exact, as in
+# a real controller.
+FRICTION, VISCOUS, _YIELD_GAIN, _VISCOUS_GAIN = 40.0, 250.0, 600.0, 350.0
 
 
 @compiled
@@ -121,14 +127,6 @@ def write_coil_rates(y: Array, rates: Array, target: float, v: float, p: RigPara
         rates[state.CURRENT] = rate * (aim - i)
     if p.limit_sag > 0.0:
         rates[state.SAG] = (i - y[state.SAG]) / _SAG_TIME
-
-
-SCHEDULE, SKYHOOK, FEEDBACK = 0.0, 1.0, 2.0
-"""Kinds of law; numbers, because compiled code reads them from the vector."""
-# The feedback's assumed damper model, by which it turns a force into a current: friction, N; viscous damping, N s/m;
-# yield force, N/A; rise of the viscous damping with current, N s/(m A). Near the nominal damper and never exact, as in
-# a real controller.
-FRICTION, VISCOUS, _YIELD_GAIN, _VISCOUS_GAIN = 40.0, 250.0, 600.0, 350.0
 
 
 @compiled

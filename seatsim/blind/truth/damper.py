@@ -33,6 +33,19 @@ _SEAL_LOAD = 300.0
 """N of damper force that presses the seal by one `seal_pressure`."""
 _LARGEST_SEAL_LOAD = 3.0
 """Loads beyond this press the seal no further."""
+_CLOSE_ENOUGH = 0.05
+"""N; a fiftieth of the load cell's noise."""
+_NEWTON_STEPS = 4
+"""From the last solution one or two are enough, unless the motion turns or meets the contact."""
+_DIFFERENCE = 1e-4
+"""m/s, over which Newton takes the slope."""
+_LEAST_SLOPE = 50.0
+"""N s/m; below the damper's viscous damping, so that a flat stretch of the curve throws the guess nowhere."""
+_LARGEST_CHANGE = 0.5
+"""m/s of one Newton step."""
+_FASTEST_PISTON = 4.0
+"""m/s; bracket of false position, beyond any seat."""
+_BRACKET_STEPS = 40
 
 
 @compiled
@@ -138,21 +151,6 @@ def update_cavity(y: Array, memory: Array, x: float, v: float, h: float, p: RigP
         memory[state.CAVITY_VOLUME] += p.cavitation_fill * v * h * (1.0 - p.cavitation_force / force)
     elif v < 0.0:
         memory[state.CAVITY_VOLUME] = max(memory[state.CAVITY_VOLUME] + v * h, 0.0)
-
-
-_CLOSE_ENOUGH = 0.05
-"""N; a fiftieth of the load cell's noise."""
-_NEWTON_STEPS = 4
-"""From the last solution one or two are enough, unless the motion turns or meets the contact."""
-_DIFFERENCE = 1e-4
-"""m/s, over which Newton takes the slope."""
-_LEAST_SLOPE = 50.0
-"""N s/m; below the damper's viscous damping, so that a flat stretch of the curve throws the guess nowhere."""
-_LARGEST_CHANGE = 0.5
-"""m/s of one Newton step."""
-_FASTEST_PISTON = 4.0
-"""m/s; bracket of false position, beyond any seat."""
-_BRACKET_STEPS = 40
 
 
 @compiled

@@ -17,6 +17,10 @@ from seatsim.schema.arrays import Array
 
 HIGHEST = 60.0
 """Hz, above which there is nothing, so that linear interpolation at 2 kHz and rows at 500 Hz lose nothing."""
+OFF_SHARE = 0.3
+"""Share of the steps of a schedule that are without current, so that the damper's fall is seen as often as its rise."""
+_NO_FORCE = np.zeros(1)
+"""A single sample, which the rig's loop takes for none."""
 
 
 def coloured_noise(rng: Generator, samples: int, low: float, high: float, slope: float, rate: float) -> Array:
@@ -55,10 +59,6 @@ def colour_noise(white: Array, colour: NoiseColour, rate: float) -> Array:
     power = 1.0 - colour.flicker - colour.slow
     power = power + colour.flicker * flicker / np.mean(flicker) + colour.slow * slow / np.mean(slow)
     return np.fft.irfft(np.fft.rfft(white) * np.sqrt(power), white.size)
-
-
-OFF_SHARE = 0.3
-"""Share of the steps of a schedule that are without current, so that the damper's fall is seen as often as its rise."""
 
 
 def _noise(rng: Generator, samples: int, low: float, high: float, slope: float) -> Array:
@@ -119,10 +119,6 @@ def draw_current_steps(rng: Generator, rows: int, top: float, rate: float = SAMP
         out[at : at + hold] = level
         at += hold
     return out
-
-
-_NO_FORCE = np.zeros(1)
-"""A single sample, which the rig's loop takes for none."""
 
 
 def frame_force(forces: Iterable[FrameForce], run: int, seconds: float) -> Array:

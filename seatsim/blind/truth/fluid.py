@@ -16,6 +16,10 @@ ZERO = 273.15
 _REFERENCE_KELVIN = 293.15
 _COLDEST = -15.0
 """K below the reference, where the hyperbola of the viscosity ends before its pole."""
+_SERIES = 1e-3
+"""Argument below which the Langevin function is its own tangent, whose closed form would cancel."""
+RISE = 200.0
+"""1/s, at which a decaying magnetisation follows a rising current: within a row and a half."""
 
 
 @compiled
@@ -41,12 +45,6 @@ def write_heat_rates(y: Array, rates: Array, power: float, p: RigParameters) -> 
     rates[state.T_FLUID] = (abs(power) - flow) / p.fluid_heat
     rates[state.T_HOUSING] = (flow - p.housing_to_air * (y[state.T_HOUSING] - p.t_ambient)) / p.housing_heat
     rates[state.T_THERMOMETER] = (y[state.T_HOUSING] - y[state.T_THERMOMETER]) / p.thermometer_time
-
-
-_SERIES = 1e-3
-"""Argument below which the Langevin function is its own tangent, whose closed form would cancel."""
-RISE = 200.0
-"""1/s, at which a decaying magnetisation follows a rising current: within a row and a half."""
 
 
 @compiled

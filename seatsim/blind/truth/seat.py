@@ -19,6 +19,8 @@ FARTHEST = 4.0
 """The same for the hyperbolic sine of the spring (27 times its scale)."""
 _LEAST_FRICTION = 0.2
 """Of the friction at mid travel, where it falls with travel; it never changes its sign."""
+_DEEPEST_FOAM = 3.0
+"""Deflection of an exponential foam over its length, beyond which its force grows no further (19 times its scale)."""
 
 
 @compiled
@@ -78,10 +80,6 @@ def suspension_force(y: Array, rates: Array, p: RigParameters) -> float:
         rates[state.CREEP] = (x - y[state.CREEP]) / p.creep_time
         force -= p.creep_stiffness * y[state.CREEP]
     return float(force)
-
-
-_DEEPEST_FOAM = 3.0
-"""Deflection of an exponential foam over its length, beyond which its force grows no further (19 times its scale)."""
 
 
 @compiled
