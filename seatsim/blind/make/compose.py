@@ -18,12 +18,13 @@ BACKGROUND = 6.0
 """Random force on the frame of the preset `background`, N rms: half of that which counts as an effect of severity 1."""
 
 
-def compose(cases: int, kinds: str, rng: Generator) -> list[CaseSpecification]:
+def compose(cases: int, kinds: str | Sequence[str], rng: Generator) -> list[CaseSpecification]:
     """Return the specifications of a set, shuffled.
 
     `mixed`: a fifth none, a fifth two effects, a fifth outside, the rest one effect, the 24 effects equally often.
     `varied`: the same mix, every case on another rig. `null`: faultless over every subset of channels. `background`:
-    faultless, a random force on the frame, and a repeated run that shows it. Otherwise a kind, which all cases are.
+    faultless, a random force on the frame, and a repeated run that shows it. Otherwise a kind, which all cases are, or
+    kinds that are gone through in turn.
 
     Raises:
         InputError: there is no such preset or kind.
@@ -46,17 +47,22 @@ def null_subsets() -> list[tuple[str, ...]]:
     return [some for some in subsets if not any(either <= set(some) for either in needed)]
 
 
-def _kinds(cases: int, kinds: str) -> list[Kind]:
+def _kinds(cases: int, kinds: str | Sequence[str]) -> list[Kind]:
     """Return the kind of each case, before shuffling."""
     if kinds in ("mixed", "varied"):
         fifth = round(cases / 5)
         parts: dict[Kind, int] = {"none": fifth, "two": fifth, "outside": fifth, "one": max(cases - 3 * fifth, 0)}
         return [kind for kind, count in parts.items() for _ in range(count)][:cases]
+    chosen = [_known_kind(kind) for kind in ([kinds] if isinstance(kinds, str) else kinds)]
+    return [chosen[k % len(chosen)] for k in range(cases)]
+
+
+def _known_kind(name: str) -> Kind:
     for kind in KINDS:
-        if kind == kinds:
-            return [kind] * cases
+        if kind == name:
+            return kind
     known = (*_PRESETS, *KINDS)
-    raise InputError(f"kinds: {kinds!r} is not one of {', '.join(known)}{nearest(kinds, known)}")
+    raise InputError(f"kinds: {name!r} is not one of {', '.join(known)}{nearest(name, known)}")
 
 
 def _specify(kinds: list[Kind], rng: Generator, varied: bool) -> list[CaseSpecification]:

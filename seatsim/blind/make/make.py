@@ -45,7 +45,7 @@ class _Plan(NamedTuple):
     """What was asked for, and what makes the set; the content of `state.json`."""
 
     cases: int
-    kinds: str
+    kinds: str | list[str]
     seed: int
     key: str
     given: bool
@@ -58,13 +58,13 @@ def make(
     out: str | Path,
     sealed: str | Path,
     progress: Progress | None = None,
-    kinds: str = "mixed",
+    kinds: str | list[str] = "mixed",
     processes: int = 2,
 ) -> str:
     """Write a set on simulated rigs; return the key.
 
-    `kinds` is a preset (`mixed`, `varied`, `null`, `background`) or a kind (none, one, two, outside). The rest is that
-    of `make_set`.
+    `kinds` is a preset (`mixed`, `varied`, `null`, `background`) or a kind (none, one, two, outside), or kinds
+    that are gone through in turn. The rest is that of `make_set`.
 
     Raises:
         InputError: fewer than one case, an unknown preset, a folder or file that is another set's.
@@ -79,7 +79,7 @@ def make(
 def make_set(
     cases: int,
     seed: int | None,
-    kinds: str,
+    kinds: str | list[str],
     folder: Path,
     target: Path,
     order: Callable[[int], Sequence[Wanted]],
@@ -116,7 +116,9 @@ def case_name(k: int) -> str:
     return f"case-{k + 1:04d}"
 
 
-def _begin_or_resume(cases: int, seed: int | None, kinds: str, folder: Path, target: Path, partial: Path) -> _Plan:
+def _begin_or_resume(
+    cases: int, seed: int | None, kinds: str | list[str], folder: Path, target: Path, partial: Path
+) -> _Plan:
     """Return the plan of an unfinished set, or begin one."""
     if cases < 1:
         raise InputError(f"--cases {cases}: at least 1")
@@ -163,7 +165,7 @@ def _gather(plan: _Plan, partial: Path) -> Sealed:
     names = [case_name(k) for k in range(plan.cases)]
     labels = {name: json.loads((partial / f"{name}.json").read_text(encoding="utf-8")) for name in names}
     unseen = {name: {file.name: file.read_bytes() for file in sorted((partial / name).iterdir())} for name in names}
-    made = {"seed": plan.seed, "seed_given": plan.given, "cases": plan.cases, "kinds": plan.kinds}
+    made: dict[str, object] = {"seed": plan.seed, "seed_given": plan.given, "cases": plan.cases, "kinds": plan.kinds}
     return Sealed(labels, unseen, made)
 
 
