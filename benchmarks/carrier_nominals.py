@@ -20,9 +20,8 @@ from rig_records import Addition, Array, CarrierRecords, Nominal, RigRecords, Ru
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
-from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.gap import pool_runs
-from seatsim.recordings.recording import ChannelEntry, Recording, load_recording
+from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Recording, load_recording
 from seatsim.scenario.loading import single
 from seatsim.schema.fields import bounds
 from seatsim.schema.files import write_whole

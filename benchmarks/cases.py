@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from seatsim.blind.labels import KINDS, Label
-from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.cases import Rate
 from seatsim.blind.score.score import score_verdicts
 from seatsim.blind.score.verdicts import read_verdict
@@ -24,6 +23,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.recordings.recording import Recording
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import write_json
+from seatsim.schema.processes import run_jobs
 
 Array = NDArray[np.float64]
 EncodedDiagnosis = Mapping[str, object]

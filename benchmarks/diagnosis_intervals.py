@@ -32,10 +32,9 @@ from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem, pose_problem
 from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 from seatsim.diagnosis.validate import refit_closely
-from seatsim.recordings.channel_units import SEAT_CHANNELS
 from seatsim.recordings.header import Header, RunEntry
-from seatsim.recordings.inputs import recorded_inputs
-from seatsim.recordings.recording import ChannelEntry, Recording
+from seatsim.recordings.recording import SEAT_CHANNELS, ChannelEntry, Recording
+from seatsim.recordings.replay import recorded_inputs
 from seatsim.scenario.loading import single
 from seatsim.schema.fields import replace_fields
 from seatsim.schema.files import write_text, write_whole

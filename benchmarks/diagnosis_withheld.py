@@ -29,7 +29,6 @@ from threadpoolctl import threadpool_limits
 from seatsim.blind.labels import Label
 from seatsim.blind.make.draw_case import CaseSpecification
 from seatsim.blind.make.make import case_name, draw_files, make_case
-from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.verdicts import Verdict, is_right, read_verdict
 from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.diagnosis.candidates import list_candidates
@@ -44,6 +43,7 @@ from seatsim.diagnosis.select import select_effects
 from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.files import write_json
+from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import names
 
 IMITATED = 1.0 - DecisionSettings().explained

@@ -27,19 +27,18 @@ from typical_effects import FORMS, NOISE
 
 import seatsim
 from controllers.laws.constant import Replay
-from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.verdicts import NAMING, Verdict, read_verdict
 from seatsim.cli.outputs.diagnosis import encode_diagnosis
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.diagnosis.settings.judging import DecisionSettings
 from seatsim.effects.base import EFFECTS
 from seatsim.excitations.recording import interpolate_floor
-from seatsim.recordings.channel_units import SEAT_CHANNELS
-from seatsim.recordings.recording import load_recording
+from seatsim.recordings.recording import SEAT_CHANNELS, load_recording
 from seatsim.recordings.writer import save_recording
 from seatsim.scenario.scenario import Control
 from seatsim.schema.fields import field_names
 from seatsim.schema.files import write_json, write_text
+from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import Record, names
 from seatsim.simulation.inputs import SeatInputs
 from seatsim.simulation.respond import respond

@@ -11,10 +11,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block, list_variables
 from seatsim.exchange.compiler import find_compiler
 from seatsim.exchange.fmu import write_fmu
-from seatsim.exchange.variables import list_variables
 
 Array = NDArray[np.float64]
 HERE = Path(__file__).parent

@@ -22,10 +22,9 @@ import numpy as np
 from fmu_host import run_unit
 from numpy.typing import NDArray
 
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block, list_variables
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
-from seatsim.exchange.variables import list_variables
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import Scenario
 

@@ -17,9 +17,8 @@ from cases import Array, EncodedDiagnosis, Ranked, encode_verdict, rank_by_figur
 from ruamel.yaml import YAML
 from scipy.optimize import least_squares
 
-from seatsim.recordings.compared import select_compared
 from seatsim.recordings.recording import Recording, load_recording
-from seatsim.recordings.replay import replay_table
+from seatsim.recordings.replay import replay_table, select_compared
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 

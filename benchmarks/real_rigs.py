@@ -21,8 +21,8 @@ from rig_records import RigRecords, list_rigs
 from ruamel.yaml import YAML
 
 import seatsim
-from seatsim.recordings.compared import LEFT_OUT
 from seatsim.recordings.recording import load_recording
+from seatsim.recordings.replay import LEFT_OUT
 from seatsim.schema.files import write_whole
 
 TOLERANCE = 0.1

@@ -36,7 +36,6 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.simulation import simulate as simulation
 from seatsim.sweeps.engines.base import simulate_one
 from seatsim.sweeps.engines.local import LocalEngine
-from seatsim.sweeps.engines.memory import keep_freed_memory
 from seatsim.sweeps.execute import execute, prepare
 from seatsim.sweeps.plan import Plan
 
@@ -127,8 +126,6 @@ def show(what: str, runs: int, folder: str | None = None) -> list[Cost]:
 
 def measure(what: str, runs: int, folder: Path | None) -> dict[str, Cost]:
     """Measure parts in this process and those that it starts; a folder keeps the sweep for its report."""
-    # What the runs alone would cost without this is another matter than what a sweep adds.
-    keep_freed_memory()
     with tempfile.TemporaryDirectory() as name:
         file, out = Path(name) / "sweep.yaml", (folder or Path(name)) / "out"
         file.write_text(SWEEP.format(runs=-(-runs // VARIANTS)), encoding="utf-8")

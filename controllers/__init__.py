@@ -29,3 +29,8 @@ def __getattr__(name: str) -> object:
     from controllers import synthesis
 
     return getattr(synthesis, name)
+
+
+def __dir__() -> list[str]:
+    """List the public names."""
+    return __all__

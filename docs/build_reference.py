@@ -15,7 +15,8 @@ from equations import convert_equations
 from loops import draw_loops
 
 from seatsim.dampers.base import CONFIDENCE, find_confidence
-from seatsim.scenario.describe import KINDS, SECTIONS, Page, find_page
+from seatsim.scenario.describe import KINDS, Page, find_page
+from seatsim.scenario.sections import RECORDS
 from seatsim.schema import registry
 from seatsim.schema.fields import SLIGHTLY, FieldSpecification, bounds, choices
 
@@ -68,7 +69,7 @@ def pages() -> dict[str, str]:
 
 def list_chapters(kind: str) -> Iterator[Chapter]:
     """Yield the pages of a kind: dampers by family, of the other kinds one."""
-    names = list(SECTIONS) if kind == "section" else registry.names(kind)
+    names = list(RECORDS) if kind == "section" else registry.names(kind)
     if kind != "damper":
         yield Chapter(f"reference/{kind}s.md", f"{kind.capitalize()}s", names)
         return
@@ -116,7 +117,7 @@ def write_entry(page: Page) -> str:
     parts = [f"\n## {page.name}\n", *write_text(page)]
     if page.kind == "damper":
         parts.append(f"![Force of {page.name} over velocity and displacement](../{LOOPS}/{page.name}.svg)\n")
-    cls = SECTIONS[page.name] if page.kind == "section" else registry.find(page.kind, page.name)
+    cls = RECORDS[page.name] if page.kind == "section" else registry.find(page.kind, page.name)
     parts.append("\n".join(write_parameters(cls, page.keys)) if page.keys else "No parameters.\n")
     facts = [f"Source: {page.source}"] * bool(page.source) + page.facts
     return "\n".join([*parts, *(f"- {escape(fact)}" for fact in facts), ""])

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from seatsim.cli.app import main
 from seatsim.schema import modules, registry
 
 from .faulty_recordings import record_sound_rig
@@ -61,6 +62,22 @@ def benchmark():
     sys.path.insert(0, folder)
     yield importlib.import_module
     sys.path.remove(folder)
+
+
+@pytest.fixture
+def seatsim_command(capsys):
+    """Call the whole program and return its exit status, standard output and standard error."""
+
+    def call(*arguments):
+        before, sys.argv = sys.argv, ["seatsim", *map(str, arguments)]
+        try:
+            with pytest.raises(SystemExit) as stopped:
+                main()
+        finally:
+            sys.argv = before
+        return stopped.value.code, *capsys.readouterr()
+
+    return call
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from typing import NamedTuple, cast
 from seatsim.dampers.base import DAMPERS, Damper, DamperSpecification
 from seatsim.rig.coil import Coil
 from seatsim.rig.temperature import TemperatureFactors
-from seatsim.scenario.damper import stated_damper
+from seatsim.scenario.damper import read_damper
 from seatsim.schema.registry import name_of, specification_of
 from seatsim.schema.validation import build, mapping
 from seatsim.schema.yaml_source import Source
@@ -51,7 +51,7 @@ def load_specimen(model: str | None, parameters: Path | None) -> DamperSpecimen:
     whole = "damper" in source.data
     keys: KeyPath = ("damper",) if whole else ()
     values = source.data["damper"] if whole else source.data
-    damper, factors = stated_damper(values, source, keys)
+    damper, factors = (choice := read_damper(values, source, keys)).record, choice.factors
     named = mapping(values, source, keys)["model"]
     if model not in (None, named):
         problem = f"is '{named}', not the '{model}' of --model; leave --model out"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 from seatsim.characterisation.cycles import find_cycles
@@ -10,7 +11,7 @@ from seatsim.characterisation.measured_steps import measure_responses
 from seatsim.characterisation.response import Response, response_columns
 from seatsim.characterisation.rows import Row, row_columns, summarise_aperiodic_record, summarise_record
 from seatsim.characterisation.steps import find_plateaus
-from seatsim.recordings.bench_tables import BenchRecord, unused_columns
+from seatsim.recordings.bench_tables import BenchRecord, load_bench, unused_columns
 
 SETTLED = 0.2
 """Seconds after a step of current from which on cycles are counted."""
@@ -34,12 +35,14 @@ class Characterisation(NamedTuple):
     notes: list[str]
 
 
-def characterise(records: Sequence[BenchRecord], name: str, source: str = "") -> Characterisation:
-    """Return what bench records show before anything is modelled.
+def characterise(data: str | Path | Sequence[BenchRecord], name: str = "", source: str = "") -> Characterisation:
+    """Return what bench records, or the tables of a folder, show before anything is modelled.
 
     A record whose current rests at several levels, with steady cycles at one of them, has a row for each such stretch;
     any other record has one row.
     """
+    records = load_bench(data) if isinstance(data, str | Path) else data
+    name = name or (Path(data).stem if isinstance(data, str | Path) else records[0].name)
     rows = [row for record in records for row in _rows(record)]
     answers = [answer for record in records for answer in measure_responses(record)]
     return Characterisation(name, source or name, True, rows, answers, unused_columns(records))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import errno
 import os
-import shlex
 import sys
 import traceback
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import chain
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,25 +18,18 @@ from typer.core import TyperCommand, TyperGroup
 
 from seatsim.cli.commands.blind import blind
 from seatsim.cli.commands.dampers import characterise, identify
-from seatsim.cli.commands.describe import describe
-from seatsim.cli.commands.exchange import export
-from seatsim.cli.commands.explore import explore
-from seatsim.cli.commands.files import check, new, schema
-from seatsim.cli.commands.importing import import_data, inspect_data
-from seatsim.cli.commands.recordings import diagnose, gap
-from seatsim.cli.commands.reproduce import reproduce
+from seatsim.cli.commands.files import check, describe, new, reproduce, schema
+from seatsim.cli.commands.recordings import diagnose, gap, import_data, inspect_data
 from seatsim.cli.commands.runs import compare, run
+from seatsim.cli.commands.scenarios import explore, export, synthesise
 from seatsim.cli.commands.standards import comfort, seat_test
 from seatsim.cli.commands.sweeps import sweep, sweep_report
-from seatsim.cli.commands.synthesis import synthesise
-from seatsim.cli.terminal import answer_as_json, answer_error, complain, fail, print_any_letter, warn
+from seatsim.cli.terminal import answer_as_json, answer_error, fail, print_any_letter, refuse, warn
 from seatsim.compilation.reasons import explain, is_compilation
 from seatsim.schema.errors import InputError, SeatsimError
-from seatsim.schema.modules import MissingModuleError
 
 UsageError: Any = typer.BadParameter.__bases__[0]
 """What is raised for options and arguments that a command does not have, before any of them is read."""
-ASKED = "seatsim.json"
 TRACEBACK = "SEATSIM_TRACEBACK"
 """Set in the environment, it lets Python print what led to an error that was not foreseen."""
 
@@ -64,7 +57,7 @@ class _Commands(TyperGroup):
     """The commands; what is wrong with their options is one object where `--json` stands among them."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        ctx.meta[ASKED] = "--json" in args
+        answer_as_json("--json" in args)
         return super().parse_args(ctx, args)
 
     def make_context(self, *arguments: Any, **options: Any) -> Any:
@@ -72,7 +65,6 @@ class _Commands(TyperGroup):
             return super().make_context(*arguments, **options)
 
     def invoke(self, ctx: Any) -> object:
-        answer_as_json(ctx.meta[ASKED])
         try:
             with _interrupts_said():
                 return super().invoke(ctx)
@@ -87,7 +79,6 @@ def _interrupts_said() -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        answer_as_json("--json" in sys.argv)
         fail("interrupted")
         raise typer.Exit(130) from None
 
@@ -95,12 +86,16 @@ def _interrupts_said() -> Iterator[None]:
 app = typer.Typer(
     cls=_Commands,
     help="Simulate semi-active MR-damper seats and compare what is done to them.",
-    no_args_is_help=True, pretty_exceptions_enable=False,
-)  # fmt: skip
-for command in (
-    run, compare, sweep, sweep_report, synthesise, gap, diagnose, characterise, identify, describe, comfort, seat_test,
-    export, new, check, schema, explore, reproduce,
-):  # fmt: skip
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+_GROUPS: tuple[tuple[Callable[..., None], ...], ...] = (
+    (run, compare, sweep, sweep_report, synthesise),
+    (gap, diagnose, characterise, identify, describe),
+    (comfort, seat_test, export),
+    (new, check, schema, explore, reproduce),
+)
+for command in chain.from_iterable(_GROUPS):
     app.command(cls=_Command)(command)
 app.command("import", cls=_Command)(import_data)
 app.command("inspect")(inspect_data)
@@ -127,13 +122,13 @@ def _seatsim(
 def main() -> None:
     """Run the command line: exit 0 done, 1 a run failed, 2 bad input (nothing written)."""
     print_any_letter()
+    # Python would print a line of seatsim's own code with each warning, and no color.
     warnings.showwarning = lambda message, *_, **__: warn([str(message)], "warning")
     try:
         _refuse_settings_of_libraries()
         app(prog_name="seatsim")
     except SeatsimError as error:
-        fail(str(error))
-        _show_command_with_file(error)
+        refuse(error)
         sys.exit(error.exit_status)
     except KeyboardInterrupt:
         fail("interrupted")
@@ -172,13 +167,3 @@ def _refuse_settings_of_libraries() -> None:
     for name in (".numba_config.yaml", "matplotlibrc"):
         if Path(name).exists():
             raise InputError(f"{name}: changes how libraries work in this folder; start seatsim in another one")
-
-
-def _show_command_with_file(error: BaseException) -> None:
-    """Print this command with `--with FILE`, where a module is missing whose file lies where it is named."""
-    cause: BaseException | None = error
-    while cause is not None and not isinstance(cause, MissingModuleError):
-        cause = cause.__cause__
-    if cause is not None and cause.file is not None:
-        words = ["seatsim", *sys.argv[1:], "--with", str(cause.file)]
-        complain(f"if you trust that file: {shlex.join(words)}")

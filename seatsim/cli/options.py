@@ -29,6 +29,18 @@ def check_out(folder: Path | None) -> Path | None:
     return folder
 
 
+def _complete_key(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
+    """Return the keys of the scenario on the command line that begin so, each with its meaning and unit."""
+    from seatsim.scenario.loading import load
+    from seatsim.scenario.numbers import list_keys
+
+    named = ctx.params.get("scenarios") or [ctx.params.get("scenario") or "quickstart"]
+    keys = list_keys(load(named[0])[0])
+    # In brackets a unit would be taken for a mark of style.
+    units = {key: f" ({each.unit})" if each.unit not in ("", "-") else "" for key, each in keys.items()}
+    return [(f"{key}=", each.meaning + units[key]) for key, each in keys.items() if key.startswith(incomplete)]
+
+
 Out = Annotated[
     Path | None,
     typer.Option("--out", help="Folder for the files.", show_default="out/NAME", callback=check_out),
@@ -43,16 +55,23 @@ RecordingFolder = Annotated[
 ]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Replace a value by dotted key, such as plant.driver_mass=55."),
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        autocompletion=_complete_key,
+        help="Replace a value by dotted key, such as plant.driver_mass=55.",
+    ),
 ]
 OwnCode = Annotated[
     list[Path] | None,
     typer.Option(
-        "--with", metavar="FILE.py", callback=_use_files,
+        "--with",
+        metavar="FILE.py",
+        callback=_use_files,
         help="Run a file of your own, whose classes are then known by the names in their decorators, or a damper's"
         " FMU; may be given several times.",
     ),
-]  # fmt: skip
+]
 Json = Annotated[
     bool,
     # Eager, so that an error in another option is an object, too.

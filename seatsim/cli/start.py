@@ -47,6 +47,7 @@ def start() -> NoReturn:
         with suppress(BrokenPipeError):
             stream.flush()
     remove_leftovers(PATIENCE)
+    # Python would wait for threads: after an interrupt, for as long as the runs take that have begun.
     os._exit(128 + _received[-1] if _received else status)
 
 

@@ -1,4 +1,4 @@
-"""The comparison table on the terminal."""
+"""The comparison table of runs on the terminal, and published figures of a scenario file next to those of its runs."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from rich.table import Table
 from seatsim.metrics.arrays import ratio
 from seatsim.metrics.table import SHORT
 from seatsim.scenario.conditions import group_by_condition
+from seatsim.scenario.published import Published, published_figures
 from seatsim.simulation.performance_bounds import measure_distance
 from seatsim.simulation.result import Run
 
@@ -44,8 +45,8 @@ COLUMNS = (
 )
 COMPARED = COLUMNS[:-1]
 """Columns of which the smallest value is the best."""
-UNVERIFIED_MARK = " *"
-UNVERIFIED_NOTE = "* not verified, and never the best: a warning says why"
+_UNVERIFIED_MARK = " *"
+_UNVERIFIED_NOTE = "* not verified, and never the best: a warning says why"
 
 
 def comparison(runs: Sequence[Run], title: str) -> Table:
@@ -59,12 +60,12 @@ def comparison(runs: Sequence[Run], title: str) -> Table:
     for column in columns:
         table.add_column(column.heading, justify="right", vertical="bottom", no_wrap=True)
     if any(run.unverified for run in runs):
-        table.caption, table.caption_justify = UNVERIFIED_NOTE, "left"
+        table.caption, table.caption_justify = _UNVERIFIED_NOTE, "left"
     groups = group_by_condition((run.scenario, run) for run in runs if not run.unverified)
     best = {id(run): group for group in groups for run in group if len(group) > 1}
     for run in runs:
         cells = [escape(_label(run, key)) for key in labels]
-        cells[0] += UNVERIFIED_MARK if run.unverified else ""
+        cells[0] += _UNVERIFIED_MARK if run.unverified else ""
         rivals = best.get(id(run), [])
         cells += [
             _cell(run, column, _best(rivals, column.metric) if column in COMPARED else None) for column in columns
@@ -135,3 +136,36 @@ def _cell(run: Run, column: Column, best: float | None) -> str:
         return "-"
     text = f"{value * column.scale:.{column.decimals}f}"
     return f"[bold green]{text}[/]" if best is not None and value == best else text
+
+
+def published_tables(runs: Sequence[Run]) -> list[Table]:
+    """Return one table for each file with published figures: ours, published, and the difference, metric by metric."""
+    sources = {id(run.scenario.source): run.scenario.source for run in runs if run.scenario.source}
+    files = {str(source.path): published_figures(source) for source in sources.values()}
+    return [_table(found, [run for run in runs if _path(run) == path]) for path, found in files.items() if found]
+
+
+def _path(run: Run) -> str:
+    return str(run.scenario.source.path) if run.scenario.source else ""
+
+
+def _table(published: Published, runs: Sequence[Run]) -> Table:
+    table = Table(
+        title=escape(f"beside {published.source}"),
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+    )
+    for heading in ("run", "metric", "ours", "published", "difference"):
+        table.add_column(heading, justify="left" if heading in ("run", "metric") else "right", no_wrap=heading != "run")
+    for index, row in enumerate(published.rows):
+        for run in runs:
+            label = run.scenario.label
+            if any(label.get(key) != value for key, value in row.items() if key in label):
+                continue
+            for name in [key for key in row if key in run.metrics]:
+                ours, theirs = run.metrics[name].value, published.figure(index, name)
+                shown = f"{name} \\[{run.metrics[name].unit}]"
+                difference = f"{100 * (ours / theirs - 1):+.1f} %" if theirs else "-"
+                title = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in label.values())
+                table.add_row(escape(title), shown, f"{ours:.4g}", f"{theirs:.4g}", difference)
+    return table

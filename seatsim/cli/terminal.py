@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -14,6 +15,8 @@ from typing import TextIO
 from rich.console import Console
 
 from seatsim.compilation.watch import watch_compilation
+from seatsim.schema.errors import SeatsimError, list_sentences
+from seatsim.schema.modules import MissingModuleError
 from seatsim.schema.text import cut_words, make_printable
 
 
@@ -25,10 +28,10 @@ class _Terminal(Console):
 
     def on_broken_pipe(self) -> None:
         """Go on without printing."""
-        drop_output(sys.stdout if not self.stderr else sys.stderr)
+        _drop_output(sys.stdout if not self.stderr else sys.stderr)
 
 
-def drop_output(stream: TextIO) -> None:
+def _drop_output(stream: TextIO) -> None:
     """Let what is still printed to a stream whose reader has gone away go nowhere."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, stream.fileno())
@@ -45,7 +48,7 @@ def print_any_letter() -> None:
 out = _Terminal(emoji=False)
 err = _Terminal(emoji=False, stderr=True)
 
-COMPILING = "compiling (first time only)"
+_COMPILING = "compiling (first time only)"
 Report = Callable[[str], None]
 """Is called with what is being done."""
 Count = Callable[[int, int], None]
@@ -101,17 +104,30 @@ def complain(text: str) -> None:
     err.print(make_printable(text), style="red", markup=False, highlight=False, soft_wrap=True)
 
 
-def fail(text: str) -> None:
+def fail(*texts: str) -> None:
     """Print why a command came to its end: on standard error, and as the one object where `--json` asks for it."""
-    text = cut_words(text)
-    complain(f"error: {text}")
-    answer_error(text)
+    short = [cut_words(text) for text in texts]
+    for text in short:
+        complain(f"error: {text}")
+    answer_error(*short)
 
 
-def answer_error(text: str) -> None:
+def refuse(error: SeatsimError, everything: bool = False) -> None:
+    """Print what is wrong first, or `everything` that is, and this command with `--with FILE` where it lacks a file."""
+    sentences = list_sentences(error)
+    fail(*sentences[: None if everything else 1])
+    cause: BaseException | None = error
+    while cause is not None and not isinstance(cause, MissingModuleError):
+        cause = cause.__cause__
+    if cause is not None and cause.file is not None:
+        words = ["seatsim", *sys.argv[1:], "--with", str(cause.file)]
+        complain(f"if you trust that file: {shlex.join(words)}")
+
+
+def answer_error(first: str, *others: str) -> None:
     """Print why a command came to its end as the one object, where `--json` asks for it."""
     if out.quiet:
-        _write_line(json.dumps({"error": text}))
+        _write_line(json.dumps({"error": first, **({"errors": [first, *others]} if others else {})}))
 
 
 def _write_line(text: str) -> None:
@@ -122,7 +138,7 @@ def _write_line(text: str) -> None:
         sys.stdout.write(f"{text}\n")
         sys.stdout.flush()
     except BrokenPipeError:
-        drop_output(sys.stdout)
+        _drop_output(sys.stdout)
 
 
 @contextmanager
@@ -131,7 +147,7 @@ def count_progress(title: str, total: int | None = None) -> Iterator[Count]:
     from rich.progress import Progress
 
     with Progress(console=err, transient=True, disable=not err.is_terminal) as progress:
-        compiling = progress.add_task(COMPILING, total=None, visible=False)
+        compiling = progress.add_task(_COMPILING, total=None, visible=False)
         task = progress.add_task(title, total=total)
 
         def tell(parts: int) -> None:
@@ -157,4 +173,4 @@ def show_progress() -> Iterator[Report]:
 
 
 def _describe_parts(parts: int) -> str:
-    return f"{COMPILING}: {parts} functions"
+    return f"{_COMPILING}: {parts} functions"

@@ -18,7 +18,7 @@ from typing import Any
 
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
-DIGEST = hashlib.sha256().digest_size
+_DIGEST = hashlib.sha256().digest_size
 
 
 class CheckedCache(FunctionCache):  # type: ignore[misc]  # numba has no types
@@ -72,8 +72,8 @@ def _read(path: Path) -> bytes | None:
             content = file.read()
     except OSError:
         return None
-    if hashlib.sha256(content[DIGEST:]).digest() == content[:DIGEST]:
-        return content[DIGEST:]
+    if hashlib.sha256(content[_DIGEST:]).digest() == content[:_DIGEST]:
+        return content[_DIGEST:]
     warnings.warn(f"{path} is damaged; it is discarded and compiled again", stacklevel=2)
     return None
 

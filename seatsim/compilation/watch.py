@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-Watcher = Callable[[int], None]
-_watchers: list[Watcher] = []
+_Watcher = Callable[[int], None]
+_watchers: list[_Watcher] = []
 
 
 @contextmanager
-def watch_compilation(tell: Watcher) -> Iterator[None]:
+def watch_compilation(tell: _Watcher) -> Iterator[None]:
     """Call `tell` with the number of functions compiled so far, each time one begins, and with 0 when all are done."""
     _watchers.append(tell)
     try:

@@ -49,10 +49,20 @@ class CoupledForce(NamedTuple):
 
 
 _SPECIFICATION = DamperSpecification(
-    source="the supplier's unit", initial=(), state="", current_order=0, centred=False, max_speed=math.inf,
-    max_current=math.inf, temperatures=(-273.15, math.inf), factors=TemperatureFactors(), complete=True,
-    confidence="derived", fixed=(), smooth=False,
-)  # fmt: skip
+    source="the supplier's unit",
+    initial=(),
+    state="",
+    current_order=0,
+    centred=False,
+    max_speed=math.inf,
+    max_current=math.inf,
+    temperatures=(-273.15, math.inf),
+    factors=TemperatureFactors(),
+    complete=True,
+    confidence="derived",
+    fixed=(),
+    smooth=False,
+)
 # Not among the dampers: what fits, compares or prints each of those can do none of it with a unit.
 for _cls in (FmuDamper, CoupledForce):
     register("coupled damper", _cls.__name__, _SPECIFICATION)(_cls)

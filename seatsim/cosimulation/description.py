@@ -1,32 +1,142 @@
-"""What a unit says of itself in its description, and whether a scenario's mapping fits it; nothing of it runs."""
+"""What a functional mock-up unit says of itself, read with suspicion, and whether a scenario's mapping fits it.
+
+Nothing of a unit runs here, and nothing of its archive is written outside a temporary folder.
+"""
 
 from __future__ import annotations
 
 import io
+import platform
 import re
+import stat
+import sys
 import zipfile
-from collections.abc import Mapping
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from importlib import import_module
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from seatsim.cosimulation.archive import find_library, open_archive, read_description
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.guarded import in_mib, read_bytes
+from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.modules import LARGEST_UNIT
 from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import is_finite_number
 
+UNPACKED = 4
+"""What an archive holds may be this much larger than the largest archive."""
+_LARGEST_DESCRIPTION = 16 * 2**20
+MOST_FILES = 10_000
+DESCRIPTION = "modelDescription.xml"
+_SYSTEMS = {
+    "Linux": ("linux", "linux", ".so"),
+    "Darwin": ("darwin", "darwin", ".dylib"),
+    "Windows": ("win", "windows", ".dll"),
+}
+"""Names of an operating system in versions 2 and 3, and the ending of its libraries."""
+_MACHINES = {"AMD64": "x86_64", "arm64": "aarch64", "x86_64": "x86_64", "aarch64": "aarch64"}
+
+
+@contextmanager
+def open_archive(path: Path) -> Iterator[zipfile.ZipFile]:
+    """Open the archive of a unit whose names and sizes are as they must be.
+
+    Raises:
+        InputError: it is unreadable, is no archive or has no description, holds links, too much, or a path elsewhere.
+    """
+    content = read_bytes(path, LARGEST_UNIT, "a functional mock-up unit (.fmu)")
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            _check_entries(path, archive.infolist())
+            yield archive
+    except (zipfile.BadZipFile, NotImplementedError, EOFError, RuntimeError, ValueError, zlib.error) as error:
+        raise InputError(f"{path}: is no archive of a functional mock-up unit: {error}") from error
+
+
+def _check_entries(path: Path, entries: list[zipfile.ZipInfo]) -> None:
+    if len(entries) > MOST_FILES:
+        raise InputError(f"{path}: holds {len(entries)} files; permitted: at most {MOST_FILES}")
+    size = sum(entry.file_size for entry in entries)
+    if size > UNPACKED * LARGEST_UNIT:
+        raise InputError(f"{path}: holds {in_mib(size)} unpacked; permitted: at most {in_mib(UNPACKED * LARGEST_UNIT)}")
+    for entry in entries:
+        name = entry.orig_filename
+        parts = PurePosixPath(name).parts
+        if ".." in parts or name.startswith("/") or any(sign in name for sign in "\\:\0"):
+            raise InputError(f"{path}: holds {name!r}, which lies outside the unit's folder; nothing was unpacked")
+        if stat.S_ISLNK(entry.external_attr >> 16):
+            raise InputError(f"{path}: holds {name!r}, which is a link; a unit has files and folders only")
+    if DESCRIPTION not in {entry.filename for entry in entries}:
+        raise InputError(f"{path}: has no {DESCRIPTION}, so that it is no functional mock-up unit")
+
+
+def _read_description(path: Path, archive: zipfile.ZipFile) -> bytes:
+    """Return the text of `modelDescription.xml`, without what an XML parser could be made to follow.
+
+    Raises:
+        InputError: it is too large, or declares a document type.
+    """
+    if archive.getinfo(DESCRIPTION).file_size > _LARGEST_DESCRIPTION:
+        raise InputError(f"{path}: its {DESCRIPTION} has more than {in_mib(_LARGEST_DESCRIPTION)}")
+    text = archive.read(DESCRIPTION)
+    if b"<!DOCTYPE" in text or b"<!ENTITY" in text:
+        raise InputError(f"{path}: its {DESCRIPTION} declares a document type, which the standard does not have")
+    return text
+
+
+def find_library(path: Path, archive: zipfile.ZipFile, version: int, identifier: str) -> str:
+    """Return the name within the archive of the library for this machine.
+
+    Raises:
+        InputError: there is none; the error names the platforms that the unit is for.
+    """
+    older, newer, ending = _SYSTEMS.get(platform.system(), _SYSTEMS["Linux"])
+    machine = _MACHINES.get(platform.machine(), platform.machine())
+    here = f"{older}{64 if sys.maxsize > 2**32 else 32}" if version == 2 else f"{machine}-{newer}"
+    name = f"binaries/{here}/{identifier}{ending}"
+    if name in archive.namelist():
+        return name
+    found = sorted({entry.split("/")[1] for entry in archive.namelist() if entry.startswith("binaries/")} - {""})
+    other = f"it has libraries for {', '.join(found)}" if found else "it has no library at all"
+    raise InputError(
+        f"{path}: has no {name}, the library for this machine; {other}; ask its supplier for this platform"
+    )
+
+
+@contextmanager
+def unpack(path: Path, version: int, identifier: str) -> Iterator[tuple[Path, Path]]:
+    """Unpack libraries of this machine and resources to a temporary folder; give it and the library.
+
+    The folder is removed afterwards, also where a run is interrupted.
+    """
+    with temporary_folder("seatsim-fmu-") as name:
+        folder = Path(name)
+        with open_archive(path) as archive:
+            library = find_library(path, archive, version, identifier)
+            wanted = (f"{library.rpartition('/')[0]}/", "resources/")
+            archive.extractall(folder, [entry for entry in archive.namelist() if entry.startswith(wanted)])
+        (folder / "resources").mkdir(exist_ok=True)
+        yield folder, folder / library
+
+
 QUANTITIES = {
-    "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "current": "A", "temperature": "degC",
-}  # fmt: skip
+    "displacement": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s^2",
+    "current": "A",
+    "temperature": "degC",
+}
 """What an input of a damper may take, in its unit: motion positive in extension, current of the coil."""
 FORCE = "force"
 REAL = ("Real", "Float64")
-SETTABLE = {"Real": float, "Float64": float, "Integer": int, "Int32": int, "Boolean": bool}
+_SETTABLE = {"Real": float, "Float64": float, "Integer": int, "Int32": int, "Boolean": bool}
 """Types of parameters that a scenario may state."""
 
 
-CO_SIMULATION, MODEL_EXCHANGE = "CoSimulation", "ModelExchange"
+CO_SIMULATION, _MODEL_EXCHANGE = "CoSimulation", "ModelExchange"
 
 
 class UnitDescription(NamedTuple):
@@ -63,7 +173,7 @@ def describe_unit(path: Path) -> UnitDescription:
     from fmpy.model_description import read_model_description
 
     with open_archive(path) as archive:
-        text = read_description(path, archive)
+        text = _read_description(path, archive)
         stated = re.search(rb"""fmiVersion\s*=\s*["']([^"']*)""", text)
         version = {b"2": 2, b"3": 3}.get(stated[1].partition(b".")[0]) if stated else None
         if version is None:
@@ -77,7 +187,7 @@ def describe_unit(path: Path) -> UnitDescription:
         model = described.coSimulation or described.modelExchange
         if model is None:
             raise InputError(f"{path}: is neither for co-simulation nor for model exchange, as a damper must be")
-        kind = CO_SIMULATION if described.coSimulation else MODEL_EXCHANGE
+        kind = CO_SIMULATION if described.coSimulation else _MODEL_EXCHANGE
         identifier = str(model.modelIdentifier)
         find_library(path, archive, version, identifier)
     saves = getattr(model, "canGetAndSetFMUstate", False) or getattr(model, "canGetAndSetFMUState", False)
@@ -107,7 +217,7 @@ def find_variable(unit: UnitDescription, name: str, causality: str) -> Any:
     found = unit.variables[name]
     if found.causality != causality:
         raise InputError(f"'{name}' is declared as {found.causality}, not as {causality}{nearest(name, fitting)}")
-    types = tuple(SETTABLE) if causality == "parameter" else REAL
+    types = tuple(_SETTABLE) if causality == "parameter" else REAL
     if found.type not in types or getattr(found, "dimensions", None):
         kind = f"an array of {found.type}" if getattr(found, "dimensions", None) else str(found.type)
         raise InputError(f"'{name}' is declared as {kind}; permitted: {', '.join(types)}")
@@ -121,7 +231,7 @@ def check_parameter(unit: UnitDescription, name: str, value: object) -> float:
         InputError: it is not.
     """
     found = find_variable(unit, name, "parameter")
-    kind = SETTABLE[found.type]
+    kind = _SETTABLE[found.type]
     if not (isinstance(value, bool) if kind is bool else is_finite_number(value) and kind(value) == value):
         word = {float: "a number", int: "a whole number", bool: "true or false"}[kind]
         raise InputError(f"{value!r} is not permitted; '{name}' is {word}")

@@ -9,17 +9,90 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from ctypes import c_double
 from typing import Any, NamedTuple
 
-from seatsim.cosimulation.continuous import ContinuousModel, States
 from seatsim.cosimulation.damper import FmuDamper
 from seatsim.cosimulation.description import UnitDescription
 from seatsim.cosimulation.running import RunningUnit
 from seatsim.schema.errors import RunError
 
-LOCATED = 1e-9
+States = list[float]
+
+
+class _Update(NamedTuple):
+    """What a unit answers to an event: whether it is to be asked again, whether it ends, the next event that it knows.
+
+    `next_event` in s is None where it knows none.
+    """
+
+    again: bool
+    ends: bool
+    next_event: float | None
+
+
+class _ContinuousModel:
+    """A unit for model exchange with its states, in the mode that the standard prescribes for each call."""
+
+    def __init__(self, unit: UnitDescription, instance: Any) -> None:
+        self._instance = instance
+        self._is_second = unit.version == 2
+        described = unit.described
+        self._states = (c_double * described.numberOfContinuousStates)()
+        self._rates = (c_double * described.numberOfContinuousStates)()
+        self._indicators = (c_double * described.numberOfEventIndicators)()
+        self.needs_completion = bool(described.modelExchange.needsCompletedIntegratorStep)
+        self.has_indicators = described.numberOfEventIndicators > 0
+
+    def states(self) -> States:
+        """Return the continuous states."""
+        if len(self._states):
+            self._instance.getContinuousStates(self._states, len(self._states))
+        return list(self._states)
+
+    def place(self, time: float, states: States) -> None:
+        """Give the unit a time in s and its continuous states."""
+        self._instance.setTime(time)
+        if states:
+            self._states[:] = states
+            self._instance.setContinuousStates(self._states, len(states))
+
+    def rates(self) -> States:
+        """Return the time derivatives of the states, at the time, states and inputs that were given last."""
+        if len(self._rates):
+            ask = self._instance.getDerivatives if self._is_second else self._instance.getContinuousStateDerivatives
+            ask(self._rates, len(self._rates))
+        return list(self._rates)
+
+    def signs(self) -> list[bool]:
+        """Return for each event indicator whether it is positive; an event is where one of these changes."""
+        if len(self._indicators):
+            self._instance.getEventIndicators(self._indicators, len(self._indicators))
+        return [value > 0.0 for value in self._indicators]
+
+    def complete(self, is_final: bool) -> tuple[bool, bool]:
+        """Tell the unit that a step has ended; return whether it wants an event and whether it ends the run."""
+        wants_event, ends = self._instance.completedIntegratorStep(is_final)
+        return bool(wants_event), bool(ends)
+
+    def enter_event(self) -> None:
+        """Enter the mode in which discrete states change."""
+        self._instance.enterEventMode()
+
+    def update(self) -> _Update:
+        """Let the discrete states change once."""
+        ask = self._instance.newDiscreteStates if self._is_second else self._instance.updateDiscreteStates
+        again, ends, _nominals, _values, is_known, next_event = ask()
+        return _Update(bool(again), bool(ends), float(next_event) if is_known else None)
+
+    def leave_event(self) -> None:
+        """Enter the mode in which time goes on."""
+        self._instance.enterContinuousTimeMode()
+
+
+_LOCATED = 1e-9
 """Share of a step of the seat to which an event is located; at 1 ms, a picosecond."""
-MOST_EVENTS = 100
+_MOST_EVENTS = 100
 """Most events within a step of the seat, and most times that a unit is asked to update at one of them."""
 
 
@@ -48,7 +121,7 @@ class Motion(NamedTuple):
         }
 
 
-class Saved(NamedTuple):
+class _Saved(NamedTuple):
     """What a step begins with: states, signs of the indicators, next event and current; the unit's own state, if any.
 
     `next_event` in s, infinite where none is known.
@@ -67,15 +140,15 @@ class IntegratedUnit(RunningUnit):
     def __init__(self, damper: FmuDamper, unit: UnitDescription, instance: Any, told: list[str]) -> None:
         super().__init__(damper, unit, instance, told)
         self.takes_acceleration = True
-        self._model = ContinuousModel(unit, instance)
+        self._model = _ContinuousModel(unit, instance)
         longest = getattr(unit.described.defaultExperiment, "stepSize", None)
         self._longest = float(longest) if longest else math.inf
-        self._now = Saved([], [], math.inf, 0.0, None)
+        self._now = _Saved([], [], math.inf, 0.0, None)
 
     def start(self, damper: FmuDamper, given: Mapping[str, float]) -> float:
         """Initialise the unit as one for co-simulation is, and let it begin; return its force in N."""
         super().start(damper, given)
-        self._now = Saved([], [], math.inf, given["current"], None)
+        self._now = _Saved([], [], math.inf, given["current"], None)
         self._update(0.0)
         return self._read(0.0)
 
@@ -86,32 +159,32 @@ class IntegratedUnit(RunningUnit):
             RunError: the unit refuses a call, ends the run, has too many events, or its force is no finite number.
         """
         motion = Motion(time, length, given, self._now.current)
-        part = length / max(1, math.ceil(length / self._longest - LOCATED))
+        part = length / max(1, math.ceil(length / self._longest - _LOCATED))
         end, events = time + length, 0
-        while end - time > LOCATED * length:
+        while end - time > _LOCATED * length:
             reach = min(time + part, end, max(self._now.next_event, time))
-            if end - reach <= LOCATED * length:
+            if end - reach <= _LOCATED * length:
                 reach = end
             time, has_event = self._call(lambda: self._advance(motion, time, reach), f"the step from {time:.6g} s")  # noqa: B023
             if has_event:
                 events += 1
                 self._update(time)
-            if events > MOST_EVENTS:
-                raise RunError(f"{self._file}: the unit has more than {MOST_EVENTS} events before {time:.6g} s")
+            if events > _MOST_EVENTS:
+                raise RunError(f"{self._file}: the unit has more than {_MOST_EVENTS} events before {time:.6g} s")
         self._now = self._now._replace(current=given["current"])
         return self._read(end)
 
-    def save(self) -> Saved:
+    def save(self) -> _Saved:
         """Return the states, and the unit's own state where it can save that."""
         return self._now._replace(own=super().save() if self._unit.saves else None)
 
-    def restore(self, state: Saved) -> None:
+    def restore(self, state: _Saved) -> None:
         """Go back to what was saved."""
         if self._unit.saves:
             super().restore(state.own)
         self._now = state._replace(own=None)
 
-    def drop(self, state: Saved) -> None:
+    def drop(self, state: _Saved) -> None:
         """Free what was saved."""
         if self._unit.saves:
             super().drop(state.own)
@@ -123,7 +196,7 @@ class IntegratedUnit(RunningUnit):
         signs = self._signs_at(motion, reach, states)
         has_crossed = signs != self._now.signs
         low, high = time, reach
-        while has_crossed and high - low > LOCATED * motion.length:
+        while has_crossed and high - low > _LOCATED * motion.length:
             middle = 0.5 * (low + high)
             tried = self._runge_kutta(motion, time, middle - time, begun)
             found = self._signs_at(motion, middle, tried)
@@ -167,11 +240,11 @@ class IntegratedUnit(RunningUnit):
         has_events = self._model.has_indicators or self._model.needs_completion or math.isfinite(self._now.next_event)
         self.repeats = self._unit.saves or not has_events
 
-    def _updated(self, time: float) -> Saved:
+    def _updated(self, time: float) -> _Saved:
         model = self._model
         if time > 0.0:
             model.enter_event()
-        for _ in range(MOST_EVENTS):
+        for _ in range(_MOST_EVENTS):
             answer = model.update()
             self._check_going_on(answer.ends, time)
             if not answer.again:

@@ -9,9 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from seatsim.cosimulation.archive import unpack
 from seatsim.cosimulation.damper import FmuDamper
-from seatsim.cosimulation.description import CO_SIMULATION, UnitDescription, describe_unit, need_fmpy
+from seatsim.cosimulation.description import CO_SIMULATION, UnitDescription, describe_unit, need_fmpy, unpack
 from seatsim.cosimulation.integrated import IntegratedUnit
 from seatsim.cosimulation.running import RunningUnit
 from seatsim.schema.errors import InputError
@@ -20,12 +19,11 @@ from seatsim.schema.modules import check_in_use
 PATIENCE = 30.0
 """Seconds that a library may take to load and to make an instance; others take milliseconds."""
 TRIAL = """
-import os, sys
+import sys
 from pathlib import Path
 from seatsim.cosimulation.unit import describe_unit, load_unit
 path, folder, library = map(Path, sys.argv[1:])
 load_unit(path, describe_unit(path), folder, library, [])
-os._exit(0)
 """
 _tried: set[bytes] = set()
 """Libraries that were loaded in a process of their own."""

@@ -8,7 +8,7 @@ from seatsim.diagnosis.nuisance import SECTIONS
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.effects.base import same_place
-from seatsim.scenario.loading import FILES
+from seatsim.scenario.sections import FILES
 
 
 def write_augmented(problem: DiagnosisProblem, parameters: Parameters) -> dict[str, object]:

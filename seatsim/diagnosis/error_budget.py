@@ -18,11 +18,8 @@ from scipy.interpolate import CubicSpline, UnivariateSpline
 from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import ErrorBudget
 from seatsim.metrics.motion import rms
-from seatsim.recordings.channel_units import COMMANDS
-from seatsim.recordings.compared import COMPARED, select_compared
-from seatsim.recordings.inputs import recorded_inputs
-from seatsim.recordings.recording import Recording
-from seatsim.recordings.replay import replay_table
+from seatsim.recordings.recording import COMMANDS, Recording
+from seatsim.recordings.replay import COMPARED, recorded_inputs, replay_table, select_compared
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.simulation.inputs import BenchInputs

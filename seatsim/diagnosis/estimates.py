@@ -17,8 +17,8 @@ from seatsim.diagnosis.select import Selection
 from seatsim.diagnosis.uncertainty import estimate_standard_deviations
 from seatsim.diagnosis.validate import make_scenario
 from seatsim.metrics.motion import rms
-from seatsim.recordings.compared import LEFT_OUT
 from seatsim.recordings.gap import measure_gap
+from seatsim.recordings.replay import LEFT_OUT
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 from seatsim.schema.fields import describe

@@ -17,12 +17,11 @@ from seatsim.diagnosis.nuisance import Nuisance, list_nuisances, vary
 from seatsim.diagnosis.settings.diagnosis_settings import DiagnosisSettings
 from seatsim.diagnosis.settings.fitting import FitSettings
 from seatsim.effects.base import replace_effects
-from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
 from seatsim.recordings.header import USUAL, Header, Tolerance
-from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.quality.coverage import shows_falling_current
-from seatsim.recordings.quality.gravity import without_gravity
+from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import Recording
+from seatsim.recordings.replay import COMPARED, LEFT_OUT, recorded_inputs, stands_out
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario, Start
 from seatsim.schema.arrays import Array

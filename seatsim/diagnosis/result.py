@@ -254,6 +254,10 @@ class Diagnosis:
         """Return its pictures, or those that are named, such as `ranking`; a notebook shows them."""
         return draw(self, names)
 
+    def __repr__(self) -> str:
+        """Say what was found."""
+        return f"<Diagnosis {self.verdict}: {', '.join(self.selected) or 'no effect'}; {self.sentence}>"
+
     def _repr_html_(self) -> str:
         likely = [cause for cause in self.causes if cause.probability >= 0.01 or cause.effect in self.selected]
         rows = [(cause.effect, cause.probability, cause.shrink) for cause in likely]

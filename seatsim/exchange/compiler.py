@@ -12,9 +12,9 @@ from seatsim.schema.errors import InputError, RunError
 
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-ffp-contract=off")
 """Without `-ffp-contract=off` a compiler may fuse products and sums, and results would differ between machines."""
-QUICK = ("-fno-math-errno", "-fno-trapping-math", "-fschedule-insns", "-fsched-pressure")
+_QUICK = ("-fno-math-errno", "-fno-trapping-math", "-fschedule-insns", "-fsched-pressure")
 """Nothing reads `errno` or the flags of floating-point exceptions, instructions may be moved: results stay the same."""
-PERMITTED = """
+_PERMITTED = """
 exp expm1 log pow sqrt sin cos tan atan atan2 tanh sinh cosh hypot fabs floor ceil fmod copysign
 memcpy memset memmove malloc calloc free strcmp strcpy strlen snprintf __stack_chk_fail __snprintf_chk
 _ITM_deregisterTMCloneTable _ITM_registerTMCloneTable __cxa_finalize __gmon_start__
@@ -59,13 +59,13 @@ def compile_library(source: Path, library: Path) -> None:
         InputError: there is no compiler.
         RunError: it refused the source, or the library would need more than C's own library.
     """
-    command = [find_compiler(), *_read_choice()[1:], *FLAGS, *QUICK, "-o", str(library), str(source), "-lm", "-s"]
+    command = [find_compiler(), *_read_choice()[1:], *FLAGS, *_QUICK, "-o", str(library), str(source), "-lm", "-s"]
     # Its own temporary files stand beside the library, whose folder is removed also where the export is interrupted.
     own = os.environ | dict.fromkeys(("TMPDIR", "TMP", "TEMP"), str(library.parent))
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=own)
     if done.returncode:
         raise RunError(f"{command[0]} could not compile {source.name}: {done.stderr.strip()[:500]}")
-    foreign = undefined_symbols(library) - set(PERMITTED.split())
+    foreign = undefined_symbols(library) - set(_PERMITTED.split())
     if foreign:
         raise RunError(f"{source.name} needs what C's own library has not: {', '.join(sorted(foreign))}")
 

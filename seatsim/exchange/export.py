@@ -4,28 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-from seatsim.exchange.blocks.base import Block
+import numpy as np
+
+from seatsim.exchange.block import Block
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
-from seatsim.exchange.c_file import write_c
+from seatsim.exchange.c_source import write_c
 from seatsim.exchange.fmu import write_fmu
-from seatsim.exchange.matlab import write_mat
+from seatsim.rig.plant import Plant, control_system, state_space
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.files import write_whole
+from seatsim.schema.registry import Record
 
+_LONGEST_NAME = 31
+"""Letters that a name in a MAT file may have."""
 BLOCKS: dict[str, Callable[[Scenario], Block]] = {
-    "rig": rig_block, "damper": damper_block, "controller": controller_block,
-}  # fmt: skip
-"""What can be exported."""
-FORMATS: dict[str, Callable[[Block, Scenario, Path], None]] = {
-    "fmu2": lambda block, scenario, path: write_fmu(block, 2, path),
-    "fmu3": lambda block, scenario, path: write_fmu(block, 3, path),
-    "c": lambda block, scenario, path: write_c(block, path),
-    "mat": write_mat,
+    "rig": rig_block,
+    "damper": damper_block,
+    "controller": controller_block,
 }
-"""What a file can be."""
+"""What can be exported."""
 
 
 def export(scenario: Scenario, form: str, what: str, path: Path) -> Block:
@@ -50,3 +52,67 @@ def export(scenario: Scenario, form: str, what: str, path: Path) -> Block:
     block = BLOCKS[what](scenario)
     FORMATS[form](block, scenario, path)
     return block
+
+
+def write_mat(block: Block, scenario: Scenario, path: Path) -> None:
+    """Write the parameters of a block and, of a seat, its linear plant.
+
+    `plant` holds A, B, C, D with the names of states, inputs and outputs, and A, B1, B2, C1, C2 as the H-infinity
+    synthesis takes them; `parameters` holds the numbers of the block, among them those of the law's design.
+
+    Raises:
+        InputError: the file cannot be written. OutputError: the disk is full.
+    """
+    # Takes its time to load, and only this file format needs it.
+    from scipy.io import savemat
+
+    content: dict[str, Any] = {
+        "name": block.name,
+        "step": block.step,
+        "parameters": _as_struct(block.parameters),
+        "notes": np.array(block.notes, dtype=object),
+    }
+    if scenario.plant is not None:
+        content["plant"] = _linear_plant(scenario.plant)
+    write_whole(path, lambda part: savemat(str(part), content, appendmat=False, oned_as="row"))
+
+
+def _linear_plant(plant: Plant) -> dict[str, Any]:
+    system, exact = control_system(plant), state_space(plant)
+    names = {"states": ["x [m]", "v [m/s]", "xc [m]", "vc [m/s]"]}
+    names |= {"inputs": system.input_labels, "outputs": system.output_labels}
+    return (
+        {name: getattr(system, name) for name in ("A", "B", "C", "D")}
+        | {kind: np.array(each, dtype=object) for kind, each in names.items()}
+        | {name: getattr(exact, name) for name in ("B1", "B2", "C1", "C2")}
+    )
+
+
+def _as_struct(value: object) -> Any:
+    """Return a record as a struct, a tuple of numbers as a row or matrix, other tuples as a struct by position."""
+    if hasattr(value, "_fields"):
+        record: Record = value  # type: ignore[assignment]  # has the fields of one
+        items = {name: _as_struct(item) for name, item in record._asdict().items()}
+        return {name[:_LONGEST_NAME]: item for name, item in items.items() if not _is_nothing(item)}
+    if isinstance(value, tuple):
+        if all(isinstance(item, int | float) for item in value) or all(_is_row(item) for item in value):
+            return np.array(value, dtype=float)
+        return {type(item).__name__[:_LONGEST_NAME]: _as_struct(item) for item in value}
+    return value
+
+
+def _is_row(item: object) -> bool:
+    return isinstance(item, tuple) and not hasattr(item, "_fields") and all(isinstance(v, int | float) for v in item)
+
+
+def _is_nothing(item: object) -> bool:
+    return isinstance(item, dict | np.ndarray) and len(item) == 0
+
+
+FORMATS: dict[str, Callable[[Block, Scenario, Path], None]] = {
+    "fmu2": lambda block, scenario, path: write_fmu(block, 2, path),
+    "fmu3": lambda block, scenario, path: write_fmu(block, 3, path),
+    "c": lambda block, scenario, path: write_c(block, path),
+    "mat": write_mat,
+}
+"""What a file can be."""

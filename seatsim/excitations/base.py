@@ -8,10 +8,9 @@ from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
-from seatsim.schema.arrays import Array
+from seatsim.schema.arrays import Array, require_samples
 from seatsim.schema.errors import RunError
 from seatsim.schema.registry import Record, Registry
-from seatsim.schema.samples import require_samples
 
 FEWEST = 2
 """Samples of a floor that make a step."""

@@ -8,8 +8,8 @@ import numpy as np
 
 from seatsim.excitations.base import Floor
 from seatsim.schema.arrays import Array
+from seatsim.schema.bounds import check_steps
 from seatsim.schema.errors import InputError
-from seatsim.schema.memory import check_steps
 
 SOFT_START = 1.0
 

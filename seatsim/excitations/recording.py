@@ -11,8 +11,8 @@ import numpy as np
 from seatsim.excitations.base import Floor, excitation
 from seatsim.recordings.recording import load_recording
 from seatsim.schema.arrays import Array
+from seatsim.schema.bounds import check_steps
 from seatsim.schema.errors import InputError
-from seatsim.schema.memory import check_steps
 
 CORNER = 0.05
 """Hz; below it the floor velocity, an integral of a measured acceleration, is attenuated as unreliable."""

@@ -69,6 +69,11 @@ class Identification(NamedTuple):
         """Return its picture, which a notebook shows."""
         return draw(self, names)
 
+    def __repr__(self) -> str:
+        """Name the model and its parameters."""
+        values = ", ".join(f"{each.name} {each.value:.4g} {each.unit}" for each in self.information.estimates)
+        return f"<Identification of {self.model}: {values}>"
+
     def _repr_html_(self) -> str:
         mean = self.mean("test") or self.mean("train")
         fit = f", mean fit {mean.fit_percent:.1f} %" if mean else ""

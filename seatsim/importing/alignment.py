@@ -7,29 +7,34 @@ standard error of the offsets that parts of the record show by themselves, and a
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.resampling import resample
 from seatsim.recordings.quality.relations import band_passed
+from seatsim.recordings.recording import ACCELEROMETERS
 from seatsim.schema.arrays import Array
 
-PARTS, SHORTEST = 6, 2.0
+_PARTS, _SHORTEST = 6, 2.0
 """Parts of a record in which the offset is estimated again, and their least length in s."""
-LEAST = 0.5
+_LEAST = 0.5
 """Correlation below which two channels do not tell an offset."""
-AHEAD = 0.2
+_AHEAD = 0.2
 """s by which the offset of a part may differ from that of the whole."""
-DRIFT = 4.0
+_DRIFT = 4.0
 """Standard errors by which the last part may differ from the first, before the clocks run apart."""
-RELATED = (
-    ("current_command", "coil_current"), ("floor_acceleration", "frame_acceleration"),
-    ("frame_acceleration", "driver_acceleration"), ("floor_acceleration", "driver_acceleration"),
-)  # fmt: skip
+_RELATED = (("current_command", "coil_current"), *combinations(ACCELEROMETERS, 2))
 """Channels that follow each other, though not at once: their own lag is taken into the offset."""
-OWN_LAG, UNCLEAR = 0.01, 0.05
+_OWN_LAG, _UNCLEAR = 0.01, 0.05
 """s of uncertainty that a lag between related channels adds, and up to which it may be all that there is."""
+_HALF, _BETA, _ROLL = 32, 9.0, 0.92
+"""Zero crossings of the sinc on each side, shape of the Kaiser window (stop band -90 dB), share of the band kept."""
+_CHUNK = 20_000
+HELD = ("current_command", "command_voltage")
+"""Channels that hold each value until the next row."""
+_SAME = 1e-6
+"""Fraction of a row by which times may differ from rows, and still need no interpolation."""
 
 
 class Channel(NamedTuple):
@@ -53,18 +58,18 @@ class Offset(NamedTuple):
     @property
     def is_clear(self) -> bool:
         """Say whether this is an offset of clocks, and not the lag of a channel behind another one."""
-        return self.first == self.second or abs(self.seconds) > UNCLEAR
+        return self.first == self.second or abs(self.seconds) > _UNCLEAR
 
 
 def estimate_offset(first: Mapping[str, Channel], second: Mapping[str, Channel]) -> Offset | None:
     """Return the offset of the second group's clock, by the pair of channels that are most alike; None without any."""
     pairs = [(name, name, 0.0) for name in first if name in second]
     if not pairs:
-        pairs = [(a, b, OWN_LAG) for one, other in RELATED for a, b in ((one, other), (other, one))
-                 if a in first and b in second]  # fmt: skip
+        both = (pair for one, other in _RELATED for pair in ((one, other), (other, one)))
+        pairs = [(a, b, _OWN_LAG) for a, b in both if a in first and b in second]
     found = [offset for pair in pairs if (offset := _of_pair(first[pair[0]], second[pair[1]], pair)) is not None]
     best = max(found, key=lambda offset: abs(offset.correlation), default=None)
-    return best if best is not None and abs(best.correlation) >= LEAST else None
+    return best if best is not None and abs(best.correlation) >= _LEAST else None
 
 
 def describe_offset(label: str, reference: str, found: Offset | None) -> str:
@@ -83,7 +88,7 @@ def _of_pair(one: Channel, other: Channel, pair: tuple[str, str, float]) -> Offs
     """Return the offset between two channels, on a time base of the slower one that is fine enough."""
     rate = min(one.rate, other.rate)
     a, b = (_even(channel, rate) for channel in (one, other))
-    if min(len(a), len(b)) < SHORTEST * rate or not a.std() or not b.std():
+    if min(len(a), len(b)) < _SHORTEST * rate or not a.std() or not b.std():
         return None
     lag, correlation = _lag(a, b, rate, None)
     # Values that are `lag` later in the second are at the same instant as those of the first.
@@ -91,7 +96,7 @@ def _of_pair(one: Channel, other: Channel, pair: tuple[str, str, float]) -> Offs
     parts = _parts(a, b, rate, lag)
     error = max(float(np.std(parts)) / np.sqrt(len(parts)) if len(parts) > 1 else 0.5 / rate, 0.1 / rate, pair[2])
     drift = float(np.polyfit(np.arange(len(parts)), parts, 1)[0]) * (len(parts) - 1) if len(parts) > 3 else 0.0
-    apart = drift if abs(drift) > DRIFT * max(error, 0.2 / rate) else None
+    apart = drift if abs(drift) > _DRIFT * max(error, 0.2 / rate) else None
     return Offset(seconds, error, pair[0], pair[1], correlation, apart)
 
 
@@ -111,7 +116,7 @@ def _lag(a: Array, b: Array, rate: float, about: float | None) -> tuple[float, f
     order = np.argsort(rows)
     rows, values = rows[order], values[order]
     if about is not None:
-        near = np.abs(rows / rate - about) <= AHEAD
+        near = np.abs(rows / rate - about) <= _AHEAD
         rows, values = rows[near], values[near]
     at = int(np.argmax(values))
     return (rows[at] + _vertex(values, at)) / rate, float(values[at] / (np.linalg.norm(a) * np.linalg.norm(b)))
@@ -130,10 +135,66 @@ def _parts(a: Array, b: Array, rate: float, lag: float) -> Array:
     """Return the lags of parts of the overlap, each by itself."""
     shift = round(lag * rate)
     begin, end = max(0, -shift), min(len(a), len(b) - shift)
-    count = min(PARTS, int((end - begin) / (SHORTEST * rate)))
+    count = min(_PARTS, int((end - begin) / (_SHORTEST * rate)))
     found = []
     for edges in np.array_split(np.arange(begin, max(begin, end)), max(count, 1)):
         one, other = a[edges], b[edges + shift] if len(edges) else a[:0]
-        if len(edges) > SHORTEST * rate * 0.9 and one.std() > 0.1 * a.std() and other.std() > 0.1 * b.std():
+        if len(edges) > _SHORTEST * rate * 0.9 and one.std() > 0.1 * a.std() and other.std() > 0.1 * b.std():
             found.append(_lag(one, other, rate, 0.0)[0] + shift / rate)
     return np.array(found)
+
+
+def resample(values: Array, start: float, rate: float, times: Array, new_rate: float) -> Array:
+    """Return values that begin at `start` with `rate` in Hz at other times, shape (M,), spaced by `new_rate`.
+
+    Times outside the record get its first and last value.
+    """
+    rows = (times - start) * rate
+    near = np.round(rows)
+    if rate <= new_rate * (1.0 + 1e-9) and np.max(np.abs(rows - near), initial=0.0) < _SAME * max(
+        1.0, len(values) * 1e-3
+    ):
+        return np.asarray(values[np.clip(near.astype(int), 0, len(values) - 1)])
+    if np.ptp(values) == 0.0:
+        return np.full(len(times), values[0])
+    band = _ROLL * min(1.0, new_rate / rate) if new_rate < rate else 1.0
+    reach = int(np.ceil(_HALF / band))
+    padded = _extended(values, reach)
+    clipped = np.clip(rows, 0.0, len(values) - 1.0)
+    parts = [_interpolate(padded, clipped[at : at + _CHUNK], reach, band) for at in range(0, len(clipped), _CHUNK)]
+    return np.concatenate(parts)
+
+
+def hold(values: Array, start: float, rate: float, times: Array) -> Array:
+    """Return at other times, shape (M,), the value of the last row before each; the first and last one outside."""
+    rows = np.floor((times - start) * rate + _SAME * len(values))
+    return np.asarray(values[np.clip(rows.astype(int), 0, len(values) - 1)])
+
+
+def _extended(values: Array, reach: int) -> Array:
+    """Return values continued at both ends, mirrored through the end value, or as the end value where too short."""
+    if len(values) <= reach + 1:
+        return np.pad(values, reach, mode="edge")
+    return np.concatenate([2 * values[0] - values[reach:0:-1], values, 2 * values[-1] - values[-2 : -reach - 2 : -1]])
+
+
+def _interpolate(padded: Array, rows: Array, reach: int, band: float) -> Array:
+    base = np.floor(rows).astype(int)
+    taps = np.arange(-reach + 1, reach + 1)
+    away = taps[None, :] - (rows - base)[:, None]
+    weights = np.sinc(band * away) * np.i0(_BETA * np.sqrt(np.maximum(0.0, 1.0 - (away / reach) ** 2)))
+    taken = padded[base[:, None] + taps[None, :] + reach]
+    return np.asarray(np.sum(weights * taken, axis=1) / np.sum(weights, axis=1))
+
+
+def evened(name: str, values: Array, times: Array, grid: Array) -> Array:
+    """Return unevenly spaced values of a channel on an even grid: held, or by cubic splines through them.
+
+    Of rows with the same time the first one counts.
+    """
+    from scipy.interpolate import CubicSpline
+
+    if name in HELD:
+        return np.asarray(values[np.clip(np.searchsorted(times, grid, side="right") - 1, 0, None)])
+    later = np.concatenate([[True], np.diff(times) > 0.0])
+    return np.asarray(CubicSpline(times[later], values[later])(grid), dtype=np.float64)

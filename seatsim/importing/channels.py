@@ -6,12 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatsim.importing.alignment import Channel
+from seatsim.importing.alignment import Channel, evened
 from seatsim.importing.clocks import Clocked
 from seatsim.importing.doubts import doubt_channel
 from seatsim.importing.import_map import PRIMITIVE, ChannelMap
 from seatsim.importing.names import quantity_of
-from seatsim.importing.resampling import evened
 from seatsim.importing.signals import LISTED
 from seatsim.importing.time_axis import Axis
 from seatsim.recordings.quality.damage import find_spikes
@@ -21,7 +20,7 @@ from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.text import name_some
 from seatsim.schema.units import conversion
 
-SLOWER = 0.9
+_SLOWER = 0.9
 """Share of the rows of its table below which a channel has a rate of its own."""
 
 
@@ -117,7 +116,7 @@ def _evened(name: str, values: Array, times: Array, axis: Axis) -> Channel:
     """Return values on an even time base, with their own rate."""
     start, rate = float(times[0]), axis.rate
     share = (axis.times[-1] - axis.times[0]) / (times[-1] - start) * (len(times) - 1) / (len(axis.times) - 1)
-    if share < SLOWER:  # a slow channel in a fast table
+    if share < _SLOWER:  # a slow channel in a fast table
         rate *= float(share)
     if axis.is_even:
         return Channel(values, start, rate)

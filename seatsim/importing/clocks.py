@@ -8,17 +8,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.axis_doubts import doubt_time
-from seatsim.importing.group_time import check_is_history, find_clock
+from seatsim.importing.doubts import doubt_time
 from seatsim.importing.import_map import AxisMap, ImportMap
 from seatsim.importing.signals import LISTED, DataFile, Group
-from seatsim.importing.time_axis import Axis, even_axis, measured_axis, unbroken
+from seatsim.importing.time_axis import Axis, check_is_history, even_axis, find_clock, measured_axis, unbroken
 from seatsim.recordings.quality.issue import Issue
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.text import name_some
 from seatsim.schema.units import DIMENSIONS, conversion
 
-LONGEST_FILL = 0.1
+_LONGEST_FILL = 0.1
 """s; longest gap that `gaps: fill` interpolates."""
 SHORTEST_RUN = 1.0
 """s; parts between gaps that are shorter make no run."""
@@ -141,9 +140,9 @@ def _without_repeats(clocked: Clocked) -> Clocked:
     if (steps < 0.0).any():
         raise InputError(f"{clocked.label}: time runs back, which cannot be filled; write gaps: split")
     longest = float(np.max(steps))
-    if longest > LONGEST_FILL + 1.0 / clocked.axis.rate:
+    if longest > _LONGEST_FILL + 1.0 / clocked.axis.rate:
         raise InputError(
-            f"{clocked.label}: a gap of {longest:.3g} s is not filled, {LONGEST_FILL} s at most are; write gaps: split"
+            f"{clocked.label}: a gap of {longest:.3g} s is not filled, {_LONGEST_FILL} s at most are; write gaps: split"
         )
     kept = np.concatenate([[True], steps > 0.0])
     axis = unbroken(times[kept], clocked.axis.rate, is_even=False)

@@ -10,34 +10,38 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.names import BY_UNIT, DIMENSION
-from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape
+from seatsim.importing.names import BY_UNIT, SI_UNITS
+from seatsim.importing.time_axis import Axis
+from seatsim.recordings.quality.channels import say_implausible
+from seatsim.recordings.quality.damage import MOST_ROWS, Doubter, doubt_dropouts, doubt_shape, plateaus
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.quality.plausible_ranges import say_implausible
-from seatsim.recordings.quality.shapes import plateaus
 from seatsim.schema.arrays import Array
-from seatsim.schema.units import DIMENSIONS, STANDARD_GRAVITY
+from seatsim.schema.units import STANDARD_GRAVITY
 
-NEAR = 0.08
+_NEAR = 0.08
 """Share by which a mean may differ from gravity: tilt, scale and offset of the sensor."""
-OFFSET = 0.2
+_OFFSET = 0.2
 """m/s^2; mean of an accelerometer from which it has an offset."""
-ZERO = {
+_ZERO = {
     "force": "gas force, preload or the zero of the load cell",
     "displacement": "the zero of the sensor; in the map, offset moves it and remove_mean centres each run",
     "elevation": "an absolute elevation",
-}  # fmt: skip
+}
 """What the mean of a quantity that swings may be."""
-OFF_CENTRE, CENTRED, ABSOLUTE = 0.02, 1e-4, 5.0
+_OFF_CENTRE, _CENTRED, _ABSOLUTE = 0.02, 1e-4, 5.0
 """Mean as a share of the swing: from which an offset is said, below which one was removed, and of a height."""
-FEW_LEVELS, MOST_CHANGES = 12, 20_000
+_FEW_LEVELS, _MOST_CHANGES = 12, 20_000
 """Most values that a channel has which was typed in, or switches, among so many changes."""
-HOT = (50.0, 110.0)
+_HOT = (50.0, 110.0)
 """degC between which a first temperature is a usual one in degF."""
-WARMING = 2.0
+_WARMING = 2.0
 """K/s; a damper's body does not warm faster."""
-SWITCHED = ("current", "voltage")
+_SWITCHED = ("current", "voltage")
 """Quantities that rest and jump by themselves."""
+_SLOWEST, _FASTEST = 5.0, 200_000.0
+"""Hz; rates of loggers of vibration lie between."""
+_COARSE_ROAD = 0.1
+"""m; distance of rows above which a tyre feels waves that a road does not hold."""
 
 
 def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | None) -> Iterator[Issue]:
@@ -54,7 +58,7 @@ def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | 
         return
     yield from _of_quantity(doubter, values, quantity)
     lengths, starts = plateaus(values)
-    if len(np.unique(values[starts[:MOST_CHANGES]])) <= FEW_LEVELS:
+    if len(np.unique(values[starts[:_MOST_CHANGES]])) <= _FEW_LEVELS:
         if len(lengths) < 0.2 * len(values):
             text = (
                 f"has {len(np.unique(values[starts]))} levels and no noise; a command or a nominal value, not measured"
@@ -63,8 +67,8 @@ def doubt_channel(channel: str, raw: Array, rate: float | None, quantity: str | 
         return
     for issue in doubt_shape(doubter, values, lengths):
         # A command is logged at the rate of its controller, and holds until the next.
-        yield issue._replace(severity="note") if issue.kind == "held" and quantity in SWITCHED else issue
-    if rate is not None and quantity not in SWITCHED:
+        yield issue._replace(severity="note") if issue.kind == "held" and quantity in _SWITCHED else issue
+    if rate is not None and quantity not in _SWITCHED:
         yield from doubt_dropouts(doubter, values, lengths, starts)
 
 
@@ -79,18 +83,18 @@ def _of_quantity(doubter: Doubter, values: Array, quantity: str | None) -> Itera
     mean = float(np.mean(values))
     if quantity == "acceleration":
         yield from _constant_part(doubter, values, mean)
-    elif quantity in ZERO:
+    elif quantity in _ZERO:
         yield from _rest(doubter, values, mean, quantity)
     elif quantity == "temperature":
         yield from _warming(doubter, values)
-    if quantity in BY_UNIT and (text := say_implausible(values, DIMENSIONS[DIMENSION[quantity]])):
+    if quantity in BY_UNIT and (text := say_implausible(values, SI_UNITS[quantity])):
         yield doubter.say("warning", "unit", text)
 
 
 def _warming(doubter: Doubter, values: Array) -> Iterator[Issue]:
     """Yield a temperature that begins warm, or changes faster than a damper does, in means over half a second."""
     first, rate = float(values[0]), doubter.rate
-    if HOT[0] < first < HOT[1]:
+    if _HOT[0] < first < _HOT[1]:
         text = f"begins at {first:.3g} degC; read as degF that is {(first - 32.0) / 1.8:.3g} degC: check its unit"
         yield doubter.say("note", "unit", text)
     if rate is None:
@@ -98,7 +102,7 @@ def _warming(doubter: Doubter, values: Array) -> Iterator[Issue]:
     rows = max(1, round(0.5 * rate))
     means = values[: len(values) // rows * rows].reshape(-1, rows).mean(axis=1)
     fastest = float(np.max(np.abs(np.diff(means)), initial=0.0)) * rate / rows
-    if fastest > WARMING:
+    if fastest > _WARMING:
         text = f"changes by up to {fastest:.2g} K/s, faster than a damper warms: a disturbed or a surface reading"
         yield doubter.say("warning", "warming", text)
 
@@ -106,13 +110,13 @@ def _warming(doubter: Doubter, values: Array) -> Iterator[Issue]:
 def _constant_part(doubter: Doubter, values: Array, mean: float) -> Iterator[Issue]:
     """Yield gravity, an offset, or the mean of one that gravity in g has."""
     spread = float(np.std(values))
-    if abs(abs(mean) / STANDARD_GRAVITY - 1.0) <= NEAR:
+    if abs(abs(mean) / STANDARD_GRAVITY - 1.0) <= _NEAR:
         text = f"its mean of {mean:.4g} m/s^2 is gravity ({abs(mean) - STANDARD_GRAVITY:+.2g} is offset or tilt); "
         yield doubter.say("warning", "gravity", f"{text}remove_mean: true takes it out")
-    elif abs(abs(mean) - 1.0) <= NEAR and spread < 0.5:
+    elif abs(abs(mean) - 1.0) <= _NEAR and spread < 0.5:
         text = f"its mean of {mean:.4g} is gravity in g, but m/s^2 is stated; state unit: g, and remove_mean: true"
         yield doubter.say("warning", "unit", text)
-    elif abs(mean) > OFFSET:
+    elif abs(mean) > _OFFSET:
         yield doubter.say(
             "warning", "offset", f"its mean is {mean:.4g} m/s^2, an offset; remove_mean: true takes it out"
         )
@@ -122,11 +126,54 @@ def _rest(doubter: Doubter, values: Array, mean: float, quantity: str) -> Iterat
     """Yield the offset of a channel that swings about another value than zero."""
     low, high = np.quantile(values[:: max(1, len(values) // MOST_ROWS)], (0.01, 0.99))
     swing = 0.5 * float(high - low)
-    unit = DIMENSIONS[DIMENSION[quantity]]
-    if swing > 0.0 and abs(mean) > (ABSOLUTE if quantity == "elevation" else OFF_CENTRE) * swing:
-        text = f"its mean is {mean:.4g} {unit}, {abs(mean) / swing:.0%} of its swing: {ZERO[quantity]}"
+    unit = SI_UNITS[quantity]
+    if swing > 0.0 and abs(mean) > (_ABSOLUTE if quantity == "elevation" else _OFF_CENTRE) * swing:
+        text = f"its mean is {mean:.4g} {unit}, {abs(mean) / swing:.0%} of its swing: {_ZERO[quantity]}"
         yield doubter.say("note", "offset", text)
     if quantity == "displacement" and values[0] == 0.0 and swing > 0.0:
         yield doubter.say("note", "zeroed", "begins at exactly 0: counted from its start, its own zero is lost")
-    if quantity != "elevation" and abs(mean) < CENTRED * swing:
+    if quantity != "elevation" and abs(mean) < _CENTRED * swing:
         yield doubter.say("note", "centred", "its mean is zero: an offset was removed, and with it what it would show")
+
+
+def doubt_time(axis: Axis, channel: str) -> Iterator[Issue]:
+    """Yield what is wrong with a column of time."""
+    doubter = Doubter(channel, None)
+    if axis.backwards:
+        first = int(axis.breaks[0])
+        text = f"runs back {axis.backwards} times, the first at row {first}; gaps: split makes runs of the parts"
+        yield doubter.say("warning", "restart", text)
+    if axis.repeated:
+        text = f"{axis.repeated} rows repeat the time before; gaps: fill leaves the repeats out"
+        yield doubter.say("warning", "repeated", text)
+    if axis.lost:
+        first = next(int(row) for row in axis.breaks if axis.times[row] - axis.times[row - 1] > 0.0)
+        text = f"{axis.lost} rows are missing, the first at {axis.times[first - 1]:.6g} s; gaps: split or gaps: fill"
+        yield doubter.say("warning", "gap", text)
+    if axis.resolution:
+        yield doubter.say("warning", "rounded", _say_rounded(axis))
+    elif not axis.is_even:
+        yield doubter.say(
+            "warning", "uneven", f"rows are not evenly spaced; they are interpolated at {axis.rate:.5g} Hz"
+        )
+    if not _SLOWEST <= axis.rate <= _FASTEST:
+        text = f"rows are {1.0 / axis.rate:.4g} s apart, {axis.rate:.4g} Hz; is its unit another one, such as ms?"
+        yield doubter.say("warning", "rate", text)
+
+
+def _say_rounded(axis: Axis) -> str:
+    """Return what stamps that are about as coarse as the rows, or coarser, say of the rate."""
+    steps = f"its stamps go in steps of {axis.resolution:.4g} s, about as coarse as the rows or coarser"
+    if axis.is_even:
+        return f"{steps}; the rate is estimated as {axis.rate:.6g} Hz: state it by sample_rate in the map, or by --rate"
+    return f"{steps}, and the rows are not even by them; state the rate by sample_rate in the map, or by --rate"
+
+
+def doubt_distance(along: Array, channel: str) -> Iterator[Issue]:
+    """Yield what the rows of a road cannot show."""
+    step = float(np.median(np.diff(along)))
+    if step > _COARSE_ROAD:
+        text = f"{channel}: rows are {step:.3g} m apart; waves shorter than {2.0 * step:.3g} m are missing"
+        yield Issue("note", "coarse", text, channel)
+    if np.ptp(np.diff(along)) > 0.01 * step:
+        yield Issue("warning", "uneven", f"{channel}: rows are not evenly spaced along the road", channel)

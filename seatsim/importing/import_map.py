@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple, cast
+from typing import Annotated, Any, Literal, NamedTuple, cast
 
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.recordings.channel_units import CHANNELS
+from seatsim.recordings.recording import CHANNELS
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import param
+from seatsim.schema.files import write_text
 from seatsim.schema.text import explain_bad_name
 from seatsim.schema.units import conversion
 from seatsim.schema.validation import build, check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import dump
 
 Rig = Literal["seat", "damper_bench", "road"]
 Gaps = Literal["split", "fill"]
-AS_FOUND = TextLayout()
+_AS_FOUND = TextLayout()
 """Layout of a text table that is left to be found."""
 FILE = "map.yaml"
-DRIVES = {"seat": "floor_acceleration", "damper_bench": "displacement"}
+_DRIVES = {"seat": "floor_acceleration", "damper_bench": "displacement"}
 """Channel without which no recording of a rig can be replayed."""
 PRIMITIVE = {("m/s^2", 1): "m/s", ("m/s^2", 2): "m", ("m/s", 1): "m"}
 """Unit of what is differentiated so many times, by the unit of the derivative."""
@@ -75,6 +77,10 @@ class _Numbers(NamedTuple):
     gaps: Gaps | None = None
 
 
+_RECORDS: dict[str, type[Any]] = {"time": AxisMap, "distance": AxisMap, "csv": TextLayout, "actuator": Actuator}
+"""Records of a map by their key."""
+
+
 @dataclass(frozen=True)
 class ImportMap:
     """The content of `map.yaml`.
@@ -88,7 +94,7 @@ class ImportMap:
     time: AxisMap | None = None
     sample_rate: float | None = None
     distance: AxisMap | None = None
-    csv: TextLayout = AS_FOUND
+    csv: TextLayout = _AS_FOUND
     resample: float | None = None
     runs: dict[str, list[str]] = field(default_factory=dict)
     gaps: Gaps | None = None
@@ -96,22 +102,6 @@ class ImportMap:
     actuator: Actuator | None = None
     repeats: dict[str, str] = field(default_factory=dict)
     comments: Mapping[str, str] = field(default_factory=dict)
-
-
-KEYS = (
-    "rig",
-    "channels",
-    "time",
-    "sample_rate",
-    "distance",
-    "csv",
-    "resample",
-    "runs",
-    "gaps",
-    "align",
-    "actuator",
-    "repeats",
-)
 
 
 def read_map(path: Path) -> ImportMap:
@@ -122,22 +112,21 @@ def read_map(path: Path) -> ImportMap:
     """
     source = Source(path)
     data = source.data
-    check_keys(data, KEYS, source, ())
+    check_keys(data, [each.name for each in fields(ImportMap) if each.name != "comments"], source, ())
     numbers: _Numbers = build(_Numbers, {key: data[key] for key in _Numbers._fields if key in data}, source, ())
     rig = numbers.rig if "rig" in data else _rig_of(mapping(data.get("channels", {}), source, ("channels",)), data)
+    repeats = mapping(data.get("repeats", {}), source, ("repeats",))
+    records = {key: build(kind, data[key], source, (key,)) for key, kind in _RECORDS.items() if key in data}
     return ImportMap(
         _channels(data, rig, source),
         rig,
-        build(AxisMap, data["time"], source, ("time",)) if "time" in data else None,
-        numbers.sample_rate,
-        build(AxisMap, data["distance"], source, ("distance",)) if "distance" in data else None,
-        build(TextLayout, data["csv"], source, ("csv",)) if "csv" in data else AS_FOUND,
-        numbers.resample,
-        _runs(data, source),
-        numbers.gaps,
-        _align(data, source),
-        build(Actuator, data["actuator"], source, ("actuator",)) if "actuator" in data else None,
-        {run: str(repeated) for run, repeated in mapping(data.get("repeats", {}), source, ("repeats",)).items()},
+        sample_rate=numbers.sample_rate,
+        resample=numbers.resample,
+        gaps=numbers.gaps,
+        runs=_runs(data, source),
+        align=_align(data, source),
+        repeats={run: str(repeated) for run, repeated in repeats.items()},
+        **records,
     )
 
 
@@ -160,8 +149,8 @@ def _channels(data: Mapping[str, object], rig: Rig, source: Source) -> dict[str,
         if (channels[name].column is None) == (channels[name].value is None):
             raise source.error(("channels", name), "give either the name of its column, or value for a constant")
         _check_unit(name, channels[name], CHANNELS[rig][name] if rig in CHANNELS else "m", source)
-    if rig in DRIVES and DRIVES[rig] not in channels:
-        raise source.error(("channels",), f"channel '{DRIVES[rig]}' is missing; it drives the simulation of this rig")
+    if rig in _DRIVES and _DRIVES[rig] not in channels:
+        raise source.error(("channels",), f"channel '{_DRIVES[rig]}' is missing; it drives the simulation of this rig")
     return channels
 
 
@@ -204,3 +193,31 @@ def check_files(runs: Mapping[str, Sequence[str]], files: Sequence[str], path: P
                 raise InputError(
                     f"{path}, runs.{run}: '{name}' was not given{nearest(name, files)}; given: {', '.join(files)}"
                 )
+
+
+def write_map(path: Path, stated: ImportMap) -> Path:
+    """Write a map as it is read, with a line for each channel and the comments behind them."""
+    return write_text(path, render_map(stated))
+
+
+def render_map(stated: ImportMap) -> str:
+    """Return the text of a map."""
+    axes = {"time": stated.time, "distance": stated.distance}
+    content: dict[str, object] = {"rig": stated.rig}
+    content |= {name: axis._asdict() for name, axis in axes.items() if axis}
+    content |= {"sample_rate": stated.sample_rate, "resample": stated.resample}
+    content |= {"channels": {name: _shown(channel) for name, channel in stated.channels.items()}}
+    content |= {"csv": {key: value for key, value in stated.csv._asdict().items() if value is not None}}
+    content |= {"gaps": stated.gaps, "actuator": stated.actuator and stated.actuator._asdict()}
+    content |= {"align": {label: float(f"{value:.7g}") for label, value in stated.align.items()}}
+    content |= {"repeats": stated.repeats, "runs": stated.runs}
+    lines = dump({key: value for key, value in content.items() if value not in (None, {})}).splitlines()
+    behind = {f"  {name}": f"   # {comment}" for name, comment in stated.comments.items()}
+    return "".join(f"{line}{behind.get(line.partition(':')[0], '')}\n" for line in lines)
+
+
+def _shown(channel: ChannelMap) -> dict[str, object]:
+    """Return the keys of a channel that are stated, and those that a user edits."""
+    shown = {"column", "unit", "sign"} if channel.value is None else {"value", "unit"}
+    usual = ChannelMap._field_defaults
+    return {key: value for key, value in channel._asdict().items() if key in shown or value != usual[key]}

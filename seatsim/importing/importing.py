@@ -7,26 +7,22 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.importing.assembly import Assembled, assemble, doubt_runs
-from seatsim.importing.group_time import find_clock
-from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map
-from seatsim.importing.map_text import write_map
+from seatsim.importing.assembly import Assembled, assemble, assemble_road, doubt_runs
+from seatsim.importing.import_map import FILE, ImportMap, check_files, read_map, write_map
 from seatsim.importing.matching import propose
-from seatsim.importing.nominal import make_nominal
 from seatsim.importing.readers.reading import read_file
-from seatsim.importing.road import assemble_road
 from seatsim.importing.signals import LISTED, DataFile
-from seatsim.importing.writing import write_recording, write_road
-from seatsim.recordings.channel_units import CHANNELS, COMMANDS
+from seatsim.importing.time_axis import find_clock
+from seatsim.importing.writing import make_nominal, write_recording, write_road
 from seatsim.recordings.quality.damage import QUIET, noise_of
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.recording import load_recording
+from seatsim.recordings.recording import CHANNELS, COMMANDS, load_recording
 from seatsim.schema.errors import InputError
 from seatsim.schema.leftovers import temporary_folder
 from seatsim.schema.text import name_some
 
-OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
+_OWN_FILES = (".yaml", ".yml", ".json", ".md", ".png", ".pdf", ".html")
 """Endings of files that lie beside data and hold none."""
 
 """Most columns that are named as left out."""
@@ -100,7 +96,7 @@ def _data_files(paths: Sequence[Path]) -> list[Path]:
     for path in paths:
         if path.is_dir():
             inside = sorted(each for each in path.iterdir() if each.is_file() and not each.name.startswith("."))
-            found += [each for each in inside if not each.name.lower().endswith(OWN_FILES)]
+            found += [each for each in inside if not each.name.lower().endswith(_OWN_FILES)]
         else:
             found.append(path)
     if not found:

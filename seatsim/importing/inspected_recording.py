@@ -15,12 +15,11 @@ from seatsim.importing.inspection import ChannelSummary, Inspection, summarise
 from seatsim.importing.names import quantity_of
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import Signal
-from seatsim.recordings.channel_units import CHANNELS, COMMANDS
 from seatsim.recordings.quality.damage import QUIET
 from seatsim.recordings.quality.examination import examine, merge_issues
 from seatsim.recordings.quality.issue import Issue, place_in_run
 from seatsim.recordings.quality.relations import doubt_relations
-from seatsim.recordings.recording import Recording, load_recording
+from seatsim.recordings.recording import CHANNELS, COMMANDS, Recording, load_recording
 from seatsim.schema.errors import InputError
 
 

@@ -9,26 +9,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.axis_doubts import doubt_distance, doubt_time
-from seatsim.importing.doubts import doubt_channel
-from seatsim.importing.group_time import Clock, find_clock, is_spectrum
+from seatsim.importing.doubts import doubt_channel, doubt_distance, doubt_time
 from seatsim.importing.import_map import Rig
 from seatsim.importing.matching import Column, channel_of, read_columns
-from seatsim.importing.names import DIMENSION, is_of, read_name, without_unit
+from seatsim.importing.names import SI_UNITS, is_of, read_name, without_unit
 from seatsim.importing.readers.reading import TextLayout, read_file
 from seatsim.importing.relations import doubt_pairs
 from seatsim.importing.signals import DataFile, Group, Signal
-from seatsim.importing.time_axis import Axis
-from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
+from seatsim.importing.time_axis import Axis, Clock, find_clock, is_spectrum
 from seatsim.recordings.quality.damage import noise_of
 from seatsim.recordings.quality.issue import Issue
+from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.schema.arrays import Array
-from seatsim.schema.units import DIMENSIONS, conversion
+from seatsim.schema.units import conversion
 
 BLOCKS = "▁▂▃▄▅▆▇█"
-SPARKS = 24
+_SPARKS = 24
 """Letters of a sparkline."""
-RARE = 0.01
+_RARE = 0.01
 """Share of rows in which a channel repeats itself, above which it is too coarse to show rows written twice."""
 
 
@@ -137,9 +135,9 @@ def _longest_part(axis: Axis, channels: Mapping[str, Array]) -> dict[str, Array]
 def _in_si(column: Column) -> tuple[Array, str | None]:
     """Return values in SI units with what they are, or as they stand and None where the unit is not known."""
     quantity, unit = column.meaning.quantity, column.meaning.unit
-    if quantity not in DIMENSION:
+    if quantity not in SI_UNITS:
         return column.signal.values, None
-    wanted = DIMENSIONS[DIMENSION[quantity]]
+    wanted = SI_UNITS[quantity]
     is_own_name = without_unit(column.signal.name, "") in {*SEAT_CHANNELS, *BENCH_CHANNELS}
     if not unit and is_own_name:
         return column.signal.values, quantity
@@ -165,7 +163,7 @@ def summarise(signal: Signal, unit: str, channel: str | None, rate: float | None
 
 def _spark_of(values: Array) -> str:
     """Return the range of a channel over its length, as a line of blocks: each is as high as the swing there."""
-    edges = np.unique(np.linspace(0, len(values), SPARKS + 1).astype(int))
+    edges = np.unique(np.linspace(0, len(values), _SPARKS + 1).astype(int))
     pieces = [values[a:b] for a, b in pairwise(edges)]
     swing = np.array([float(np.ptp(piece)) if len(piece) > 1 else 0.0 for piece in pieces])
     if swing.max() == 0.0:
@@ -177,7 +175,7 @@ def _repeated_rows(file: DataFile) -> Iterator[Issue]:
     """Yield rows that repeat the row before in every channel, where at least three vary from row to row."""
     for group in file.groups:
         steps = [np.diff(s.values) == 0.0 for s in group.signals if read_name(s.name).quantity != "time"]
-        varying = [same for same in steps if np.mean(same) < RARE]
+        varying = [same for same in steps if np.mean(same) < _RARE]
         if len(varying) < 3:
             continue
         rows = np.flatnonzero(np.all(steps, axis=0)) + 1

@@ -10,16 +10,16 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from seatsim.importing.group_time import check_is_history, find_clock, is_spectrum
 from seatsim.importing.import_map import AxisMap, ChannelMap, Gaps, ImportMap, Rig
-from seatsim.importing.names import DIMENSION, Meaning, is_of, read_name, without_unit
+from seatsim.importing.names import SI_UNITS, Meaning, is_of, read_name, without_unit
 from seatsim.importing.signals import LISTED, DataFile, Group, Signal
-from seatsim.recordings.channel_units import CHANNELS
+from seatsim.importing.time_axis import check_is_history, find_clock, is_spectrum
+from seatsim.recordings.recording import CHANNELS
 from seatsim.schema.text import name_some
-from seatsim.schema.units import DIMENSIONS
+from seatsim.schema.units import USUAL
 
-NEEDED = {"seat": ("floor_acceleration",), "damper_bench": ("displacement", "damper_force"), "road": ()}
-BENCH_ONLY = ("displacement", "velocity", "command_voltage")
+_NEEDED = {"seat": ("floor_acceleration",), "damper_bench": ("displacement", "damper_force"), "road": ()}
+_BENCH_ONLY = ("displacement", "velocity", "command_voltage")
 
 
 class Column(NamedTuple):
@@ -57,7 +57,7 @@ def propose(files: Sequence[DataFile], rig: Rig | None = None) -> Proposal:
             entry, problem = _entry(name, candidates[name], CHANNELS[chosen][name])
             channels[name] = entry
             open_ends += [problem] if problem else []
-        elif name in NEEDED[chosen]:
+        elif name in _NEEDED[chosen]:
             open_ends.append(_missing(name, columns, channels))
             channels[name] = ChannelMap()
     if "command_voltage" in channels:
@@ -124,7 +124,7 @@ def _seat_channel(meaning: Meaning) -> str | None:
         return f"{meaning.place}_acceleration" if meaning.place and not meaning.is_lateral else None
     if meaning.quantity == "displacement" and not meaning.is_command and meaning.place != "floor":
         return "suspension_displacement"
-    return None if meaning.quantity in BENCH_ONLY or meaning.quantity == "voltage" else _damper_channel(meaning)
+    return None if meaning.quantity in _BENCH_ONLY or meaning.quantity == "voltage" else _damper_channel(meaning)
 
 
 def _bench_channel(meaning: Meaning) -> str | None:
@@ -158,8 +158,8 @@ def _entry(name: str, candidates: Sequence[Column], unit: str) -> tuple[ChannelM
     exact = [each for each in candidates if without_unit(each.signal.name, each.meaning.unit) == name]
     fitting = exact or list(candidates)
     names = list(dict.fromkeys(each.signal.name for each in fitting))
-    first = fitting[0]
-    quantity = _quantity(unit)
+    first, examples = fitting[0], " or ".join(USUAL[unit][:3])
+    quantity = next(name for name, each in SI_UNITS.items() if each == unit)
     stated = first.meaning.unit if first.meaning.unit and is_of(first.meaning.unit, quantity) else ""
     if not stated and without_unit(first.signal.name, "") == name:
         stated = unit
@@ -168,22 +168,11 @@ def _entry(name: str, candidates: Sequence[Column], unit: str) -> tuple[ChannelM
         return entry, f"{name}: {name_some(names, LISTED)} fit equally well; keep one as its column"
     if first.meaning.is_contradicted:
         seen = f"'{first.signal.name}' is stated in {first.meaning.unit}, which is no unit of it"
-        return entry, f"{name}: {seen}; write unit, such as {_examples(unit)}, with scale and offset, or leave it out"
+        return entry, f"{name}: {seen}; write unit, such as {examples}, with scale and offset, or leave it out"
     if not stated:
         seen = f"the file states no unit of '{first.signal.name}'"
-        return entry, f"{name}: {seen}; write it as unit, such as {_examples(unit)}"
+        return entry, f"{name}: {seen}; write it as unit, such as {examples}"
     return entry, ""
-
-
-def _quantity(unit: str) -> str:
-    dimension = next(name for name, each in DIMENSIONS.items() if each == unit)
-    return next(name for name, each in DIMENSION.items() if each == dimension)
-
-
-def _examples(unit: str) -> str:
-    from seatsim.schema.units import USUAL
-
-    return " or ".join(USUAL[unit][:3])
 
 
 def _missing(name: str, columns: Sequence[Column], channels: dict[str, ChannelMap]) -> str:

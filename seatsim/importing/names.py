@@ -7,77 +7,73 @@ from __future__ import annotations
 
 import functools
 import re
+import string
 import unicodedata
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from seatsim.schema.units import DIMENSIONS, find_conversion, is_unit
 
-QUANTITIES: Mapping[str, tuple[str, ...]] = {
-    "acceleration": (
-        "acceleration", "accel", "acc", "a", "beschleunigung", "beschl", "ax", "ay", "az", "accx", "accy", "accz",
-        "acz", "jiasudu",
-    ),
-    "displacement": (
-        "displacement", "disp", "stroke", "travel", "position", "deflection", "weg", "federweg", "einfederung", "hub",
-        "auslenkung", "deplacement", "debattement", "course", "weiyi", "xingcheng", "x", "s", "lvdt",
-    ),
-    "velocity": ("velocity", "speed", "vel", "geschwindigkeit", "geschw", "vitesse", "sudu", "v"),
-    "force": ("force", "load", "kraft", "effort", "zunili", "li", "f", "fd"),
-    "current": ("current", "strom", "bestromung", "courant", "intensite", "dianliu", "i"),
-    "voltage": ("voltage", "spannung", "tension", "dianya", "u"),
-    "temperature": ("temperature", "temp", "temperatur", "wendu", "thermo"),
-    "time": (
-        "time", "zeit", "temps", "shijian", "t", "timestamp", "timestamps", "zeitstempel", "elapsed", "datetime",
-        "uhrzeit", "seconds", "sekunden", "secondes", "millis", "milliseconds", "sec", "secs", "msec",
-        "x_value", "abscissa", "abszisse",
-    ),
-    "frequency": ("frequency", "frequenz", "frequence", "pinlv", "freq"),
-    "distance": ("distance", "chainage", "station", "strecke", "abstand", "juli"),
-    "elevation": ("elevation", "height", "profile", "profil", "hohe", "hoehe", "hauteur", "gaodu", "z"),
-    "mark": ("valid", "gultig", "gueltig", "segment", "marker", "trigger", "index", "row", "zeile", "counter"),
-}  # fmt: skip
+
+def _read_table(words: Mapping[str, str]) -> Mapping[str, tuple[str, ...]]:
+    return {name: tuple(listed.split()) for name, listed in words.items()}
+
+
+_QUANTITIES = _read_table(
+    {
+        "acceleration": "acceleration accel acc a beschleunigung beschl ax ay az accx accy accz acz jiasudu",
+        "displacement": "displacement disp stroke travel position deflection weg federweg einfederung hub auslenkung"
+        " deplacement debattement course weiyi xingcheng x s lvdt",
+        "velocity": "velocity speed vel geschwindigkeit geschw vitesse sudu v",
+        "force": "force load kraft effort zunili li f fd",
+        "current": "current strom bestromung courant intensite dianliu i",
+        "voltage": "voltage spannung tension dianya u",
+        "temperature": "temperature temp temperatur wendu thermo",
+        "time": "time zeit temps shijian t timestamp timestamps zeitstempel elapsed datetime uhrzeit seconds"
+        " sekunden secondes millis milliseconds sec secs msec x_value abscissa abszisse",
+        "frequency": "frequency frequenz frequence pinlv freq",
+        "distance": "distance chainage station strecke abstand juli",
+        "elevation": "elevation height profile profil hohe hoehe hauteur gaodu z",
+        "mark": "valid gultig gueltig segment marker trigger index row zeile counter",
+    }
+)
 """Words for what a column holds; for a velocity before a displacement, since `x` alone is one."""
-PLACES: Mapping[str, tuple[str, ...]] = {
-    "frame": ("frame", "rahmen", "gestell", "oberteil", "cadre", "chassis", "kuangjia", "zs"),
-    "floor": (
-        "floor", "base", "boden", "kabine", "cabin", "cab", "plancher", "cabine", "diban", "platform", "plattform",
-        "table", "ground", "basis", "fusspunkt", "z0", "input",
-    ),
-    "driver": (
-        "driver", "fahrer", "occupant", "person", "dummy", "seat", "sitz", "cushion", "kissen", "pad", "conducteur",
-        "siege", "assise", "jiashiyuan", "zuoyi", "renti", "zc", "passenger", "body",
-    ),
-}  # fmt: skip
+_PLACES = _read_table(
+    {
+        "frame": "frame rahmen gestell oberteil cadre chassis kuangjia zs",
+        "floor": "floor base boden kabine cabin cab plancher cabine diban platform plattform table ground basis"
+        " fusspunkt z0 input",
+        "driver": "driver fahrer occupant person dummy seat sitz cushion kissen pad conducteur siege assise"
+        " jiashiyuan zuoyi renti zc passenger body",
+    }
+)
 """Words for where a sensor is; the first place that fits counts, so that a seat's frame is a frame."""
-COMMANDS = (
-    "command", "commanded", "cmd", "soll", "setpoint", "sollwert", "consigne", "commande", "zhiling", "target", "ref",
-    "demand",
-)  # fmt: skip
-AXES: Mapping[str, tuple[str, ...]] = {
-    "x": ("x", "ax", "accx", "longitudinal", "fore", "laengs", "langs"),
-    "y": ("y", "ay", "accy", "lateral", "quer"),
-    "z": ("z", "az", "accz", "acz", "vertical", "vertikal"),
-}
-OTHERS = ("ambient", "umgebung", "room", "raum", "engine", "motor")
-DAMPERS = ("damper", "dampfer", "daempfer", "amortisseur", "zuni", "load cell", "mrd")
+_AXES = _read_table(
+    {
+        "x": "x ax accx longitudinal fore laengs langs",
+        "y": "y ay accy lateral quer",
+        "z": "z az accz acz vertical vertikal",
+    }
+)
+_COMMANDS, _OTHERS = _read_table(
+    {
+        "command": "command commanded cmd soll setpoint sollwert consigne commande zhiling target ref demand",
+        "other": "ambient umgebung room raum engine motor",
+    }
+).values()
+_DAMPERS = ("damper", "dampfer", "daempfer", "amortisseur", "zuni", "load cell", "mrd")
 """Words for commands, for axes, for what belongs to no seat, and for its damper."""
-DIMENSION = {
-    "acceleration": "acceleration", "displacement": "length", "velocity": "velocity", "force": "force",
-    "current": "current", "voltage": "voltage", "temperature": "temperature", "time": "time",
-    "distance": "length", "elevation": "length", "angular_acceleration": "angular_acceleration",
-}  # fmt: skip
-TIMES = {
-    "ms": "ms", "msec": "ms", "millis": "ms", "milliseconds": "ms", "sec": "s", "secs": "s", "seconds": "s",
-    "sekunden": "s", "secondes": "s",
-}  # fmt: skip
+SI_UNITS = dict.fromkeys(("displacement", "distance", "elevation"), "m") | DIMENSIONS
+"""SI units of the quantities that have one."""
+_TIMES = dict.fromkeys(("ms", "msec", "millis", "milliseconds"), "ms") | dict.fromkeys(
+    ("sec", "secs", "seconds", "sekunden", "secondes"), "s"
+)
 """Units of time that are names of a column by themselves."""
 BY_UNIT = ("acceleration", "velocity", "displacement", "force", "current", "voltage", "temperature")
 """Quantities that a unit alone tells, where no word does."""
-SHORT_UNITS = ("A", "mA", "N", "kN", "daN", "V", "mV", "g", "C", "K", "F", "m", "cm", "mm", "um", "s", "ms", "us", "s2")
+_SHORT_UNIT = re.compile("m?[AV]|k?N|daN|[gCKF]|[cmu]?m|[mu]?s|s2")
 """Units that end names and could be taken for words."""
-DIGITS = "0123456789"
-LONG = 4
+_LONG = 4
 """Letters from which a word counts inside another one."""
 
 
@@ -94,7 +90,7 @@ class Meaning(NamedTuple):
     @property
     def is_contradicted(self) -> bool:
         """Whether the unit is one of something else: a force in V is the voltage of its sensor."""
-        return bool(self.quantity in DIMENSION and not is_of(self.unit, self.quantity) and is_unit(self.unit))
+        return bool(self.quantity in SI_UNITS and not is_of(self.unit, self.quantity) and is_unit(self.unit))
 
     @property
     def is_lateral(self) -> bool:
@@ -106,16 +102,16 @@ class Meaning(NamedTuple):
 def read_name(name: str, unit: str = "") -> Meaning:
     """Return what the name of a column says, with the unit that its file states beside it."""
     plain, words = _plain(name), _words(name)
-    if any(_has(word, plain, words) for word in OTHERS):
+    if any(_has(word, plain, words) for word in _OTHERS):
         return Meaning(None)
     quantity, stated = _read_quantity(name, unit)
     return Meaning(
         quantity,
-        _first(PLACES, plain, words),
-        any(_has(word, plain, words) for word in COMMANDS),
-        next((axis for axis, known in AXES.items() if words & {*known}), None),
+        _first(_PLACES, plain, words),
+        any(_has(word, plain, words) for word in _COMMANDS),
+        next((axis for axis, known in _AXES.items() if words & {*known}), None),
         stated,
-        any(_has(word, plain, words) for word in DAMPERS),
+        any(_has(word, plain, words) for word in _DAMPERS),
     )
 
 
@@ -124,8 +120,8 @@ def _read_quantity(name: str, unit: str) -> tuple[str | None, str]:
 
     A letter gives way to a unit of something else: `v2` in m/s^2 is an acceleration. A whole word does not.
     """
-    if not unit and _plain(name).strip() in TIMES:
-        return "time", TIMES[_plain(name).strip()]
+    if not unit and _plain(name).strip() in _TIMES:
+        return "time", _TIMES[_plain(name).strip()]
     sure, letters = _rank(name)
     if not unit:
         named = next(((each, found) for each in (*sure, *letters) if (found := unit_of_name(name, each))), None)
@@ -143,13 +139,13 @@ def _read_quantity(name: str, unit: str) -> tuple[str | None, str]:
 def _rank(name: str) -> tuple[list[str], list[str]]:
     """Return the quantities that words of a name mean, whole words and long ones first; then those of letters."""
     plain, words = _plain(name), _words(name)
-    longs = {each: [word for word in known if len(word) >= LONG] for each, known in QUANTITIES.items()}
+    longs = {each: [word for word in known if len(word) >= _LONG] for each, known in _QUANTITIES.items()}
     alone = [each for each, known in longs.items() if words & {*known}]
     inside = {each: max((len(word) for word in known if word in plain), default=0) for each, known in longs.items()}
     parts = sorted((each for each in inside if inside[each] and each not in alone), key=lambda each: -inside[each])
     sure = [*alone, *parts]
     both = (_words(_before_unit(name)), words)
-    letters = [each for some in both for each, known in QUANTITIES.items() if some & {*known} and each not in sure]
+    letters = [each for some in both for each, known in _QUANTITIES.items() if some & {*known} and each not in sure]
     return sure, list(dict.fromkeys(letters))
 
 
@@ -157,7 +153,7 @@ def is_of(unit: str, quantity: str) -> bool:
     """Say whether a unit is one of a quantity."""
     if quantity == "frequency":
         return unit.lower() in ("hz", "khz")
-    wanted = DIMENSIONS[DIMENSION[quantity]] if quantity in DIMENSION else None
+    wanted = SI_UNITS.get(quantity)
     return wanted is not None and (unit == wanted or find_conversion(unit, wanted) is not None)
 
 
@@ -174,7 +170,7 @@ def unit_of_name(name: str, quantity: str) -> str:
         if len(parts) > count:
             unit = "_".join(parts[-count:]).replace("_", "/", 1)
             # A long word is no unit, and need not be looked up in a large table.
-            if all(len(part) <= LONG for part in parts[-count:]) and not unit.isdigit() and is_of(unit, quantity):
+            if all(len(part) <= _LONG for part in parts[-count:]) and not unit.isdigit() and is_of(unit, quantity):
                 return unit
     return ""
 
@@ -182,7 +178,7 @@ def unit_of_name(name: str, quantity: str) -> str:
 def _before_unit(name: str) -> str:
     """Return a name without the short units that end it: the `A` of `i_A` is none for an acceleration."""
     parts = re.split(r"[ _]+", name.strip())
-    while len(parts) > 1 and parts[-1] in SHORT_UNITS:
+    while len(parts) > 1 and _SHORT_UNIT.fullmatch(parts[-1]):
         parts.pop()
     return "_".join(parts)
 
@@ -198,13 +194,13 @@ def _first(words_by_name: Mapping[str, Iterable[str]], plain: str, words: set[st
     """Return the name of which a long word is in a text, else that of which a short word stands alone."""
     for long in (True, False):
         for name, known in words_by_name.items():
-            if any((len(word) >= LONG) == long and _has(word, plain, words) for word in known):
+            if any((len(word) >= _LONG) == long and _has(word, plain, words) for word in known):
                 return name
     return None
 
 
 def _has(word: str, plain: str, words: set[str]) -> bool:
-    return word in words or (len(word) >= LONG and word in plain)
+    return word in words or (len(word) >= _LONG and word in plain)
 
 
 def _plain(name: str) -> str:
@@ -217,4 +213,4 @@ def _words(name: str) -> set[str]:
     """Return the words of a name: parted by what is no letter or digit, and by capitals inside."""
     parted = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name)
     words = set(re.split(r"[^0-9a-z]+", _plain(parted))) | set(re.split(r"[^0-9a-z]+", _plain(name)))
-    return (words | {word.rstrip(DIGITS) for word in words if not re.fullmatch(r"z\d", word)}) - {""}
+    return (words | {word.rstrip(string.digits) for word in words if not re.fullmatch(r"z\d", word)}) - {""}

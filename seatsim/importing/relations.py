@@ -8,14 +8,14 @@ from itertools import combinations
 import numpy as np
 
 from seatsim.recordings.quality.issue import Issue
-from seatsim.recordings.quality.relations import MOST_ROWS, kind_of, read_gain, regress
+from seatsim.recordings.quality.relations import MOST_ROWS, find_delay, kind_of, read_gain, regress
 from seatsim.schema.arrays import Array
 
-ALIKE = 0.9
+_ALIKE = 0.9
 """Correlation from which a channel is the delayed copy of another one."""
-REST, STANDING, RELAXED = 0.5, 0.01, 0.01
+_REST, _STANDING, _RELAXED = 0.5, 0.01, 0.01
 """s for which a motion stands still, its swing there as a share of the whole, and the least change of a force there."""
-FEWEST = 8
+_FEWEST = 8
 """Rows of such a stretch from which a change can be told."""
 
 
@@ -76,8 +76,8 @@ def _unconfirmed(
 
 def _relaxed(part: Mapping[str, Array], rate: float, quantities: Mapping[str, str | None]) -> Iterator[Issue]:
     """Yield forces that change while the motion stands still after it has moved, as those that relax do."""
-    rows = round(REST * rate)
-    if rows < FEWEST:
+    rows = round(_REST * rate)
+    if rows < _FEWEST:
         return
     for name in (name for name in part if quantities.get(name) == "displacement"):
         still = _still(part[name], rows)
@@ -85,8 +85,8 @@ def _relaxed(part: Mapping[str, Array], rate: float, quantities: Mapping[str, st
             piece = np.array([np.mean(part[force][at : at + rows // 4]) for at in still])
             later = np.array([np.mean(part[force][at + rows - rows // 4 : at + rows]) for at in still])
             change = np.abs(later - piece)
-            if len(change) and np.max(change) > RELAXED * np.ptp(part[force]):
-                text = f"changes by up to {np.max(change):.3g} N in {REST:g} s after {name} has come to rest"
+            if len(change) and np.max(change) > _RELAXED * np.ptp(part[force]):
+                text = f"changes by up to {np.max(change):.3g} N in {_REST:g} s after {name} has come to rest"
                 said = f"{force}: {text}: it relaxes, its zero drifts, or its current changes"
                 yield Issue("note", "relaxation", said, force)
 
@@ -95,13 +95,13 @@ def _still(motion: Array, rows: int) -> list[int]:
     """Return the rows at which a motion comes to rest for so many rows."""
     windows = len(motion) // rows
     swing = np.ptp(motion[: windows * rows].reshape(windows, rows), axis=1) if windows else np.empty(0)
-    calm = swing < STANDING * float(np.ptp(motion))
+    calm = swing < _STANDING * float(np.ptp(motion))
     return [int(k) * rows for k in np.flatnonzero(calm[1:] & ~calm[:-1]) + 1]
 
 
 def _delayed(first: str, second: str, one: Array, other: Array, rate: float) -> Iterator[Issue]:
-    rows, alike = delay_rows(one, other, round(0.2 * rate))
-    if alike > ALIKE and abs(rows) >= 2:
+    rows, alike = find_delay(other, one, round(0.2 * rate))
+    if alike > _ALIKE and abs(rows) >= 2:
         late, early = (second, first) if rows > 0 else (first, second)
         yield Issue(
             "note",
@@ -109,13 +109,3 @@ def _delayed(first: str, second: str, one: Array, other: Array, rate: float) -> 
             f"{late}: follows {early} by {1e3 * abs(rows) / rate:.3g} ms (correlation {alike:.3f})",
             late,
         )
-
-
-def delay_rows(first: Array, second: Array, most: int) -> tuple[int, float]:
-    """Return by how many rows the second follows the first, at most `most`, and their correlation there."""
-    size = 1 << (len(first) + most).bit_length()
-    product = np.fft.irfft(np.conj(np.fft.rfft(first, size)) * np.fft.rfft(second, size), size)
-    lags = np.concatenate([product[-most:], product[: most + 1]]) if most else product[:1]
-    at = int(np.argmax(lags))
-    norm = float(np.linalg.norm(first) * np.linalg.norm(second))
-    return at - most, float(lags[at]) / norm if norm else 0.0

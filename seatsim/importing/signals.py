@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -61,19 +61,35 @@ class DataFile(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-def groups_by_length(name: str, signals: list[Signal], rate: float | None) -> list[Group]:
-    """Return channels as groups of equal length, in the order in which the lengths come."""
-    lengths = dict.fromkeys(len(signal.values) for signal in signals)
-    parts = [tuple(signal for signal in signals if len(signal.values) == length) for length in lengths]
-    if len(parts) == 1:
-        return [Group(name, parts[0], rate)]
-    return [Group(f"{name}, {part[0].name}" if name else part[0].name, part, rate) for part in parts]
+class Channels:
+    """The channels of a file, gathered into groups of one name that share a time base."""
 
+    def __init__(self) -> None:
+        self._even: dict[tuple[str, int, float | None, float | None], list[Signal]] = {}
+        self._timed: list[tuple[str, Array, list[Signal]]] = []
 
-def add_channels(groups: list[Group], name: str, time: Array, signals: Sequence[Signal]) -> None:
-    """Add channels to the group of `groups` that has the same times in s, or as a group of their own."""
-    for number, group in enumerate(groups):
-        if len(time) == group.rows and np.array_equal(group.signals[0].values, time):
-            groups[number] = group._replace(signals=(*group.signals, *signals))
-            return
-    groups.append(Group(name, (Signal(TIME, "s", time), *signals)))
+    def __len__(self) -> int:
+        return len(self._even) + len(self._timed)
+
+    def add(self, name: str, signal: Signal, rate: float | None = None, start: float | None = None) -> None:
+        """Add a channel to those of its group's name, its length, its rate in Hz and its start in s."""
+        self._even.setdefault((name, len(signal.values), rate, start), []).append(signal)
+
+    def add_timed(self, name: str, times: Array, signals: Iterable[Signal]) -> None:
+        """Add channels to those that have the same times in s, or as a group of this name."""
+        same = next((held for _, others, held in self._timed if np.array_equal(others, times)), None)
+        if same is None:
+            self._timed.append((name, times, list(signals)))
+        else:
+            same += signals
+
+    def groups(self) -> tuple[Group, ...]:
+        """Return the groups; of several of one name each is called after its first channel too."""
+        found = [(Group(name, tuple(held), rate, start), held) for (name, _, rate, start), held in self._even.items()]
+        found += [(Group(name, (Signal(TIME, "s", times), *held)), held) for name, times, held in self._timed]
+        names = [group.name for group, _ in found]
+        called = [
+            name if names.count(name) == 1 else f"{name}, {held[0].name}".strip(", ")
+            for name, (_, held) in zip(names, found, strict=True)
+        ]
+        return tuple(group._replace(name=name) for name, (group, _) in zip(called, found, strict=True))

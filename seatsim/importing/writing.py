@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import partial
 from pathlib import Path
 
 import numpy as np
-from ruamel.yaml import YAML
 
-from seatsim.importing.assembly import Assembled
-from seatsim.importing.import_map import FILE, ImportMap
-from seatsim.importing.map_text import write_map
-from seatsim.importing.nominal import NOMINAL
-from seatsim.importing.road import DISTANCE
+from seatsim.importing.assembly import DISTANCE, Assembled
+from seatsim.importing.import_map import FILE, ImportMap, Rig, write_map
 from seatsim.provenance.manifest import write_documented
-from seatsim.recordings.channel_units import CHANNELS
+from seatsim.recordings.recording import CHANNELS
+from seatsim.recordings.writer import NOMINAL, state_nominal, write_files
+from seatsim.scenario.loading import load
 from seatsim.schema.arrays import Array
-from seatsim.schema.files import write_packed, write_whole
+from seatsim.schema.errors import InputError
+from seatsim.schema.files import write_packed, write_text
 from seatsim.schema.text import disarm
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import dump
 
-HEADER = "recording.yaml"
-ROAD, EXCITATION = "road.csv.gz", "excitation.yaml"
-SPEED = 12.0
+_ROAD, _EXCITATION = "road.csv.gz", "excitation.yaml"
+_SPEED = 12.0
 """m/s at which the excitation drives on an imported road until another is stated."""
+_CURRENTS = ("current_command", "command_voltage", "coil_current")
 
 
 def write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
@@ -32,11 +33,9 @@ def write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, ob
 
 
 def _write_recording(folder: Path, assembled: Assembled, nominal: Mapping[str, object] | None) -> list[Path]:
-    paths = [_write_table(folder / f"{run.name}.csv.gz", run.table, assembled.rate) for run in assembled.runs]
-    if nominal is not None:
-        paths.append(_write_yaml(folder / NOMINAL, nominal))
-    paths.append(write_map(folder / FILE, assembled.map))
-    return [*paths, _write_yaml(folder / HEADER, _header(assembled))]
+    rate = assembled.rate
+    tables = {run.name: {"time": np.arange(run.rows) / rate, **run.table} for run in assembled.runs}
+    return [*write_files(folder, tables, nominal, _header(assembled), "%.9g"), write_map(folder / FILE, assembled.map)]
 
 
 def _header(assembled: Assembled) -> dict[str, object]:
@@ -46,24 +45,10 @@ def _header(assembled: Assembled) -> dict[str, object]:
         channels[name] = {"unit": CHANNELS[used.rig][name]}
         if entry.noise_rms is not None:
             channels[name]["noise_rms"] = entry.noise_rms
-    header: dict[str, object] = {
-        "rig": used.rig, "sample_rate": assembled.rate, "nominal": NOMINAL,
-        "runs": [{"name": run.name, "file": f"{run.name}.csv.gz", **_repeat(run.name, used)} for run in assembled.runs],
-        "channels": channels,
-    }  # fmt: skip
-    return header | ({"actuator": {"gain": used.actuator.gain}} if used.actuator else {})
-
-
-def _repeat(run: str, used: ImportMap) -> dict[str, str]:
-    return {"repeat_of": used.repeats[run]} if run in used.repeats else {}
-
-
-def _write_table(path: Path, table: Mapping[str, Array], rate: float) -> Path:
-    import pandas as pd
-
-    rows = len(next(iter(table.values())))
-    frame = pd.DataFrame({"time": np.arange(rows) / rate, **table})
-    return write_packed(path, partial(frame.to_csv, mode="wb", index=False, float_format="%.9g"), level=3)
+    runs = [{"name": run.name, "file": f"{run.name}.csv.gz"} for run in assembled.runs]
+    runs = [run | ({"repeat_of": used.repeats[run["name"]]} if run["name"] in used.repeats else {}) for run in runs]
+    header: dict[str, object] = {"rig": used.rig, "sample_rate": assembled.rate, "nominal": NOMINAL, "runs": runs}
+    return header | {"channels": channels} | ({"actuator": used.actuator._asdict()} if used.actuator else {})
 
 
 def write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> list[Path]:
@@ -72,18 +57,42 @@ def write_road(folder: Path, road: Mapping[str, Array], stated: ImportMap) -> li
 
     frame = pd.DataFrame({str(disarm(name)): values for name, values in road.items()})
     tracks = [name for name in frame if name != DISTANCE]
-    excitation = {"excitation": {"kind": "table", "path": ROAD, "distance_column": DISTANCE,
-                                 "column": tracks[len(tracks) // 2], "speed": SPEED}}  # fmt: skip
+    table = {"kind": "table", "path": _ROAD, "distance_column": DISTANCE}
+    excitation = {"excitation": {**table, "column": tracks[len(tracks) // 2], "speed": _SPEED}}
     write_table = partial(frame.to_csv, mode="wb", index=False, float_format="%.9g")
     return write_documented(
         folder,
         lambda part: [
-            write_packed(part / ROAD, write_table),
+            write_packed(part / _ROAD, write_table),
             write_map(part / FILE, stated),
-            _write_yaml(part / EXCITATION, excitation),
+            write_text(part / _EXCITATION, dump(excitation)),
         ],
     )
 
 
-def _write_yaml(path: Path, content: Mapping[str, object]) -> Path:
-    return write_whole(path, partial(YAML(typ="safe").dump, content))
+def make_nominal(scenario: str, rig: Rig, recorded: Collection[str]) -> Mapping[str, object]:
+    """Return the content of the nominal scenario of a rig with these recorded channels.
+
+    Where no current was recorded, the scenario's constant one is kept.
+
+    Raises:
+        InputError: the scenario is wrong, or states no constant current where none is recorded.
+    """
+    source = load(scenario)[0].source
+    if source is None:
+        raise InputError(f"{scenario}: states no rig; give the file of a scenario")
+    return state_nominal(source.data, rig, {} if rig == "damper_bench" else _law(source, recorded))
+
+
+def _law(source: Source, recorded: Collection[str]) -> dict[str, object]:
+    if any(name in recorded for name in _CURRENTS):
+        return {"law": "replay"}
+    law = source.data.get("controller")
+    current = law.get("current") if isinstance(law, Mapping) else None
+    if current is None:
+        problem = "no current was recorded, and the scenario states no constant one"
+        raise source.error(
+            ("controller",),
+            f"{problem}; write controller: {{law: constant, current: 0.0}} with the current that flowed",
+        )
+    return {"law": "replay", "current": current}

@@ -17,7 +17,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from seatsim.page.app import make_app
 from seatsim.page.folder import LARGEST, Folder
-from seatsim.scenario.finding import find_file
+from seatsim.scenario.loading import find_file
 from seatsim.schema.errors import InputError
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from pathlib import Path
 from seatsim.provenance.crate import CRATE, describe_crate
 from seatsim.provenance.invocation import Invocation, current_invocation, digest, relate
 from seatsim.provenance.versions import list_platform, list_versions
-from seatsim.scenario.finding import EXAMPLES
+from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.files import write_json, write_together
 from seatsim.schema.modules import used_files
 

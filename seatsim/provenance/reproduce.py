@@ -19,7 +19,7 @@ from seatsim.provenance.differences import LARGEST, Difference, compare_outputs
 from seatsim.provenance.invocation import REPEATABLE, digest
 from seatsim.provenance.manifest import EXAMPLE, MANIFEST
 from seatsim.provenance.versions import list_platform, list_versions
-from seatsim.scenario.finding import EXAMPLES
+from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, RunError, nearest
 from seatsim.schema.guarded import expect, is_there, read_bytes, read_json
 from seatsim.schema.leftovers import temporary_folder

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-QUANTITIES: dict[str, tuple[tuple[str, ...], str]] = {
+_QUANTITIES: dict[str, tuple[tuple[str, ...], str]] = {
     "time": (("time", "t"), "s"),
     "displacement": (("displacement", "stroke", "position", "x"), "m"),
     "velocity": (("velocity", "speed", "v"), "m/s"),
@@ -39,13 +39,13 @@ QUANTITIES: dict[str, tuple[tuple[str, ...], str]] = {
 """Names of every quantity, and its SI unit, in which a bare name is; usual units and spellings may follow a name."""
 DRIVES = ("current", "command", "voltage")
 """Quantities that state the damper's input, in the order of preference."""
-NEEDED = ("time", "displacement", "force")
-FORCE_AT = re.compile(r"(?:damper_)?force_(\d+(?:[p.]\d+)?)a(?:_(k?n))?")
-MISSPELT = 0.9
+_NEEDED = ("time", "displacement", "force")
+_FORCE_AT = re.compile(r"(?:damper_)?force_(\d+(?:[p.]\d+)?)a(?:_(k?n))?")
+_MISSPELT = 0.9
 """Similarity to a known name (by difflib) above which an unknown column is taken for a misspelling."""
-LISTED = 12
+_LISTED = 12
 """Most columns that an error lists."""
-RATES = ("sample_rate_Hz", "sample_rate")
+_RATES = ("sample_rate_Hz", "sample_rate")
 
 
 class Meaning(NamedTuple):
@@ -59,13 +59,13 @@ class Meaning(NamedTuple):
         """Return values of the column in SI units (degC)."""
         if not self.unit:
             return values
-        found = conversion(self.unit, QUANTITIES[self.quantity][1])
+        found = conversion(self.unit, _QUANTITIES[self.quantity][1])
         return values * found.factor + found.zero
 
 
 def _known() -> dict[str, Meaning]:
     known = {}
-    for quantity, (names, si) in QUANTITIES.items():
+    for quantity, (names, si) in _QUANTITIES.items():
         units = (*USUAL.get(si, ()), *(unit for unit in OWN_SPELLINGS.get(si, {}) if unit[0].isalpha()))
         for name in names:
             known[name] = Meaning(quantity)
@@ -93,7 +93,7 @@ class Columns(NamedTuple):
 def meaning(column: str) -> Meaning | None:
     """Return what a column of this name holds, None where the name is not known."""
     plain = re.sub(r"[^0-9a-z.]+", "_", column.lower()).strip("_")
-    at = FORCE_AT.fullmatch(plain)
+    at = _FORCE_AT.fullmatch(plain)
     if at:
         return Meaning("force", "kN" if at[2] == "kn" else "", float(at[1].replace("p", ".")))
     return KNOWN.get(plain)
@@ -121,7 +121,7 @@ def columns_of(names: Iterable[str], file: Path) -> Columns:
         else:
             found[known.quantity] = name
     for name in unused:
-        close = difflib.get_close_matches(name.lower(), KNOWN, n=1, cutoff=MISSPELT)
+        close = difflib.get_close_matches(name.lower(), KNOWN, n=1, cutoff=_MISSPELT)
         quantity = KNOWN[close[0]].quantity if close else "nothing"
         if close and quantity not in {*found, *(["force"] if forces else [])}:
             raise InputError(f"{file}: column '{name}' is not known; name it {_spelt(quantity)}, or remove it")
@@ -147,19 +147,19 @@ def numbers(frame: pd.DataFrame, column: str, file: Path) -> Array:
 
 def check_needed(there: Iterable[str], columns: Sequence[str], file: Path) -> None:
     """Raise InputError, with the nearest column, at the first quantity that a bench table needs and this one lacks."""
-    lacking = [quantity for quantity in NEEDED if quantity not in set(there)]
+    lacking = [quantity for quantity in _NEEDED if quantity not in set(there)]
     if lacking:
         quantity = lacking[0]
-        hint, others = nearest(quantity, columns), ", ".join(QUANTITIES[quantity][0][1:])
-        rate = f", or give '{RATES[0]}' in {file.name.partition('.csv')[0]}.yaml" if quantity == "time" else ""
+        hint, others = nearest(quantity, columns), ", ".join(_QUANTITIES[quantity][0][1:])
+        rate = f", or give '{_RATES[0]}' in {file.name.partition('.csv')[0]}.yaml" if quantity == "time" else ""
         raise InputError(
             f"{file}: no column holds the {quantity}{hint}; name it {_spelt(quantity)} (also {others} with the unit)"
-            f"{rate}; there are {', '.join(columns[:LISTED])}{', ...' * (len(columns) > LISTED)}"
+            f"{rate}; there are {', '.join(columns[:_LISTED])}{', ...' * (len(columns) > _LISTED)}"
         )
 
 
 def _spelt(quantity: str) -> str:
-    units = USUAL.get(QUANTITIES[quantity][1], ())
+    units = USUAL.get(_QUANTITIES[quantity][1], ())
     return " or ".join(f"'{_named(quantity, unit)}'" for unit in units) or f"'{quantity}'"
 
 
@@ -176,9 +176,9 @@ def constants(sidecar: Source) -> dict[str, float]:
         known = meaning(str(key))
         if isinstance(value, bool) or not isinstance(value, int | float):
             continue
-        if not np.isfinite(value) or (key in RATES and value <= 0.0):
+        if not np.isfinite(value) or (key in _RATES and value <= 0.0):
             raise sidecar.error((key,), f"{value} is not permitted; write a finite number, above 0 for a sample rate")
-        if key in RATES:
+        if key in _RATES:
             found.setdefault("rate", float(value))
         elif known and known.quantity in (*DRIVES, "temperature"):
             found[known.quantity] = float(known.in_si(np.asarray(value, dtype=float)))

@@ -24,17 +24,17 @@ from seatsim.schema.guarded import is_there
 from seatsim.schema.tables import read_table
 from seatsim.schema.yaml_source import Source
 
-Table = dict[str, Array]
+_Table = dict[str, Array]
 
-SUFFIXES = (".csv", ".csv.gz", ".csv.bz2", ".csv.xz", ".csv.zip")
-GAP = 1.5
+_SUFFIXES = (".csv", ".csv.gz", ".csv.bz2", ".csv.xz", ".csv.zip")
+_GAP = 1.5
 """A pause of more median row intervals than this ends a record."""
-OFF = 1.0
+_OFF = 1.0
 """Largest deviation of a row from the even spacing of its record, in median intervals."""
 LEAST_ROWS = 20
-KEPT = 0.9
+_KEPT = 0.9
 """Least share of a table's rows that its records hold; the other rows lie in short pieces between pauses."""
-SLOPE_WINDOW = 0.02
+_SLOPE_WINDOW = 0.02
 """s; window over which the displacement is differentiated where no velocity was recorded."""
 
 
@@ -96,9 +96,9 @@ def load_bench(path: str | Path) -> list[BenchRecord]:
         raise InputError(f"{path}: no such file or folder{hint}; give a bench table, or a folder of them")
     if (path / HEADER).exists():
         return _recorded(path)
-    files = sorted(file for file in path.iterdir() if file.name.endswith(SUFFIXES)) if path.is_dir() else [path]
+    files = sorted(file for file in path.iterdir() if file.name.endswith(_SUFFIXES)) if path.is_dir() else [path]
     if not files:
-        raise InputError(f"{path}: holds no table; give a folder with files that end in {', '.join(SUFFIXES)}")
+        raise InputError(f"{path}: holds no table; give a folder with files that end in {', '.join(_SUFFIXES)}")
     return [record for file in files for record in _records(file)]
 
 
@@ -136,22 +136,22 @@ def _records(file: Path) -> Iterator[BenchRecord]:
             yield record._replace(unused=columns.unused)
 
 
-def _split(table: Table, file: Path, lines: NDArray[np.int64]) -> Iterator[BenchRecord]:
+def _split(table: _Table, file: Path, lines: NDArray[np.int64]) -> Iterator[BenchRecord]:
     """Yield the uninterrupted records of a table; `lines` are the line numbers of its rows in the file."""
     time = table["time"]
     interval = np.diff(time)
     normal = float(np.median(interval)) if len(interval) else 0.0
     if len(time) < LEAST_ROWS or normal <= 0.0:
         raise InputError(f"{file}: holds {len(time)} rows of rising time; a record has at least {LEAST_ROWS}")
-    jumps = (interval > GAP * normal) | (interval <= 0.0)
+    jumps = (interval > _GAP * normal) | (interval <= 0.0)
     if "segment" in table:
         jumps |= np.diff(table["segment"]) != 0.0
     edges = [0, *(np.flatnonzero(jumps) + 1), len(time)]
     parts = [slice(a, b) for a, b in pairwise(edges) if b - a >= LEAST_ROWS]
-    uneven = [int(np.flatnonzero(jumps)[0]) + 1] if sum(p.stop - p.start for p in parts) < KEPT * len(time) else []
+    uneven = [int(np.flatnonzero(jumps)[0]) + 1] if sum(p.stop - p.start for p in parts) < _KEPT * len(time) else []
     for part in parts:
         off = np.abs(time[part] - np.linspace(time[part][0], time[part][-1], part.stop - part.start))
-        uneven += [part.start + int(np.argmax(off))] if np.max(off) > OFF * normal else []
+        uneven += [part.start + int(np.argmax(off))] if np.max(off) > _OFF * normal else []
     if uneven:
         place = f"{file}, line {lines[uneven[0]]}, {time[uneven[0]]:g} s"
         raise InputError(f"{place}: rows are not evenly spaced in time; resample them to a constant rate")
@@ -177,10 +177,10 @@ def _record(table: Mapping[str, Array], file: Path) -> BenchRecord:
 
 
 def _slope(x: Array, rate: float) -> Array:
-    """Return the derivative of a displacement by the method of Savitzky and Golay, order 3 over `SLOPE_WINDOW`."""
+    """Return the derivative of a displacement by the method of Savitzky and Golay, order 3 over `_SLOPE_WINDOW`."""
     from scipy.signal import savgol_filter
 
-    window = min(max(5, 2 * round(0.5 * SLOPE_WINDOW * rate) + 1), 2 * ((len(x) - 1) // 2) + 1)
+    window = min(max(5, 2 * round(0.5 * _SLOPE_WINDOW * rate) + 1), 2 * ((len(x) - 1) // 2) + 1)
     return np.asarray(savgol_filter(x, window, 3, deriv=1, delta=1.0 / rate), dtype=float)
 
 

@@ -6,12 +6,11 @@ import math
 from pathlib import Path
 from typing import NamedTuple
 
-from seatsim.recordings.compared import COMPARED
 from seatsim.recordings.gap import Gap, measure_gap
 from seatsim.recordings.prediction import Prediction, predict_gap
 from seatsim.recordings.quality.examination import examine, refuse
 from seatsim.recordings.recording import Recording, load_recording
-from seatsim.recordings.replay import note_unused_log
+from seatsim.recordings.replay import COMPARED, note_unused_log
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 

@@ -10,11 +10,10 @@ from typing import NamedTuple, TypedDict
 import numpy as np
 
 from seatsim.metrics.motion import rms
-from seatsim.recordings.compared import COMPARED, LEFT_OUT, stands_out
 from seatsim.recordings.quality.examination import examine, refuse
-from seatsim.recordings.quality.gravity import without_gravity
+from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import Recording, load_recording
-from seatsim.recordings.replay import note_unused_log, replay
+from seatsim.recordings.replay import COMPARED, LEFT_OUT, note_unused_log, replay, stands_out
 from seatsim.scenario.loading import single
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.scenario.scenario import Scenario

@@ -17,7 +17,7 @@ USUAL = 0.02
 """Fraction to which parameters are taken to be known where a recording does not say."""
 NOT_STATED = "parameter_tolerance is not stated"
 """How the note begins that says so."""
-DEFAULT = "default"
+_DEFAULT = "default"
 """Key of the tolerance of all parameters that a mapping of tolerances does not name."""
 Tolerance = float | Literal["fitted"]
 """Fraction to which a parameter is known, or `fitted` where it was fitted to such data."""
@@ -67,14 +67,14 @@ class Header(NamedTuple):
         """Tolerance of the parameters that have none of their own."""
         stated = self.parameter_tolerance
         if isinstance(stated, Mapping):
-            return stated.get(DEFAULT, USUAL)
+            return stated.get(_DEFAULT, USUAL)
         return USUAL if stated is None else stated
 
     @property
     def own_tolerances(self) -> dict[str, Tolerance]:
         """Tolerances of single parameters by dotted key."""
         stated = self.parameter_tolerance
-        return {key: value for key, value in stated.items() if key != DEFAULT} if isinstance(stated, Mapping) else {}
+        return {key: value for key, value in stated.items() if key != _DEFAULT} if isinstance(stated, Mapping) else {}
 
 
 class RunEntry(NamedTuple):
@@ -149,7 +149,7 @@ def check_against(nominal: Scenario, header: Header, runs: Iterable[RunEntry], s
     """Raise InputError at a dotted key that the nominal scenario does not have, or a value that it does not permit."""
     known = [key for key in list_numbers(nominal) if key.startswith(tuple(f"{each}." for each in PARAMETERS))]
     for key in header.own_tolerances:
-        check_key(key, [DEFAULT, *known], source, ("parameter_tolerance", key))
+        check_key(key, [_DEFAULT, *known], source, ("parameter_tolerance", key))
     for index, run in enumerate(runs):
         for key, value in run.set.items():
             check_number(nominal, key, value, source, ("runs", index, "set", key))

@@ -11,7 +11,7 @@ from seatsim.scenario.loading import single
 from seatsim.scenario.numbers import list_numbers
 from seatsim.schema.errors import InputError
 
-CURRENTS = ("current_command", "command_voltage", "coil_current")
+_CURRENTS = ("current_command", "command_voltage", "coil_current")
 """Channels of which one drives the coil or the damper."""
 
 
@@ -48,7 +48,7 @@ def _check_alike(first: Recording, second: Recording) -> None:
                 f"{place}, channels.{name}.unit: is another one than in {first.folder / HEADER}; use one unit"
             )
     _check_nominals(first, second)
-    driven = [{name for name in CURRENTS if name in each.channels} for each in (first, second)]
+    driven = [{name for name in _CURRENTS if name in each.channels} for each in (first, second)]
     if any(driven) and not driven[0] & driven[1]:
         named = [" and ".join(sorted(each)) or "no current" for each in driven]
         problem = f"has {named[1]}, and {first.folder / HEADER} has {named[0]}; record one of them in both"

@@ -10,16 +10,16 @@ import numpy as np
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
-Signals = Mapping[str, Array]
+_Signals = Mapping[str, Array]
 
 BANDS = 7
 """Octaves down from the highest compared frequency; the lowest band begins above 0, the highest one has no end."""
-QUIET = 0.01
+_QUIET = 0.01
 """Share of a channel's power below which a band shows nothing of its own; it is taken to be as all bands are."""
 LARGEST_RATIO = 10.0
 """Most by which the measured amplitude of a band may differ from the simulated one and still be followed."""
 
-LARGEST_ERROR = 3.0
+_LARGEST_ERROR = 3.0
 """Most that counts of an error in a band where a run had next to no signal."""
 
 
@@ -98,12 +98,12 @@ class ModelError:
         A form that is wrong misses the same share of any amplitude; a disturbance is the same at any amplitude. Few
         runs do not tell one from the other: the first row has the shares of the runs, the second what they missed.
         """
-        limited = np.minimum(self.error[channel], LARGEST_ERROR)
+        limited = np.minimum(self.error[channel], _LARGEST_ERROR)
         return np.array([limited**2 @ self.predict_amplitude(channel, simulated, rate), self.missed[channel]])
 
 
 def measure_model_error(
-    runs: Iterable[tuple[str, Signals, Signals]], noise: Mapping[str, float], rate: float, highest: float
+    runs: Iterable[tuple[str, _Signals, _Signals]], noise: Mapping[str, float], rate: float, highest: float
 ) -> ModelError:
     """Return what a scenario leaves.
 
@@ -146,7 +146,7 @@ def _with_whole(powers: Array) -> Array:
 
 def _root_ratio(above: Array, below: Array) -> Array:
     """Return the root of a ratio of powers, shape (bands,); of all bands where one is quiet, 0 where all are silent."""
-    quiet = below <= QUIET * below[0]
+    quiet = below <= _QUIET * below[0]
     whole = np.sum(above[1:]) / below[0] if below[0] > 0.0 else 0.0
     return np.asarray(np.sqrt(np.where(quiet, whole, above / np.where(quiet, 1.0, below))))
 

@@ -20,10 +20,9 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.effects.base import EFFECTS
-from seatsim.recordings.compared import NOISE_FACTOR
 from seatsim.recordings.model_error import ModelError, read_model_error
 from seatsim.recordings.recording import Recording, load_recording
-from seatsim.recordings.replay import simulate_table
+from seatsim.recordings.replay import NOISE_FACTOR, simulate_table
 from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
@@ -32,13 +31,13 @@ from seatsim.schema.fields import bounds, replace_fields
 from seatsim.schema.guarded import expect, read_json
 from seatsim.schema.registry import Record
 
-EXCITATION_STD = 0.15
+_EXCITATION_STD = 0.15
 """Standard deviation of the logarithm of what is missed, between excitations of one kind; on sealed rigs."""
-RATIO_STD = 0.05
+_RATIO_STD = 0.05
 """Standard deviation of the logarithm of the share of the gap that is left, whatever is missed; on sealed rigs."""
-ONE_RUN_STD = 0.3
+_ONE_RUN_STD = 0.3
 """The same where a single run was diagnosed, so that its spread from run to run is not known."""
-QUANTILE = 1.645
+_QUANTILE = 1.645
 """Of the normal distribution, at the ends of a 90 % interval."""
 
 
@@ -130,9 +129,9 @@ def _combine(error: ModelError, rigs: SimulatedRigs, place: str) -> Prediction:
         raise InputError(f"{place}: no channel of the diagnosis is to stand above its noise with these inputs")
     mean = np.mean(list(parts.values()), axis=0)
     changes, floor, doubt = (float(value) for value in mean[:3])
-    rest, width = _mean_square(mean[3:]), QUANTILE * _spread(mean[3:])
-    gaps, share = _roots(changes, floor, rest), np.exp(QUANTILE * RATIO_STD * (changes > 0.0))
-    least = share * _left(_roots(changes, floor, rest * np.exp(2.0 * width) + QUANTILE**2 * doubt))
+    rest, width = _mean_square(mean[3:]), _QUANTILE * _spread(mean[3:])
+    gaps, share = _roots(changes, floor, rest), np.exp(_QUANTILE * _RATIO_STD * (changes > 0.0))
+    least = share * _left(_roots(changes, floor, rest * np.exp(2.0 * width) + _QUANTILE**2 * doubt))
     most = _left(_roots(changes, floor, rest * np.exp(-2.0 * width))) / share
     channels = {name: _roots(part[0], part[1], _mean_square(part[3:])) for name, part in parts.items()}
     return Prediction(*gaps, 1.0 - _left(gaps), (1.0 - least, 1.0 - most), channels)
@@ -170,7 +169,7 @@ def _mean_square(missed: Array) -> float:
 
 def _spread(missed: Array) -> float:
     """Return the standard deviation of the logarithm of what is missed, from two figures by run and beyond these."""
-    beyond = EXCITATION_STD if len(missed) > 2 else ONE_RUN_STD
+    beyond = _EXCITATION_STD if len(missed) > 2 else _ONE_RUN_STD
     return float(np.hypot(beyond, np.std(0.5 * np.log(np.maximum(missed, 1e-300)), ddof=1)))
 
 

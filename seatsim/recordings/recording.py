@@ -1,4 +1,4 @@
-"""A recording of a rig: `recording.yaml`, its nominal scenario, and a table per run."""
+"""A recording of a rig: `recording.yaml`, its nominal scenario, a table per run, and the channels that it may have."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
-from seatsim.recordings.channel_units import BENCH_CHANNELS, SEAT_CHANNELS
 from seatsim.recordings.header import Header, RunEntry, check_against, read_runs, read_tolerances
 from seatsim.scenario.loading import single
 from seatsim.scenario.numbers import change_numbers, list_numbers
@@ -22,12 +21,40 @@ from seatsim.schema.units import Conversion, conversion
 from seatsim.schema.validation import build, check_keys, mapping
 from seatsim.schema.yaml_source import Source
 
-HEADER = "recording.yaml"
-KEYS = (*Header._fields, "runs", "channels", "actuator", "note")
+SEAT_CHANNELS = {
+    "floor_acceleration": "m/s^2",
+    "frame_acceleration": "m/s^2",
+    "driver_acceleration": "m/s^2",
+    "suspension_displacement": "m",
+    "damper_force": "N",
+    "current_command": "A",
+    "coil_current": "A",
+    "damper_temperature": "degC",
+}
+BENCH_CHANNELS = {
+    "displacement": "m",
+    "velocity": "m/s",
+    "damper_force": "N",
+    "current_command": "A",
+    "command_voltage": "V",
+    "coil_current": "A",
+    "damper_temperature": "degC",
+}
+CHANNELS = {"seat": SEAT_CHANNELS, "damper_bench": BENCH_CHANNELS}
+"""Channels by rig, each with its unit."""
+ACCELEROMETERS = ("floor_acceleration", "frame_acceleration", "driver_acceleration")
+MOTION = (*ACCELEROMETERS, "suspension_displacement", "displacement", "velocity", "damper_force")
+"""Channels of motion and force, which swing about zero and are never at rest for long."""
+COMMANDS = ("current_command", "command_voltage")
+"""Channels that are logged and not measured, so that they have no noise."""
 
-KEPT = 32
+
+HEADER = "recording.yaml"
+_KEYS = (*Header._fields, "runs", "channels", "actuator", "note")
+
+_KEPT = 32
 """Number of files kept in memory while they are unchanged, since every simulation of a run reads them again."""
-Stamp = tuple[int, int, int] | None
+_Stamp = tuple[int, int, int] | None
 
 
 class ChannelEntry(NamedTuple):
@@ -97,7 +124,7 @@ class Recording:
         return change_numbers(scenario, changes, _nominal_numbers(self.nominal, _stamp(self.nominal)))
 
 
-def _stamp(path: Path) -> Stamp:
+def _stamp(path: Path) -> _Stamp:
     """Return a value that changes with the content of a file, None where there is no file."""
     try:
         status = path.stat()
@@ -119,19 +146,19 @@ def load_recording(folder: str | Path) -> Recording:
     return recording
 
 
-@lru_cache(maxsize=KEPT)
-def _nominal_numbers(path: Path, stamp: Stamp) -> Mapping[str, float]:
+@lru_cache(maxsize=_KEPT)
+def _nominal_numbers(path: Path, stamp: _Stamp) -> Mapping[str, float]:
     return list_numbers(single(path))
 
 
-@lru_cache(maxsize=KEPT)
-def _load(folder: Path, stamp: Stamp) -> tuple[Recording, Source]:
+@lru_cache(maxsize=_KEPT)
+def _load(folder: Path, stamp: _Stamp) -> tuple[Recording, Source]:
     if not is_there(folder / HEADER):
         lacks = "holds no recording.yaml" if folder.is_dir() else "no such folder with a recording.yaml"
         raise InputError(f"{folder}: {lacks}; give the folder of a recording, which seatsim import makes of your files")
     source = Source(folder / HEADER)
     data = source.data
-    check_keys(data, KEYS, source, ())
+    check_keys(data, _KEYS, source, ())
     stated = {name: data[name] for name in Header._fields if name in data}
     if "parameter_tolerance" in stated:
         stated["parameter_tolerance"] = read_tolerances(stated["parameter_tolerance"], source)
@@ -167,8 +194,8 @@ def _channels(
     return channels, conversions
 
 
-@lru_cache(maxsize=KEPT)
-def _read_table(path: Path, channels: tuple[str, ...], stamp: Stamp) -> dict[str, Array]:
+@lru_cache(maxsize=_KEPT)
+def _read_table(path: Path, channels: tuple[str, ...], stamp: _Stamp) -> dict[str, Array]:
     frame = read_table(path)
     if len(frame) < 2:
         raise InputError(f"{path}: holds {len(frame)} rows; a run has at least two")

@@ -9,22 +9,31 @@ from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
-from ruamel.yaml import YAML
 
-from seatsim.recordings.channel_units import SEAT_CHANNELS
 from seatsim.recordings.header import USUAL, Tolerances
+from seatsim.recordings.recording import HEADER, SEAT_CHANNELS
 from seatsim.scenario.numbers import PARAMETERS, TEMPERATURE, list_numbers
+from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
-from seatsim.schema.files import write_packed, write_together, write_whole
+from seatsim.schema.files import write_packed, write_text, write_together
+from seatsim.schema.yaml_text import dump
 from seatsim.simulation.result import Result, Run
 
-WITHOUT_NOISE: Mapping[str, float] = MappingProxyType({})
+NOMINAL = "nominal.yaml"
+_OF_DAMPER = ("damper", "actuator", "temperature", "effects")
+_RIG = ("plant", "driver", *_OF_DAMPER, "solver")
+"""Sections of a scenario that state its rig; on a bench those of the damper alone."""
+_WITHOUT_NOISE: Mapping[str, float] = MappingProxyType({})
 
 
 def save_recording(
-    result: Result, folder: str | Path, channels: Sequence[str], tolerance: Tolerances = USUAL,
-    model_error: float | None = None, noise: Mapping[str, float] = WITHOUT_NOISE,
-) -> Path:  # fmt: skip
+    result: Result,
+    folder: str | Path,
+    channels: Sequence[str],
+    tolerance: Tolerances = USUAL,
+    model_error: float | None = None,
+    noise: Mapping[str, float] = _WITHOUT_NOISE,
+) -> Path:
     """Write the runs of one simulated seat as a recording, one row a step, and return its folder.
 
     The nominal scenario is the first run's, driven by `law: replay` and `kind: recording`. Parameters and
@@ -49,7 +58,7 @@ def save_recording(
         "rig": "seat",
         "sample_rate": 1.0 / first.history.step,
         "parameter_tolerance": dict(tolerance) if isinstance(tolerance, Mapping) else tolerance,
-        "nominal": "nominal.yaml",
+        "nominal": NOMINAL,
         "runs": [{"name": name, "file": f"{name}.csv.gz"} | _changes(first, run) for name, run in files.items()],
         "channels": {
             name: {"unit": SEAT_CHANNELS[name]} | ({"noise_rms": noise[name]} if name in noise else {})
@@ -60,22 +69,35 @@ def save_recording(
         header["model_error"] = model_error
     rng = np.random.default_rng(first.scenario.seed)
     tables = {
-        f"{name}.csv.gz": pd.DataFrame(
-            {"time": np.asarray(run["time"])}
-            | {key: run[key] + noise.get(key, 0.0) * rng.standard_normal(len(run[key])) for key in channels}
-        )
+        name: {"time": np.asarray(run["time"])}
+        | {key: run[key] + noise.get(key, 0.0) * rng.standard_normal(len(run[key])) for key in channels}
         for name, run in files.items()
     }
-    scenarios = {"nominal.yaml": nominal, "recording.yaml": header}
-    write_together(
-        folder,
-        lambda part: [
-            *(write_packed(part / name, partial(table.to_csv, mode="wb", index=False, float_format="%.7g"))
-              for name, table in tables.items()),
-            *(write_whole(part / name, partial(YAML(typ="safe").dump, content)) for name, content in scenarios.items()),
-        ],
-    )  # fmt: skip
+    write_together(folder, lambda part: write_files(part, tables, nominal, header, "%.7g"))
     return folder
+
+
+def write_files(
+    folder: Path,
+    tables: Mapping[str, Mapping[str, Array]],
+    nominal: Mapping[str, object] | None,
+    header: Mapping[str, object],
+    digits: str,
+) -> list[Path]:
+    """Write the table of each run, the nominal scenario if there is one, and the header of a recording."""
+    frames = {name: pd.DataFrame(dict(table)) for name, table in tables.items()}
+    write = {name: partial(each.to_csv, mode="wb", index=False, float_format=digits) for name, each in frames.items()}
+    paths = [write_packed(folder / f"{name}.csv.gz", each, level=3) for name, each in write.items()]
+    texts = ({} if nominal is None else {NOMINAL: nominal}) | {HEADER: header}
+    return [*paths, *(write_text(folder / name, dump(content)) for name, content in texts.items())]
+
+
+def state_nominal(content: Mapping[str, object], rig: str, law: Mapping[str, object]) -> dict[str, object]:
+    """Return the nominal scenario of a recording: what of a scenario's content states the rig, driven by the record."""
+    stated = {key: content[key] for key in _RIG if key in content}
+    if rig == "damper_bench":
+        return {key: value for key, value in stated.items() if key in _OF_DAMPER}
+    return stated | {"controller": law, "excitation": {"kind": "recording"}}
 
 
 def _changes(first: Run, run: Run) -> dict[str, dict[str, float]]:
@@ -83,10 +105,8 @@ def _changes(first: Run, run: Run) -> dict[str, dict[str, float]]:
     nominal, own = list_numbers(first.scenario), list_numbers(run.scenario)
     if type(first.scenario.damper.record) is not type(run.scenario.damper.record):
         raise InputError(f"{run.scenario.title}: has another damper model; a recording has one nominal scenario")
-    changed = {
-        key: value for key, value in own.items()
-        if key.startswith((*PARAMETERS, TEMPERATURE)) and value != nominal.get(key)
-    }  # fmt: skip
+    ours = {key: value for key, value in own.items() if key.startswith((*PARAMETERS, TEMPERATURE))}
+    changed = {key: value for key, value in ours.items() if value != nominal.get(key)}
     return {"set": changed} if changed else {}
 
 
@@ -101,6 +121,4 @@ def _nominal(run: Run, recorded: set[str]) -> dict[str, object]:
         if np.ptp(commands) > 0.0:
             raise InputError("a current that changes must be recorded: add the channel current_command or coil_current")
         law["current"] = float(commands[0])
-    kept = ("plant", "driver", "damper", "actuator", "temperature", "effects", "solver")
-    nominal = {key: values[key] for key in kept if key in values}
-    return nominal | {"controller": law, "excitation": {"kind": "recording"}}
+    return state_nominal(values, "seat", law)

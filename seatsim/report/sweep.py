@@ -18,9 +18,7 @@ from seatsim.report.sweep_pictures import draw_pareto, tabulate_maps
 from seatsim.report.sweep_sensitivity import choose_metric, show_sensitivity
 from seatsim.scenario.conditions import is_condition
 from seatsim.sweeps.outcome import FAILED, UNVERIFIED
-from seatsim.sweeps.statistics.exceedance import Exceedance
-from seatsim.sweeps.statistics.inputs import SweepRows
-from seatsim.sweeps.statistics.quantiles import NAMES
+from seatsim.sweeps.statistics.rows import NAMES, Exceedance, SweepRows
 from seatsim.sweeps.statistics.sensitivity import Sensitivities, choose_key
 
 if TYPE_CHECKING:

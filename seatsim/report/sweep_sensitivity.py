@@ -10,7 +10,7 @@ from seatsim.plots.labels import format_unit
 from seatsim.report.blocks import Bar, Bars, Block, Text
 from seatsim.report.formatting import format_number, format_percent
 from seatsim.report.sweep_names import COMFORT, TRAVEL, describe_column, format_level
-from seatsim.sweeps.statistics.inputs import SweepRows
+from seatsim.sweeps.statistics.rows import SweepRows
 from seatsim.sweeps.statistics.sensitivity import Sensitivities, Sensitivity
 
 MOST_KEYS = 14

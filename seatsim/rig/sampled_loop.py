@@ -88,7 +88,7 @@ class SampledLoop(NamedTuple):
             return 0.0
         late = delay_samples * self.sample_time
         loops = [self.gain(w) * np.exp(-1j * w * late) for w in self._frequencies()]
-        return min(2.0 * abs(1.0 - loop) / abs(1.0 + loop) for loop in loops)
+        return float(min(2.0 * abs(1.0 - loop) / abs(1.0 + loop) for loop in loops))
 
     def _frequencies(self) -> Array:
         """Return the frequencies in rad/s at which a loop gain is looked at."""

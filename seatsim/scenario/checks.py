@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from seatsim.metrics import METRICS
 from seatsim.schema.errors import nearest
+from seatsim.schema.json_schema import TEXT, Schema, mapping_schema
 from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath
@@ -50,6 +51,18 @@ def read_checks(stated: object, source: Source) -> tuple[Check, ...]:
     checks = mapping(stated, source, ("checks",))
     check_keys(checks, (STABLE, *LOOP_FIGURES, *METRICS), source, ("checks",))
     return tuple(_read_check(str(name), value, source) for name, value in checks.items())
+
+
+def checks_schema() -> Schema:
+    """Return the JSON Schema of the checks of a scenario."""
+    per = {"per": {"anyOf": [TEXT, {"type": "array", "items": TEXT}]}}
+    stable: Schema = {"anyOf": [{"const": True}, mapping_schema(per)]}
+    units = {**LOOP_FIGURES, **{name: metric.unit for name, metric in METRICS.items()}}
+    bounds = {
+        name: mapping_schema({"min": {"type": "number", "unit": unit}, "max": {"type": "number", "unit": unit}, **per})
+        for name, unit in units.items()
+    }
+    return mapping_schema({STABLE: stable, **bounds})
 
 
 def _read_check(name: str, value: object, source: Source) -> Check:

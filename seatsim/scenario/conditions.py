@@ -12,16 +12,16 @@ from typing import TypeVar
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.registry import Record, name_of
 
-CONDITIONS = ("excitation", "seed", "temperature", "driver", "start", "plant.driver_mass")
+_CONDITIONS = ("excitation", "seed", "temperature", "driver", "start", "plant.driver_mass")
 """Sections and keys of a file that state a condition."""
-OF_CONDITIONS = ("driver.", "floor.")
+_OF_CONDITIONS = ("driver.", "floor.")
 """Beginnings of the names of effects that act on driver or floor."""
 T = TypeVar("T")
 
 
 def is_condition(key: str) -> bool:
     """Return whether a dotted key of a scenario file, such as `excitation.speed`, states a condition."""
-    return any(key == known or key.startswith(f"{known}.") for known in CONDITIONS)
+    return any(key == known or key.startswith(f"{known}.") for known in _CONDITIONS)
 
 
 def condition_of(scenario: Scenario) -> str:
@@ -39,7 +39,7 @@ def choice_of(scenario: Scenario) -> str:
 
 
 def _is_outside(effect: Record) -> bool:
-    return name_of("effect", type(effect)).startswith(OF_CONDITIONS)
+    return name_of("effect", type(effect)).startswith(_OF_CONDITIONS)
 
 
 def group_by_condition(items: Iterable[tuple[Scenario, T]]) -> list[list[T]]:

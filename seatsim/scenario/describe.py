@@ -7,29 +7,13 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from seatsim.dampers.base import CONFIDENCE, DamperSpecification, find_confidence
-from seatsim.rig.coil import Coil
-from seatsim.rig.drivers import Driver
-from seatsim.rig.plant import Plant
-from seatsim.rig.sensors import Sensors
-from seatsim.rig.temperature import TemperatureFactors, Thermal
-from seatsim.scenario.scenario import Solver, Start
+from seatsim.scenario.sections import RECORDS
 from seatsim.schema import registry
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.fields import FieldSpecification
 from seatsim.schema.fields import describe as fields_of
 
 KINDS = ("damper", "law", "excitation", "effect")
-SECTIONS = {
-    "plant": Plant,
-    "driver": Driver,
-    "actuator": Coil,
-    "temperature_factors": TemperatureFactors,
-    "temperature": Thermal,
-    "sensors": Sensors,
-    "solver": Solver,
-    "start": Start,
-}
-"""Sections of a scenario whose keys are always the same."""
 
 
 class Page(NamedTuple):
@@ -57,7 +41,7 @@ def describe(name: str = "") -> str:
 def list_pages() -> list[Page]:
     """Return what is known of every name, by kind."""
     named = [_make_page(name, kind) for kind in KINDS for name in registry.names(kind)]
-    return [*named, *(_make_page(name, "section") for name in SECTIONS)]
+    return [*named, *(_make_page(name, "section") for name in RECORDS)]
 
 
 def find_page(name: str) -> Page:
@@ -67,14 +51,14 @@ def find_page(name: str) -> Page:
         InputError: nothing has that name.
     """
     kind = next((kind for kind in KINDS if name in registry.names(kind)), "section")
-    if kind == "section" and name not in SECTIONS:
-        known = [known for kind in KINDS for known in registry.names(kind)] + list(SECTIONS)
+    if kind == "section" and name not in RECORDS:
+        known = [known for kind in KINDS for known in registry.names(kind)] + list(RECORDS)
         raise InputError(f"nothing is called '{name}'{nearest(name, known)}; 'seatsim describe' lists all names")
     return _make_page(name, kind)
 
 
 def _make_page(name: str, kind: str) -> Page:
-    cls: type = SECTIONS[name] if kind == "section" else registry.find(kind, name)
+    cls: type = RECORDS[name] if kind == "section" else registry.find(kind, name)
     text, specification = inspect.getdoc(cls) or "", None if kind == "section" else registry.specification_of(cls)
     facts = list(_state_facts(cls, specification)) if isinstance(specification, DamperSpecification) else []
     source = specification.source if specification else ""

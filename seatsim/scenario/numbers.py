@@ -1,19 +1,19 @@
-"""Numbers of a scenario by the dotted keys of its file, such as `plant.driver_mass`, on the frozen value."""
+"""Keys and numbers of a scenario by the dotted keys of its file, such as `plant.driver_mass`, on the frozen value."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Mapping
-from typing import cast
+from typing import Any, cast
 
 from seatsim.dampers.base import Damper
-from seatsim.rig.coil import Coil
 from seatsim.rig.control import Law
-from seatsim.rig.plant import Plant
+from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import Thermal
 from seatsim.scenario.scenario import Scenario
+from seatsim.scenario.sections import SECTIONS
 from seatsim.schema.errors import nearest
-from seatsim.schema.fields import bounds, field_names, replace_fields
+from seatsim.schema.fields import FieldSpecification, bounds, describe, field_names, replace_fields
 from seatsim.schema.registry import Record
 from seatsim.schema.validation import check_value
 from seatsim.schema.yaml_source import Source
@@ -48,15 +48,12 @@ def set_number(scenario: Scenario, key: str, value: float) -> Scenario:
     if not section:
         return dataclasses.replace(scenario, temperature=value)
     record = replace_fields(_records(scenario)[section], {name: value})
-    if isinstance(record, Plant):
-        return dataclasses.replace(scenario, plant=record)
-    if isinstance(record, Coil):
-        return dataclasses.replace(scenario, coil=record)
-    if isinstance(record, Thermal):
-        return dataclasses.replace(scenario, temperature=record)
     if section == LAW and scenario.control is not None:
         return dataclasses.replace(scenario, control=dataclasses.replace(scenario.control, law=cast("Law", record)))
-    return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=cast("Damper", record)))
+    if section == "damper.parameters":
+        return dataclasses.replace(scenario, damper=dataclasses.replace(scenario.damper, record=cast("Damper", record)))
+    changed: dict[str, Any] = {SECTIONS[section].field or section: record}
+    return dataclasses.replace(scenario, **changed)
 
 
 def change_numbers(scenario: Scenario, changes: Mapping[str, float], nominal: Mapping[str, float]) -> Scenario:
@@ -93,11 +90,51 @@ def check_number(scenario: Scenario, key: str, value: float, source: Source, key
     check_value(record, field, value, source, keys)
 
 
+def list_records(scenario: Scenario) -> dict[str, Record]:
+    """Return the records whose fields are keys of a scenario, by the dotted key that they stand under in its file.
+
+    A temperature that is stated as a number is the start of one that changes; sensors that are not stated are those
+    that a file without keys would state.
+    """
+    thermal = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal(scenario.temperature)
+    control, damper = scenario.control, scenario.damper
+    found: dict[str, object] = {
+        "plant": scenario.plant,
+        "driver": scenario.driver,
+        "damper.parameters": damper.record,
+        "damper.temperature_factors": damper.factors,
+        "actuator": scenario.coil,
+        TEMPERATURE: thermal,
+        LAW: control and control.law,
+        f"{LAW}.sensors": control and (control.sensors or Sensors()),
+        "excitation": scenario.excitation,
+        "solver": scenario.solver,
+        "start": scenario.start,
+    }
+    found |= {f"effects.{index}.parameters": effect for index, effect in enumerate(scenario.effects)}
+    # What is registered as a law, damper or excitation is a record of its keys.
+    return {section: cast("Record", record) for section, record in found.items() if record is not None}
+
+
+def list_keys(scenario: Scenario) -> dict[str, FieldSpecification]:
+    """Return the dotted keys of a scenario that are fields of a record, with unit and meaning of each."""
+    fields = {
+        f"{section}.{field.name}": field
+        for section, record in list_records(scenario).items()
+        for field in describe(type(record))
+    }
+    return {**fields, TEMPERATURE: fields[f"{TEMPERATURE}.start"]}
+
+
+def find_unit(scenario: Scenario, key: str) -> str:
+    """Return the unit of a dotted key; an empty string where it has none, as a name or a whole section."""
+    others = {f"{LAW}.sample_time": "s", f"{LAW}.inverse.temperature": "degC"}
+    keys = list_keys(scenario)
+    return keys[key].unit if key in keys else others.get(key, "")
+
+
 def _records(scenario: Scenario) -> dict[str, Record]:
     """Return the records of numbers by the section of the file that they stand under."""
-    records: dict[str, Record] = {} if scenario.plant is None else {"plant": scenario.plant}
-    records |= {"damper.parameters": scenario.damper.record, "actuator": scenario.coil}
-    if scenario.control is not None:
-        # What is registered as a law is a record of its keys.
-        records[LAW] = cast("Record", scenario.control.law)
-    return records | ({TEMPERATURE: scenario.temperature} if isinstance(scenario.temperature, Thermal) else {})
+    known = list_records(scenario)
+    sections = (*PARAMETERS, LAW, *([TEMPERATURE] if isinstance(scenario.temperature, Thermal) else []))
+    return {section: known[section] for section in sections if section in known}

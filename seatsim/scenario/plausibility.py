@@ -8,22 +8,23 @@ import numpy as np
 
 from seatsim.effects.base import EFFECTS, acts_on
 from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.scenario.numbers import TEMPERATURE, list_records
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import describe, field_names
 from seatsim.schema.plausible import doubt
-from seatsim.schema.registry import Record, is_own, specification_of
-
-TEMPERATURE = "temperature"
+from seatsim.schema.registry import is_own, specification_of
 
 
 def list_doubts(scenario: Scenario) -> list[str]:
     """Return a sentence for each value that is unusual for a seat, and for each that changes nothing."""
     doubts = []
-    for section, record in _list_records(scenario).items():
+    for section, record in list_records(scenario).items():
         for field in describe(type(record)):
             problem = doubt(field, getattr(record, field.name))
             if problem:
-                keys = (section, field.name) if section != TEMPERATURE or _is_thermal(scenario) else (section,)
+                keys = (
+                    (*section.split("."), field.name) if section != TEMPERATURE or _is_thermal(scenario) else (section,)
+                )
                 doubts.append(f"{_place(scenario, keys)}: {problem}")
     if TEMPERATURE in scenario.label and not _depends_on_temperature(scenario):
         doubts.append(
@@ -45,13 +46,6 @@ def _list_unread(scenario: Scenario) -> list[str]:
         for effect in own
         if acts_on(type(effect), (TEMPERATURE,)) and not np.array_equal(effect.temperature(1.0, ramp), ramp)
     ]
-
-
-def _list_records(scenario: Scenario) -> dict[str, Record]:
-    temperature = scenario.temperature if isinstance(scenario.temperature, Thermal) else Thermal(scenario.temperature)
-    found = {"plant": scenario.plant, "actuator": scenario.coil, TEMPERATURE: temperature,
-             "excitation": cast("Record | None", scenario.excitation), "start": scenario.start}  # fmt: skip
-    return {section: record for section, record in found.items() if record is not None}
 
 
 def _is_thermal(scenario: Scenario) -> bool:

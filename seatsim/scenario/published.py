@@ -39,7 +39,9 @@ def published_figures(source: Source) -> Published | None:
 
 
 def check_published(source: Source, labels: Sequence[str]) -> None:
-    """Raise InputError where the file's published figures are not of the form above; `labels` set its runs apart."""
+    """Raise InputError where published figures of the file are not of the form above; `labels` set its runs apart."""
+    if "published" not in source.data:
+        return
     published = mapping(source.data["published"], source, ("published",))
     check_keys(published, ("source", "rows"), source, ("published",))
     rows = published.get("rows")

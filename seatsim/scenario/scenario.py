@@ -87,6 +87,10 @@ class Scenario:
     label: Mapping[str, Any] = field(default_factory=dict)
     source: Source | None = None
 
+    def __repr__(self) -> str:
+        """Name the scenario and its file."""
+        return f"<Scenario {self.title}{f' of {self.source.path}' if self.source else ''}>"
+
     @property
     def title(self) -> str:
         """Name of the scenario with what sets this run apart."""

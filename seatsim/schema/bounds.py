@@ -1,4 +1,4 @@
-"""How much a file may make: counted from what it states, before any of it is made.
+"""How much may be made: counted from what a file states, or a run needs, before any of it is made.
 
 A few bytes can state a large array, refer to the same part over and over, or lead back to themselves. Every reader
 whose format permits that counts here what it is about to make, and one limit holds for all of them.
@@ -6,9 +6,12 @@ whose format permits that counts here what it is about to make, and one limit ho
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Hashable, Iterable
+from pathlib import Path
 from typing import NamedTuple
 
+from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import in_mib
 
 LEAST, LARGEST = 2**24, 2**30
@@ -75,3 +78,33 @@ def check_parts(roots: Iterable[Hashable], part: Callable[[Hashable], Part], siz
         stack += found.refers_to
         check_made(BYTES_OF_PART * len(stack), size)
     check_made(sum(made[each] for each in top), size)
+
+
+_NUMBERS_OF_STEP = 60
+"""Numbers that a simulated step takes: inputs, channels of the history, and copies of some."""
+
+
+def check_memory(size: float, what: str, remedy: str) -> None:
+    """Raise InputError where `what` needs more bytes than there are; `remedy` is what to do about it."""
+    there = find_available()
+    if there is not None and size > there:
+        raise InputError(f"{what} need {in_mib(size)} of memory, where {in_mib(there)} are free; {remedy}")
+
+
+def check_steps(steps: float) -> None:
+    """Raise InputError where a simulation of so many steps does not fit into the memory."""
+    shown = f"{steps:,.0f}".replace(",", " ")
+    check_memory(8.0 * _NUMBERS_OF_STEP * steps, f"{shown} steps", "shorten the run, or raise solver.step")
+
+
+def find_available() -> int | None:
+    """Return how many bytes of memory can be taken without swapping, None where the system does not say."""
+    try:
+        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+        return next(1024 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable"))
+    except (OSError, ValueError, StopIteration):
+        pass
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, OSError, ValueError):
+        return None

@@ -10,13 +10,12 @@ SeatsimError            everything that seatsim raises on purpose
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 
 LONGEST = 200
 """Letters of a name from which on none is sought that is near: that takes ever longer, and it is none."""
-
-
-LONGEST_MESSAGE = 2000
+_LONGEST_MESSAGE = 2000
 
 
 class SeatsimError(Exception):
@@ -26,7 +25,7 @@ class SeatsimError(Exception):
 
     def __init__(self, message: str) -> None:
         said = " ".join(message.splitlines())
-        super().__init__(said if len(said) <= LONGEST_MESSAGE else f"{said[:1000]} ... {said[-500:]}")
+        super().__init__(said if len(said) <= _LONGEST_MESSAGE else f"{said[:1000]} ... {said[-500:]}")
 
 
 class InputError(SeatsimError):
@@ -47,9 +46,37 @@ class SynthesisError(SeatsimError):
     """A controller with the wanted property does not exist, or none was found."""
 
 
-def nearest(name: object, known: Iterable[str]) -> str:
-    """Return `" (did you mean 'x'?)"` for the known name closest to `name`, or an empty string."""
+@contextmanager
+def gathered(errors: list[InputError]) -> Iterator[None]:
+    """Add the InputError that a part of a file raises meanwhile to a list, so that the other parts are read as well."""
+    try:
+        yield
+    except InputError as error:
+        errors.append(error)
+
+
+def raise_all(errors: Sequence[InputError]) -> None:
+    """Raise the first of some errors, none where there is none; its notes (`__notes__`) say each of the others once."""
+    if errors:
+        first = errors[0]
+        first.__notes__ = list(dict.fromkeys(said for error in errors for said in list_sentences(error)))[1:]
+        raise first
+
+
+def list_sentences(error: BaseException) -> list[str]:
+    """Return what an error says, and what its notes say of other places of the same file."""
+    return [str(error), *getattr(error, "__notes__", ())]
+
+
+def find_nearest(name: object, known: Iterable[str]) -> str:
+    """Return the known name closest to `name`, an empty string where none is close."""
     if len(str(name)) > LONGEST:
         return ""
     matches = difflib.get_close_matches(str(name), [str(k) for k in known], n=1, cutoff=0.5)
-    return f" (did you mean '{matches[0]}'?)" if matches else ""
+    return matches[0] if matches else ""
+
+
+def nearest(name: object, known: Iterable[str]) -> str:
+    """Return `" (did you mean 'x'?)"` for the known name closest to `name`, or an empty string."""
+    found = find_nearest(name, known)
+    return f" (did you mean '{found}'?)" if found else ""

@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from seatsim.schema.errors import InputError, OutputError
+from seatsim.schema.guarded import check_links_on, check_no_link
 from seatsim.schema.leftovers import noted, uncut
-from seatsim.schema.links import check_links_on, check_no_link
 
 _HOST = re.sub(r"[^0-9A-Za-z]", "_", socket.gethostname())[:40]
 _PART = re.compile(r"\..+\.(\w+)-(\d+)-[0-9a-f]{8}\.part(\..*)?")

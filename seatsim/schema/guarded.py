@@ -1,4 +1,7 @@
-"""Files as bytes, guarded: only regular files, only of a stated size, and one sentence where one cannot be read."""
+"""Files guarded: only regular ones of a stated size are read, with one sentence where one cannot be.
+
+Nothing is written through a link, behind which somebody else may have put a file that is not to change.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +11,18 @@ import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TextIO
 
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, OutputError
 
-LARGEST_JSON = 64 * 2**20
-ReadWatcher = Callable[[Path, bytes], None]
+_LARGEST_JSON = 64 * 2**20
+_ReadWatcher = Callable[[Path, bytes], None]
 """Is called with the path and the content of a file that was read."""
-_watchers: list[ReadWatcher] = []
+_watchers: list[_ReadWatcher] = []
 
 
 @contextmanager
-def watch_reads(tell: ReadWatcher) -> Iterator[None]:
+def watch_reads(tell: _ReadWatcher) -> Iterator[None]:
     """Call `tell` with every file that is read meanwhile, on any thread, so that the inputs of an answer are known."""
     _watchers.append(tell)
     try:
@@ -84,9 +88,48 @@ def read_json(path: Path, what: str) -> object:
     Raises:
         InputError: it cannot be read, or is no JSON.
     """
-    content = read_bytes(path, LARGEST_JSON, what)
+    content = read_bytes(path, _LARGEST_JSON, what)
     try:
         value: object = json.loads(content)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: is no {what}: {error}") from error
     return value
+
+
+def check_no_link(folder: Path, inside: Path) -> None:
+    """Refuse a way from a folder to what is written in it that leads over a link, and so to somebody else's files.
+
+    A file at the end of the way is no matter: it is put in place of a link, and never written through one.
+
+    Raises:
+        InputError: a folder on the way is a link.
+    """
+    for place in (inside, *inside.parents):
+        if place == folder:
+            return
+        if place.is_symlink():
+            raise InputError(f"{place}: is a link, through which nothing is written; remove it, or give another --out")
+
+
+def check_links_on(way: Path) -> None:
+    """Refuse a way that leads over another user's link; the user's own, and those of the system, are followed.
+
+    Raises:
+        InputError: a folder on the way is such a link. OSError, ValueError: it cannot be looked at.
+    """
+    for place in (way.absolute(), *way.absolute().parents):
+        if place.is_symlink() and hasattr(os, "getuid") and place.lstat().st_uid not in (os.getuid(), 0):
+            raise InputError(f"{place}: is another user's link, through which nothing is written; give another --out")
+
+
+def open_in_place(path: Path) -> TextIO:
+    """Open a file, made where it is missing, that is read and written where it lies, such as a lock.
+
+    Raises:
+        InputError: it is a link. OutputError: it cannot be written.
+    """
+    try:
+        return os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666), "r+", encoding="utf-8")
+    except OSError as error:
+        check_no_link(path.parent, path)
+        raise OutputError(f"{path}: cannot be written: {error.strerror}") from error

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import types
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Union, cast, get_args, get_origin, get_type_hints
 
 from pydantic import TypeAdapter
 
 from seatsim.schema.fields import default_values, field_names
 from seatsim.schema.files import plain
+from seatsim.schema.registry import find, names
 
 Schema = dict[str, object]
+ANYTHING: Schema = {}
+TEXT: Schema = {"type": "string"}
+BY_KEY: Schema = {"type": "object"}
+
+
+def head_schema(title: str, schema: Schema) -> Schema:
+    """Return the schema of a whole file."""
+    return {"$schema": "http://json-schema.org/draft-07/schema#", "title": title, **schema}
 
 
 def record_schema(record: type, required: Iterable[str] | None = None) -> Schema:
@@ -32,14 +41,46 @@ def record_schema(record: type, required: Iterable[str] | None = None) -> Schema
 def mapping_schema(properties: Mapping[str, object], required: Iterable[str] = ()) -> Schema:
     """Return the schema of a mapping that has these keys and no others."""
     return {
-        "type": "object", "properties": dict(properties), "required": list(required), "additionalProperties": False,
-    }  # fmt: skip
+        "type": "object",
+        "properties": dict(properties),
+        "required": list(required),
+        "additionalProperties": False,
+    }
+
+
+def name_schema(kind: str) -> Schema:
+    """Return the schema of a name: one that is registered as this kind, or a class of the user's own."""
+    return {"anyOf": [{"enum": names(kind)}, {"type": "string", "pattern": "^[^:]+:[^:]+$"}]}
+
+
+def cases_schema(kind: str, key: str, of: Callable[[str], Schema]) -> Schema:
+    """Return what holds besides, by `of`, where the text under a key is one of the names of this kind."""
+    return {
+        "allOf": [
+            {"if": {"properties": {key: {"const": name}}, "required": [key]}, "then": of(name)} for name in names(kind)
+        ]
+    }
+
+
+def named_schema(kind: str, key: str, common: Mapping[str, Schema]) -> Schema:
+    """Return the schema of a mapping in which the keys of a named class stand beside its name and the `common` ones."""
+
+    def own(name: str) -> Schema:
+        keys = record_schema(find(kind, name))
+        known = dict.fromkeys((key, *common), ANYTHING) | cast("Schema", keys["properties"])
+        return keys | {"properties": known}
+
+    properties = {key: name_schema(kind), **common}
+    return {"type": "object", "properties": properties, "required": [key]} | cases_schema(kind, key, own)
 
 
 def _hint_schema(hint: object) -> Schema:
     """Return the schema of a field's type; a record in it is a mapping, where pydantic would have a list."""
     if not _has_record(hint):
-        return dict(TypeAdapter(cast("type", hint)).json_schema())
+        found = dict(TypeAdapter(cast("type", hint)).json_schema())
+        # An editor shows descriptions alone.
+        unit = found.get("unit", "-")
+        return found if unit == "-" else found | {"description": f"{found['description']} [{unit}]"}
     if get_origin(hint) is Annotated:
         inner, *marks = get_args(hint)
         told = next((mark.description for mark in marks if getattr(mark, "description", None)), None)

@@ -49,7 +49,7 @@ UNIT = ".fmu"
 """Ending of the name of a functional mock-up unit."""
 LARGEST_UNIT = 256 * 2**20
 """Bytes that such a file may have."""
-SAFE_PATH = "PYTHONSAFEPATH"
+_SAFE_PATH = "PYTHONSAFEPATH"
 HOME = Path(__file__).resolve().parents[2]
 """The folder that seatsim lies in."""
 _used: dict[str, _UsedFile] = {}
@@ -169,15 +169,15 @@ def started_elsewhere() -> Iterator[None]:
 
     The child of a spawn is started with `python -c`, which searches it first, even for modules of Python itself.
     """
-    previous = os.environ.get(SAFE_PATH)
-    os.environ[SAFE_PATH] = "1"
+    previous = os.environ.get(_SAFE_PATH)
+    os.environ[_SAFE_PATH] = "1"
     try:
         yield
     finally:
         if previous is None:
-            del os.environ[SAFE_PATH]
+            del os.environ[_SAFE_PATH]
         else:
-            os.environ[SAFE_PATH] = previous
+            os.environ[_SAFE_PATH] = previous
 
 
 def _read(path: Path) -> bytes:
@@ -249,14 +249,16 @@ def _find_installed(name: str) -> ModuleSpec | None:
     started = ({_folder("")} | ({Path(script).resolve().parent} if script else set())) - {HOME}
     first_is_start = bool(sys.path) and not sys.flags.safe_path and _folder(sys.path[0]) in started
     path = [entry for entry in sys.path[1 if first_is_start else 0 :] if entry not in ("", ".")]
+    # All finders: packages that are installed to be edited lie on no path, and have one of their own.
     found = (finder.find_spec(name, path) for finder in sys.meta_path)
     return next((spec for spec in found if spec is not None), None)
 
 
 def _failure(error: Exception, shown: Path, path: Path) -> str:
     """Say in which line of the file its import failed, and how a module in its folder is named."""
-    lines = [(frame.lineno, frame.line) for frame in traceback.extract_tb(error.__traceback__)
-             if frame.filename == str(path)]  # fmt: skip
+    lines = [
+        (frame.lineno, frame.line) for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
+    ]
     if isinstance(error, SyntaxError) and error.filename == str(path):
         lines = [(error.lineno, (error.text or "").strip())]
     place = f"{shown}, line {lines[-1][0]} ({lines[-1][1]})" if lines else str(shown)

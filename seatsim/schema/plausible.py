@@ -12,7 +12,7 @@ from typing import NamedTuple
 from seatsim.schema.fields import FieldSpecification
 
 
-class MistakenUnit(NamedTuple):
+class _MistakenUnit(NamedTuple):
     """A unit in place of the SI unit: `factor * value + offset` is the value in SI."""
 
     name: str
@@ -20,16 +20,16 @@ class MistakenUnit(NamedTuple):
     offset: float = 0.0
 
 
-MISTAKEN: Mapping[str, tuple[MistakenUnit, ...]] = {
-    "m": (MistakenUnit("mm", 1e-3), MistakenUnit("cm", 1e-2)),
-    "kg": (MistakenUnit("g", 1e-3), MistakenUnit("t", 1e3)),
-    "N/m": (MistakenUnit("N/mm", 1e3), MistakenUnit("N/cm", 1e2)),
-    "N s/m": (MistakenUnit("N s/mm", 1e3), MistakenUnit("N s/cm", 1e2)),
-    "s": (MistakenUnit("ms", 1e-3),),
-    "A": (MistakenUnit("mA", 1e-3),),
-    "m/s": (MistakenUnit("km/h", 1 / 3.6), MistakenUnit("mm/s", 1e-3)),
-    "m/s^2": (MistakenUnit("g", 9.80665), MistakenUnit("mm/s^2", 1e-3)),
-    "degC": (MistakenUnit("K", 1.0, -273.15), MistakenUnit("degF", 5 / 9, -160 / 9)),
+_MISTAKEN: Mapping[str, tuple[_MistakenUnit, ...]] = {
+    "m": (_MistakenUnit("mm", 1e-3), _MistakenUnit("cm", 1e-2)),
+    "kg": (_MistakenUnit("g", 1e-3), _MistakenUnit("t", 1e3)),
+    "N/m": (_MistakenUnit("N/mm", 1e3), _MistakenUnit("N/cm", 1e2)),
+    "N s/m": (_MistakenUnit("N s/mm", 1e3), _MistakenUnit("N s/cm", 1e2)),
+    "s": (_MistakenUnit("ms", 1e-3),),
+    "A": (_MistakenUnit("mA", 1e-3),),
+    "m/s": (_MistakenUnit("km/h", 1 / 3.6), _MistakenUnit("mm/s", 1e-3)),
+    "m/s^2": (_MistakenUnit("g", 9.80665), _MistakenUnit("mm/s^2", 1e-3)),
+    "degC": (_MistakenUnit("K", 1.0, -273.15), _MistakenUnit("degF", 5 / 9, -160 / 9)),
 }
 """Units that stand in place of the SI unit, the likelier first."""
 
@@ -58,7 +58,7 @@ def guess(value: object, field: FieldSpecification) -> str:
     """Return the unit in which a value would be usual, as the end of a sentence; empty where there is none."""
     if not isinstance(value, int | float):
         return ""
-    for unit in MISTAKEN.get(field.unit, ()):
+    for unit in _MISTAKEN.get(field.unit, ()):
         meant = unit.factor * value + unit.offset
         if field.usual is not None and _is_usual(meant, field):
             return f"; {value:g} {unit.name} would be {meant:.4g} {field.unit}"

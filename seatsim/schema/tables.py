@@ -20,10 +20,9 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.schema.bounds import TooMuchError, check_made
+from seatsim.schema.bounds import TooMuchError, check_made, check_memory
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import in_mib, read_bytes
-from seatsim.schema.memory import check_memory
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,11 +31,11 @@ if TYPE_CHECKING:
 
 LARGEST_FILE = 2**30
 """Bytes of a table: eight hours of eight channels at 500 Hz."""
-LONGEST_LINE = 2**20
+_LONGEST_LINE = 2**20
 """Bytes of a table in which its first line must end."""
-MOST_COLUMNS = 4096
+_MOST_COLUMNS = 4096
 CHUNK = 2**20
-NUMBERS_OF_VALUE = 3
+_NUMBERS_OF_VALUE = 3
 """Numbers in memory for each value of a table, while it is read."""
 SHORT = 2**24
 """Bytes up to which a table is read by one thread, so that an error can name the line."""
@@ -65,7 +64,7 @@ def read_table(path: Path) -> pd.DataFrame:
     _check_text(content, path)
     names = _read_names(content, path)
     rows = content.count(b"\n")
-    check_memory(8.0 * NUMBERS_OF_VALUE * rows * len(names) + len(content), f"{path}: {rows} rows", "split the table")
+    check_memory(8.0 * _NUMBERS_OF_VALUE * rows * len(names) + len(content), f"{path}: {rows} rows", "split the table")
     bad: list[InvalidRow] = []
     try:
         table = _parse(content, names, bad)
@@ -167,9 +166,9 @@ UNPACKING_ERRORS = (OSError, EOFError, ValueError, zlib.error, lzma.LZMAError, z
 
 def _read_names(content: bytes, path: Path) -> list[str]:
     """Return the names in the first line; one that is empty is called by its number."""
-    head, end, _ = content[:LONGEST_LINE].partition(b"\n")
-    if len(content) > LONGEST_LINE and not end:
-        raise InputError(f"{path}: its first line does not end within {in_mib(LONGEST_LINE)}; it is no table")
+    head, end, _ = content[:_LONGEST_LINE].partition(b"\n")
+    if len(content) > _LONGEST_LINE and not end:
+        raise InputError(f"{path}: its first line does not end within {in_mib(_LONGEST_LINE)}; it is no table")
     try:
         row = next(csv.reader([head.decode("utf-8")]), [])
     except csv.Error as error:
@@ -177,8 +176,8 @@ def _read_names(content: bytes, path: Path) -> list[str]:
     names = [name.strip() or f"column {number}" for number, name in enumerate(row, 1)]
     if not names:
         raise InputError(f"{path}: cannot be read as a table: the file is empty")
-    if len(names) > MOST_COLUMNS:
-        raise InputError(f"{path}: has {len(names)} columns; permitted: at most {MOST_COLUMNS}")
+    if len(names) > _MOST_COLUMNS:
+        raise InputError(f"{path}: has {len(names)} columns; permitted: at most {_MOST_COLUMNS}")
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise InputError(f"{path}, line 1: column '{twice}' stands twice; rename or remove one")

@@ -6,8 +6,8 @@ import re
 from collections.abc import Collection, Sequence
 
 LONGEST_NAME = 100
-LONGEST_WORD = 1000
-FORMULA = re.compile(r"[=@\t\r]|[+-](?!\d[\d.,]*\s?[^\W\d]*$)")
+_LONGEST_WORD = 1000
+_FORMULA = re.compile(r"[=@\t\r]|[+-](?!\d[\d.,]*\s?[^\W\d]*$)")
 """How a text begins that a spreadsheet computes; a size with a sign and a unit, such as `-10 degC`, is none."""
 
 
@@ -25,8 +25,8 @@ def explain_bad_name(name: str) -> str:
 
 
 def cut_words(text: str) -> str:
-    """Return a text without the middle of words of `LONGEST_WORD` letters or more, such as a path made of noise."""
-    return re.sub(rf"\S{{{LONGEST_WORD},}}", lambda found: f"{found[0][:100]}...{found[0][-50:]}", text)
+    """Return a text without the middle of words of `_LONGEST_WORD` letters or more, such as a path made of noise."""
+    return re.sub(rf"\S{{{_LONGEST_WORD},}}", lambda found: f"{found[0][:100]}...{found[0][-50:]}", text)
 
 
 def join_names(names: Collection[str], last: str = "and") -> str:
@@ -49,4 +49,4 @@ def make_printable(text: str) -> str:
 
 def disarm(cell: object) -> object:
     """Return a cell of a CSV; before a text that a spreadsheet would compute stands an apostrophe, which it hides."""
-    return f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell
+    return f"'{cell}" if isinstance(cell, str) and _FORMULA.match(cell) else cell

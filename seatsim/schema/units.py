@@ -74,7 +74,7 @@ SIGNS = {
     "⁻²": "^-2", "²": "^2", "³": "^3", "°": "deg", "℃": "degC", "℉": "degF", "µ": "u", "μ": "u", "·": "*", "⋅": "*",
 }  # fmt: skip
 
-NO_UNITS = ("links",)
+_NO_UNITS = ("links",)
 """Words in names that pint takes for units: `links` is German for left."""
 
 
@@ -108,7 +108,7 @@ def find_conversion(unit: str, wanted: str) -> Conversion | None:
 def is_unit(text: str) -> bool:
     """Say whether a text is a unit, of whatever quantity."""
     plain = text.strip().lower()
-    if len(text) > LONGEST or not plain or plain in NO_UNITS or plain.isdigit():
+    if len(text) > LONGEST or not plain or plain in _NO_UNITS or plain.isdigit():
         return False
     if any(text in units for units in USUAL.values()) or any(plain in units for units in OWN_SPELLINGS.values()):
         return True

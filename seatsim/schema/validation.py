@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TypeGuard, TypeVar, cast
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from seatsim.schema.errors import InputError, nearest
+from seatsim.schema.errors import InputError, find_nearest, nearest, raise_all
 from seatsim.schema.fields import describe, field_names, validated
 from seatsim.schema.plausible import guess
 from seatsim.schema.registry import Record, Registry
@@ -27,21 +27,32 @@ def build(
     """Return the `record` with the given values, which stand under `keys` in the source.
 
     `required` names fields that must be given although the record has defaults; `hint` is added to errors of a
-    missing key. Raises InputError with place, value, what is permitted and the nearest valid name.
+    missing key.
+
+    Raises:
+        InputError: a key is unknown or missing, or a value is not permitted; it names place, value, what is permitted
+            and the nearest valid name, and its notes do so for what else is wrong.
     """
     stated = mapping(values, source, keys)
-    check_keys(stated, field_names(record), source, keys)
-    _check_finite(stated, source, keys)
-    for name in required:
-        if name not in stated:
-            raise source.error(keys, f"key '{name}' is missing{hint}")
+    known = field_names(record)
+    unknown = list(_find_unknown(stated, known, source, keys))
+    infinite = dict(_find_infinite(stated, source, keys))
+    meant = {find_nearest(key, known) for key in stated if key not in known}
+    missing = [name for name in required if name not in stated and name not in meant]
+    errors = [*unknown, *infinite.values()]
+    errors += [source.error(keys, f"key '{name}' is missing{hint}") for name in missing]
     try:
-        return validated(record, _tuples(stated))
+        found = validated(record, _tuples({key: value for key, value in stated.items() if key in known}))
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = (*keys, *(part for part in first["loc"] if not str(part).startswith("function-")))
-        added = hint if first["type"] == "missing" else sweep_hint(first["input"], where)
-        raise source.error(where, _problem(record, first) + added) from None
+        # What is missing under the name that a misspelt key means, or is no finite number, is said already.
+        said = {*infinite, *((*keys, name) for name in (*missing, *meant))}
+        for each in error.errors(include_url=False):
+            where = (*keys, *(part for part in each["loc"] if not str(part).startswith("function-")))
+            added = hint if each["type"] == "missing" else sweep_hint(each["input"], where)
+            if where not in said:
+                errors.append(source.error(where, _problem(record, each) + added))
+    raise_all(errors)
+    return found
 
 
 def sweep_hint(value: object, keys: KeyPath) -> str:
@@ -54,7 +65,7 @@ def sweep_hint(value: object, keys: KeyPath) -> str:
 
 def check_value(record: Record, name: str, value: object, source: Source, keys: KeyPath) -> None:
     """Raise InputError, placed at `keys` of a source, where a field of a record may not have a value."""
-    _check_finite(value, source, keys)
+    raise_all([error for _, error in _find_infinite(value, source, keys)])
     try:
         validated(type(record), {**record._asdict(), name: value})
     except ValidationError as error:
@@ -69,11 +80,16 @@ def mapping(values: object, source: Source, keys: KeyPath) -> Mapping[str, objec
 
 
 def check_keys(values: Mapping[str, object], known: Iterable[str], source: Source, keys: KeyPath) -> None:
-    """Raise InputError at the first key that is not known."""
-    permitted = list(known)
+    """Raise InputError where keys are not known."""
+    raise_all(list(_find_unknown(values, list(known), source, keys)))
+
+
+def _find_unknown(
+    values: Mapping[str, object], known: Sequence[str], source: Source, keys: KeyPath
+) -> Iterator[InputError]:
     for key in values:
-        if key not in permitted:
-            raise source.error((*keys, key), f"unknown key{nearest(key, permitted)}; permitted: {', '.join(permitted)}")
+        if key not in known:
+            yield source.error((*keys, key), f"unknown key{nearest(key, known)}; permitted: {', '.join(known)}")
 
 
 def choose(values: Mapping[str, object], key: str, source: Source, keys: KeyPath) -> str:
@@ -101,15 +117,14 @@ def is_finite_number(value: object) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _check_finite(value: object, source: Source, keys: KeyPath) -> None:
-    """Raise InputError at the first number that is infinite or not a number."""
+def _find_infinite(value: object, source: Source, keys: KeyPath) -> Iterator[tuple[KeyPath, InputError]]:
+    """Yield the place of each number that is infinite or not a number, and its error."""
     if isinstance(value, float):
         if not math.isfinite(value):
-            raise source.error(keys, f"{value} is not permitted; it must be a finite number")
+            yield keys, source.error(keys, f"{value} is not permitted; it must be a finite number")
     elif isinstance(value, Mapping | list):
-        items = value.items() if isinstance(value, Mapping) else enumerate(value)
-        for key, item in items:
-            _check_finite(item, source, (*keys, key))
+        for key, item in value.items() if isinstance(value, Mapping) else enumerate(value):
+            yield from _find_infinite(item, source, (*keys, key))
 
 
 def _problem(record: type, error: ErrorDetails) -> str:

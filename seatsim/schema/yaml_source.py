@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
@@ -33,6 +34,17 @@ class Source:
             raise InputError(f"{path}: holds no mapping; a YAML file has keys at its top, each as 'key: value'")
         self.places: dict[KeyPath, str] = {keys: self._line(line) for keys, line in {(): 1, **lines}.items()}
         self.data: dict[str, object] = data
+
+    @classmethod
+    def of(cls, data: Mapping[str, object], name: str = "scenario") -> Self:
+        """Return a source of the content of a mapping, such as a scenario made in Python; files lie where Python runs.
+
+        Sequences and numbers of numpy become those of YAML; `name` stands in errors in place of a path.
+        """
+        source = cls.__new__(cls)
+        source.path, source.places = Path(name), {(): name}
+        source.data = {str(key): _as_yaml(value) for key, value in data.items()}
+        return source
 
     def with_changes(self) -> Self:
         """Return a copy whose content may be changed by `put`; what is not changed is shared with this one."""
@@ -97,6 +109,14 @@ class Source:
 
     def _line(self, number: int) -> str:
         return f"{self.path}, line {number}"
+
+
+def _as_yaml(value: object) -> object:
+    if isinstance(value, Mapping):
+        return {str(key): _as_yaml(each) for key, each in value.items()}
+    # An array and a number of numpy both have `tolist`.
+    whole = value.tolist() if hasattr(value, "tolist") else value
+    return [_as_yaml(each) for each in whole] if isinstance(whole, list | tuple) else whole
 
 
 def _find_key(node: Any, name: str, dotted: str, place: str) -> str | int:

@@ -23,10 +23,10 @@ LONGEST_NUMBER = 40
 """Digits of a whole number: twice what any seed has."""
 _TOO_DEEP = f"lists and mappings nest more than {DEEPEST} deep"
 
-Scalar: TypeAlias = str | int | float | bool | None
+_Scalar: TypeAlias = str | int | float | bool | None
 KeyPath = tuple[str | int, ...]
 
-_WORDS: dict[str, Scalar] = {
+_WORDS: dict[str, _Scalar] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
     **dict.fromkeys(("true", "True", "TRUE"), True),
     **dict.fromkeys(("false", "False", "FALSE"), False),
@@ -59,7 +59,7 @@ class _Node(NamedTuple):
     """
 
     line: int
-    value: Scalar | list[_Node] | dict[str, tuple[int, _Node]]
+    value: _Scalar | list[_Node] | dict[str, tuple[int, _Node]]
     merged: tuple[_Node, ...] = ()
     size: int = 1
 
@@ -204,7 +204,7 @@ def _events(text: str) -> Iterator[yaml.Event]:
         raise YamlError(f"character {error.character!r} is not permitted in YAML", line) from error
 
 
-def _read_scalar(text: str, line: int) -> Scalar:
+def _read_scalar(text: str, line: int) -> _Scalar:
     """Return a scalar without quotes as YAML 1.2 means it."""
     if text in _WORDS:
         return _WORDS[text]
@@ -227,3 +227,20 @@ def _short(text: str) -> str:
 
 def _line(event: yaml.Event) -> int:
     return int(event.start_mark.line) + 1
+
+
+def dump(content: object) -> str:
+    """Return the YAML of mappings, lists and plain values in their order, innermost ones in one line each."""
+    return str(
+        yaml.dump(content, None, _Dumper, default_flow_style=None, sort_keys=False, allow_unicode=True, width=9999)
+    )
+
+
+def _represent_text(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
+    """Return a text such that `parse` reads it as one: `1e5` stands in quotation marks."""
+    is_other = text and (text in _WORDS or _WHOLE.fullmatch(text) or _FLOAT.fullmatch(text))
+    return dumper.represent_scalar("tag:yaml.org,2002:str", text, style="'" if is_other else None)
+
+
+_Dumper = type("_Dumper", (yaml.SafeDumper,), {})
+yaml.add_representer(str, _represent_text, _Dumper)

@@ -18,10 +18,9 @@ from seatsim.rig.coil import Coil
 from seatsim.rig.drivers import BODIES, SINGLE_MASS, Driver, body_matrices
 from seatsim.rig.plant import Plant
 from seatsim.rig.temperature import TemperatureFactors
-from seatsim.schema.arrays import Array
+from seatsim.schema.arrays import Array, require_samples
 from seatsim.schema.errors import InputError
 from seatsim.schema.registry import specification_of
-from seatsim.schema.samples import require_samples
 from seatsim.simulation.effect_hooks import COIL, FACTORS, FRAME_FORCE, PLANT, READING, TEMPERATURE, TRUTH
 
 NONE = np.zeros(0)

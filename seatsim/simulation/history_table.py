@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from seatsim.schema.arrow_arrays import store_numbers, store_texts
 from seatsim.schema.files import write_whole
+from seatsim.schema.parquet import store_numbers, store_texts
 from seatsim.simulation.result import UNITS, Run
 
 

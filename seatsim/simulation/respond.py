@@ -1,7 +1,7 @@
 """From a scenario and inputs to what the sensors of the rig say: the one way in which recorded rigs are simulated.
 
 Whatever compares a simulation with a recording comes through here: replay, gap, data checks, diagnosis and the design
-of experiments. A run of a recording becomes inputs by `seatsim.recordings.inputs.recorded_inputs`.
+of experiments. A run of a recording becomes inputs by `seatsim.recordings.replay.recorded_inputs`.
 """
 
 from __future__ import annotations

@@ -39,6 +39,8 @@ UNITS = {
     "energy_stored": "J",
 }
 """Unit of every channel of a history."""
+SHOWN = 10
+"""Runs that a result in a terminal shows."""
 
 
 class Channel(np.ndarray[tuple[int, ...], np.dtype[np.float64]]):
@@ -84,6 +86,11 @@ class Run:
     warnings: tuple[str, ...] = ()
     unverified: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        """Say which scenario was run, and the figures that the table on the terminal has first."""
+        figures = (f"{name} {each.value:.4g} {each.unit}" for name, each in list(self.metrics.items())[:4])
+        return f"<Run of {self.scenario.title}: {', '.join(figures)}>"
+
     def __getitem__(self, name: str) -> Channel:
         """Return a channel with its unit, such as `driver_acceleration`."""
         return Channel(self.history[name], name, UNITS[name])
@@ -99,6 +106,12 @@ class Result:
     runs: Sequence[Run]
     brackets: Mapping[str, Any] = field(default_factory=dict)
     failures: Sequence[str] = ()
+
+    def __repr__(self) -> str:
+        """Show the first runs."""
+        left = len(self.runs) - SHOWN
+        lines = [f"<Result of {len(self.runs)} runs>", *map(repr, self.runs[:SHOWN])]
+        return "\n".join([*lines, f"and {left} more: see .table"] if left > 0 else lines)
 
     def __getitem__(self, name: str) -> Channel:
         """Return a channel of the first run with its unit."""

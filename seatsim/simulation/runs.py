@@ -23,8 +23,8 @@ from seatsim.simulation.validity import explain_unweighted, list_reasons
 R = TypeVar("R")
 
 
-def run(scenario: str | Path | Scenario, settings: Mapping[str, object] | None = None) -> Result:
-    """Run a scenario, or the file of one with all its variants and sweeps.
+def run(scenario: str | Path | Mapping[str, object] | Scenario, settings: Mapping[str, object] | None = None) -> Result:
+    """Run a scenario, or the file of one (or a mapping with the keys of one) with all its variants and sweeps.
 
     Raises:
         InputError: the file is wrong. RunError: a run could not be carried to its end.

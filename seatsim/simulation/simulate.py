@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -43,6 +44,9 @@ from seatsim.simulation.coupled import run_coupled, stand_in
 from seatsim.simulation.divergence import explain_divergence
 from seatsim.simulation.inputs import NONE, Forces
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 DEFAULT_SAMPLE_TIME = 0.001
 """Seconds between two samples of a law that states none, as common for embedded controllers of such seats."""
 SAME_TIME = 1e-9
@@ -63,6 +67,16 @@ class History:
     def __getitem__(self, name: str) -> Array:
         """Return one channel."""
         return self.channels[name]
+
+    def __repr__(self) -> str:
+        """Say how long the run is, and which channels there are."""
+        return f"<History of {len(self.channels['time'])} rows every {self.step:g} s: {', '.join(self.channels)}>"
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the channels as columns of a frame, a row for each step."""
+        import pandas as pd
+
+        return pd.DataFrame(dict(self.channels))
 
 
 def simulate(

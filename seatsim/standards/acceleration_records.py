@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.importing.axis_doubts import doubt_time
-from seatsim.importing.group_time import Clock, check_is_history, find_clock
+from seatsim.importing.doubts import doubt_time
 from seatsim.importing.names import read_name, unit_of_name
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.importing.time_axis import Clock, check_is_history, find_clock
 from seatsim.metrics.directions import DIRECTIONS
 from seatsim.recordings.bench_columns import constants
 from seatsim.recordings.bench_tables import stem

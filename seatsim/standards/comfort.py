@@ -13,7 +13,7 @@ from seatsim.metrics.directions import DIRECTIONS, POINTS, Direction, direction,
 from seatsim.metrics.exposure import Exposure, assess_exposure
 from seatsim.metrics.seat_transmission import SeatTransmission, seat_transmission
 from seatsim.metrics.weighting import weight
-from seatsim.recordings.quality.plausible_ranges import say_implausible
+from seatsim.recordings.quality.channels import say_implausible
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.units import STANDARD_GRAVITY

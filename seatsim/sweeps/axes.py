@@ -9,19 +9,21 @@ from typing import NamedTuple
 import numpy as np
 
 from seatsim.schema.arrays import Array
+from seatsim.schema.json_schema import Schema, mapping_schema
 from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import KeyPath, parse_value
 
 DISTRIBUTIONS = {
-    "uniform": "[low, high]", "normal": "[mean, standard deviation]",
-    "lognormal": "[mean, standard deviation of the log]", "choice": "{value: probability, ...}",
-}  # fmt: skip
+    "uniform": "[low, high]",
+    "normal": "[mean, standard deviation]",
+    "lognormal": "[mean, standard deviation of the log]",
+    "choice": "{value: probability, ...}",
+}
 """Names of distributions, and what each takes."""
-FORMS = (
-    "a list, {from: A, to: B, steps: N}, or a distribution: "
-    + ", ".join(f"{name}: {takes}" for name, takes in DISTRIBUTIONS.items())
-)  # fmt: skip
+FORMS = "a list, {from: A, to: B, steps: N}, or a distribution: " + ", ".join(
+    f"{name}: {takes}" for name, takes in DISTRIBUTIONS.items()
+)
 MOST_STEPS = 1_000_000
 """Of a range; more would be a slip of the keyboard."""
 SLIGHTLY = 1e-9
@@ -74,8 +76,9 @@ def _read_range(stated: Mapping[str, object], source: Source, where: KeyPath) ->
     check_keys(stated, ("from", "to", "steps"), source, where)
     for name in ("from", "to", "steps"):
         if not is_finite_number(stated.get(name)):
-            raise source.error((*where, name), f"{stated.get(name)!r} is not a finite number; a range is"
-                                               " {from: A, to: B, steps: N}")  # fmt: skip
+            raise source.error(
+                (*where, name), f"{stated.get(name)!r} is not a finite number; a range is {{from: A, to: B, steps: N}}"
+            )
     steps, ends = stated["steps"], [stated["from"], stated["to"]]
     if not isinstance(steps, int) or not 2 <= steps <= MOST_STEPS:
         raise source.error(
@@ -152,3 +155,20 @@ def _read_choice(stated: object, source: Source, where: KeyPath) -> Callable[[Ar
 
 def _log(value: float) -> float:
     return math.log(value) if value > 0 else -math.inf
+
+
+def axis_schema() -> Schema:
+    """Return the JSON Schema of the values of a key."""
+    number: Schema = {"type": "number"}
+    pair: Schema = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
+    ends = {"low": number, "high": number}
+    steps: Schema = {"from": number, "to": number, "steps": {"type": "integer", "minimum": 2, "maximum": MOST_STEPS}}
+    choice: Schema = {"type": "object", "additionalProperties": number}
+    forms = [
+        mapping_schema(steps, steps),
+        mapping_schema({"uniform": pair}, ("uniform",)),
+        mapping_schema({"normal": pair, **ends}, ("normal",)),
+        mapping_schema({"lognormal": pair, **ends}, ("lognormal",)),
+        mapping_schema({"choice": choice}, ("choice",)),
+    ]
+    return {"anyOf": [{"type": "array", "minItems": 1}, *forms]}

@@ -11,25 +11,26 @@ limits: {driver_acceleration_weighted: 0.5}
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Literal, NamedTuple, cast, get_args
+from typing import Any, Literal, NamedTuple, cast, get_args
 
 from seatsim.metrics.table import METRICS
-from seatsim.scenario.finding import find_file
-from seatsim.schema.errors import InputError, nearest
+from seatsim.scenario.loading import find_file
+from seatsim.schema.errors import InputError, gathered, nearest, raise_all
 from seatsim.schema.guarded import is_there, read_bytes
+from seatsim.schema.json_schema import BY_KEY, TEXT, Schema, head_schema, mapping_schema
 from seatsim.schema.validation import check_keys, is_finite_number, mapping
 from seatsim.schema.yaml_source import Source
 from seatsim.schema.yaml_text import YamlError, parse_value
-from seatsim.sweeps.axes import Axis, read_axis
+from seatsim.sweeps.axes import Axis, axis_schema, read_axis
 
-DesignName = Literal["cross", "zip", "lhs", "sobol", "table"]
-DESIGNS: tuple[str, ...] = get_args(DesignName)
+_DesignName = Literal["cross", "zip", "lhs", "sobol", "table"]
+_DESIGNS: tuple[str, ...] = get_args(_DesignName)
 KEYS = ("scenario", "seed", "design", "runs", "replicates", "vary", "table", "limits")
 MOST_RUNS = 10_000_000
 """Runs of a sweep: their numbers have this many digits, and more would be a slip of the keyboard."""
-LARGEST_DESIGN = 2**30
+_LARGEST_DESIGN = 2**30
 """Bytes of a table of runs."""
 
 
@@ -49,7 +50,7 @@ class SweepDefinition(NamedTuple):
     source: Source
     scenario: Source
     seed: int
-    design: DesignName
+    design: _DesignName
     runs: int | None
     replicates: int
     axes: tuple[Axis, ...]
@@ -70,27 +71,45 @@ def read_definition(path: Path) -> SweepDefinition:
     source = Source(path)
     if "scenario" not in source.data and {"plant", "damper"} & set(source.data):
         raise InputError(f"{path}: is a scenario; a sweep is a file that names one under scenario, and what varies")
-    check_keys(source.data, KEYS, source, ())
-    design = _read_design(source)
-    table = _read_table(source) if design == "table" else None
-    if table is not None and "vary" in source.data:
-        raise source.error(("vary",), "a design 'table' takes its keys from the columns of the file; leave 'vary' out")
-    if design != "table" and "table" in source.data:
-        raise source.error(("table",), f"design '{design}' takes no table; write design: table")
-    stated = mapping(source.data.get("vary", {}), source, ("vary",))
-    if table is None and not stated:
+    readers: Mapping[str, Callable[[], object]] = {
+        "scenario": lambda: _read_scenario(source),
+        "seed": lambda: _read_whole(source, "seed", least=0) or 0,
+        "design": lambda: _read_design(source),
+        "runs": lambda: _read_whole(source, "runs", least=1),
+        "replicates": lambda: _read_whole(source, "replicates", least=1) or 1,
+        "axes": lambda: _read_axes(source),
+        "table": lambda: _read_table(source),
+        "limits": lambda: _read_limits(source),
+    }
+    found, errors = dict[str, Any](), list[InputError]()
+    with gathered(errors):
+        check_keys(source.data, KEYS, source, ())
+    for name, read in readers.items():
+        with gathered(errors):
+            found[name] = read()
+    raise_all(errors)
+    return SweepDefinition(source=source, **found)
+
+
+def _is_table(source: Source) -> bool:
+    return source.data.get("design") == "table"
+
+
+def _read_axes(source: Source) -> tuple[Axis, ...]:
+    if _is_table(source):
+        if "vary" in source.data:
+            problem = "a design 'table' takes its keys from the columns of the file; leave 'vary' out"
+            raise source.error(("vary",), problem)
+        return ()
+    stated, errors = mapping(source.data.get("vary", {}), source, ("vary",)), list[InputError]()
+    if not stated:
         raise source.error((), "key 'vary' is missing; it names the keys of the scenario that are varied")
-    return SweepDefinition(
-        source=source,
-        scenario=_read_scenario(source),
-        seed=_read_whole(source, "seed", least=0) or 0,
-        design=design,
-        runs=_read_whole(source, "runs", least=1),
-        replicates=_read_whole(source, "replicates", least=1) or 1,
-        axes=tuple(read_axis(key, source) for key in stated),
-        table=table,
-        limits=_read_limits(source),
-    )
+    axes = []
+    for key in stated:
+        with gathered(errors):
+            axes.append(read_axis(key, source))
+    raise_all(errors)
+    return tuple(axes)
 
 
 def is_sweep(data: Mapping[str, object]) -> bool:
@@ -98,13 +117,13 @@ def is_sweep(data: Mapping[str, object]) -> bool:
     return "scenario" in data and bool({"vary", "table", "design"} & set(data))
 
 
-def _read_design(source: Source) -> DesignName:
+def _read_design(source: Source) -> _DesignName:
     name = source.data.get("design", "cross")
-    if name not in DESIGNS:
+    if name not in _DESIGNS:
         raise source.error(
-            ("design",), f"{name!r} is not permitted{nearest(name, DESIGNS)}; permitted: {', '.join(DESIGNS)}"
+            ("design",), f"{name!r} is not permitted{nearest(name, _DESIGNS)}; permitted: {', '.join(_DESIGNS)}"
         )
-    return cast("DesignName", name)
+    return cast("_DesignName", name)
 
 
 def _read_scenario(source: Source) -> Source:
@@ -140,13 +159,18 @@ def _read_limits(source: Source) -> Mapping[str, float]:
     return {name: float(str(value)) for name, value in stated.items()}
 
 
-def _read_table(source: Source) -> Table:
+def _read_table(source: Source) -> Table | None:
     stated = source.data.get("table")
+    if not _is_table(source):
+        if "table" in source.data:
+            problem = f"design '{source.data.get('design', 'cross')}' takes no table; write design: table"
+            raise source.error(("table",), problem)
+        return None
     if not isinstance(stated, str):
         raise source.error(("table",), "design 'table' needs the path of a CSV file whose columns are keys")
     path = source.path.parent / stated
     try:
-        text = read_bytes(path, LARGEST_DESIGN, "a CSV file").decode("utf-8-sig")
+        text = read_bytes(path, _LARGEST_DESIGN, "a CSV file").decode("utf-8-sig")
         rows = list(csv.reader(text.splitlines()))
     except (UnicodeDecodeError, csv.Error, InputError) as error:
         raise source.error(("table",), f"{path} cannot be read: {error}") from error
@@ -165,3 +189,19 @@ def _read_cell(text: str) -> object:
         return parse_value(text)
     except YamlError:
         return text
+
+
+def sweep_schema() -> Schema:
+    """Return the JSON Schema of a sweep."""
+    whole: Schema = {"type": "integer", "minimum": 1}
+    keys = {
+        "scenario": {"anyOf": [TEXT, BY_KEY]},
+        "seed": {"type": "integer", "minimum": 0, "description": "every draw of the design derives from it"},
+        "design": {"enum": list(_DESIGNS)},
+        "runs": {**whole, "description": "points of lhs and sobol; draws of cross and zip"},
+        "replicates": {**whole, "description": "runs of each point with other seeds of the scenario"},
+        "vary": {"type": "object", "additionalProperties": axis_schema()},
+        "table": {**TEXT, "description": "CSV file whose columns are keys, for design table"},
+        "limits": mapping_schema({name: {"type": "number", "unit": m.unit} for name, m in METRICS.items()}),
+    }
+    return head_schema("seatsim sweep", mapping_schema(keys, ("scenario",)))

@@ -2,35 +2,39 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Mapping
 from contextlib import closing
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
+from seatsim.scenario.numbers import find_unit
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.leftovers import uncut
-from seatsim.sweeps.checks import check_plan
 from seatsim.sweeps.definition import SweepDefinition, read_definition
 from seatsim.sweeps.engines.base import Engine, Work
+from seatsim.sweeps.engines.local import LocalEngine
+from seatsim.sweeps.folder import check_resumable, count_states, hold_file, hold_folder, write_manifest
 from seatsim.sweeps.identity import identify_sweep
-from seatsim.sweeps.lock import hold_file, hold_folder
-from seatsim.sweeps.manifest import check_resumable, count_states, write_manifest
 from seatsim.sweeps.outcome import FAILED, Outcome
 from seatsim.sweeps.parts import (
     make_schema,
     part_of,
     read_outcomes,
     read_states,
+    read_sweep,
     remove_unfinished,
     runs_of,
     varied_keys,
     write_outcomes,
 )
-from seatsim.sweeps.plan import Plan, make_plan
-from seatsim.sweeps.units import find_unit
+from seatsim.sweeps.plan import Plan, check_plan, make_plan
 
-FLUSH = 1.0
+if TYPE_CHECKING:
+    import pandas as pd
+
+_FLUSH = 1.0
 """Seconds between two times at which unfinished parts are written: what a killed process may lose."""
 Progress = Callable[[int, int], None]
 """Is called with how many runs have ended, and of how many."""
@@ -60,7 +64,7 @@ def read_share(text: str) -> Share:
     return Share(int(number), int(of))
 
 
-class SweepResult(NamedTuple):
+class _SweepResult(NamedTuple):
     """A sweep after a command: its folder, its identity, runs by state, and reasons of the first runs that failed."""
 
     folder: Path
@@ -69,7 +73,7 @@ class SweepResult(NamedTuple):
     failures: list[str]
 
 
-class PreparedSweep(NamedTuple):
+class _PreparedSweep(NamedTuple):
     """A sweep file and its runs, checked; `doubts` say what is permitted but unusual."""
 
     definition: SweepDefinition
@@ -77,7 +81,7 @@ class PreparedSweep(NamedTuple):
     doubts: list[str]
 
 
-def prepare(path: Path, foresee: Callable[[int], None] = lambda runs: None) -> PreparedSweep:
+def prepare(path: Path, foresee: Callable[[int], None] = lambda runs: None) -> _PreparedSweep:
     """Read a sweep file, resolve its design and check its values; nothing runs.
 
     `foresee` is called with the number of runs before the design is resolved.
@@ -87,18 +91,18 @@ def prepare(path: Path, foresee: Callable[[int], None] = lambda runs: None) -> P
     """
     definition = read_definition(path)
     plan = make_plan(definition, foresee)
-    return PreparedSweep(definition, plan, check_plan(plan))
+    return _PreparedSweep(definition, plan, check_plan(plan))
 
 
 def execute(
-    prepared: PreparedSweep,
+    prepared: _PreparedSweep,
     folder: Path,
     engine: Engine,
     resume: bool = False,
     keep_histories: bool = False,
     share: Share | None = None,
     progress: Progress = lambda done, runs: None,
-) -> SweepResult:
+) -> _SweepResult:
     """Carry out a sweep, or what is missing of it with `resume`, and keep its rows in a folder.
 
     On an interrupt what has ended is kept. A `share` is a part of the sweep that other commands complete.
@@ -131,7 +135,26 @@ def execute(
                 counts = count_states((state for _, state, _ in found), plan.runs)
                 write_manifest(folder, identity, definition.limits, counts)
     failures = [f"run {run}: {reason}" for run, state, reason in found if state == FAILED]
-    return SweepResult(folder, identity.digest, counts, failures)
+    return _SweepResult(folder, identity.digest, counts, failures)
+
+
+def sweep(file: str | Path, out: str | Path, jobs: int | None = None, resume: bool = False) -> pd.DataFrame:
+    """Carry out a sweep file on this machine, keep its rows in the folder `out`, and return them.
+
+    Args:
+        file: the sweep file.
+        out: the folder, as `seatsim sweep --out` has it.
+        jobs: runs at once; all processors where it is not stated.
+        resume: go on with the sweep in the folder.
+
+    Returns:
+        The rows as `seatsim.read_sweep` returns them.
+
+    Raises:
+        InputError: the file is wrong, or the folder holds a sweep and `resume` is not set, or another sweep.
+    """
+    execute(prepare(Path(file)), Path(out), LocalEngine(jobs or os.cpu_count() or 1), resume)
+    return read_sweep(out)
 
 
 class _Rows:
@@ -172,7 +195,7 @@ class _Rows:
             if len(self._open[part]) == len(self._runs(part)):
                 self._write(part)
                 del self._open[part]
-        if time.monotonic() - self._flushed > FLUSH:
+        if time.monotonic() - self._flushed > _FLUSH:
             self.flush()
 
     def flush(self) -> None:

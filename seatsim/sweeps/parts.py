@@ -16,14 +16,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from seatsim.metrics.table import METRICS
-from seatsim.schema.arrow_arrays import store_numbers, store_texts
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import remove_left, write_whole
-from seatsim.schema.parquet import open_parquet
+from seatsim.schema.parquet import open_parquet, store_numbers, store_texts
+from seatsim.sweeps.folder import read_manifest
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Plan
 
 if TYPE_CHECKING:
+    import pandas as pd
     import pyarrow as pa
 
 RUNS_OF_PART = 200
@@ -41,7 +42,7 @@ def runs_of(part: int, runs: int) -> range:
     return range(part * RUNS_OF_PART, min((part + 1) * RUNS_OF_PART, runs))
 
 
-def part_path(folder: Path, part: int) -> Path:
+def _part_path(folder: Path, part: int) -> Path:
     """Return the file of a part."""
     return folder / "runs" / f"part-{part:06d}.parquet"
 
@@ -77,14 +78,14 @@ def read_states(folder: Path, runs: int) -> Iterator[tuple[int, str, str]]:
 
 
 def _read_columns(folder: Path, part: int, names: Sequence[str]) -> Mapping[str, list[Any]]:
-    path = part_path(folder, part)
+    path = _part_path(folder, part)
     if not path.exists():
         return {name: [] for name in names}
-    table = read_part(path, names)
+    table = _read_part(path, names)
     return {name: table.column(name).to_pylist() for name in names}
 
 
-def read_part(path: Path, names: Sequence[str] | None = None) -> pa.Table:
+def _read_part(path: Path, names: Sequence[str] | None = None) -> pa.Table:
     """Return the rows of a part, with these columns or with all.
 
     Raises:
@@ -105,12 +106,12 @@ def write_outcomes(folder: Path, part: int, plan: Plan, schema: pa.Schema, outco
     """Write the outcomes of a part, which takes the place of what it held; `schema` is that of `make_schema`."""
     import pyarrow.parquet as pq
 
-    table = make_table(plan, schema, sorted(outcomes, key=lambda outcome: outcome.run))
+    table = _make_table(plan, schema, sorted(outcomes, key=lambda outcome: outcome.run))
     write = partial(pq.write_table, table, compression="zstd", compression_level=1)
-    return write_whole(part_path(folder, part), write, lasting=True)
+    return write_whole(_part_path(folder, part), write, lasting=True)
 
 
-def make_table(plan: Plan, schema: pa.Schema, outcomes: Sequence[Outcome]) -> pa.Table:
+def _make_table(plan: Plan, schema: pa.Schema, outcomes: Sequence[Outcome]) -> pa.Table:
     """Return outcomes with the values of their runs as a table."""
     import pyarrow as pa
 
@@ -161,3 +162,35 @@ def _store(values: Sequence[object], kind: pa.DataType) -> pa.Array:
 def as_text(value: object) -> str:
     """Return any value of a scenario as text."""
     return value if isinstance(value, str) else json.dumps(value, default=str)
+
+
+def read_sweep(folder: str | Path) -> pd.DataFrame:
+    """Return the rows of a sweep so far, one for each run that has ended, by number.
+
+    Columns are `run`, `state` (done, failed, unverified), `reason`, `seed`, every varied key and every metric in SI
+    units; a figure that does not exist is NaN, as are all of a failed run. `frame.attrs["units"]` holds units.
+
+    Raises:
+        InputError: the folder holds no sweep, or none of its runs has ended.
+    """
+    import pyarrow as pa
+
+    folder = Path(folder)
+    read_manifest(folder)
+    parts = sorted(folder.glob("runs/part-*.parquet"))
+    if not parts:
+        raise InputError(f"{folder}: no run of this sweep has ended; go on with it with --resume")
+    tables = [_read_part(part) for part in parts]
+    try:
+        table = pa.concat_tables(tables)
+    except pa.ArrowInvalid as error:
+        raise InputError(f"{folder}: holds parts of different sweeps: {error}; choose another folder") from error
+    frame: pd.DataFrame = table.to_pandas()
+    frame.attrs["units"] = _units_of(table.schema)
+    return frame
+
+
+def _units_of(schema: pa.Schema) -> dict[str, str]:
+    """Return the units of the columns that have one."""
+    stated = {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in schema}
+    return {name: unit for name, unit in stated.items() if unit}

@@ -11,7 +11,7 @@ from seatsim.schema.files import make_folder, write_text
 from seatsim.sweeps.parts import part_of
 from seatsim.sweeps.plan import Plan
 
-MOST_TASKS = 256
+_MOST_TASKS = 256
 """Tasks of an array, well below the 1001 that Slurm permits unless it is configured otherwise."""
 SCRIPT = """\
 #!/bin/bash
@@ -35,8 +35,9 @@ def write_slurm(
     """
     for path in (script, file, folder, *own_code):
         if not str(path.resolve()).isprintable():
-            raise InputError(f"{str(path)!r}: a path in a script for Slurm has no line break or other control"
-                             " character; rename it")  # fmt: skip
+            raise InputError(
+                f"{str(path)!r}: a path in a script for Slurm has no line break or other control character; rename it"
+            )
     make_folder(folder)
     words = ["seatsim", "sweep", str(file.resolve()), "--out", str(folder.resolve())]
     words += ["--keep", "histories"] if keep_histories else []
@@ -44,7 +45,9 @@ def write_slurm(
     logs = str(folder.resolve()).replace("%", "%%") + "/slurm-%a.log"  # a single % begins a pattern of Slurm
     names = {"file": file.name, "name": f"seatsim-{file.stem}", "script": str(script), "logs": logs}
     text = SCRIPT.format(
-        runs=plan.runs, command=shlex.join(words), tasks=min(part_of(plan.runs - 1) + 1, MOST_TASKS),
+        runs=plan.runs,
+        command=shlex.join(words),
+        tasks=min(part_of(plan.runs - 1) + 1, _MOST_TASKS),
         **{key: shlex.quote(name) for key, name in names.items()},
-    )  # fmt: skip
+    )
     return write_text(script, text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from seatsim.blind.processes import run_jobs
+from seatsim.schema.processes import run_jobs
 
 JOBS = [(7, 2), (9, 4), (11, 3)]
 

@@ -1,23 +1,15 @@
 """The command line as a script calls it."""
 
-import sys
+from contextlib import chdir
 
 import pytest
 
-from seatsim.cli.app import main
-
 
 @pytest.fixture
-def seatsim_command(monkeypatch, capsys):
-    """Call the whole program and return its exit status, standard output and standard error."""
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["seatsim", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stopped:
-            main()
-        return stopped.value.code, *capsys.readouterr()
-
-    return call
+def here(tmp_path):
+    """Work in an empty folder."""
+    with chdir(tmp_path):
+        yield tmp_path
 
 
 @pytest.fixture

@@ -1,5 +1,6 @@
 """Options that several commands share: what is refused, where the error points, and before what."""
 
+import os
 import subprocess
 import sys
 
@@ -77,5 +78,11 @@ def test_a_folder_without_permission_is_refused(seatsim_command, seat_file, monk
     assert status == 2 and f"{seat_file.parent} is not yours to write in; give another --out" in err
 
 
-def test_shells_are_completed(seatsim_command):
-    assert "--install-completion" in seatsim_command("--help")[1]
+def test_shells_complete_the_keys_of_a_scenario():
+    typed = "seatsim run h-infinity --set controller."
+    asked = os.environ | {"_SEATSIM_COMPLETE": "complete_fish", "_TYPER_COMPLETE_FISH_ACTION": "get-args",
+                          "_TYPER_COMPLETE_ARGS": typed}  # fmt: skip
+    done = subprocess.run([sys.executable, "-m", "seatsim"], env=asked, capture_output=True, text=True, check=False)
+    found = dict(line.split("\t") for line in done.stdout.splitlines())
+    assert all(key.startswith("controller.") for key in found)
+    assert found["controller.sensors.displacement_noise="] == "RMS noise of a displacement reading (m)"

@@ -55,10 +55,21 @@ def test_a_command_that_answers_goes_on(tmp_path):
     assert process.returncode == 0 and shown.endswith(b"done\n")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_command_says_that_it_was_interrupted(number, tmp_path):
+SWEEP = "scenario: em5\nvary: {excitation.duration: [3000.0, 3001.0]}\n"
+
+
+@pytest.mark.parametrize(
+    ("number", "command"),
+    [
+        (signal.SIGINT, ("run", "laws", "--set", "excitation.duration=3000")),
+        (signal.SIGTERM, ("run", "laws", "--set", "excitation.duration=3000")),
+        (signal.SIGINT, ("sweep", "sweep.yaml")),
+    ],
+)
+def test_a_command_says_that_it_was_interrupted(number, command, tmp_path):
+    (tmp_path / "sweep.yaml").write_text(SWEEP)
     process = subprocess.Popen(
-        [sys.executable, "-m", "seatsim", "run", "laws", "--set", "excitation.duration=3000", "--out", "out"],
+        [sys.executable, "-m", "seatsim", *command, "--out", "out"],
         env=os.environ | {"PYTHONPATH": str(ROOT)}, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
     with pytest.raises(subprocess.TimeoutExpired):

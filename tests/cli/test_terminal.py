@@ -62,6 +62,12 @@ def test_no_traceback_reaches_the_user(monkeypatch, capsys, error, expected, sta
             app.main()
 
 
+@pytest.mark.filterwarnings("default")
+def test_a_warning_of_own_code_is_one_line(tmp_path, seatsim_command, forget_own_code):
+    (tmp_path / "noisy_one.py").write_text("import warnings\nwarnings.warn('it is odd')\n")
+    assert seatsim_command("describe", "road", "--with", tmp_path / "noisy_one.py")[2] == "warning: it is odd\n"
+
+
 @pytest.mark.parametrize("method", ["parse_args", "resolve_command"])
 def test_an_interrupt_while_the_command_is_looked_up_is_said(method, monkeypatch, capsys):
     def interrupt(*_, **__):

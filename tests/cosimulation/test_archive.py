@@ -5,8 +5,15 @@ import zipfile
 
 import pytest
 
-from seatsim.cosimulation.archive import find_library, open_archive, unpack
-from seatsim.cosimulation.description import check_parameter, describe_unit, find_conversion_of, find_variable
+from seatsim.cosimulation.description import (
+    check_parameter,
+    describe_unit,
+    find_conversion_of,
+    find_library,
+    find_variable,
+    open_archive,
+    unpack,
+)
 from seatsim.schema.errors import InputError
 
 DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>

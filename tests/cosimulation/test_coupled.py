@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from seatsim.cli.check_files import check_file
-from seatsim.cli.outputs.schemas import scenario_schema
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.rig import rig_block
@@ -15,6 +14,7 @@ from seatsim.exchange.compiler import compile_library
 from seatsim.exchange.fmu import write_fmu
 from seatsim.identification.damper_record import find_model
 from seatsim.scenario.loading import load
+from seatsim.scenario.sections import scenario_schema
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.modules import MissingModuleError, use
 from seatsim.simulation.coupled import _agree

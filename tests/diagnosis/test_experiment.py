@@ -18,8 +18,8 @@ from seatsim.diagnosis.objective import Objective
 from seatsim.diagnosis.parameters import Parameters
 from seatsim.effects.damper import GasSpring, SealFriction
 from seatsim.excitations.recording import RecordedRun
-from seatsim.recordings.compared import COMPARED
 from seatsim.recordings.recording import load_recording
+from seatsim.recordings.replay import COMPARED
 from seatsim.scenario.loading import single
 from seatsim.simulation.simulate import simulate
 

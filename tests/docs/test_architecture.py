@@ -1,5 +1,6 @@
 """The page on the architecture draws the layers that the import contracts hold, and names what exists."""
 
+import itertools
 import re
 import tomllib
 from importlib import import_module
@@ -73,6 +74,18 @@ def test_a_recording_passes_its_rooms_upwards():
     assert all(called.startswith(f"{room}.") for _, room, called in rooms)
     heights = [height_of(room) for _, room, _ in rooms]
     assert heights == sorted(heights), "a room stands below one that a recording passes before it"
+
+
+def test_no_walk_climbs_back_between_layers():
+    table = PAGE.partition("<!-- walks -->")[2].partition("\n\n")[0]
+    walks = re.findall(r"^\| .+? \| (`seatsim.+) \|$", table, re.MULTILINE)
+    assert len(walks) >= 5
+    for walk in walks:
+        modules = re.findall(r"`([\w.]+)`", walk)
+        heights = [height_in(HOUSE, module.split(".")[1]) for module in modules]
+        assert heights == sorted(heights, reverse=True)
+        for caller, called in itertools.pairwise(modules):
+            assert f"from {called} import" in ROOT.joinpath(*caller.split(".")).with_suffix(".py").read_text()
 
 
 def height_of(room):

@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -139,3 +140,18 @@ def test_the_contributors_examples_work(tmp_path):
 def test_how_often_a_diagnosis_is_right_is_stated_on_one_page_only():
     """Each new set of cases would leave another figure behind elsewhere."""
     assert not re.findall(r"\d+ of \d+", (ROOT / "docs" / "limits.md").read_text(encoding="utf-8"))
+
+
+def test_every_dependency_of_the_core_is_needed_and_says_what_for():
+    stated = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]
+    names = [re.match(r"[\w.-]+", each)[0] for each in stated]
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    table = page.partition("| library | for |")[2].partition("\n\n")[0]
+    assert re.findall(r"^\| ([\w.-]+) \| \S", table, re.MULTILINE) == names
+    files = [path for package in ("seatsim", "controllers") for path in (ROOT / package).rglob("*.py")]
+    source = "\n".join(path.read_text(encoding="utf-8") for path in files)
+    imported = re.findall(r"^\s*(?:import|from) ([\w.]+)", source, re.MULTILINE)
+    for name in names:
+        module = {"pyyaml": "yaml"}.get(name, name.replace("-", "_"))
+        # A solver of cvxpy is named, not imported.
+        assert any(f"{each}.".startswith(f"{module}.") for each in imported) or module.upper() in source, name

@@ -10,17 +10,16 @@ from scipy.io import loadmat
 
 from seatsim.dampers.base import DAMPERS
 from seatsim.effects.base import EFFECTS, ON_DAMPER, ON_SEAT, acts_on
+from seatsim.exchange.block import list_variables
 from seatsim.exchange.blocks.controller import controller_block
 from seatsim.exchange.blocks.damper import damper_block
 from seatsim.exchange.blocks.held import nothing_held
 from seatsim.exchange.blocks.rig import rig_block
-from seatsim.exchange.c_file import print_c, write_c
+from seatsim.exchange.c_source import print_c, print_model, write_c
 from seatsim.exchange.compiler import find_compiler
+from seatsim.exchange.export import write_mat
 from seatsim.exchange.fmu import identifier, make_files
-from seatsim.exchange.matlab import write_mat
-from seatsim.exchange.model_source import print_model
 from seatsim.exchange.printing.values import NotPrintableError
-from seatsim.exchange.variables import list_variables
 from seatsim.rig.plant import control_system
 from seatsim.scenario.loading import load
 from seatsim.scenario.scenario import DamperChoice
@@ -104,9 +103,7 @@ def test_sources_compile_without_a_warning(make, name, tmp_path):
         assert done.returncode == 0, done.stderr
 
 
-def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path, monkeypatch):
-    # A rig takes its time where Python itself evaluates it.
-    monkeypatch.setattr("seatsim.exchange.c_file.SAMPLES", 60)
+def test_a_rig_with_effects_passes_its_test_vector(seat_file, tmp_path):
     effects = [
         {"effect": "damper.remanence", "parameters": {"width": 0.05}},
         {"effect": "driver.biodynamics", "parameters": {"share": 0.2}},

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from seatsim.compilation.jit import jit
+from seatsim.exchange.c_source import resource
 from seatsim.exchange.compiler import find_compiler
-from seatsim.exchange.model_source import resource
-from seatsim.exchange.printing.functions import new_program
+from seatsim.exchange.printing.functions import print_function
+from seatsim.exchange.printing.program import Program
 from seatsim.exchange.printing.values import NotPrintableError, Signature
 
 TABLE = np.array([[1.0, 2.5], [0.1, 1e-9]])
@@ -116,7 +117,7 @@ NUMBERS = (-3.7, -1.0, -0.0, 0.3, 1.0, 2.0, 17.25)
 
 @pytest.fixture(scope="module")
 def compiled(tmp_path_factory):
-    program = new_program()
+    program = Program(print_function)
     number = Signature(numba.float64)
     names = [program.function(function, (number, number)).name for function in FUNCTIONS]
     wrappers = [f"double c_{n}(double a, double b) {{ return {n}(a, b); }}" for n in names]
@@ -179,11 +180,11 @@ def printing(a, b):
 def test_what_has_no_counterpart_is_refused_by_name(function):
     number = Signature(numba.float64)
     with pytest.raises(NotPrintableError, match=f"test_printing.{function.__name__}"):
-        new_program().function(function, (number, number))
+        Program(print_function).function(function, (number, number))
 
 
 def test_a_function_is_printed_once_for_the_same_types():
-    program, number = new_program(), Signature(numba.float64)
+    program, number = Program(print_function), Signature(numba.float64)
     first = program.function(tuples, (number, number))
     assert program.function(tuples, (number, number)) == first
     assert program.source().count("split(real x)") == 1

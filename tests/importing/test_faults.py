@@ -86,10 +86,10 @@ def test_time_in_ms_is_asked_for_where_no_unit_is_stated_and_doubted_where_a_wro
         import_files([path], tmp_path / "out")
     stated = tmp_path / "out" / "map.yaml"
     text = stated.read_text()
-    assert 'time: {column: time, unit: ""}' in text
-    stated.write_text(text.replace('unit: ""}', "unit: s}", 1))
+    assert "time: {column: time, unit: ''}" in text
+    stated.write_text(text.replace("unit: ''}", "unit: s}", 1))
     assert "rate" in kinds(import_files([path], tmp_path / "wrong", stated).doubts)
-    stated.write_text(text.replace('unit: ""}', "unit: ms}", 1))
+    stated.write_text(text.replace("unit: ''}", "unit: ms}", 1))
     right = import_files([path], tmp_path / "right", stated)
     assert right.rate == 500.0
     assert "rate" not in kinds(right.doubts)

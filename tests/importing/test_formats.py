@@ -47,13 +47,6 @@ def test_a_truncated_file_is_one_clear_error(exported, tmp_path):
     assert "\n" not in str(raised.value)
 
 
-def test_an_empty_file_is_one_clear_error(exported, tmp_path):
-    empty = tmp_path / exported.name
-    empty.write_bytes(b"")
-    with pytest.raises(InputError, match="is empty"):
-        read_file(empty)
-
-
 def test_a_wrong_ending_does_not_matter_where_the_content_is_clear(exported, tmp_path, seat_table):
     renamed = tmp_path / "data.bin"
     renamed.write_bytes(exported.read_bytes())
@@ -70,6 +63,7 @@ def test_a_wrong_ending_does_not_matter_where_the_content_is_clear(exported, tmp
         ("a.csv", b"\x00\x01\x02\x03" * 50, "no table in a known format"),
         ("a.csv", b"a letter to nobody\nwith two lines\n", "no row of numbers"),
         ("a.csv", b"a,b\n", "no row of numbers"),
+        ("a.h5", b"", "is empty"),
     ],
 )
 def test_a_file_of_another_kind_is_one_clear_error(tmp_path, name, content, expected):

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from seatsim.importing.import_map import read_map
+from seatsim.importing.import_map import read_map, render_map
 from seatsim.importing.importing import import_files
-from seatsim.importing.map_text import render_map
 from seatsim.importing.matching import propose
 from seatsim.importing.names import read_name
 from seatsim.importing.readers.reading import read_file
@@ -95,13 +94,13 @@ def test_a_proposed_map_can_be_completed_and_used(tmp_path):
 def test_a_map_is_written_as_it_is_read(tmp_path):
     text = """\
 rig: seat
-time: {column: "t [ms]", unit: ms}
-resample: 250
+time: {column: 't [ms]', unit: ms}
+resample: 250.0
 channels:
-  floor_acceleration: {column: "a, floor", unit: g, sign: -1, remove_mean: true}
+  floor_acceleration: {column: 'a, floor', unit: g, sign: -1, remove_mean: true}
   driver_acceleration: {column: a_seat, unit: m/s^2, sign: 1, scale: 0.5, delay: 0.01, group: daq2.csv}
   coil_current: {unit: A, value: 0.3}
-csv: {delimiter: ";", decimal: ",", header: 2}
+csv: {delimiter: ;, decimal: ',', header: 2}
 gaps: split
 align: {daq2.csv: 0.25}
 runs:
@@ -110,9 +109,7 @@ runs:
     path = tmp_path / "map.yaml"
     path.write_text(text)
     stated = read_map(path)
-    assert render_map(stated).replace('unit: "A"', "unit: A") == text
-    path.write_text(render_map(stated))
-    assert read_map(path) == stated
+    assert render_map(stated) == text
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from seatsim.importing.group_time import find_clock
 from seatsim.importing.matching import channel_of, propose, read_columns
 from seatsim.importing.names import read_name
 from seatsim.importing.readers.reading import read_file
 from seatsim.importing.signals import DataFile, Group, Signal
+from seatsim.importing.time_axis import find_clock
 
 T = np.arange(500) / 250.0
 

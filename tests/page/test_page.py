@@ -17,8 +17,7 @@ from seatsim.page.scenario_view import View
 from seatsim.page.serve import Impatient, find_target, open_target
 from seatsim.report.blocks import Table
 from seatsim.report.packing import Axis, Panel, pack_signals
-from seatsim.scenario.finding import EXAMPLES
-from seatsim.scenario.loading import load, single
+from seatsim.scenario.loading import EXAMPLES, load, single
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import plain
 

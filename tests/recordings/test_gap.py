@@ -7,7 +7,6 @@ import pandas as pd
 import pytest
 
 import seatsim
-from seatsim.cli.app import main
 from seatsim.recordings.gap import gap, measure_gap, pool_runs
 from seatsim.recordings.quality.examination import examine
 from seatsim.recordings.recording import load_recording
@@ -72,28 +71,21 @@ def test_a_law_that_leaves_the_recorded_current_unused_is_a_note(copy, logged):
     assert any("law 'constant' drives the coil" in note for note in found) == bool(logged)
 
 
-def test_the_command_prints_the_warnings_and_writes_them(copy, tmp_path, monkeypatch, capsys):
+def test_the_command_prints_the_warnings_and_writes_them(copy, tmp_path, seatsim_command):
     fault, _, words = WARNINGS["noisier than stated"]
     rewrite(copy, fault)
-    call = ["seatsim", "gap", copy / "nominal.yaml", copy, "--out", tmp_path / "out"]
-    monkeypatch.setattr("sys.argv", [str(argument) for argument in call])
-    with pytest.raises(SystemExit) as stopped:
-        main()
-    assert stopped.value.code == 0
-    shown = " ".join("".join(capsys.readouterr()).split())
+    status, out, err = seatsim_command("gap", copy / "nominal.yaml", copy, "--out", tmp_path / "out")
+    assert status == 0
+    shown = " ".join((out + err).split())
     assert f"note: all runs, driver_acceleration: {words}" in shown
     (note,) = json.loads((tmp_path / "out" / "gap.json").read_text())["notes"]
     assert words in note
 
 
-def test_the_command_refuses_and_writes_nothing(copy, tmp_path, monkeypatch, capsys):
+def test_the_command_refuses_and_writes_nothing(copy, tmp_path, seatsim_command):
     rewrite(copy, scaled("suspension_displacement", 1000.0))
-    call = ["seatsim", "gap", copy / "nominal.yaml", copy, "--out", tmp_path / "out"]
-    monkeypatch.setattr("sys.argv", [str(argument) for argument in call])
-    with pytest.raises(SystemExit) as stopped:
-        main()
-    assert stopped.value.code == 2 and not (tmp_path / "out").exists()
-    assert "suspension_displacement" in "".join(capsys.readouterr())
+    status, out, err = seatsim_command("gap", copy / "nominal.yaml", copy, "--out", tmp_path / "out")
+    assert status == 2 and not (tmp_path / "out").exists() and "suspension_displacement" in out + err
 
 
 def test_the_inner_measure_examines_nothing(copy):

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import bilinear, lfilter
 
-from seatsim.recordings.compared import COMPARED, LEFT_OUT, select_compared, stands_out
-from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import BENCH_CHANNELS, SEAT_CHANNELS, ChannelEntry, Header, Recording, RunEntry
+from seatsim.recordings.replay import COMPARED, LEFT_OUT, recorded_inputs, select_compared, stands_out
 from seatsim.simulation.inputs import BenchInputs, SeatInputs
 
 

@@ -7,14 +7,13 @@ import pandas as pd
 import pytest
 
 import seatsim
-from seatsim.cli.app import main
 from seatsim.recordings import prediction
-from seatsim.recordings.compared import COMPARED
 from seatsim.recordings.forecast import has_outputs
 from seatsim.recordings.gap import measure_gap, pool_runs
 from seatsim.recordings.model_error import measure_model_error
 from seatsim.recordings.prediction import predict_gap
 from seatsim.recordings.recording import load_recording
+from seatsim.recordings.replay import COMPARED
 from seatsim.scenario.loading import single
 
 from ..faulty_recordings import edit
@@ -140,36 +139,30 @@ def test_a_scenario_without_what_the_diagnosis_found_is_not_the_augmented_one(he
     assert predict_gap(right, copy, diagnosis).after > 0.0
 
 
-def call(monkeypatch, *arguments):
-    monkeypatch.setattr("sys.argv", ["seatsim", *map(str, arguments)])
-    with pytest.raises(SystemExit) as stopped:
-        main()
-    return stopped.value.code
-
-
-def test_the_command_shows_both_and_writes_them(heavier, tmp_path, monkeypatch, capsys):
+def test_the_command_shows_both_and_writes_them(heavier, tmp_path, seatsim_command):
     copy, right, diagnosis = heavier
-    assert call(monkeypatch, "gap", right, copy, "--predict", diagnosis, "--out", tmp_path / "out") == 0
+    status, shown, _ = seatsim_command("gap", right, copy, "--predict", diagnosis, "--out", tmp_path / "out")
+    assert status == 0
     content = json.loads((tmp_path / "out" / "gap.json").read_text())
     predicted, measured = content["predicted"], content["measured"]
     assert content["overall"] == measured["after"] and set(content["channels"]) == set(predicted["channels"])
     assert predicted["shrink"] == pytest.approx(measured["shrink"], abs=0.05)
     low, high = predicted["shrink_interval"]
     assert low <= predicted["shrink"] <= high
-    assert f"expected shrink {predicted['shrink']:.2f}" in capsys.readouterr().out
+    assert f"expected shrink {predicted['shrink']:.2f}" in shown
     edit(copy, lambda header: [header["channels"].pop(name, None) for name in OUTPUTS])
-    assert call(monkeypatch, "gap", right, copy, "--predict", diagnosis, "--out", tmp_path / "blind") == 0
+    assert seatsim_command("gap", right, copy, "--predict", diagnosis, "--out", tmp_path / "blind")[0] == 0
     content = json.loads((tmp_path / "blind" / "gap.json").read_text())
     assert content["overall"] is None and content["channels"] == {} and "measured" not in content
     assert content["predicted"]["shrink"] == pytest.approx(predicted["shrink"], abs=0.01)
 
 
-def test_what_is_no_diagnosis_is_refused_and_nothing_is_written(heavier, tmp_path, monkeypatch, capsys):
+def test_what_is_no_diagnosis_is_refused_and_nothing_is_written(heavier, tmp_path, seatsim_command):
     copy, right, _ = heavier
     for name, text in (("no.json", "{"), ("old.json", "{}"), ("list.json", "[]")):
         (tmp_path / name).write_text(text)
-        assert call(monkeypatch, "gap", right, copy, "--predict", tmp_path / name, "--out", tmp_path / "out") == 2
-        assert name in "".join(capsys.readouterr()).replace("\n", "") and not (tmp_path / "out").exists()
+        call = seatsim_command("gap", right, copy, "--predict", tmp_path / name, "--out", tmp_path / "out")
+        assert call[0] == 2 and name in (call[1] + call[2]).replace("\n", "") and not (tmp_path / "out").exists()
 
 
 def test_each_parameter_is_moved_by_its_deviation_and_stays_in_its_range(copy):

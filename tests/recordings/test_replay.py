@@ -8,7 +8,6 @@ import pandas as pd
 import pytest
 
 import seatsim
-from seatsim.cli.app import main
 from seatsim.dampers.bouc_wen import BoucWen
 from seatsim.recordings.gap import measure_gap
 from seatsim.recordings.recording import load_recording
@@ -72,12 +71,8 @@ def test_the_gap_of_one_run_only(recorded):
         seatsim.gap(recorded / "nominal.yaml", recorded, runs=["run-3"])
 
 
-def test_the_command_writes_the_gap(recorded, tmp_path, monkeypatch):
-    arguments = ["seatsim", "gap", recorded / "nominal.yaml", recorded, "--out", tmp_path / "gap"]
-    monkeypatch.setattr("sys.argv", [str(argument) for argument in arguments])
-    with pytest.raises(SystemExit) as stopped:
-        main()
-    assert stopped.value.code == 0
+def test_the_command_writes_the_gap(recorded, tmp_path, seatsim_command):
+    assert seatsim_command("gap", recorded / "nominal.yaml", recorded, "--out", tmp_path / "gap")[0] == 0
     written = json.loads((tmp_path / "gap" / "gap.json").read_text())
     assert set(written) == {"overall", "channels", "floor", "notes"}
     assert set(written["floor"]) == {"overall", "channels"}

@@ -18,8 +18,7 @@ from controllers.synthesis import synthesise
 from controllers.synthesis.design import Design
 from seatsim.blind.score.verdicts import read_verdict
 from seatsim.blind.sealed import SEAL, Sealed, seal, unseal
-from seatsim.cosimulation.archive import DESCRIPTION
-from seatsim.cosimulation.description import check_parameter, describe_unit, find_variable
+from seatsim.cosimulation.description import DESCRIPTION, check_parameter, describe_unit, find_variable
 from seatsim.importing.importing import import_files
 from seatsim.importing.inspection import inspect_file
 from seatsim.metrics.table import METRICS
@@ -31,9 +30,7 @@ from seatsim.scenario.loading import load, single
 from seatsim.sweeps.engines.base import Work
 from seatsim.sweeps.execute import execute, prepare
 from seatsim.sweeps.outcome import DONE, Outcome
-from seatsim.sweeps.statistics.exceedance import count_exceedances
-from seatsim.sweeps.statistics.inputs import read_rows
-from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
+from seatsim.sweeps.statistics.rows import count_exceedances, read_rows, tabulate_quantiles
 from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity
 
 from ..importing import exports

@@ -1,13 +1,13 @@
 """Fifty and more wrong scenario files: each one clear error with its place, exit status 2, nothing written."""
 
+import json
 from pathlib import Path
 
 import pytest
 
-from seatsim.cli.app import main
 from seatsim.scenario.describe import describe
 from seatsim.scenario.loading import load
-from seatsim.schema.errors import InputError
+from seatsim.schema.errors import InputError, list_sentences
 
 GOOD = """\
 name: good
@@ -118,27 +118,41 @@ CASES = [
 ]  # fmt: skip
 
 
-def run_main(monkeypatch, capsys, *arguments):
-    monkeypatch.setattr("sys.argv", ["seatsim", *arguments])
-    with pytest.raises(SystemExit) as stopped:
-        main()
-    return stopped.value.code, capsys.readouterr()
-
-
 @pytest.mark.parametrize(("old", "new", "expected"), CASES, ids=[str(n) for n in range(len(CASES))])
-def test_a_wrong_file_is_one_clear_error(old, new, expected, tmp_path, monkeypatch, capsys):
+def test_a_wrong_file_is_one_clear_error(old, new, expected, here, seatsim_command):
     assert old in GOOD
-    monkeypatch.chdir(tmp_path)
-    file = tmp_path / "wrong.yaml"
-    file.write_text(GOOD.replace(old, new, 1))
-    status, printed = run_main(monkeypatch, capsys, "run", "wrong.yaml", "--out", "results")
-    assert status == 2
-    assert printed.err.count("error:") == 1
-    assert "Traceback" not in printed.err
-    assert "wrong.yaml" in printed.err
-    for part in expected:
-        assert part in printed.err
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["wrong.yaml"]
+    Path("wrong.yaml").write_text(GOOD.replace(old, new, 1))
+    status, _, err = seatsim_command("run", "wrong.yaml", "--out", "results")
+    assert status == 2 and err.count("error:") == 1 and "Traceback" not in err
+    assert all(part in err for part in ("wrong.yaml", *expected))
+    assert [path.name for path in here.iterdir()] == ["wrong.yaml"]
+
+
+EVERY_SECTION = (1, 15, 18, 34, 36, 42, 54, 61, 64, 67)
+"""Cases of which each is in a part of the file of its own."""
+
+
+def test_check_says_all_that_is_wrong_with_a_file_and_run_what_is_first(here, seatsim_command):
+    text, expected = GOOD, []
+    for number in EVERY_SECTION:
+        old, new, said = CASES[number]
+        assert old in text, number
+        text, expected = text.replace(old, new, 1), [*expected, *(part for part in said if "line" not in part)]
+    Path("wrong.yaml").write_text(text)
+    status, _, err = seatsim_command("check", "wrong.yaml")
+    assert status == 2 and all(part in err for part in expected)
+    every = err.splitlines()
+    assert [line.startswith("error: ") for line in every] == [True] * len(EVERY_SECTION)
+    assert seatsim_command("run", "wrong.yaml")[2].splitlines() == every[:1]
+    found = json.loads(seatsim_command("check", "wrong.yaml", "--json")[1])
+    assert found["error"] == found["errors"][0] and len(found["errors"]) == len(EVERY_SECTION)
+
+
+def test_what_follows_from_a_misspelt_key_is_not_said_twice(tmp_path):
+    (tmp_path / "wrong.yaml").write_text(GOOD.replace("frame_mass", "fram_mass").replace("rate:", "rat:"))
+    with pytest.raises(InputError) as caught:
+        load(tmp_path / "wrong.yaml")
+    assert len(list_sentences(caught.value)) == 2
 
 
 @pytest.mark.parametrize("arguments", [
@@ -148,28 +162,18 @@ def test_a_wrong_file_is_one_clear_error(old, new, expected, tmp_path, monkeypat
     ("gap", "good.yaml", "."),
     ("synthesise", "good.yaml"), ("describe", "bouc"), ("run",), ("run", "good.yaml", "--outt", "x"), ("fly",),
 ])  # fmt: skip
-def test_a_wrong_command_exits_with_2_and_writes_nothing(arguments, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_a_wrong_command_exits_with_2_and_writes_nothing(arguments, here, seatsim_command):
     Path("good.yaml").write_text(GOOD)
-    status, printed = run_main(monkeypatch, capsys, *arguments)
-    assert status == 2
-    assert printed.err
-    assert [path.name for path in tmp_path.iterdir()] == ["good.yaml"]
+    status, _, err = seatsim_command(*arguments)
+    assert status == 2 and err
+    assert [path.name for path in here.iterdir()] == ["good.yaml"]
 
 
-def test_a_file_that_is_not_text(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    Path("bad.yaml").write_bytes(b"\xff\xfe\x00a")
-    status, printed = run_main(monkeypatch, capsys, "run", "bad.yaml")
-    assert (status, "not UTF-8" in printed.err) == (2, True)
-
-
-def test_an_output_folder_that_is_a_file(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_an_output_folder_that_is_a_file(here, seatsim_command):
     Path("good.yaml").write_text(GOOD)
     Path("taken").write_text("")
-    status, printed = run_main(monkeypatch, capsys, "run", "good.yaml", "--out", "taken")
-    assert (status, "--out" in printed.err) == (2, True)
+    status, _, err = seatsim_command("run", "good.yaml", "--out", "taken")
+    assert status == 2 and "--out" in err
 
 
 def test_a_value_that_a_variant_puts_in_is_said_with_its_name(seat_file):

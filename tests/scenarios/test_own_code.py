@@ -6,16 +6,17 @@ import shutil
 import subprocess
 import sys
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack, chdir
+from importlib.machinery import ModuleSpec, SourceFileLoader
 from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
 
 import seatsim
-from seatsim.blind.processes import run_jobs
-from seatsim.cli.app import main
 from seatsim.scenario.describe import describe
-from seatsim.schema.modules import MissingModuleError, import_named, use, use_all, used_files
+from seatsim.schema.modules import MissingModuleError, _find_installed, import_named, use, use_all, used_files
+from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import find, names
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,11 +34,17 @@ class PowerLaw(NamedTuple):
 MALICIOUS = "from pathlib import Path\nPath(__file__).with_name('stolen').touch()\n" + POWER_LAW
 
 
-def seatsim_command(monkeypatch, *arguments):
-    monkeypatch.setattr("sys.argv", ["seatsim", *map(str, arguments)])
-    with pytest.raises(SystemExit) as stopped:
-        main()
-    return stopped.value.code
+@pytest.fixture
+def searched():
+    """Work in a folder that Python itself searches first, as in a notebook or with `python -c`."""
+    with ExitStack() as ends:
+
+        def start(folder):
+            ends.enter_context(chdir(folder))
+            sys.path.insert(0, "")
+            ends.callback(sys.path.remove, "")
+
+        yield start
 
 
 @pytest.fixture
@@ -75,14 +82,12 @@ def commands(folder, out):
 
 @pytest.mark.parametrize("name", ["gap", "diagnose", "run", "compare", "synthesise", "characterise"])
 @pytest.mark.parametrize("inside", [False, True], ids=["from elsewhere", "in the folder"])
-def test_a_module_beside_a_recording_is_not_run(name, inside, strange, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(strange if inside else tmp_path)
-    # As in a notebook or with `python -c`, where Python itself searches the current folder.
-    monkeypatch.setattr(sys, "path", ["", *sys.path])
+def test_a_module_beside_a_recording_is_not_run(name, inside, strange, tmp_path, seatsim_command, searched):
+    searched(strange if inside else tmp_path)
     folder, out = (Path("."), tmp_path / "out") if inside else (Path("strange"), tmp_path / "out")
     arguments = commands(folder, out)[name]
-    assert seatsim_command(monkeypatch, *arguments) == 2
-    error = capsys.readouterr().err
+    status, _, error = seatsim_command(*arguments)
+    assert status == 2
     assert "line" in error and "damper.model" in error and "no module 'powerlaw' is installed" in error
     words = " ".join(map(str, arguments))
     assert f"seatsim {words} --with {folder / 'powerlaw.py'}" in " ".join(error.split())
@@ -132,17 +137,16 @@ def test_the_python_functions_do_not_run_it_either(strange):
     assert not (strange / "stolen").exists()
 
 
-def test_a_name_that_a_named_file_registers_is_known(power_law, seat_file, monkeypatch, capsys):
-    assert seatsim_command(monkeypatch, "describe", "power_law", "--with", power_law) == 0
-    assert "damping at zero current" in capsys.readouterr().out
+def test_a_name_that_a_named_file_registers_is_known(power_law, seat_file, seatsim_command):
+    assert "damping at zero current" in seatsim_command("describe", "power_law", "--with", power_law)[1]
     (scenario,) = seatsim.load(seat_file, {"damper": {"model": "power_law"}})
     assert type(scenario.damper.record) is sys.modules["powerlaw"].PowerLaw
 
 
-def test_a_named_file_replays_a_recording(strange, monkeypatch):
+def test_a_named_file_replays_a_recording(strange, seatsim_command):
     file = strange / "powerlaw.py"
     arguments = ("gap", strange / "nominal.yaml", strange, "--with", file, "--out", strange / "out")
-    assert seatsim_command(monkeypatch, *arguments) == 0
+    assert seatsim_command(*arguments)[0] == 0
     assert (strange / "out" / "gap.json").exists()
     assert (strange / "stolen").exists(), "the file that was named is the one that was run"
 
@@ -212,21 +216,38 @@ def test_a_file_may_import_one_that_was_named_before_it(tmp_path, forget_own_cod
     assert sys.modules["dependent"].VALUE == 3.0
 
 
-def test_a_module_that_was_imported_from_the_same_file_is_kept(power_law, monkeypatch):
-    monkeypatch.syspath_prepend(power_law.parent)
+def test_a_module_that_was_imported_from_the_same_file_is_kept(power_law, searched):
+    searched(power_law.parent)
     import powerlaw
 
     assert use(power_law) is powerlaw
 
 
-def test_installed_modules_are_found(monkeypatch, tmp_path):
-    monkeypatch.delitem(sys.modules, "_pytest.logging", raising=False)
-    monkeypatch.delitem(sys.modules, "iniconfig", raising=False)
-    (tmp_path / "iniconfig.py").write_text("raise AssertionError\n")
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", ["", *sys.path])
-    assert import_named("iniconfig").IniConfig is not None
-    assert import_named("_pytest.logging").caplog is not None
+def test_installed_modules_are_found(searched, tmp_path):
+    (tmp_path / "threadpoolctl.py").write_text("raise AssertionError\n")
+    known = {name: sys.modules.pop(name, None) for name in ("threadpoolctl", "_pytest.recwarn")}
+    searched(tmp_path)
+    try:
+        assert import_named("threadpoolctl").threadpool_info is not None
+        assert import_named("_pytest.recwarn").WarningsRecorder is not None
+    finally:
+        sys.modules.update({name: module for name, module in known.items() if module is not None})
+
+
+class Editable:
+    """Finds a module as the finder of an editable install does, which lies on no path."""
+
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        return ModuleSpec(name, SourceFileLoader(name, __file__), origin=__file__) if name == "installed_so" else None
+
+
+def test_a_module_of_an_editable_install_is_found():
+    sys.meta_path.append(Editable)
+    try:
+        assert _find_installed("installed_so").origin == __file__
+    finally:
+        sys.meta_path.remove(Editable)
 
 
 @pytest.mark.parametrize("name", ["antigravity", "pip.__main__", "seatsim.__main__"])

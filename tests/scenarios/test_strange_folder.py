@@ -81,7 +81,7 @@ def test_worker_processes_run_nothing_of_the_folder_they_are_started_in(strange,
     script = tmp_path / "script" / "start.py"
     script.parent.mkdir()
     script.write_text(
-        "from seatsim.blind.processes import run_jobs\nfrom seatsim.scenario.describe import describe\n"
+        "from seatsim.schema.processes import run_jobs\nfrom seatsim.scenario.describe import describe\n"
         "if __name__ == '__main__':\n    print(len(run_jobs(describe, [('road',), ('table',)], 2)))\n"
     )
     done = started([sys.executable, str(script)], strange)

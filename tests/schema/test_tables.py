@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from seatsim.excitations.motion import samples
-from seatsim.schema import memory
+from seatsim.schema import bounds
 from seatsim.schema.errors import InputError
 from seatsim.schema.guarded import in_mib, read_bytes, read_json
 from seatsim.schema.tables import numbers, read_table
@@ -82,7 +82,7 @@ def test_no_more_is_unpacked_than_is_permitted(tmp_path):
 
 
 def test_memory_is_foreseen(tmp_path, monkeypatch):
-    monkeypatch.setattr(memory, "find_available", lambda: 1000)
+    monkeypatch.setattr(bounds, "find_available", lambda: 1000)
     (tmp_path / "a.csv").write_bytes(TEXT * 100)
     with pytest.raises(InputError, match=r"rows need .* of memory, where .* are free; split the table"):
         read_table(tmp_path / "a.csv")

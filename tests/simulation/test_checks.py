@@ -113,8 +113,12 @@ def test_pytest_collects_a_test_for_each_check_and_run(pytester, seat_file):
     text = seat_file.read_text()
     sweep = "sweep: {temperature: [20.0, 80.0]}\nexcitation: {kind: rest, duration: 1.0}\n"
     kept = "".join(line + "\n" for line in text.splitlines() if not line.startswith("excitation"))
-    pytester.makefile(".yaml", seat=kept + sweep + "checks: {suspension_displacement_peak: {max: 1}, current_rms: {min: 5.0}}\n")
+    pytester.makefile(
+        ".yaml", seat=kept + sweep + "checks: {suspension_displacement_peak: {max: 1}, current_rms: {min: 5.0}}\n"
+    )
     pytester.makefile(".yaml", other=text, wrong=text + "checks: {seat_facto: {max: 1.0}}\n")
-    result = pytester.runpytest_inprocess("-p", "no:seatsim", "--continue-on-collection-errors", plugins=[seatsim.pytest_plugin])
+    result = pytester.runpytest_inprocess(
+        "-p", "no:seatsim", "--continue-on-collection-errors", plugins=[seatsim.pytest_plugin]
+    )
     result.assert_outcomes(passed=2, failed=2, errors=1)
     result.stdout.fnmatch_lines(["*did you mean 'seat_factor'*", "*current_rms is 0*at least 5 A*"])

@@ -30,10 +30,10 @@ def write_sweep(tmp_path):
 
 @pytest.fixture
 def carry_out(tmp_path):
-    """Return a function that carries out a sweep file on threads in a folder of `tmp_path`."""
+    """Return a function that carries out a sweep file on this machine in a folder of `tmp_path`."""
 
-    def carry(path, name="out", jobs=2, **options):
-        return execute(prepare(path), tmp_path / name, LocalEngine(jobs), **options)
+    def carry(path, name="out", engine=LocalEngine(2), **options):  # noqa: B008  # a frozen value
+        return execute(prepare(path), tmp_path / name, engine, **options)
 
     return carry
 

@@ -11,7 +11,7 @@ from numba.cuda.simulator.kernel import BlockManager, BlockThread
 import seatsim
 from seatsim.kernel import step
 from seatsim.simulation import simulate
-from seatsim.sweeps.engines.choice import open_engine
+from seatsim.sweeps.engines.base import open_engine
 from seatsim.sweeps.execute import execute, prepare
 
 

@@ -5,6 +5,7 @@ import pytest
 from scipy import stats
 
 import seatsim
+from seatsim.schema.errors import list_sentences
 from seatsim.sweeps.definition import read_definition
 from seatsim.sweeps.execute import prepare
 from seatsim.sweeps.plan import make_plan
@@ -132,3 +133,11 @@ def test_what_is_wrong_is_refused_before_anything_runs(stated, parts, write_swee
         prepare(write_sweep(**stated))
     assert all(part in str(caught.value) for part in parts), caught.value
     assert [path.name for path in tmp_path.iterdir()] == ["sweep.yaml"]
+
+
+def test_all_that_is_wrong_with_a_sweep_is_said(write_sweep):
+    wrong = {"desing": 1, "seed": -1, "vary": {MASS: 80.0, STIFFNESS: []}, "limits": {"driver_vdw": 9.0}}
+    with pytest.raises(seatsim.InputError) as caught:
+        prepare(write_sweep(**wrong))
+    said = "".join(list_sentences(caught.value))
+    assert all(part in said for part in ("desing", "seed", MASS, STIFFNESS, "driver_vdw"))

@@ -8,64 +8,76 @@ import time
 
 import pytest
 
+import seatsim
 from seatsim.schema.errors import RunError
-from seatsim.sweeps.engines import local
+from seatsim.sweeps.engines.local import LocalEngine
 
 from .conftest import bytes_of
 
+EAGER = LocalEngine(2, worth_a_process=1e-9)
+"""Starts a process whatever is left."""
 SWEEP = """
 import sys
 from pathlib import Path
-from seatsim.sweeps.engines import local
+from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.execute import execute, prepare
 
-local.WORTH_A_PROCESS = 1e-6
-execute(prepare(Path(sys.argv[1])), Path(sys.argv[2]), local.LocalEngine(2))
+execute(prepare(Path(sys.argv[1])), Path(sys.argv[2]), LocalEngine(2, worth_a_process=1e-9))
 """
+DEADLY = '''
+"""A floor whose making ends the process, where this is not the one of the command, as often as is left of it."""
+import os, signal
+from multiprocessing import parent_process
+from pathlib import Path
+from typing import Annotated, NamedTuple
+
+from seatsim.excitations.base import Floor, excitation
+from seatsim.excitations.iso7096 import Iso7096
+from seatsim.schema.fields import param
+
+@excitation("deadly", source="a test")
+class Deadly(NamedTuple):
+    """Class EM5."""
+    duration: Annotated[float, param("s", "length of the run", above=0, high=60)] = 0.5
+
+    def floor(self, step: float, seed: int) -> Floor:
+        """Return the motion of the floor."""
+        if parent_process():
+            for life in Path(__file__).parent.glob("*.life"):
+                life.unlink()
+                os.kill(os.getpid(), signal.SIGKILL)
+        return Iso7096(spectral_class="EM5", duration=self.duration).floor(step, seed)
+'''
 
 
 @pytest.fixture
-def started(monkeypatch):
-    """Have a process started whatever is left, and return the list of those that were."""
-    monkeypatch.setattr(local, "WORTH_A_PROCESS", 1e-6)
-    found, start = [], subprocess.Popen
+def deadly(write_sweep, tmp_path, forget_own_code):
+    """Return a function that writes a sweep in which as many processes die, one after the other."""
+    (tmp_path / "deadly.py").write_text(DEADLY)
+    seatsim.use(tmp_path / "deadly.py")
 
-    def remember(*arguments, **options):
-        found.append(start(*arguments, **options))
-        return found[-1]
+    def write(deaths, runs=60):
+        for number in range(deaths):
+            (tmp_path / f"{number}.life").touch()
+        seeds = {"seed": {"from": 1, "to": runs, "steps": runs}}
+        return write_sweep(vary={**seeds, "excitation": [{"kind": "deadly", "duration": 0.5}]}, runs=None)
 
-    monkeypatch.setattr(local.subprocess, "Popen", remember)
-    return found
+    return write
 
 
-def test_a_process_that_is_killed_has_its_runs_simulated_by_others(
-    write_sweep, carry_out, tmp_path, started, monkeypatch
-):
-    path, killed, receive = write_sweep(runs=2000), [], local._Crew.receive
-    carry_out(path, "alone", jobs=1)
-    assert not started
-
-    def receive_and_kill(crew, worker):
-        outcomes = receive(crew, worker)
-        if worker.process and outcomes and not killed:
-            killed.append(len(worker.runs))
-            worker.process.kill()
-        return outcomes
-
-    monkeypatch.setattr(local._Crew, "receive", receive_and_kill)
+def test_the_runs_of_a_process_that_is_killed_are_simulated_by_others(deadly, carry_out, tmp_path):
+    carry_out(deadly(1), "alone", LocalEngine(1))
+    assert list(tmp_path.glob("*.life")), "a process was started where one run at a time was asked for"
     # The thread of this process waits for what is taken from it, so that the other process has its turn.
-    carry_out(path, jobs=2, progress=lambda done, runs: killed or time.sleep(0.1))
-    assert killed[0] > 0 and [process.returncode for process in started] == [-signal.SIGKILL] * len(started)
+    carry_out(deadly(1), engine=EAGER, progress=lambda done, runs: time.sleep(0.2))
+    assert not list(tmp_path.glob("*.life"))
     assert bytes_of(tmp_path / "out") == bytes_of(tmp_path / "alone")
 
 
-def test_processes_that_are_lost_one_after_the_other_end_the_sweep(write_sweep, carry_out, started):
-    def kill(done, runs):
-        started[-1].kill() if started else None
-
-    with pytest.raises(RunError, match=r"4 workers were lost \(exit status -9\).* go on with --resume"):
-        carry_out(write_sweep(runs=100_000), jobs=2, progress=kill)
-    assert all(process.poll() is not None for process in started)
+def test_processes_that_are_lost_one_after_the_other_end_the_sweep(deadly, carry_out, tmp_path):
+    with pytest.raises(RunError, match=r"processes were lost 4 times.* go on with --resume"):
+        carry_out(deadly(10, runs=2000), engine=EAGER)
+    assert 0 < len(seatsim.read_sweep(tmp_path / "out")) < 2000
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])

@@ -12,9 +12,9 @@ import seatsim
 from seatsim.metrics.table import METRICS
 from seatsim.schema.errors import InputError
 from seatsim.sweeps import parts
-from seatsim.sweeps.engines.base import simulate_one
+from seatsim.sweeps.engines.local import LocalEngine
 from seatsim.sweeps.execute import Share
-from seatsim.sweeps.lock import hold_file, hold_folder
+from seatsim.sweeps.folder import hold_file, hold_folder
 
 from .conftest import MASSES, bytes_of
 
@@ -72,8 +72,8 @@ def test_a_row_is_what_the_run_alone_gives(write_sweep, carry_out, tmp_path, sea
 
 def test_jobs_shares_and_interruptions_give_the_same_bytes(write_sweep, carry_out, tmp_path, small_parts):
     path = write_sweep(runs=11)
-    carry_out(path, "one", jobs=1)
-    carry_out(path, "two", jobs=2)
+    carry_out(path, "one", LocalEngine(1))
+    carry_out(path, "two", LocalEngine(2, worth_a_process=1e-9))
     for number in (2, 1):
         carry_out(path, "shared", share=Share(number, 2), resume=True)
 
@@ -92,19 +92,13 @@ def test_jobs_shares_and_interruptions_give_the_same_bytes(write_sweep, carry_ou
     assert all(bytes_of(tmp_path / name) == expected for name in ("two", "shared", "stopped"))
 
 
-def test_what_is_done_is_not_done_again(write_sweep, carry_out, tmp_path, small_parts, monkeypatch):
+def test_what_is_done_is_not_done_again(write_sweep, carry_out, tmp_path, small_parts):
     path = write_sweep(runs=9)
     carry_out(path)
     (tmp_path / "out" / "runs" / "part-000001.parquet").unlink()
-    simulated = []
-
-    def simulate(plan, run, number, histories):
-        simulated.append(number)
-        return simulate_one(plan, run, number, histories)
-
-    monkeypatch.setattr("seatsim.sweeps.engines.worker.simulate_one", simulate)
-    carry_out(path, resume=True)
-    assert simulated == [4, 5, 6, 7]
+    done = []
+    carry_out(path, resume=True, progress=lambda ended, runs: done.append((ended, runs)))
+    assert done == [(number, 9) for number in (6, 7, 8, 9)]
 
 
 def test_a_failed_run_is_a_row_with_its_reason(write_sweep, carry_out, tmp_path):
@@ -165,7 +159,7 @@ def test_a_changed_scenario_is_named_and_more_runs_are_added(write_sweep, carry_
 
 
 def test_the_lock_names_its_owner(write_sweep, carry_out, tmp_path):
-    code = "import sys, time; from pathlib import Path; from seatsim.sweeps.lock import hold_folder\n" \
+    code = "import sys, time; from pathlib import Path; from seatsim.sweeps.folder import hold_folder\n" \
            "with hold_folder(Path(sys.argv[1])): print('held', flush=True); time.sleep(60)"  # fmt: skip
     with subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "out")], stdout=subprocess.PIPE) as other:
         other.stdout.readline()

@@ -7,9 +7,7 @@ from scipy.stats import qmc
 
 from seatsim.report.sweep_choices import advise_on_keys, tabulate_best
 from seatsim.report.sweep_pictures import draw_pareto, find_front
-from seatsim.sweeps.statistics.exceedance import count_exceedances
-from seatsim.sweeps.statistics.inputs import SweepRows
-from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
+from seatsim.sweeps.statistics.rows import SweepRows, count_exceedances, tabulate_quantiles
 from seatsim.sweeps.statistics.sensitivity import analyse_sensitivity, choose_key
 
 COMFORT, HITS = "driver_acceleration_weighted", "end_stop_hits"

@@ -18,8 +18,8 @@ from seatsim.blind.carrier.replays import MATERIAL_SHARE, Ruler
 from seatsim.blind.carrier.seat import draw_seat_changes
 from seatsim.blind.labels import Label
 from seatsim.blind.make.make import CaseFiles, make_set
-from seatsim.blind.processes import Progress
 from seatsim.schema.errors import InputError
+from seatsim.schema.processes import Progress
 
 WEAKEST, _STRONGEST = 0.06, 0.3
 """Standard deviations of a compared channel by which a change moves it: just material, and strong."""

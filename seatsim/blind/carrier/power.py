@@ -17,11 +17,11 @@ from seatsim.blind.carrier.readings import draw_faster_coils
 from seatsim.blind.carrier.recorded import Carrier, Change, encode_carrier, read_carrier
 from seatsim.blind.carrier.replays import Ruler
 from seatsim.blind.make.folder import write_folder
-from seatsim.blind.processes import run_jobs
 from seatsim.blind.score.verdicts import is_right, read_verdict
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.files import write_json, write_text
 from seatsim.schema.guarded import expect, read_json
+from seatsim.schema.processes import run_jobs
 
 SIZES = (0.06, 0.1, 0.16, 0.25, 0.4)
 """Standard deviations by which the effect moves a compared channel: from just material to more than strong."""

@@ -11,9 +11,8 @@ from ruamel.yaml import YAML
 
 from seatsim.blind.carrier.recorded import Carrier, Content, encode_carrier, number, section
 from seatsim.blind.make.materiality import bounded_least_squares
-from seatsim.recordings.compared import select_compared, stands_out
 from seatsim.recordings.recording import ChannelEntry, load_recording
-from seatsim.recordings.replay import replay_table
+from seatsim.recordings.replay import replay_table, select_compared, stands_out
 from seatsim.scenario.loading import single
 from seatsim.schema.arrays import Array
 from seatsim.schema.leftovers import temporary_folder

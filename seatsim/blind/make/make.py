@@ -21,10 +21,10 @@ from seatsim.blind.labels import Label
 from seatsim.blind.make.compose import compose
 from seatsim.blind.make.draw_case import CaseSpecification, draw_case
 from seatsim.blind.make.folder import encode_recording, write_folder
-from seatsim.blind.processes import Progress, run_jobs
 from seatsim.blind.sealed import SEAL, Sealed, new_key, seal
 from seatsim.schema.errors import InputError
 from seatsim.schema.files import make_folder, write_bytes, write_text
+from seatsim.schema.processes import Progress, run_jobs
 
 Wanted = TypeVar("Wanted")
 

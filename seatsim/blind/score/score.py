@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatsim.blind.labels import EFFECTS, KINDS, Label
-from seatsim.blind.processes import Progress
 from seatsim.blind.score.cases import (
     Bin,
     Failure,
@@ -44,6 +43,7 @@ from seatsim.blind.score.verdicts import (
 )
 from seatsim.blind.sealed import unseal
 from seatsim.schema.errors import InputError
+from seatsim.schema.processes import Progress
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from seatsim.blind.processes import Progress, run_jobs
 from seatsim.blind.score.cases import Rate, count_true
 from seatsim.blind.score.verdicts import NAMING, Verdict
 from seatsim.blind.sealed import Sealed
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.processes import Progress, run_jobs
 
 _FEWEST_FOR_PROCESSES = 8
 """Cases below which a new process costs more time, for its imports, than it saves."""

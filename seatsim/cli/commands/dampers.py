@@ -137,9 +137,14 @@ def _benchmark_models(
 
     with show_progress() as progress:
         places = benchmark_models(
-            records, models, request, beside, folder, progress,
+            records,
+            models,
+            request,
+            beside,
+            folder,
+            progress,
             lambda found: write_member(found, folder / found.model.rpartition(":")[2]),
-        )  # fmt: skip
+        )
     show_table(make_league_table(places))
     failed = [place for place in places if place.failed]
     for place in failed:

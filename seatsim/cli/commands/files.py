@@ -1,16 +1,17 @@
-"""The commands for those who write files: new, check, schema."""
+"""The commands on files: new, check, schema, describe, reproduce."""
 
 from __future__ import annotations
 
 import json
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from seatsim.cli.options import Json, OwnCode
-from seatsim.cli.terminal import answer, say, warn
+from seatsim.cli.options import Json, OwnCode, check_out
+from seatsim.cli.terminal import answer, complain, refuse, say, show_progress, warn, wrote_one
 from seatsim.schema.errors import InputError, nearest
 
 NEXT = {
@@ -47,7 +48,11 @@ def check(
     """Read a file as the other commands would, without running it, and say what is wrong or doubtful."""
     from seatsim.cli.check_files import check_file
 
-    found = check_file(file)
+    try:
+        found = check_file(file)
+    except InputError as error:
+        refuse(error, everything=True)
+        raise typer.Exit(error.exit_status) from error
     say(f"{file}: {found.kind}, no errors; {', '.join(found.holds)}")
     warn(found.warnings, "warning")
     answer({"file": str(file), **found._asdict()})
@@ -70,3 +75,78 @@ def schema(
     found = FILES[kind]() if kind in FILES else answer_schema(kind)
     # A schema is JSON with or without --json.
     sys.stdout.write(json.dumps(found) + "\n")
+
+
+ENDINGS = (".png", ".svg", ".pdf")
+
+
+def describe(
+    name: Annotated[str, typer.Argument(help="A name, such as bouc_wen or road.")] = "",
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", metavar="FILE", help="Draw the loops of a damper, as .png, .svg or .pdf."),
+    ] = None,
+    own_code: OwnCode = None,
+    as_json: Json = False,
+) -> None:
+    """List dampers, laws, excitations and effects, or the keys of one of them with units and bounds."""
+    from seatsim.scenario.describe import describe as describe_name
+    from seatsim.scenario.describe import find_page, list_pages
+
+    pages = [find_page(name)] if name else list_pages()
+    if picture is not None and (not name or pages[0].kind != "damper" or picture.suffix not in ENDINGS):
+        raise InputError(
+            f"--picture {picture}: one damper, as {', '.join(ENDINGS)}: seatsim describe bouc_wen --picture loops.svg"
+        )
+    say(describe_name(name))
+    paths = _draw_loops(name, picture) if picture else []
+    for path in paths:
+        wrote_one(path)
+    answer({"names": pages}, paths)
+
+
+def _draw_loops(model: str, picture: Path) -> list[Path]:
+    """Draw the loops of a damper as `seatsim characterise --model` does, and return the path of the picture."""
+    from seatsim.characterisation.model_tests import characterise_model
+    from seatsim.characterisation.settings import choose_settings
+    from seatsim.characterisation.specimen import load_specimen
+    from seatsim.plots.bench.loops import plot_loops
+    from seatsim.plots.saving import save_figure
+    from seatsim.schema.files import write_whole
+
+    tested = load_specimen(model, None)
+    found = characterise_model(tested, choose_settings(tested))
+    return [write_whole(picture, partial(save_figure, plot_loops(found)))]
+
+
+def reproduce(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder with a manifest.json.", show_default=False)],
+    out_folder: Annotated[
+        Path | None, typer.Option("--out", help="Folder for reproduce.json, DIR by default.", callback=check_out)
+    ] = None,
+    own_code: Annotated[
+        list[Path] | None,
+        typer.Option("--with", metavar="FILE.py", help="Own code that took part and may run again; repeatable."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Run again what made a folder, and compare the bytes: exit 0 identical, 1 different."""
+    from seatsim.provenance.reproduce import ANSWER
+    from seatsim.provenance.reproduce import reproduce as run_again
+    from seatsim.schema.files import plain, write_json
+    from seatsim.schema.text import join_names
+
+    with show_progress() as progress:
+        found = run_again(folder, own_code or [], progress)
+    warn(found.versions, "version")
+    for name, problem in found.differences:
+        complain(f"{name}: {problem}")
+    if found.unnamed:
+        warn([f"no manifest names {join_names(found.unnamed)}: nothing is known of what made them"])
+    if found.identical:
+        say(f"{folder}: identical to what seatsim {found.command} writes now: {', '.join(found.compared)}")
+    path = write_json((out_folder or folder) / ANSWER, found._asdict())
+    wrote_one(path)
+    answer({key: plain(value) for key, value in found._asdict().items()}, [path])
+    if not found.identical:
+        raise typer.Exit(1)

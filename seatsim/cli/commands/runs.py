@@ -149,9 +149,8 @@ def _present(
 ) -> tuple[dict[str, object], list[Path]]:
     """Print the table of some runs, their bounds where wanted and the warnings; return their content and files."""
     from seatsim.cli.outputs.runs import encode_result, write_interrupted, write_result
-    from seatsim.cli.published_tables import published_tables
     from seatsim.cli.show_table import show_table
-    from seatsim.cli.tables import comparison
+    from seatsim.cli.tables import comparison, published_tables
     from seatsim.simulation.result import Result
 
     for table in [comparison(runs, _title([run.scenario for run in runs])), *published_tables(runs)]:

@@ -11,18 +11,18 @@ import typer
 from seatsim.cli.options import Json, Out, OwnCode, check_out
 from seatsim.cli.terminal import answer, complain, count_progress, say, show_progress, warn, wrote, wrote_one
 
-FAILURES_SHOWN = 5
+_FAILURES_SHOWN = 5
 """Failed runs whose reasons are printed; the others stand in the rows."""
-EXCEEDED_SHOWN = 12
+_EXCEEDED_SHOWN = 12
 """Limits by group that are printed; the page has more."""
-DOUBTS_SHOWN = 5
-MANY_RUNS = 100_000
+_DOUBTS_SHOWN = 5
+_MANY_RUNS = 100_000
 """Runs from which on their number is said at once, since checking them takes seconds."""
-SweepFile = Annotated[Path, typer.Argument(help="A sweep file: a scenario, and what is varied.", show_default=False)]
+_SweepFile = Annotated[Path, typer.Argument(help="A sweep file: a scenario, and what is varied.", show_default=False)]
 
 
 def sweep(
-    file: SweepFile,
+    file: _SweepFile,
     out_folder: Out = None,
     engine: Annotated[
         Literal["local", "dask", "cuda"], typer.Option("--engine", help="This machine, a cluster, or a CUDA device.")
@@ -47,15 +47,15 @@ def sweep(
     as_json: Json = False,
 ) -> None:
     """Simulate a scenario with many values of its keys, and keep the metrics of every run."""
-    from seatsim.sweeps.engines.choice import open_engine
+    from seatsim.sweeps.engines.base import open_engine
     from seatsim.sweeps.execute import execute, prepare, read_share
-    from seatsim.sweeps.manifest import say_ended
+    from seatsim.sweeps.folder import say_ended
     from seatsim.sweeps.slurm import write_slurm
 
     folder = out_folder or Path("out") / file.stem
     part = read_share(share) if share else None
     prepared = prepare(file, _foresee)
-    warn(prepared.doubts[:DOUBTS_SHOWN], "warning")
+    warn(prepared.doubts[:_DOUBTS_SHOWN], "warning")
     if slurm is not None:
         path = write_slurm(slurm, file, folder, prepared.plan, keep == "histories", own_code or [])
         wrote_one(path)
@@ -74,10 +74,10 @@ def sweep(
     say(f"{folder}: {counts}")
     if not result.counts["pending"]:
         say(f"next: seatsim sweep-report {folder}")
-    for text in result.failures[:FAILURES_SHOWN]:
+    for text in result.failures[:_FAILURES_SHOWN]:
         complain(f"failed: {text}")
-    if len(result.failures) > FAILURES_SHOWN:
-        complain(f"and {len(result.failures) - FAILURES_SHOWN} more; their reasons stand in the rows")
+    if len(result.failures) > _FAILURES_SHOWN:
+        complain(f"and {len(result.failures) - _FAILURES_SHOWN} more; their reasons stand in the rows")
     answer(
         {"identity": result.identity, "counts": result.counts, "failed": result.failures}, [folder / "manifest.json"]
     )
@@ -86,7 +86,7 @@ def sweep(
 
 
 def _foresee(runs: int) -> None:
-    if runs >= MANY_RUNS:
+    if runs >= _MANY_RUNS:
         say(f"{runs} runs; all of their values are checked before the first run begins")
 
 
@@ -103,12 +103,14 @@ def sweep_report(
     from seatsim.metrics.table import SHORT
 
     with show_progress():
-        report = report_sweep(folder, out_folder or folder)
+        report = report_sweep(folder, out_folder)
     say(report.sentence)
-    for row in report.exceeded[:EXCEEDED_SHOWN]:
+    for row in report.exceeded[:_EXCEEDED_SHOWN]:
         who = "".join(f"{value}: " for value in row.group.values())
         unit = f" {row.unit}".removesuffix(" -")
-        say(f"{who}{SHORT.get(row.metric, row.metric)} above {row.limit:g}{unit}: {row.exceeding} of {row.runs} runs,"
-            f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)")  # fmt: skip
+        say(
+            f"{who}{SHORT.get(row.metric, row.metric)} above {row.limit:g}{unit}: {row.exceeding} of {row.runs} runs,"
+            f" {100 * row.share:.3g} % ({100 * row.low:.3g} to {100 * row.high:.3g} %)"
+        )
     wrote(out_folder or folder, report.paths)
     answer(encode_report(report), report.paths)

@@ -9,7 +9,6 @@ from pathlib import Path
 from rich.table import Table
 from ruamel.yaml import YAML
 
-from seatsim.blind.processes import run_jobs
 from seatsim.cli.gap_table import show_floor
 from seatsim.diagnosis.diagnose import diagnose
 from seatsim.diagnosis.result import Diagnosis, GapFigures, RunGaps
@@ -20,6 +19,7 @@ from seatsim.scenario.loading import single
 from seatsim.schema.errors import SeatsimError
 from seatsim.schema.files import plain, write_json, write_whole
 from seatsim.schema.leftovers import temporary_folder
+from seatsim.schema.processes import run_jobs
 from seatsim.schema.registry import is_own
 
 PROCESSES = 2

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from seatsim.cli import templates
 from seatsim.cli.outputs.schemas import FILES
-from seatsim.scenario.finding import EXAMPLES
+from seatsim.scenario.loading import EXAMPLES
 from seatsim.schema.errors import InputError, nearest
 from seatsim.schema.files import write_together
 from seatsim.schema.registry import names

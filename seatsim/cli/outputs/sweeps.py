@@ -10,9 +10,7 @@ from seatsim.provenance.manifest import write_documented
 from seatsim.report.sweep import state_importance, write_sweep_report
 from seatsim.schema.files import write_together, write_whole
 from seatsim.schema.text import disarm
-from seatsim.sweeps.statistics.exceedance import Exceedance, count_exceedances
-from seatsim.sweeps.statistics.inputs import read_rows
-from seatsim.sweeps.statistics.quantiles import tabulate_quantiles
+from seatsim.sweeps.statistics.rows import Exceedance, count_exceedances, read_rows, tabulate_quantiles
 from seatsim.sweeps.statistics.sensitivity import Sensitivities, analyse_sensitivity, tabulate_sensitivities
 
 
@@ -25,12 +23,14 @@ class SweepReport(NamedTuple):
     paths: list[Path]
 
 
-def report_sweep(folder: Path, out: Path) -> SweepReport:
-    """Write the report of a sweep to a folder.
+def report_sweep(folder: str | Path, out: str | Path | None = None) -> SweepReport:
+    """Write the report of a sweep to the folder `out`, or to that of the sweep.
 
     Raises:
         InputError: the folder holds no sweep, or none of its runs has ended.
     """
+    folder = Path(folder)
+    out = Path(out or folder)
     rows = read_rows(folder)
     quantiles, found, exceeded = tabulate_quantiles(rows), analyse_sensitivity(rows), count_exceedances(rows)
     sensitivities = tabulate_sensitivities(found)

@@ -2,8 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from seatsim.rig.control import Measurement, law
-from seatsim.schema.fields import param
+from seatsim.laws import Measurement, law, param
 
 
 # The name is what a scenario says under `law`.

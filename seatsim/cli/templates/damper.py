@@ -2,10 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from seatsim.dampers.base import damper
-from seatsim.rig.state import State
-from seatsim.rig.temperature import TemperatureScaling
-from seatsim.schema.fields import param
+from seatsim.dampers import State, TemperatureScaling, damper, param
 
 
 # The name is what a scenario says under `model`. `current_order=1` promises that the force is linear in the current, so

@@ -2,10 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from seatsim.effects.base import effect
-from seatsim.rig.plant import Plant
-from seatsim.rig.state import State
-from seatsim.schema.fields import param
+from seatsim.effects import Plant, State, effect, param
 
 
 # The part before the dot is the block that the effect lives in: damper, coil, suspension, cushion, driver, floor or

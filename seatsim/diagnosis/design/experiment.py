@@ -26,7 +26,7 @@ from seatsim.diagnosis.problem import DiagnosisProblem
 from seatsim.diagnosis.result import Content, ProposedExperiment
 from seatsim.diagnosis.settings.designing import DesignSettings
 from seatsim.excitations.base import Floor
-from seatsim.recordings.compared import COMPARED
+from seatsim.recordings.replay import COMPARED
 from seatsim.scenario.numbers import change_numbers, list_numbers
 from seatsim.schema.arrays import Array
 from seatsim.simulation.augment import augment_plant

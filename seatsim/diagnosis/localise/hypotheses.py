@@ -27,7 +27,7 @@ from seatsim.diagnosis.localise.input_estimate import (
 from seatsim.diagnosis.localise.reconstruction import PORTS
 from seatsim.diagnosis.objective import Evaluation, Linearisation, Objective
 from seatsim.diagnosis.spectra import as_complex
-from seatsim.recordings.quality.floor_sensor import FLOOR, follows_floor
+from seatsim.recordings.quality.sensors import FLOOR, follows_floor
 from seatsim.schema.arrays import Array
 
 QUANTITIES = {"coil": ("current", "A"), "floor": ("acceleration", "m/s^2")}

@@ -12,7 +12,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from seatsim.compilation.jit import jit
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block
 from seatsim.kernel.assumed_model import AssumedModel, follow_state, model_scaling
 from seatsim.kernel.generic import take, update, wants_force
 from seatsim.kernel.inverse import CELLS
@@ -27,7 +27,7 @@ from seatsim.schema.fields import param
 from seatsim.schema.registry import initial_state, specification_of
 from seatsim.simulation.simulate import set_up
 
-UNSCALED = TemperatureScaling()
+_UNSCALED = TemperatureScaling()
 
 
 class ControllerParameters(NamedTuple):
@@ -101,7 +101,7 @@ def advance(
     followed = _follow(p, state, y) if wants_force(p.law) and state.sample > 0 else state.followed
     grid = np.empty(CELLS + 1)
     decided = command_current(
-        p.law, p.inverse_model, p.damper_ratio, p.max_command, y, UNSCALED, followed, state.law_state, grid
+        p.law, p.inverse_model, p.damper_ratio, p.max_command, y, _UNSCALED, followed, state.law_state, grid
     )
     later = ControllerState(
         y.displacement, y.velocity, y.current, sensed, followed, update(p.law, y, state.law_state), decided[0],
@@ -114,7 +114,7 @@ def advance(
 def _follow(p: ControllerParameters, state: ControllerState, y: Measurement) -> State:
     """Return the state of the inverse's damper at this sample, from that at the last one."""
     ratio, h = p.damper_ratio, p.sample_time / p.divisions
-    scaling = model_scaling(p.inverse_model, UNSCALED, y.temperature)
+    scaling = model_scaling(p.inverse_model, _UNSCALED, y.temperature)
     z = state.followed
     for part in range(p.divisions):
         a, b = part / p.divisions, (part + 1) / p.divisions
@@ -165,8 +165,10 @@ def controller_block(scenario: Scenario) -> Block:
     notes = []
     if initial_state(type(model.damper)) and wants_force(setup.law):
         notes.append("the inverse follows the state of its damper from readings of motion and current")
-    return Block(
-        f"{scenario.name} controller", f"control law {type(control.law).__name__}, with inverse damper and clip",
-        parameters, ControllerInputs(), rest, start, observe, advance, period, True,
-        (type(setup.law), type(model.damper), type(setup.sensors)), tuple(hidden), tuple(notes),
-    )  # fmt: skip
+    name, said = (
+        f"{scenario.name} controller",
+        f"control law {type(control.law).__name__}, with inverse damper and clip",
+    )
+    parts, texts = (type(setup.law), type(model.damper), type(setup.sensors)), (tuple(hidden), tuple(notes))
+    inputs = ControllerInputs()
+    return Block(name, said, parameters, inputs, rest, start, observe, advance, period, True, parts, *texts)

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from seatsim.compilation.jit import jit
 from seatsim.dampers.base import DAMPERS
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.bench import MOST_PARTS, TOLERANCE, advance_state
 from seatsim.kernel.generic import scaling_at
@@ -21,7 +21,7 @@ from seatsim.scenario.scenario import Scenario
 from seatsim.schema.fields import param
 from seatsim.simulation.augment import augment_coil, augment_damper, augment_factors, select_in_loop
 
-ROUNDING = 1e-9
+_ROUNDING = 1e-9
 """Share of a step by which a length may exceed a whole number of steps, for the sake of rounding."""
 
 
@@ -69,7 +69,7 @@ def advance(
     p: DamperParameters, u: DamperInputs, state: DamperState, age: float, length: float
 ) -> tuple[DamperState, bool]:
     """Return the state `length` seconds later and whether it is finite; the length is divided into equal steps."""
-    steps = max(1, math.ceil(length / p.step - ROUNDING))
+    steps = max(1, math.ceil(length / p.step - _ROUNDING))
     h = length / steps
     factors = scaling_at(p.temperature_factors, u.temperature)
     now, good = state, True
@@ -142,9 +142,7 @@ def damper_block(scenario: Scenario) -> Block:
         notes.append(f"the delay of {coil.delay:g} s from command to coil is not part of the damper; delay the command")
     if isinstance(start_temperature, Thermal):
         notes.append("the damper does not warm up by itself; its temperature is an input")
-
-    return Block(
-        f"{scenario.name} damper", f"MR damper with its coil: {name}", parameters, inputs, DamperState(0.0, z, 1),
-        start, observe, advance, scenario.solver.step, False, tuple(classes_of(damper)),
-        ("coil.delay", "coil.resistance"), tuple(notes),
-    )  # fmt: skip
+    title, said, rest = f"{scenario.name} damper", f"MR damper with its coil: {name}", DamperState(0.0, z, 1)
+    parts, texts = tuple(classes_of(damper)), (("coil.delay", "coil.resistance"), tuple(notes))
+    step = scenario.solver.step
+    return Block(title, said, parameters, inputs, rest, start, observe, advance, step, False, parts, *texts)

@@ -7,8 +7,27 @@ integral of the acceleration, unless `floor_velocity` states it. An input counts
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, NamedTuple
+
 from seatsim.compilation.jit import jit
-from seatsim.exchange.blocks.rig_records import GivenFloor, RigInputs
+
+if TYPE_CHECKING:
+    from seatsim.exchange.blocks.rig_motion import RigInputs
+
+
+class GivenFloor(NamedTuple):
+    """What is known of the floor at a communication point.
+
+    `acceleration` in m/s^2 was given at the step of the number `sample`, `rate` in m/s^3 is how it goes on; `velocity`
+    in m/s is that of the present step. `has_rate` and `has_velocity` say whether these two inputs are stated.
+    """
+
+    acceleration: float = 0.0
+    sample: int = 0
+    rate: float = 0.0
+    velocity: float = 0.0
+    has_rate: bool = False
+    has_velocity: bool = False
 
 
 @jit

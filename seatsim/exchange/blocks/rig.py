@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from seatsim.exchange.blocks.base import Block
+from seatsim.exchange.block import Block
+from seatsim.exchange.blocks.floor import GivenFloor
 from seatsim.exchange.blocks.held import nothing_held
-from seatsim.exchange.blocks.rig_motion import advance, observe, start
-from seatsim.exchange.blocks.rig_records import GivenFloor, RigInputs, RigParameters, RigState
+from seatsim.exchange.blocks.rig_motion import RigInputs, RigParameters, RigState, advance, observe, start
 from seatsim.kernel.assumed_model import AssumedModel
 from seatsim.kernel.augmented import classes_of
 from seatsim.kernel.generic import scaling_at, wants_force
@@ -23,7 +23,7 @@ from seatsim.schema.registry import initial_state, specification_of
 from seatsim.simulation.effect_hooks import FRAME_FORCE, READING, TEMPERATURE, TRUTH
 from seatsim.simulation.simulate import set_up
 
-LONGEST_DELAY = 256
+_LONGEST_DELAY = 256
 """Most steps that a command is held back, since every one of them is a number of the state."""
 
 
@@ -38,16 +38,16 @@ def rig_block(scenario: Scenario) -> Block:
         raise InputError(f"{scenario.name}: a damper bench has no rig; export its damper with --what damper")
     setup, initial = set_up(scenario, plant, control, False, False)
     late = math.floor(setup.coil.delay / setup.timing.step + ROUNDING)
-    if late > LONGEST_DELAY:
+    if late > _LONGEST_DELAY:
         raise InputError(
             f"{scenario.name}: a delay of {setup.coil.delay:g} s is {late} steps, and an exported rig holds"
-            f" {LONGEST_DELAY} at most; take a longer solver.step"
+            f" {_LONGEST_DELAY} at most; take a longer solver.step"
         )
     heated = setup.timing.self_heating
-    parameters = RigParameters(
-        setup.rig, setup.coil, setup.factors, setup.thermal, setup.law, setup.inverse_model, setup.sensors,
-        setup.max_command, heated, setup.timing.tolerance, setup.timing.step, setup.timing.sample_every,
-    )  # fmt: skip
+    rig = setup.rig, setup.coil, setup.factors, setup.thermal
+    control_parts = setup.law, setup.inverse_model, setup.sensors, setup.max_command
+    timing = setup.timing.tolerance, setup.timing.step, setup.timing.sample_every
+    parameters = RigParameters(*rig, *control_parts, heated, *timing)
     temperature = setup.thermal.start if isinstance(scenario.temperature, Thermal) else scenario.temperature
     inputs = RigInputs(temperature=float(temperature))
     variable = setup.law, setup.inverse_model.damper, setup.sensors
@@ -56,11 +56,10 @@ def rig_block(scenario: Scenario) -> Block:
     hidden += ["temperature"] if heated else ["thermal", "coil.resistance"]
     hidden += [] if control.sensors else ["displacement_noise", "frame_noise", "driver_noise", "floor_noise"]
     hidden += [] if specification_of(type(control.law)).replays else ["replayed_command"]
-    return Block(
-        f"{scenario.name} rig", "suspension seat with driver, MR damper, coil and control law", parameters, inputs,
-        _rest(scenario, control, parameters, inputs, initial, late), start, observe, advance, setup.timing.step, True,
-        parts, tuple(hidden), tuple(_left_out(scenario)),
-    )  # fmt: skip
+    name, said = f"{scenario.name} rig", "suspension seat with driver, MR damper, coil and control law"
+    rest, step = _rest(scenario, control, parameters, inputs, initial, late), setup.timing.step
+    texts = tuple(hidden), tuple(_left_out(scenario))
+    return Block(name, said, parameters, inputs, rest, start, observe, advance, step, True, parts, *texts)
 
 
 def _rest(scenario: Scenario, control: Control, p: RigParameters, u: RigInputs, initial: State, late: int) -> RigState:
@@ -73,8 +72,8 @@ def _rest(scenario: Scenario, control: Control, p: RigParameters, u: RigInputs, 
     is_followed = isinstance(p.inverse_model, AssumedModel) and wants_force(p.law)
     followed: State = initial_state(type(p.inverse_model.damper)) if is_followed else ()
     law_state, commands = initial_state(type(control.law)), (0.0,) * (late + 2)
-    return RigState(now, 0.0, u.temperature, 0.0, sensed, followed, law_state, commands, none, 0, GivenFloor(),
-                    nothing_held())  # fmt: skip
+    states = sensed, followed, law_state, commands
+    return RigState(now, 0.0, u.temperature, 0.0, *states, none, 0, GivenFloor(), nothing_held())
 
 
 def _left_out(scenario: Scenario) -> list[str]:

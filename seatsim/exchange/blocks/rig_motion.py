@@ -5,26 +5,107 @@ It is computed with the same functions.
 
 from __future__ import annotations
 
+from typing import Annotated, NamedTuple
+
 import numpy as np
 
 from seatsim.compilation.jit import jit
-from seatsim.exchange.blocks.floor import follow_floor, leave_floor
-from seatsim.exchange.blocks.held import hold
-from seatsim.exchange.blocks.rig_records import RigInputs, RigOutputs, RigParameters, RigState
-from seatsim.kernel.assumed_model import follow_state, model_scaling
+from seatsim.exchange.blocks.floor import GivenFloor, follow_floor, leave_floor
+from seatsim.exchange.blocks.held import Held, hold
+from seatsim.kernel.assumed_model import InverseModel, follow_state, model_scaling
 from seatsim.kernel.generic import advance_filters, read, update
 from seatsim.kernel.inverse import CELLS
 from seatsim.kernel.loop import ROUNDING, decide, measure, warm_up
-from seatsim.kernel.rig import Disturbance
+from seatsim.kernel.rig import Disturbance, Rig
 from seatsim.kernel.step import IntegratorState, StepInputs
 from seatsim.kernel.step import advance as advance_rig
 from seatsim.kernel.step import start as start_rig
-from seatsim.rig.sensors import READINGS
+from seatsim.rig.coil import Coil
+from seatsim.rig.control import CompiledLaw
+from seatsim.rig.sensors import READINGS, Sensing
 from seatsim.rig.state import CUSHION_DISPLACEMENT, CUSHION_VELOCITY, DAMPER_WORK, DISPLACEMENT, VELOCITY, State
-from seatsim.rig.temperature import TemperatureScaling
+from seatsim.rig.temperature import TemperatureFactors, TemperatureScaling, Thermal
+from seatsim.schema.fields import param
 
-SAME = 1e-9
+_SAME = 1e-9
 """Relative difference of a disturbance from what it was to become, up to which it is the same but for rounding."""
+
+
+class RigParameters(NamedTuple):
+    """The constant parts of a run, as in `seatsim.kernel.loop_inputs.LoopSetup`."""
+
+    rig: Rig
+    coil: Coil
+    temperature_factors: TemperatureFactors
+    thermal: Thermal
+    law: CompiledLaw
+    inverse_model: InverseModel
+    sensors: Sensing
+    max_command: Annotated[float, param("A", "greatest command of the controller", low=0)]
+    self_heating: bool
+    tolerance: float
+    step: float
+    sample_every: int
+
+
+class RigInputs(NamedTuple):
+    """What drives the rig from one communication point on."""
+
+    floor_acceleration: Annotated[
+        float, param("m/s^2", "acceleration of the floor at the begin of a communication step, upward positive")
+    ] = 0.0
+    floor_velocity: Annotated[
+        float, param("m/s", "velocity of the floor, upward positive; the integral of its acceleration if not given")
+    ] = 0.0
+    floor_jerk: Annotated[
+        float, param("m/s^3", "rate of the floor's acceleration over the step; that over the last step if not given")
+    ] = 0.0
+    frame_force: Annotated[float, param("N", "force on the frame, upward positive")] = 0.0
+    driver_force: Annotated[float, param("N", "force on the driver, upward positive")] = 0.0
+    temperature: Annotated[float, param("degC", "temperature of the damper, where it does not warm up by itself")] = (
+        20.0
+    )
+    replayed_command: Annotated[float, param("A", "command for a law that replays one")] = 0.0
+    displacement_noise: Annotated[float, param("m", "noise of a displacement reading, with sensors only")] = 0.0
+    frame_noise: Annotated[float, param("m/s^2", "noise of the frame's accelerometer, with sensors only")] = 0.0
+    driver_noise: Annotated[float, param("m/s^2", "noise of the driver's accelerometer, with sensors only")] = 0.0
+    floor_noise: Annotated[float, param("m/s^2", "noise of the floor's accelerometer, with sensors only")] = 0.0
+
+
+class RigState(NamedTuple):
+    """State of the rig and of what controls it; `commands` are those given until now in A, the latest one first.
+
+    `followed` is the state of the inverse's damper where the inverse tracks one, `expected` the disturbance that the
+    last step ended with, `sample` the number of steps taken, `floor` what is known of the floor's motion.
+    """
+
+    now: IntegratorState
+    current: float
+    temperature: float
+    command: float
+    sensed: State
+    followed: State
+    law_state: State
+    commands: State
+    expected: Disturbance
+    sample: int
+    floor: GivenFloor
+    held: Held
+
+
+class RigOutputs(NamedTuple):
+    """Motion, force, current and temperature, as the channels of a run."""
+
+    frame_acceleration: Annotated[float, param("m/s^2", "acceleration of the frame, upward positive")]
+    driver_acceleration: Annotated[float, param("m/s^2", "acceleration of the driver, upward positive")]
+    suspension_displacement: Annotated[float, param("m", "displacement of the suspension, positive in extension")]
+    suspension_velocity: Annotated[float, param("m/s", "velocity of the suspension, positive in extension")]
+    cushion_displacement: Annotated[float, param("m", "displacement of the cushion, positive in extension")]
+    cushion_velocity: Annotated[float, param("m/s", "velocity of the cushion, positive in extension")]
+    damper_force: Annotated[float, param("N", "force of the damper, positive when it opposes extension")]
+    coil_current: Annotated[float, param("A", "current in the coil")]
+    current_command: Annotated[float, param("A", "command of the controller over the step that has ended")]
+    damper_temperature: Annotated[float, param("degC", "temperature of the damper")]
 
 
 def start(p: RigParameters, u: RigInputs, rest: RigState) -> RigState:
@@ -132,7 +213,7 @@ def _differs(now: Disturbance, expected: Disturbance) -> bool:
     """Return whether a disturbance is another one than the last step ended with, by more than rounding."""
     floor, frame, driver = now.floor - expected.floor, now.frame_force - expected.frame_force, now.driver_force
     size = abs(floor) + abs(frame) + abs(driver - expected.driver_force)
-    return size > SAME * (1.0 + abs(expected.floor) + abs(expected.frame_force) + abs(expected.driver_force))
+    return size > _SAME * (1.0 + abs(expected.floor) + abs(expected.frame_force) + abs(expected.driver_force))
 
 
 def observe(p: RigParameters, u: RigInputs, state: RigState, age: float) -> RigOutputs:

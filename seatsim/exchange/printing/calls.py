@@ -13,9 +13,8 @@ import numpy as np
 from numba import types
 
 from seatsim.compilation.jit import GENERIC
-from seatsim.exchange.printing.scope import Scope
-from seatsim.exchange.printing.source import lambda_of
-from seatsim.exchange.printing.tuples import address, build_tuple, element
+from seatsim.exchange.printing.program import source_of
+from seatsim.exchange.printing.scope import Scope, address, build_tuple, element
 from seatsim.exchange.printing.values import (
     BOOLEAN,
     INTEGER,
@@ -30,16 +29,13 @@ from seatsim.exchange.printing.values import (
     number,
 )
 
-Evaluate = Callable[[ast.expr, Scope], Value]
-MATHS = (
-    "exp", "log", "sqrt", "sin", "cos", "tan", "atan", "tanh", "sinh", "cosh", "expm1", "copysign", "hypot", "atan2",
-    "pow",
-)  # fmt: skip
+_Evaluate = Callable[[ast.expr, Scope], Value]
+_MATHS = "exp log sqrt sin cos tan atan tanh sinh cosh expm1 copysign hypot atan2 pow"
 """Functions of `math` that C has under the same name."""
 
 
 def print_call(
-    callee: Value, given: list[Value], named: Mapping[str, Value], node: ast.Call, scope: Scope, evaluate: Evaluate
+    callee: Value, given: list[Value], named: Mapping[str, Value], node: ast.Call, scope: Scope, evaluate: _Evaluate
 ) -> Value:
     """Return the value of a call."""
     if callee.type is not None or callee.known is None:
@@ -57,7 +53,7 @@ def print_call(
         return _print_library(thing.__name__, given, node, scope)
     if hasattr(thing, "py_func"):
         thing = thing.py_func
-        scope.program.keep_apart(thing)
+        scope.program.apart.add(thing)
     if thing in GENERIC:
         given = _bind(thing, given, named, node, scope) if named else given
         thing = scope.program.form(thing, tuple(value.type for value in given))
@@ -96,10 +92,10 @@ def _replace(scope: Scope, owner: Value, named: Mapping[str, Value]) -> Value:
     return build_tuple(scope, items, owner.type.instance_class)
 
 
-def _print_own(function: FunctionType, values: list[Value], scope: Scope, evaluate: Evaluate) -> Value:
+def _print_own(function: FunctionType, values: list[Value], scope: Scope, evaluate: _Evaluate) -> Value:
     """Return the call of a function that is printed too; a lambda is put in its place."""
     if function.__name__ == "<lambda>":
-        body = lambda_of(function)
+        body = source_of(function, ast.Lambda)
         inner = Scope(scope.program, function, {})
         inner.write, inner.name = scope.write, scope.name  # type: ignore[method-assign]  # lines go to the caller
         names = [argument.arg for argument in body.args.args]
@@ -153,6 +149,6 @@ def _print_library(  # noqa: PLR0911 - one return per function
         return Value(f"{name}({listed})", BOOLEAN, plain=False)
     if name in ("floor", "ceil"):
         return Value(f"(int)r_{name}({listed})", INTEGER, plain=False, rank=UNARY)
-    if name in MATHS:
+    if name in _MATHS.split():
         return Value(f"r_{name}({listed})", REAL, plain=False)
     raise scope.refuse(node, f"'{name}' has no counterpart in C")

@@ -13,8 +13,7 @@ import numpy as np
 from numba import types
 
 from seatsim.exchange.printing.calls import print_call
-from seatsim.exchange.printing.scope import Scope
-from seatsim.exchange.printing.tuples import build_tuple, element, field, part
+from seatsim.exchange.printing.scope import Scope, build_tuple, element, part
 from seatsim.exchange.printing.values import (
     BOOLEAN,
     CHOICE,
@@ -34,7 +33,7 @@ from seatsim.exchange.printing.values import (
     within,
 )
 
-ARITHMETIC: dict[type[ast.operator], tuple[str, Callable[[float, float], float]]] = {
+_ARITHMETIC: dict[type[ast.operator], tuple[str, Callable[[float, float], float]]] = {
     ast.Add: ("+", operator.add),
     ast.Sub: ("-", operator.sub),
     ast.Mult: ("*", operator.mul),
@@ -42,7 +41,7 @@ ARITHMETIC: dict[type[ast.operator], tuple[str, Callable[[float, float], float]]
     ast.FloorDiv: ("/", operator.floordiv),
     ast.Mod: ("%", operator.mod),
 }
-COMPARED: dict[type[ast.cmpop], tuple[str, Callable[[float, float], bool]]] = {
+_COMPARED: dict[type[ast.cmpop], tuple[str, Callable[[float, float], bool]]] = {
     ast.Lt: ("<", operator.lt),
     ast.LtE: ("<=", operator.le),
     ast.Gt: (">", operator.gt),
@@ -50,7 +49,7 @@ COMPARED: dict[type[ast.cmpop], tuple[str, Callable[[float, float], bool]]] = {
     ast.Eq: ("==", operator.eq),
     ast.NotEq: ("!=", operator.ne),
 }
-UNROLLED = 4
+_UNROLLED = 4
 """Greatest power that is printed as a product, as compiled Python code computes it."""
 
 
@@ -64,7 +63,7 @@ def print_expression(node: ast.expr, scope: Scope) -> Value:  # noqa: PLR0911 - 
         case ast.Attribute():
             return _print_attribute(node, scope)
         case ast.Tuple(elts=items):
-            return build_tuple(scope, print_items(items, scope))
+            return build_tuple(scope, _print_items(items, scope))
         case ast.BinOp(left=left, op=ast.Pow(), right=right):
             return _print_power(print_expression(left, scope), print_expression(right, scope), scope)
         case ast.BinOp(left=left, op=op, right=right):
@@ -81,13 +80,13 @@ def print_expression(node: ast.expr, scope: Scope) -> Value:  # noqa: PLR0911 - 
             return _print_subscript(node, scope)
         case ast.Call(func=function, args=arguments, keywords=named):
             callee = print_expression(function, scope)
-            values = print_items(arguments, scope)
+            values = _print_items(arguments, scope)
             keywords = {str(given.arg): print_expression(given.value, scope) for given in named}
             return print_call(callee, values, keywords, node, scope, print_expression)
     raise scope.refuse(node, "only numbers, tuples and records, arithmetic, comparisons and calls have a counterpart")
 
 
-def print_items(nodes: list[ast.expr], scope: Scope) -> list[Value]:
+def _print_items(nodes: list[ast.expr], scope: Scope) -> list[Value]:
     """Return the values of the items of a tuple or call; those of a tuple with a star stand one by one."""
     values = []
     for node in nodes:
@@ -120,7 +119,7 @@ def _print_attribute(node: ast.Attribute, scope: Scope) -> Value:
     if not isinstance(owner.type, types.BaseNamedTuple):
         raise scope.refuse(node, "only records and modules have attributes")
     if node.attr in owner.type.fields:
-        return field(scope, owner, node.attr)
+        return element(scope, owner, owner.type.fields.index(node.attr))
     method = getattr(owner.type.instance_class, node.attr, None)
     if method is None:
         raise scope.refuse(node, f"{owner.type.instance_class.__name__} has no such field or method")
@@ -132,9 +131,9 @@ def arithmetic(op: ast.operator, left: Value, right: Value, node: ast.AST, scope
     if is_tuple(left.type) and is_tuple(right.type) and isinstance(op, ast.Add):
         items = [element(scope, side, k) for side in map(scope.keep, (left, right)) for k in range(len(side.type))]
         return build_tuple(scope, items)
-    if type(op) not in ARITHMETIC or not all(map(_is_number, (left, right))):
+    if type(op) not in _ARITHMETIC or not all(map(_is_number, (left, right))):
         raise scope.refuse(node, "this operation has no counterpart for these types")
-    sign, compute = ARITHMETIC[type(op)]
+    sign, compute = _ARITHMETIC[type(op)]
     whole = not isinstance(op, ast.Div) and REAL not in {left.type, right.type}
     if is_known(left, right) and not (right.known == 0 and sign in "/%"):
         return number(compute(left.known, right.known))  # type: ignore[arg-type]  # both are numbers
@@ -156,7 +155,7 @@ def _print_power(base: Value, exponent: Value, scope: Scope) -> Value:
     if is_known(base, exponent):
         return number(base.known**exponent.known)  # type: ignore[operator]  # both are numbers
     whole = int(exponent.known) if isinstance(exponent.known, int) else 0
-    if 1 <= whole <= UNROLLED:
+    if 1 <= whole <= _UNROLLED:
         factor = scope.keep(base)
         return Value(" * ".join([within(factor, UNARY)] * whole), base.type, plain=False, rank=PRODUCT)
     return Value(f"r_pow({base.code}, {exponent.code})", REAL, plain=False)
@@ -164,11 +163,8 @@ def _print_power(base: Value, exponent: Value, scope: Scope) -> Value:
 
 def _print_unary(op: ast.unaryop, value: Value, node: ast.AST, scope: Scope) -> Value:
     if isinstance(op, ast.Not):
-        return (
-            number(not value.known)
-            if is_known(value)
-            else Value(f"!{within(value, 0)}", BOOLEAN, plain=False, rank=UNARY)
-        )
+        opposite = Value(f"!{within(value, 0)}", BOOLEAN, plain=False, rank=UNARY)
+        return number(not value.known) if is_known(value) else opposite
     if not isinstance(op, ast.USub) or not _is_number(value):
         raise scope.refuse(node, "this operation has no counterpart")
     if is_known(value):
@@ -178,14 +174,14 @@ def _print_unary(op: ast.unaryop, value: Value, node: ast.AST, scope: Scope) -> 
 
 def _print_comparison(node: ast.Compare, scope: Scope) -> Value:
     values = [print_expression(item, scope) for item in (node.left, *node.comparators)]
-    if any(type(op) not in COMPARED for op in node.ops) or not all(map(_is_number, values)):
+    if any(type(op) not in _COMPARED for op in node.ops) or not all(map(_is_number, values)):
         raise scope.refuse(node, "only numbers are compared")
     if is_known(*values):
         pairs = zip(node.ops, values, values[1:], strict=False)
-        return number(all(COMPARED[type(op)][1](a.known, b.known) for op, a, b in pairs))  # type: ignore[arg-type]
+        return number(all(_COMPARED[type(op)][1](a.known, b.known) for op, a, b in pairs))  # type: ignore[arg-type]
     values[1:-1] = map(scope.keep, values[1:-1])
     parts = [
-        f"{within(a, SUM)} {COMPARED[type(op)][0]} {within(b, SUM)}"
+        f"{within(a, SUM)} {_COMPARED[type(op)][0]} {within(b, SUM)}"
         for op, a, b in zip(node.ops, values, values[1:], strict=False)
     ]
     return Value(" && ".join(parts), BOOLEAN, plain=False, rank=COMPARISON if len(parts) == 1 else LOGIC)
@@ -249,8 +245,5 @@ def _array_element(owner: Value, indices: list[Value], scope: Scope) -> Value:
     rest = owner.shape[len(indices) :]
     if not rest:
         return Value(f"{owner.code}[{' + '.join(terms)}]", REAL)
-    return Value(
-        f"({within(owner, SUM)} + {' + '.join(terms)})",
-        types.Array(REAL, len(rest), "C", readonly=not owner.type.mutable),
-        shape=rest,
-    )
+    kind = types.Array(REAL, len(rest), "C", readonly=not owner.type.mutable)
+    return Value(f"({within(owner, SUM)} + {' + '.join(terms)})", kind, shape=rest)

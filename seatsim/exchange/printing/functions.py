@@ -11,9 +11,8 @@ from typing import cast
 
 from numba import types
 
-from seatsim.exchange.printing.program import Printed, Program, origin
+from seatsim.exchange.printing.program import Printed, Program, origin, source_of
 from seatsim.exchange.printing.scope import Scope
-from seatsim.exchange.printing.source import definition_of
 from seatsim.exchange.printing.statements import print_body
 from seatsim.exchange.printing.values import (
     REAL,
@@ -28,11 +27,6 @@ from seatsim.exchange.printing.values import (
 )
 
 
-def new_program() -> Program:
-    """Return an empty program."""
-    return Program(print_function)
-
-
 def print_function(
     program: Program, function: Callable[..., object], name: str, arguments: tuple[Signature, ...]
 ) -> Printed:
@@ -41,7 +35,7 @@ def print_function(
     Raises:
         NotPrintableError: it uses what has no counterpart in C.
     """
-    definition = definition_of(cast(FunctionType, function))
+    definition = source_of(cast(FunctionType, function), ast.FunctionDef)
     names = [argument.arg for argument in definition.args.args]
     scope = Scope(program, function, _count_assignments(definition, names))
     parameters = [_parameter(scope, *pair) for pair in zip(names, arguments, strict=True)]
@@ -93,7 +87,7 @@ def _definition(
     """Return the text of a function."""
     listed = ", ".join(filter(None, parameters))
     # What is compiled apart for Python is so here: it is seldom called.
-    kind = "CALLED" if program.is_apart(function) else "INLINED"
+    kind = "CALLED" if function in program.apart else "INLINED"
     head = f"{kind} {program.types.name(result)} {name}({listed or 'void'})"
     lines = [*scope.declared, *_used(scope.lines)]
     return "\n".join([f"/* {origin(function)} */", head, "{", *_unused(parameters, lines), *lines, "}", ""])

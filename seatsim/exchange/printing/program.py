@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 import textwrap
 from collections.abc import Callable
-from typing import NamedTuple
+from types import FunctionType
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numba import types
 
 from seatsim.compilation.jit import GENERIC
-from seatsim.exchange.printing.declarations import Declarations, free_name
-from seatsim.exchange.printing.values import REAL, Signature, Value, is_empty, is_tuple, number
+from seatsim.exchange.printing.values import (
+    REAL,
+    Declarations,
+    NotPrintableError,
+    Signature,
+    Value,
+    free_name,
+    is_empty,
+    is_tuple,
+    number,
+)
 from seatsim.schema.arrays import Array
+
+_N = TypeVar("_N", bound=ast.AST)
 
 
 class Printed(NamedTuple):
@@ -39,7 +52,7 @@ class Program:
         self._printed: dict[tuple[object, tuple[Signature, ...]], Printed] = {}
         self._forms: dict[tuple[object, tuple[types.Type, ...]], Callable[..., object] | None] = {}
         self._names: set[str] = set()
-        self._apart: set[object] = set()
+        self.apart: set[object] = set()  # functions that are called, not put where they are called
         self._table_names: dict[bytes, str] = {}
 
     def function(self, function: Callable[..., object], arguments: tuple[Signature, ...]) -> Printed:
@@ -51,21 +64,13 @@ class Program:
             self._printed[key] = self.translate(self, function, name, arguments)
         return self._printed[key]
 
-    def keep_apart(self, function: Callable[..., object]) -> None:
-        """Print a function such that it is called, not put where it is called."""
-        self._apart.add(function)
-
-    def is_apart(self, function: Callable[..., object]) -> bool:
-        """Return whether a function is to be called."""
-        return function in self._apart
-
     def takes_address(self, function: Callable[..., object], kind: types.Type) -> bool:
         """Return whether a function takes the address of an argument of this type.
 
         What is inlined takes addresses of records, and nothing is copied. What is called takes copies: a caller whose
         records a function might see has to keep them in memory.
         """
-        return is_tuple(kind) and not is_empty(kind) and not self.is_apart(function)
+        return is_tuple(kind) and not is_empty(kind) and function not in self.apart
 
     def form(self, generic: Callable[..., object], arguments: tuple[types.Type, ...]) -> Callable[..., object] | None:
         """Return the form of a generic function for arguments of these types, the same one every time."""
@@ -99,3 +104,18 @@ def origin(function: Callable[..., object]) -> str:
     """Return the full name of a Python function, and its first sentence."""
     words = (inspect.getdoc(function) or "").partition("\n")[0].replace("*/", "* /")
     return f"{function.__module__}.{function.__qualname__}" + (f": {words}" if words else "")
+
+
+def source_of(function: FunctionType, kind: type[_N]) -> _N:
+    """Return the definition of a function, or of a lambda, the only one of its line.
+
+    Raises:
+        NotPrintableError: its source is not at hand.
+    """
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+    except (OSError, SyntaxError) as error:
+        raise NotPrintableError(
+            f"{function.__module__}.{function.__qualname__}: its source is not at hand, so that it cannot be exported"
+        ) from error
+    return next(node for node in ast.walk(tree) if isinstance(node, kind))

@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import Any, NamedTuple
 
 from numba import types
 
 from seatsim.schema.errors import InputError
+
+REAL, INTEGER, BOOLEAN, NOTHING = types.float64, types.int64, types.boolean, types.none
+UNARY, PRODUCT, SUM, COMPARISON, LOGIC, CHOICE = range(1, 7)
+"""Ranks of C's operators, from the one that binds most; 0 is a name, a literal or a call."""
+_TAKEN = """
+auto break case char const continue default do double else enum extern float for goto if inline int long register
+restrict return short signed sizeof static struct switch typedef union unsigned void volatile while real R main
+read write time signal exp log pow tanh sin cos tan atan sqrt fabs floor ceil fmod abs round div index gamma
+y0 y1 yn j0 j1 jn remove rename link select least greatest
+"""
+"""Words of C and of its library."""
 
 
 class _Unknown:
@@ -15,11 +27,6 @@ class _Unknown:
 
 
 UNKNOWN = _Unknown()
-REAL, INTEGER, BOOLEAN, NOTHING = types.float64, types.int64, types.boolean, types.none
-
-
-UNARY, PRODUCT, SUM, COMPARISON, LOGIC, CHOICE = range(1, 7)
-"""Ranks of C's operators, from the one that binds most; 0 is a name, a literal or a call."""
 
 
 class NotPrintableError(InputError):
@@ -82,11 +89,6 @@ def as_real(value: Value) -> Value:
     return Value(f"(real){within(value, UNARY)}", REAL, plain=False, rank=UNARY)
 
 
-def tuple_type(items: tuple[types.Type, ...], cls: type | None = None) -> types.Type:
-    """Return the type of a tuple, or of a record of a class."""
-    return types.BaseTuple.from_types(items, cls)
-
-
 def is_tuple(kind: object) -> bool:
     """Whether a type is that of a tuple or record."""
     return isinstance(kind, types.BaseTuple)
@@ -97,24 +99,10 @@ def is_empty(kind: Any) -> bool:
     return kind is NOTHING or (is_tuple(kind) and all(map(is_empty, kind)))
 
 
-def element_types(kind: types.Type) -> tuple[types.Type, ...]:
-    """Return the types of a tuple's elements."""
-    return tuple(kind)
-
-
 def field_names(kind: types.Type) -> tuple[str, ...]:
     """Return the C names of a record's fields, or of a tuple of several types."""
     cls = getattr(kind, "instance_class", None)
     return tuple(map(identifier, cls._fields)) if cls else tuple(f"item{k}" for k in range(len(kind)))
-
-
-_TAKEN = """
-auto break case char const continue default do double else enum extern float for goto if inline int long register
-restrict return short signed sizeof static struct switch typedef union unsigned void volatile while real R main
-read write time signal exp log pow tanh sin cos tan atan sqrt fabs floor ceil fmod abs round div index gamma
-y0 y1 yn j0 j1 jn remove rename link select least greatest
-"""
-"""Words of C and of its library."""
 
 
 def identifier(name: str) -> str:
@@ -125,3 +113,51 @@ def identifier(name: str) -> str:
 def whole_as_int64(kind: types.Type) -> types.Type:
     """Return the type of a variable: one type serves all whole numbers."""
     return INTEGER if isinstance(kind, types.Integer) else kind
+
+
+class Declarations:
+    """The structs of a program, in the order in which C must see them."""
+
+    def __init__(self) -> None:
+        self.names: dict[types.Type, str] = {}
+        self.text: list[str] = []
+
+    def name(self, kind: types.Type) -> str:
+        """Return the C name of a type, declared before if it is a struct."""
+        if kind == REAL:
+            return "real"
+        if isinstance(kind, types.Array):
+            return "real *" if kind.mutable else "const real *"
+        if kind == BOOLEAN or isinstance(kind, types.Integer):
+            return "int"
+        if kind is NOTHING or is_empty(kind):
+            return "void"
+        if not is_tuple(kind):
+            raise NotPrintableError(f"a value of type {kind} has no counterpart in C")
+        if kind not in self.names:
+            self._declare(kind)
+        return self.names[kind]
+
+    def _declare(self, kind: types.Type) -> None:
+        items = tuple(kind)
+        if is_row(kind):
+            name, body = f"{self.name(items[0])}_{len(items)}", f"    {self.name(items[0])} at[{len(items)}];\n"
+        else:
+            fields = zip(field_names(kind), items, strict=True)
+            body = "".join(f"    {self.name(item)} {field};\n" for field, item in fields if not is_empty(item))
+            cls = getattr(kind, "instance_class", None)
+            name = cls.__name__ if cls else "tuple"
+        self.names[kind] = free_name(identifier(name), self.names.values())
+        self.text.append(f"typedef struct {{\n{body}}} {self.names[kind]};\n")
+
+
+def is_row(kind: types.Type) -> bool:
+    """Whether a tuple is an array in C: elements of one type, without names of their own."""
+    return isinstance(kind, types.UniTuple) and not isinstance(kind, types.BaseNamedTuple)
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """Return the name, with a number where it is taken."""
+    if name not in taken:
+        return name
+    return next(f"{name}_{k}" for k in range(2, len(taken) + 3) if f"{name}_{k}" not in taken)

@@ -1,1 +1,1 @@
-"""One small reader for each format; each returns a `DataFile` and knows nothing of rigs and channels."""
+"""Readers by kind of format; each function returns a `DataFile` and knows nothing of rigs and channels."""

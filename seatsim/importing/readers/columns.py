@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from seatsim.importing.names import read_name
 from seatsim.importing.readers.dialect import CLOCK, DATE, LISTED_UNITS, PLAIN, SIGN, THOUSANDS, WITH_UNIT
+from seatsim.importing.signals import Group, Signal
+from seatsim.importing.time_axis import measured_axis
 from seatsim.schema.arrays import Array
 
 if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-MOST_TEXTS = 0.5
+_MOST_TEXTS = 0.5
 """Share of the rows that are no numbers from which a column is one of texts."""
-DAY = 86400.0
-AMBIGUOUS = rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}[.,]\d{{3}}"
+_DAY = 86400.0
+_AMBIGUOUS = rf"(?:{SIGN}\s*)?[1-9]\d{{0,2}}[.,]\d{{3}}"
 """A number that may have a decimal sign, or one between thousands."""
 
 
@@ -38,7 +43,7 @@ class Cells(NamedTuple):
     @property
     def is_date(self) -> bool:
         """Say whether these are dates without a time of day."""
-        return self.unit == "s" and not (self.values[np.isfinite(self.values)] % DAY).any()
+        return self.unit == "s" and not (self.values[np.isfinite(self.values)] % _DAY).any()
 
 
 def read_column(column: pa.ChunkedArray, decimal: str) -> Cells | None:
@@ -85,15 +90,15 @@ def _read_texts(texts: pd.Series[str], decimal: str) -> Cells | None:
     found = _numbers(plain, decimal)
     if not np.isfinite(found).all():
         found = max(found, _numbers(plain, "," if decimal == "." else "."), key=lambda each: np.isfinite(each).sum())
-    if np.isnan(found).sum() <= MOST_TEXTS * len(found):
-        parted = plain[plain.str.fullmatch(AMBIGUOUS, na=False) & (np.abs(found) >= 1e3)]
+    if np.isnan(found).sum() <= _MOST_TEXTS * len(found):
+        parted = plain[plain.str.fullmatch(_AMBIGUOUS, na=False) & (np.abs(found) >= 1e3)]
         return Cells(found, parted=f"'{parted.iloc[0]}'" if len(parted) else "")
     parts = plain.str.extract(rf"^{WITH_UNIT.pattern}$")
     if parts[1].nunique() == 1 and parts[1].dropna().iloc[0].lower() in LISTED_UNITS:
         found = _numbers(parts[0], decimal)
         return Cells(found, parts[1].dropna().iloc[0]) if np.isfinite(found).any() else None
     times = _read_stamps(plain)
-    return None if np.isnan(times).sum() > MOST_TEXTS * len(times) else Cells(times, "s")
+    return None if np.isnan(times).sum() > _MOST_TEXTS * len(times) else Cells(times, "s")
 
 
 def _numbers(texts: pd.Series[str], decimal: str) -> Array:
@@ -121,7 +126,7 @@ def _read_stamps(texts: pd.Series[str]) -> Array:
         return np.asarray(since.reindex(texts.index) if len(since) == len(texts) else np.full(len(texts), np.nan))
     days = _days(parts["date"])
     clock = _clock_seconds(parts["clock"])
-    total = np.where(parts["date"].isna(), 0.0, DAY * days) + np.where(parts["clock"].isna(), 0.0, clock)
+    total = np.where(parts["date"].isna(), 0.0, _DAY * days) + np.where(parts["clock"].isna(), 0.0, clock)
     total = np.where(parts["date"].isna() & parts["clock"].isna(), np.nan, total)
     there = np.flatnonzero(np.isfinite(total))
     return total - total[there[0]] if len(there) else total
@@ -150,3 +155,39 @@ def _clock_seconds(clocks: pd.Series[str]) -> Array:
     of_day = 3600.0 * hours + 60.0 * second + third.fillna(0.0) + part
     in_minutes = third.isna() & parts[3].notna()
     return np.asarray(of_day.where(~in_minutes, 60.0 * first + second + part), dtype=np.float64)
+
+
+def part_by_time(signals: Sequence[Signal], rate: float | None) -> tuple[Group, ...]:
+    """Return one group, or one for each column of time where every one has others behind it.
+
+    Columns whose times are alike share a group. Rows that have no time end a group.
+    """
+    begins = [index for index, signal in enumerate(signals) if _is_clock(signal)]
+    ends = [*begins[1:], len(signals)]
+    if len(begins) < 2 or any(end - begin < 2 for begin, end in zip(begins, ends, strict=True)):
+        return (Group("", tuple(signals), rate),)
+    parts: list[list[Signal]] = []
+    for begin, end in pairwise([0, *begins[1:], len(signals)]):
+        part = list(signals[begin:end])
+        clock = _clock(part)
+        same = next((each for each in parts if np.array_equal(_clock(each).values, clock.values, equal_nan=True)), None)
+        if same is None:
+            parts.append(part)
+        else:
+            same += [signal for signal in part if signal is not clock]
+    if len(parts) == 1:
+        return (Group("", tuple(parts[0]), rate),)
+    clocks = [_clock(part) for part in parts]
+    return tuple(
+        Group(clock.name, tuple(part)).take(np.isfinite(clock.values))
+        for clock, part in zip(clocks, parts, strict=True)
+    )
+
+
+def _is_clock(signal: Signal) -> bool:
+    is_named = read_name(signal.name, signal.unit).quantity == "time"
+    return is_named and measured_axis(signal.values[np.isfinite(signal.values)]) is not None
+
+
+def _clock(part: Sequence[Signal]) -> Signal:
+    return next(signal for signal in part if _is_clock(signal))

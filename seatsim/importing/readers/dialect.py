@@ -27,23 +27,24 @@ PLAIN = {
 """What a number looks like with each decimal sign."""
 DATE = r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4}|\d{8}"
 CLOCK = r"\d{1,2}:\d{2}(?::\d{2})?(?:[.,:]\d+)?(?:\s*[AaPp]\.?[Mm]\.?)?"
-STAMP = re.compile(rf"(?:{DATE})(?:[ T_,-]+{CLOCK})?(?:Z| ?UTC|[+-]\d\d:?\d\d)?|{CLOCK}")
+_STAMP = re.compile(rf"(?:{DATE})(?:[ T_,-]+{CLOCK})?(?:Z| ?UTC|[+-]\d\d:?\d\d)?|{CLOCK}")
 """A date, a time of day, or both."""
 BLANKS = re.compile(rf'"[^"]*"|(?:(?<![^\s]){SIGN} +(?=[.,\d]))?[^\s"]+')
 """A cell of a table that is parted by blanks; one may stand between a sign and its number."""
-LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | {
-    "m/s2", "m/s²", "mm/s2", "°c", "c", "k", "f", "hz", "-", "sec", "in", "lb", "kg", "bar", "pa", "deg", "rad", "°",
-    "1/s", "rpm", "w", "%",
-}  # fmt: skip
+_OTHER_UNITS = """m/s2 m/s² mm/s2 °c c k f hz - sec in lb kg bar pa deg rad ° 1/s rpm w %"""
+LISTED_UNITS = {unit.lower() for units in USUAL.values() for unit in units} | set(_OTHER_UNITS.split())
 WITH_UNIT = re.compile(r"(\S.*?[\d.,])\s+([^\W\d_][^\s\d]*[²2]?|%|°C?)")
 """A number with its unit in the same cell."""
-LEADING_ZERO = re.compile(r"0\d+")
-LONGEST_NUMBER = 40
+_LEADING_ZERO = re.compile(r"0\d+")
+_LONGEST_NUMBER = 40
 """Letters of a cell that may hold a number and its unit."""
-SCORED = 50
+_SCORED = 50
 """Lines at either end by which delimiter and decimal sign are chosen."""
-DISAGREEING = 0.9
+_DISAGREEING = 0.9
 """Weight of a way to read a table in which the line above its rows has another number of cells."""
+
+_QUOTED = 120
+"""Letters of a line that an error quotes."""
 
 Kind = bool | None
 """True for a cell that holds a number or a time, None for one that holds nothing, False for a text."""
@@ -70,13 +71,13 @@ def kind_of(cell: str, decimal: str) -> Kind:
     plain = cell.strip()
     if plain in MISSING:
         return None
-    patterns = (PLAIN[decimal], THOUSANDS[decimal], STAMP)
+    patterns = (PLAIN[decimal], THOUSANDS[decimal], _STAMP)
     return any(pattern.fullmatch(_without_unit(plain)) for pattern in patterns)
 
 
 def _without_unit(cell: str) -> str:
     """Return a cell without a well-known unit at its end."""
-    found = WITH_UNIT.fullmatch(cell) if len(cell) <= LONGEST_NUMBER else None
+    found = WITH_UNIT.fullmatch(cell) if len(cell) <= _LONGEST_NUMBER else None
     return found[1] if found and found[2].lower() in LISTED_UNITS else cell
 
 
@@ -100,13 +101,13 @@ def find_dialect(lines: Sequence[str], delimiter: str | None, decimal: str | Non
 
     The last lines tell it, as the first may be titles; these tell which way has as many names as columns.
     """
-    first, last = lines[:SCORED], lines[-SCORED:]
+    first, last = lines[:_SCORED], lines[-_SCORED:]
     best, most = None, 0.0
     for each in (delimiter,) if delimiter else DELIMITERS:
         for sign in (decimal,) if decimal else (".", ","):
             if each == sign and not any('"' in line for line in last):
                 continue
-            score = _score(last, each, sign) * (1.0 if _agrees_with_names(first, each, sign) else DISAGREEING)
+            score = _score(last, each, sign) * (1.0 if _agrees_with_names(first, each, sign) else _DISAGREEING)
             score += 1e-3 * _score(first, each, sign)
             if score > most + 1e-9:
                 best, most = Dialect(each, sign), score
@@ -136,6 +137,12 @@ def _score(lines: Sequence[str], delimiter: str, decimal: str) -> float:
 def _count(cell: str, decimal: str) -> float:
     """Return how certainly a cell is a number: 1,234 may be 1.234, and 0500 may stand behind a decimal sign."""
     cell = _without_unit(cell)
-    if PLAIN[decimal].fullmatch(cell) or STAMP.fullmatch(cell):
-        return 0.5 if LEADING_ZERO.fullmatch(cell) else 1.0
+    if PLAIN[decimal].fullmatch(cell) or _STAMP.fullmatch(cell):
+        return 0.5 if _LEADING_ZERO.fullmatch(cell) else 1.0
     return (1.0 if decimal in cell else 0.5) if THOUSANDS[decimal].fullmatch(cell) else 0.0
+
+
+def quote(line: str) -> str:
+    """Return a line as an error quotes it."""
+    text = line.strip()
+    return f"'{text}'" if len(text) <= _QUOTED else f"'{text[:_QUOTED]}...'"

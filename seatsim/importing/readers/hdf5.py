@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import io
+from collections.abc import Hashable, Iterator, Mapping
+from contextlib import contextmanager
 from math import ceil, prod
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from seatsim.importing.readers.hdf5_parts import open_checked
 from seatsim.importing.readers.naming import as_text, signals_of, stated_rate, stated_unit
-from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import DataFile, Group, Signal, groups_by_length
+from seatsim.importing.readers.reading import TextLayout, need
+from seatsim.importing.signals import Channels, DataFile, Signal
+from seatsim.schema.bounds import BYTES_OF_NUMBER, Part, check_made, check_parts
+from seatsim.schema.errors import InputError
+from seatsim.schema.guarded import is_there, read_bytes
+from seatsim.schema.tables import LARGEST_FILE
 
 if TYPE_CHECKING:
     import h5py
 
-COLUMNS = ("columns", "names", "channels", "channel_names", "column_names")
+_COLUMNS = ("columns", "names", "channels", "channel_names", "column_names")
 """Attributes that name the columns of a matrix."""
+_HERE = "."
+"""How a virtual data set names its own file."""
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
@@ -28,13 +35,14 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
         InputError: a link leads out of the file, or numbers of a virtual data set are missing.
     """
     notes: list[str] = []
+    gathered = Channels()
     with open_checked(path, content) as file:
-        groups = tuple(_groups("", file, {}, notes))
-    return DataFile(path, "", groups, tuple(notes))
+        _gather("", file, {}, gathered, notes)
+    return DataFile(path, "", gathered.groups(), tuple(notes))
 
 
-def _groups(name: str, folder: h5py.Group, above: Mapping[str, object], notes: list[str]) -> Iterator[Group]:
-    """Yield the data sets of a folder, then those of the folders in it; `above` holds what was stated of all."""
+def _gather(name: str, folder: h5py.Group, above: Mapping[str, object], gathered: Channels, notes: list[str]) -> None:
+    """Gather the data sets of a folder, then those of the folders in it; `above` holds what was stated of all."""
     import h5py
 
     stated = {**above, **folder.attrs}
@@ -50,13 +58,13 @@ def _groups(name: str, folder: h5py.Group, above: Mapping[str, object], notes: l
         else:
             found = _signals(key, item, notes)
             signals += found
-            stated = {**stated, **{each: value for each, value in item.attrs.items() if each.lower() not in COLUMNS}}
+            stated = {**stated, **{each: value for each, value in item.attrs.items() if each.lower() not in _COLUMNS}}
             if not found:
                 notes.append(f"'{item.name}' is left out: it holds no vector or matrix of real numbers")
-    if signals:
-        yield from groups_by_length(name, signals, stated_rate(stated))
+    for signal in signals:
+        gathered.add(name, signal, stated_rate(stated))
     for title, item in inner:
-        yield from _groups(title, item, stated, notes)
+        _gather(title, item, stated, gathered, notes)
 
 
 def _signals(key: str, item: h5py.Dataset, notes: list[str]) -> list[Signal]:
@@ -67,7 +75,7 @@ def _signals(key: str, item: h5py.Dataset, notes: list[str]) -> list[Signal]:
     if item.dtype.names is not None:
         table = item[()]
         return [signal for name in item.dtype.names for signal in signals_of(name, np.asarray(table[name]))]
-    columns = next((_texts(value) for each, value in attributes.items() if each.lower() in COLUMNS), [])
+    columns = next((_texts(value) for each, value in attributes.items() if each.lower() in _COLUMNS), [])
     units = next((_texts(value) for each, value in attributes.items() if each.lower() == "units"), [])
     return signals_of(key, item[()], stated_unit(attributes), columns, units)
 
@@ -84,3 +92,105 @@ def _never_written(item: h5py.Dataset) -> float:
 
 def _texts(value: object) -> list[str]:
     return [as_text(each) for each in np.atleast_1d(np.asarray(value))]
+
+
+@contextmanager
+def open_checked(path: Path, content: bytes, follows: bool = False) -> Iterator[h5py.File]:
+    """Open a file whose every part was checked; `follows` says that what its data sets refer to will be read too.
+
+    Raises:
+        InputError: it links to another file or keeps numbers there, or numbers of a virtual data set are missing.
+        TooMuchError: it states more than a file of its size may make.
+    """
+    h5py = need("h5py", "HDF5")
+    with h5py.File(io.BytesIO(content), "r") as file:
+        sources: set[Path] = set()
+        check_parts([file["/"]], lambda item: _part(item, path, len(content), follows, sources), len(content))
+        if not sources:
+            yield file
+            return
+    if path.stat().st_size != len(content):
+        raise InputError(f"{path}: is packed, and its virtual data sets lie in files beside it; unpack it")
+    with h5py.File(path, "r", locking=False) as file:  # HDF5 finds files beside a file by its path alone
+        yield file
+
+
+def _part(item: Hashable, path: Path, size: int, follows: bool, sources: set[Path]) -> Part:
+    """Return what an object makes and refers to, and add the files of its virtual data sets to `sources`."""
+    import h5py
+
+    place = f"{path}, {getattr(item, 'name', None) or 'an object without a name'}"
+    made = sum(_bytes_of(item.attrs.get_id(name)) for name in item.attrs) if isinstance(item, h5py.HLObject) else 0
+    if isinstance(item, h5py.Group):
+        return Part(made, tuple(_members(item, place)))
+    if not isinstance(item, h5py.Dataset):
+        return Part(made)
+    if item.external:
+        raise InputError(f"{place}: keeps its numbers in another file ({item.external[0][0]}), which is not read")
+    made += _bytes_of(item.id)
+    check_made(made, size, str(item.name))
+    if item.is_virtual:
+        return Part(made, tuple(_sources(item, place, path, sources)))
+    holds_references = h5py.check_ref_dtype(item.dtype) is h5py.Reference
+    return Part(made, tuple(_referred(item)) if follows and holds_references else ())
+
+
+def _bytes_of(array: Any) -> int:
+    """Return how many bytes a data set or an attribute makes."""
+    shape = array.shape or ()
+    return prod(shape) * int(max(BYTES_OF_NUMBER, array.dtype.itemsize))
+
+
+def _members(group: h5py.Group, place: str) -> Iterator[h5py.HLObject]:
+    """Yield what lies in a group."""
+    import h5py
+
+    for name in group:
+        link = group.get(name, getlink=True)
+        if isinstance(link, h5py.ExternalLink):
+            raise InputError(f"{place}: '{name}' is a link to another file ({link.filename}), which is not followed")
+        item = group.get(name)
+        if item is None:
+            raise InputError(f"{place}: '{name}' is a link to '{link.path}', which is not there")
+        yield item
+
+
+def _referred(item: h5py.Dataset) -> Iterator[h5py.HLObject]:
+    return (item.file[reference] for reference in np.ravel(item[()]) if reference)
+
+
+def _sources(item: h5py.Dataset, place: str, path: Path, sources: set[Path]) -> Iterator[h5py.HLObject]:
+    """Yield the data sets of the same file of which a virtual one is made, and check those of the files beside it."""
+    import h5py
+
+    covered = 0
+    for each in item.virtual_sources():
+        needed = each.vspace.get_select_npoints()
+        covered += needed
+        missing = f"{place}: takes numbers from '{each.dset_name}' of '{each.file_name}', which is not there"
+        if each.file_name == _HERE:
+            source = item.file.get(each.dset_name)
+            if not isinstance(source, h5py.Dataset) or source.size < needed:
+                raise InputError(missing)
+            yield source
+        else:
+            beside = path.parent / each.file_name
+            if Path(each.file_name).name != each.file_name or not is_there(beside):
+                raise InputError(f"{missing}; its files must lie beside it")
+            sources.add(beside)
+            _check_source(beside, each.dset_name, needed, missing)
+    if covered < item.size:
+        raise InputError(
+            f"{place}: {item.size - covered} of its {item.size} numbers have no source; HDF5 would give zeros"
+        )
+
+
+def _check_source(path: Path, name: str, needed: int, missing: str) -> None:
+    """Check a file from which a virtual data set takes numbers, which may hold no virtual data set itself."""
+    import h5py
+
+    content = read_bytes(path, LARGEST_FILE, "a file of measured data")
+    with open_checked(path, content) as file:
+        source = file.get(name)
+        if not isinstance(source, h5py.Dataset) or source.is_virtual or source.size < needed:
+            raise InputError(missing)

@@ -22,19 +22,19 @@ AnyArray: TypeAlias = NDArray[np.generic]
 Resolve: TypeAlias = Callable[[AnyArray, str, str], object]
 """Returns an object, of which a file holds an array that tells which it is, its system, and its class."""
 
-HEADER, INNER_HEADER = 128, 8
-ORDERS = {b"IM": "<", b"MI": ">"}
+_HEADER, _INNER_HEADER = 128, 8
+_ORDERS = {b"IM": "<", b"MI": ">"}
 """Bytes at the end of a header, and the order of bytes of which they tell."""
-NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
-TEXTS = {2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}
-ARRAY, PACKED = 14, 15
+_NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
+_TEXTS = {2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}
+_ARRAY, _PACKED = 14, 15
 """Types of elements: numbers and texts by their types of numpy and encodings, arrays, packed elements."""
-CELLS, STRUCTURE, OBJECT, TEXT, NUMERIC, OPAQUE = 1, 2, 3, 4, range(6, 16), 17
-COMPLEX = 0x0800
+_CELLS, _STRUCTURE, _OBJECT, _TEXT, _NUMERIC, _OPAQUE = 1, 2, 3, 4, range(6, 16), 17
+_COMPLEX = 0x0800
 """Classes of arrays, and the flag of those that have an imaginary part too."""
-DEEPEST = 32
+_DEEPEST = 32
 """How deep arrays may lie in each other."""
-FILE_WRAPPER = "FileWrapper__"
+_FILE_WRAPPER = "FileWrapper__"
 """Class of the array that holds what all objects of a file hold."""
 
 
@@ -66,7 +66,7 @@ class _Elements:
             kind, size = struct.unpack_from(f"{self.order}II", content, at)
             begin = at + 8
             # Packed elements are not filled up.
-            end = begin + size + (0 if kind == PACKED else -size % 8)
+            end = begin + size + (0 if kind == _PACKED else -size % 8)
             if kind >> 16:  # a small one, whose content stands in the place of its size
                 kind, size, begin, end = kind & 0xFFFF, kind >> 16, at + 4, at + 8
             if begin + size > len(content):
@@ -77,25 +77,25 @@ class _Elements:
 
     def unpack(self, element: _Element) -> _Element:
         """Return a variable, unpacked where it is packed."""
-        if element.kind != PACKED:
+        if element.kind != _PACKED:
             return element
         try:
             content = zlib.decompressobj().decompress(element.content, permitted_of(self.size) + 1)
         except zlib.error as error:
             raise ValueError(f"a variable cannot be unpacked: {error}") from error
         self.count(len(content))
-        return next(self.split(content), _Element(PACKED, b""))
+        return next(self.split(content), _Element(_PACKED, b""))
 
     def read_array(self, content: bytes, depth: int = 0) -> tuple[str, object]:
         """Return the name and the value of an array; None is the value of what holds neither numbers nor others."""
-        if depth > DEEPEST:
-            raise ValueError(f"arrays lie more than {DEEPEST} deep in each other")
+        if depth > _DEEPEST:
+            raise ValueError(f"arrays lie more than {_DEEPEST} deep in each other")
         if not content:
             return "", np.empty((0, 0))
         flags, *parts = self.split(content)
         state = int(self.numbers(flags)[0])
         kind = state & 0xFF
-        if kind == OPAQUE:
+        if kind == _OPAQUE:
             name, system, class_name, value = parts
             held = self.read_array(value.content, depth + 1)[1]
             return _text(name), self._object(held, _text(system), _text(class_name))
@@ -106,18 +106,18 @@ class _Elements:
         return _text(name), self._value(kind, state, shape, parts, depth)
 
     def _value(self, kind: int, state: int, shape: tuple[int, ...], parts: list[_Element], depth: int) -> object:
-        if kind == TEXT:
+        if kind == _TEXT:
             return self._letters(parts[0], shape) if parts else np.empty(0, dtype=np.str_)
-        if kind in NUMERIC and parts:
+        if kind in _NUMERIC and parts:
             self.count(8 * prod(shape))
-            values: list[NDArray[Any]] = [self.numbers(part) for part in parts[: 2 if state & COMPLEX else 1]]
+            values: list[NDArray[Any]] = [self.numbers(part) for part in parts[: 2 if state & _COMPLEX else 1]]
             if any(prod(shape) != len(each) for each in values):
                 raise ValueError(f"an array of {shape} has {len(values[0])} numbers")
             return (values[0] if len(values) == 1 else values[0] + 1j * values[1]).reshape(shape, order="F")
-        if kind == CELLS:
+        if kind == _CELLS:
             return self._arrays(parts, shape, depth)
-        if kind in (STRUCTURE, OBJECT):
-            return self._structures(parts[1:] if kind == OBJECT else parts, shape, depth)
+        if kind in (_STRUCTURE, _OBJECT):
+            return self._structures(parts[1:] if kind == _OBJECT else parts, shape, depth)
         return None
 
     def _arrays(self, parts: list[_Element], shape: tuple[int, ...], depth: int) -> AnyArray:
@@ -147,7 +147,7 @@ class _Elements:
 
     def _letters(self, element: _Element, shape: tuple[int, ...]) -> AnyArray:
         """Return a text, or one for each row of letters."""
-        encoding = TEXTS.get(element.kind, "latin-1")
+        encoding = _TEXTS.get(element.kind, "latin-1")
         if encoding in ("utf-16", "utf-32"):
             encoding += "-le" if self.order == "<" else "-be"
         text = element.content.decode(encoding, errors="replace")
@@ -158,12 +158,12 @@ class _Elements:
 
     def numbers(self, element: _Element) -> AnyArray:
         """Return the numbers of an element."""
-        if element.kind not in NUMBERS:
+        if element.kind not in _NUMBERS:
             raise ValueError(f"an element of the type {element.kind} stands where numbers should")
-        return np.frombuffer(element.content, self.order + NUMBERS[element.kind])
+        return np.frombuffer(element.content, self.order + _NUMBERS[element.kind])
 
     def _object(self, held: object, system: str, class_name: str) -> object:
-        if class_name == FILE_WRAPPER:
+        if class_name == _FILE_WRAPPER:
             return held
         return self.resolve(held, system, class_name) if self.resolve and isinstance(held, np.ndarray) else None
 
@@ -177,15 +177,15 @@ def read_variables(content: bytes, open_objects: Callable[[AnyArray, str], Resol
         ValueError: the file is damaged.
         TooMuchError: it states more than a file of its size may make.
     """
-    order = ORDERS.get(content[HEADER - 2 : HEADER])
+    order = _ORDERS.get(content[_HEADER - 2 : _HEADER])
     if order is None:
         raise ValueError("it does not state the order of its bytes")
     elements = _Elements(order, len(content))
-    variables = [elements.unpack(each) for each in elements.split(content[HEADER:])]
+    variables = [elements.unpack(each) for each in elements.split(content[_HEADER:])]
     found: dict[str, object] = {}
     # What objects hold stands last, and is needed first.
     for variable in reversed(variables):
-        if variable.kind == ARRAY:
+        if variable.kind == _ARRAY:
             name, value = elements.read_array(variable.content)
             if not name and isinstance(value, np.ndarray) and value.dtype == np.uint8:
                 elements.resolve = _open_objects(value.tobytes(), len(content), open_objects)
@@ -195,13 +195,13 @@ def read_variables(content: bytes, open_objects: Callable[[AnyArray, str], Resol
 
 
 def _open_objects(content: bytes, size: int, open_objects: Callable[[AnyArray, str], Resolve]) -> Resolve | None:
-    order = ORDERS.get(content[2:4])
+    order = _ORDERS.get(content[2:4])
     if order is None:
         return None
     elements = _Elements(order, size)
-    for element in elements.split(content[INNER_HEADER:]):
+    for element in elements.split(content[_INNER_HEADER:]):
         variable = elements.unpack(element)
-        _, value = elements.read_array(variable.content) if variable.kind == ARRAY else ("", None)
+        _, value = elements.read_array(variable.content) if variable.kind == _ARRAY else ("", None)
         if isinstance(value, np.ndarray) and value.dtype.names:
             return open_objects(value, order)
     return None

@@ -5,6 +5,7 @@ Objects of MATLAB, such as tables, are resolved by mat-io, which reads files of 
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,9 +15,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from seatsim.importing.readers.hdf5_parts import open_checked
+from seatsim.importing.readers.hdf5 import open_checked
 from seatsim.importing.readers.mat_elements import AnyArray, Resolve, read_variables
-from seatsim.importing.readers.naming import in_seconds
+from seatsim.importing.readers.naming import UNITS, bare, in_seconds
 from seatsim.importing.readers.reading import HDF5, USER_BLOCK, need
 from seatsim.importing.signals import TIME
 from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
@@ -24,13 +25,32 @@ from seatsim.schema.bounds import BYTES_OF_PART, LEAST, check_made
 Value: TypeAlias = "AnyArray | str | dict[str, Value] | list[Value] | None"
 """Numbers, a text, a structure, cells or structures of many; None for what is none of these."""
 
-REFERRED, SUBSYSTEM = "#refs#", "#subsystem#"
+_REFERRED, _SUBSYSTEM = "#refs#", "#subsystem#"
 """Folders of a file of version 7.3 that hold what its cells and structures refer to, and what its objects hold."""
-REFERENCE = 0xDD000000
+_REFERENCE = 0xDD000000
 """First number of an array that tells which object it is."""
-MOST_OBJECTS = LEAST // BYTES_OF_PART
-UNITS = ("varUnits", "VariableUnits")
+_MOST_OBJECTS = LEAST // BYTES_OF_PART
+_UNITS_OF_TABLE = ("varUnits", "VariableUnits")
 """Attributes with which mat-io states the units of a table."""
+VALUES = ("values", "data", "signal", "samples", "y", "ydata")
+LABELS = ("label", "signalname", "channelname", "name", "title", "blockname")
+TIMES = ("time", "t", "zeit", "temps", "timestamp", "timestamps", "tout")
+ABSCISSAS = (*TIMES, "x", "xdata")
+STARTS = ("x0", "xoffset", "xorg", "start")
+"""Fields of a structure that is a channel: its values, its name, its times in s, and the time in s of its first value.
+Names stand here without underscores and capitals."""
+INDEX = "xindex"
+"""Field that says which of several vectors of times a channel has, counted from 1 (dSPACE)."""
+TIME_INFO = "timeinfo"
+UNITS_OF_TIME = ("xunit", "xunits", "unitx", "timeunit", "timeunits")
+"""A structure that states the unit of times, and fields that do."""
+_BESIDE = (TIME_INFO, "header", "info", "datainfo", "capture", "meta", "metadata", "fileheader", "attributes")
+"""Structures that state something of what stands beside them."""
+_ENDING = re.compile(
+    r"^(.+?)_(data|values|header|unit|units|time|name|label|fs|dt|dx|x0|samplerate|xdelta)$", re.IGNORECASE
+)
+"""A flat variable that is part of a channel: the name of the channel, and which part it is."""
+_TIME_WITHIN = re.compile(r"^(.*?)_?time_(.*)$", re.IGNORECASE)
 
 
 def read_values(path: Path, content: bytes) -> dict[str, Value]:
@@ -51,12 +71,12 @@ def read_values(path: Path, content: bytes) -> dict[str, Value]:
 def _read_hdf5(path: Path, content: bytes) -> dict[str, Value]:
     with open_checked(path, content, follows=True) as file:
         reader = _need_matio("matio.v7.matreader7", "MAT v7.3").MatRead7(file)
-        if SUBSYSTEM in file:
-            reader.subsystem = _subsystem(reader.read_struct(file[SUBSYSTEM]), "<")
+        if _SUBSYSTEM in file:
+            reader.subsystem = _subsystem(reader.read_struct(file[_SUBSYSTEM]), "<")
         found: dict[str, Value] = {}
         plain = _Plain(len(content))
         for name in file:
-            if name not in (REFERRED, SUBSYSTEM):
+            if name not in (_REFERRED, _SUBSYSTEM):
                 try:
                     found[name] = plain.of(reader.read_h5_data(file[name]))
                 except NotImplementedError:  # no variable of MATLAB
@@ -81,12 +101,12 @@ def _subsystem(held: AnyArray, order: str) -> Any:
     base = _need_matio("matio.subsystem", "a table or another object of MATLAB").MatSubsystem
 
     class Bounded(base):  # type: ignore[misc, valid-type]
-        left = MOST_OBJECTS
+        left = _MOST_OBJECTS
 
         def load_opaque_object(self, metadata: Any, type_system: Any, classname: Any = None) -> object:
             self.left -= 1
             if self.left < 0:
-                raise ValueError(f"its objects hold each other more than {MOST_OBJECTS} times")
+                raise ValueError(f"its objects hold each other more than {_MOST_OBJECTS} times")
             _check_reference(metadata)
             return super().load_opaque_object(metadata, type_system, classname)
 
@@ -101,7 +121,7 @@ def _check_reference(numbers: Any) -> None:
     """Raise ValueError where an array states more objects than it has numbers."""
     if isinstance(numbers, np.ndarray) and numbers.dtype.kind == "u" and numbers.size > 2:
         flat = numbers.ravel()
-        if flat[0] == REFERENCE and np.prod(flat[2 : 2 + int(flat[1])], dtype=float) > flat.size:
+        if flat[0] == _REFERENCE and np.prod(flat[2 : 2 + int(flat[1])], dtype=float) > flat.size:
             raise ValueError("an array of objects states more of them than it has")
 
 
@@ -150,7 +170,49 @@ class _Plain:
         columns: dict[str, Value] = {TIME: in_seconds(frame.index.to_numpy())} if frame.index.dtype.kind in "Mm" else {}
         columns |= {str(name): self.of(frame[name].to_numpy()) for name in frame}
         stated: Mapping[str, Any] = frame.attrs
-        units: list[Any] = next((stated[key] for key in UNITS if key in stated), [])
+        units: list[Any] = next((stated[key] for key in _UNITS_OF_TABLE if key in stated), [])
         if len(units) == len(frame.columns):
             columns["units"] = {str(name): str(unit) for name, unit in zip(frame, units, strict=True)}
         return columns
+
+
+def join_flat(variables: Mapping[str, Value]) -> dict[str, Value]:
+    """Return variables, and a structure of each vector with what is called after it."""
+    owners = {name: found for name in variables if (found := _owner(name, variables))}
+    parts: dict[str, dict[str, Value]] = {owner: {} for owner, _ in owners.values()}
+    for name, (owner, part) in owners.items():
+        parts[owner][part] = variables[name]
+    for owner, held in parts.items():
+        if owner in variables:
+            held["data"] = variables[owner]
+    return {name: value for name, value in variables.items() if name not in owners} | parts
+
+
+def _owner(name: str, variables: Mapping[str, Value]) -> tuple[str, str] | None:
+    """Return the channel of which a variable is a part, and which part; None where it is one of itself."""
+    ending = _ENDING.match(name)
+    if ending:
+        beginning, part = ending[1], ending[2].lower()
+        if is_vector(variables.get(beginning)):
+            return None if part in VALUES else (beginning, part)
+        siblings = (variables.get(f"{beginning}_{each}") for each in ("data", "Data", "DATA", "values", "Values"))
+        if beginning not in variables and any(is_vector(each) for each in siblings):
+            return beginning, part
+    within = _TIME_WITHIN.match(name)
+    partner = f"{within[1]}_{within[2]}".strip("_") if within else ""
+    return (partner, "time") if is_vector(variables.get(partner)) else None
+
+
+def is_vector(value: Value | None) -> bool:
+    """Say whether a value is more than one number."""
+    return isinstance(value, np.ndarray) and value.size > 1
+
+
+def statements(structure: Mapping[str, Value]) -> dict[str, Value]:
+    """Return the fields of a structure, and those of the structures in it that state something of the others."""
+    stated: dict[str, Value] = {}
+    for name, value in structure.items():
+        if bare(name) in _BESIDE and isinstance(value, dict):
+            is_of_time = bare(name) == TIME_INFO
+            stated |= {each: held for each, held in value.items() if not (is_of_time and bare(each) in UNITS)}
+    return stated | dict(structure)

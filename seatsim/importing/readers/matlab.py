@@ -7,14 +7,14 @@ those of a channel share the beginning of their names (`Channel_1_Data`, `Channe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from seatsim.importing.readers.mat_elements import AnyArray
-from seatsim.importing.readers.mat_names import (
+from seatsim.importing.readers.mat_values import (
     ABSCISSAS,
     INDEX,
     LABELS,
@@ -23,11 +23,12 @@ from seatsim.importing.readers.mat_names import (
     TIMES,
     UNITS_OF_TIME,
     VALUES,
+    Value,
     is_vector,
     join_flat,
+    read_values,
     statements,
 )
-from seatsim.importing.readers.mat_values import Value, read_values
 from seatsim.importing.readers.naming import (
     as_text,
     bare,
@@ -39,12 +40,12 @@ from seatsim.importing.readers.naming import (
     stated_unit,
 )
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.signals import TIME, DataFile, Group, Signal, add_channels
+from seatsim.importing.signals import TIME, Channels, DataFile, Signal
 from seatsim.schema.arrays import Array
 from seatsim.schema.units import DIMENSIONS, find_conversion
 
-Structure = Mapping[str, Value]
-LATEST = 1e7
+_Structure = Mapping[str, Value]
+_LATEST = 1e7
 """s; a start that is larger is a date."""
 
 
@@ -61,27 +62,17 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     reader = _Reader()
     reader.read_structure("", "", join_flat(read_values(path, content)), _Clock())
     notes = note_left_out("left out, as they hold no columns of real numbers", reader.left_out)
-    return DataFile(path, "", tuple(reader.groups()), notes)
+    return DataFile(path, "", reader.gathered.groups(), notes)
 
 
 class _Reader:
-    """Gathers the channels of a file: `timed` by their times, `even` by structure, length and clock."""
+    """Gathers the channels of a file, by their times, or by structure, length, rate and start."""
 
     def __init__(self) -> None:
-        self.timed: list[Group] = []
-        self.even: dict[tuple[str, int, _Clock], list[Signal]] = {}
+        self.gathered = Channels()
         self.left_out: list[str] = []
 
-    def groups(self) -> Iterator[Group]:
-        """Yield the groups; those of one structure are called after a channel too."""
-        even = [Group(name, tuple(held), clock.rate, clock.start) for (name, _, clock), held in self.even.items()]
-        every = [*even, *self.timed]
-        names = [group.name for group in every]
-        for group in every:
-            is_one = names.count(group.name) == 1
-            yield group if is_one else group._replace(name=f"{group.name}, {group.signals[-1].name}".strip(", "))
-
-    def read_structure(self, name: str, label: str, held: Structure, above: _Clock) -> None:
+    def read_structure(self, name: str, label: str, held: _Structure, above: _Clock) -> None:
         """Take the channels of a structure, which is called `label` where it does not say how."""
         stated = statements(held)
         channel = _channel_of(held)
@@ -91,7 +82,7 @@ class _Reader:
             signals = signals_of(label or channel, np.asarray(held[channel]), stated_unit(stated))
             self._add(name, signals, _own_clock(own, above, stated), name or channel)
             return
-        before = len(self.timed) + len(self.even)
+        before = len(self.gathered)
         clock = own if own.times or own.rate else above
         inner = {key: value for key, value in held.items() if isinstance(value, dict | list)}
         vectors = {key: value for key, value in held.items() if isinstance(value, np.ndarray) and value.size > 1}
@@ -101,7 +92,7 @@ class _Reader:
         for key, below in inner.items():
             if bare(key) not in ABSCISSAS or not own.times:
                 self._read_inner(name, key, label if bare(key) in VALUES else key, below, clock)
-        is_empty = len(self.timed) + len(self.even) == before
+        is_empty = len(self.gathered) == before
         for key, value in held.items():
             if value is None or (is_empty and isinstance(value, np.ndarray) and value.size == 0):
                 self.left_out.append(f"{name}.{key}".strip("."))
@@ -135,12 +126,12 @@ class _Reader:
         for signal in signals:
             times = next((each for each in clock.times if len(each) == len(signal.values)), None)
             if times is not None:
-                add_channels(self.timed, name, times, [signal])
+                self.gathered.add_timed(name, times, [signal])
             else:
-                self.even.setdefault((name, len(signal.values), clock._replace(times=())), []).append(signal)
+                self.gathered.add(name, signal, clock.rate, clock.start)
 
 
-def _own_clock(own: _Clock, above: _Clock, stated: Structure) -> _Clock:
+def _own_clock(own: _Clock, above: _Clock, stated: _Structure) -> _Clock:
     """Return the clock of a channel: its own times or rate, else those above it, of which it may name one."""
     if own.times or own.rate:
         return own
@@ -150,7 +141,7 @@ def _own_clock(own: _Clock, above: _Clock, stated: Structure) -> _Clock:
     return above
 
 
-def _channel_of(held: Structure) -> str | None:
+def _channel_of(held: _Structure) -> str | None:
     """Return the field that holds the values of a channel, None where a structure is no channel."""
     key = next((each for name in VALUES for each in held if bare(each) == name and is_vector(held[each])), None)
     if key is None:
@@ -160,7 +151,7 @@ def _channel_of(held: Structure) -> str | None:
     return key if all(each == key or bare(each) in ABSCISSAS for each in others) else None
 
 
-def _times(held: Structure, names: Sequence[str]) -> tuple[Array, ...]:
+def _times(held: _Structure, names: Sequence[str]) -> tuple[Array, ...]:
     """Return the vectors of times that a structure holds under such names, or as the values of channels in it."""
     found: list[Array] = []
     for key, value in held.items():
@@ -179,7 +170,7 @@ def _rises(vector: AnyArray) -> bool:
     return bool((steps >= 0.0).all() and (steps > 0.0).any())
 
 
-def _clock(held: Structure, stated: Structure, names: Sequence[str]) -> _Clock:
+def _clock(held: _Structure, stated: _Structure, names: Sequence[str]) -> _Clock:
     """Return what a structure states of time, in s and Hz."""
     info = next((value for key, value in held.items() if bare(key) == TIME_INFO and isinstance(value, dict)), {})
     unit = stated_text(stated, UNITS_OF_TIME) or stated_unit(info)
@@ -190,6 +181,6 @@ def _clock(held: Structure, stated: Structure, names: Sequence[str]) -> _Clock:
     return _Clock(times, stated_rate(stated, factor), factor * start if start is not None else None)
 
 
-def _start(stated: Structure) -> float | None:
+def _start(stated: _Structure) -> float | None:
     found = (scalar(value) for key, value in stated.items() if bare(key) in STARTS)
-    return next((each for each in found if each is not None and abs(each) < LATEST), None)
+    return next((each for each in found if each is not None and abs(each) < _LATEST), None)

@@ -4,17 +4,31 @@ from __future__ import annotations
 
 import io
 import logging
+import struct
+import zlib
+from collections.abc import Hashable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from seatsim.importing.readers.mdf_blocks import check_blocks
 from seatsim.importing.readers.naming import note_left_out
 from seatsim.importing.readers.reading import TextLayout, need
-from seatsim.importing.signals import DataFile, Group, Signal, add_channels
-from seatsim.schema.bounds import check_made
+from seatsim.importing.signals import Channels, DataFile, Signal
+from seatsim.schema.bounds import Part, check_made, check_parts
+
+_BEGIN = 64
+"""Address of the first block."""
+_LINKS = {1: "CA HL", 2: "SR", 3: "SI", 4: "CH DG", 5: "EV", 6: "HD CG", 8: "CN", 99: "FH AT", 10**6: "CC DL LD"}
+_OWNED_4 = {f"##{kind}".encode(): count for count, kinds in _LINKS.items() for kind in kinds.split()}
+_OWNED_3 = {b"HD": 3, b"DG": 4, b"CG": 3, b"CN": 5}
+"""How many of its first links a block follows: those behind them refer back, to channels elsewhere."""
+_PACKED = b"##DZ"
+_LEADS_TO = {b"HD": (b"DG",), b"DG": (b"DG", b"CG"), b"CG": (b"CG", b"CN"), b"CN": (b"CN",)}
+"""Kinds of blocks to which the first links of others lead: these are followed without a look at the kind."""
+_EVENT_ABOVE = (1, 2)
+"""Links of an event to the event above it and to the beginning of its range."""
 
 
 def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
@@ -29,8 +43,8 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     for version in ("3", "4"):
         vars(need(f"asammdf.blocks.mdf_v{version}", "MDF"))[f"MDF{version}"].__del__ = _close
     vars(asammdf.blocks.mdf_v4)["debug_channel"] = lambda *_: None  # it prints a channel that cannot be read
-    check_blocks(content)
-    groups: list[Group] = []
+    _check_blocks(content)
+    gathered = Channels()
     left_out: list[str] = []
     with asammdf.MDF(io.BytesIO(content)) as file:
         check_made(sum(_bytes_of(group) for group in file.groups), len(content), "what its groups state")
@@ -43,8 +57,8 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
             left_out += [each.name for each in chosen if each.samples.dtype.kind not in "fiu" or each.samples.ndim != 1]
             if found:
                 signals = [Signal(each.name, each.unit or "", each.samples.astype(np.float64)) for each in found]
-                add_channels(groups, f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
-    return DataFile(path, "", tuple(groups), note_left_out("channels that hold no single numbers", left_out))
+                gathered.add_timed(f"group {index + 1}", found[0].timestamps.astype(np.float64), signals)
+    return DataFile(path, "", gathered.groups(), note_left_out("channels that hold no single numbers", left_out))
 
 
 def _bytes_of(group: Any) -> int:
@@ -77,3 +91,57 @@ def _close(file: Any) -> None:
     """Close what there is of a file."""
     with suppress(AttributeError):
         file.close()
+
+
+def _check_blocks(content: bytes) -> None:
+    """Raise TooMuchError where blocks refer to themselves over others, or make too much together."""
+    if content[8:9] == b"4":
+        check_parts([_BEGIN], lambda address: _block_4(content, address), len(content))
+    else:
+        order = "<" if content[24:26] == b"\0\0" else ">"
+        check_parts([_BEGIN], lambda address: _block_3(content, address, order), len(content))
+
+
+def _block_4(content: bytes, address: Hashable) -> Part:
+    assert isinstance(address, int)  # what this function itself has returned
+    kind = content[address : address + 4]
+    if kind == _PACKED:
+        return Part(_unpacked(content, address))
+    if kind not in _OWNED_4 or address + 24 > len(content):
+        return Part(0)
+    count = min(struct.unpack_from("<Q", content, address + 16)[0], _OWNED_4[kind], (len(content) - address - 24) // 8)
+    links = list(struct.unpack_from(f"<{count}Q", content, address + 24))
+    _check_kinds(content, kind[2:], links, 2)
+    if kind == b"##EV":
+        links = [link for number, link in enumerate(links) if number not in _EVENT_ABOVE]
+    if kind == b"##CN" and count > 5 and content[links[5] : links[5] + 4] == b"##CG":
+        del links[5]  # a group of values of any length stands beside the group of the channel
+    return Part(8 * count, tuple(link for link in links if 0 < link < len(content)))
+
+
+def _check_kinds(content: bytes, kind: bytes, links: Sequence[int], before: int) -> None:
+    """Raise ValueError where a link leads to a block of another kind, whose letters come after `before` others."""
+    for link, wanted in zip(links, _LEADS_TO.get(kind, ()), strict=False):
+        if link and content[link + before : link + before + 2] != wanted:
+            raise ValueError(
+                f"a block {kind.decode()} leads to address {link}, where no block {wanted.decode()} begins"
+            )
+
+
+def _unpacked(content: bytes, address: int) -> int:
+    """Return how many bytes a packed block states to make; ValueError where it makes more."""
+    stated, packed = struct.unpack_from("<QQ", content, address + 32)
+    check_made(stated, len(content), "a packed block")
+    body = content[address + 48 : address + 48 + packed]
+    if len(zlib.decompressobj().decompress(body, stated + 1)) > stated:
+        raise ValueError(f"a packed block makes more than the {stated} bytes that it states")
+    return int(stated)
+
+
+def _block_3(content: bytes, address: Hashable, order: str) -> Part:
+    assert isinstance(address, int)
+    kind = content[address : address + 2]
+    count = min(_OWNED_3.get(kind, 0), (len(content) - address - 4) // 4)
+    links = struct.unpack_from(f"{order}{max(0, count)}I", content, address + 4)
+    _check_kinds(content, kind, links, 0)
+    return Part(4 * len(links), tuple(link for link in links if 0 < link < len(content)))

@@ -11,23 +11,23 @@ from numpy.typing import NDArray
 
 from seatsim.importing.signals import Signal
 
-SAMPLE = r"(?:sampl\w*|abtast|scan|acquisition)"
-RATE = rf"{SAMPLE}(?:rate|freq\w*)|fs|fr[ée]quenced.[ée]chantillonnage"
-STEP = rf"{SAMPLE}(?:interval\w*|period\w*|step|zeit)|dt|delta[tx]"
+_SAMPLE = r"(?:sampl\w*|abtast|scan|acquisition)"
+_RATE = rf"{_SAMPLE}(?:rate|freq\w*)|fs|fr[ée]quenced.[ée]chantillonnage"
+_STEP = rf"{_SAMPLE}(?:interval\w*|period\w*|step|zeit)|dt|delta[tx]"
 """Names, as `bare` returns them, under which the sample rate in Hz, or the interval in s, is stated."""
-RATES = re.compile(rf"{RATE}|rate|frequency|sampleratehz|fa")
-STEPS = re.compile(rf"{STEP}|ts|sampletime|increment|wfincrement|step|dx|xdelta|xinc|xincrement")
+_RATES = re.compile(rf"{_RATE}|rate|frequency|sampleratehz|fa")
+_STEPS = re.compile(rf"{_STEP}|ts|sampletime|increment|wfincrement|step|dx|xdelta|xinc|xincrement")
 """The same where they stand among variables: words that mean something else in a line of text are among them."""
-ENTRY = re.compile(
+_ENTRY = re.compile(
     r"""^[\W_]*(?P<key>[^\W\d][^\d:=;,|\t\[(]*?)["']?\s*(?:[\[(](?P<of_key>[^\])]*)[\])])?\s*[:=;,|\t ]\s*["']?"""
     r"""(?P<number>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)["']?[\s;,|\[(]*(?P<unit>[A-Za-zµμ]*)[\W_]*$"""
 )
 """A key, a number and perhaps a unit in a line of their own, such as `SampleRate, 200, Hz` or `dt = 0.002 s`."""
-LONGEST = 200
+_LONGEST = 200
 """Letters of a line that may be such an entry."""
-IN_HZ = {"": 1.0, "hz": 1.0, "khz": 1e3, "s": 1.0, "sps": 1.0}
-IN_S = {"": 1.0, "s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
-NUMBER = re.compile(r"\s*\d+([.,]\d*)?([eE][-+]?\d{1,2})?\s*")
+_IN_HZ = {"": 1.0, "hz": 1.0, "khz": 1e3, "s": 1.0, "sps": 1.0}
+_IN_S = {"": 1.0, "s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
+_NUMBER = re.compile(r"\s*\d+([.,]\d*)?([eE][-+]?\d{1,2})?\s*")
 """A number as a text."""
 UNITS = ("unitstring", "unit", "units", "einheit", "ylabelunit", "yunit", "unity", "nunit", "niunitdescription")
 """Names under which a unit is stated."""
@@ -43,7 +43,7 @@ def stated_rate(values: Mapping[str, object], seconds: float = 1.0) -> float | N
 
     `seconds` is the unit of intervals in s.
     """
-    for names, is_rate in ((RATES, True), (STEPS, False)):
+    for names, is_rate in ((_RATES, True), (_STEPS, False)):
         for key, value in values.items():
             number = scalar(value) if names.fullmatch(bare(key)) else None
             if number is not None and 0.0 < number < np.inf:
@@ -53,14 +53,14 @@ def stated_rate(values: Mapping[str, object], seconds: float = 1.0) -> float | N
 
 def find_rate(lines: Sequence[str]) -> float | None:
     """Return the sample rate in Hz that lines of text state, None where none does."""
-    entries = (ENTRY.match(line) for line in lines if len(line) <= LONGEST)
+    entries = (_ENTRY.match(line) for line in lines if len(line) <= _LONGEST)
     for entry in filter(None, entries):
         number, key = float(entry["number"].replace(",", ".")), bare(entry["key"])
         unit = (entry["unit"] or entry["of_key"] or "").lower()
-        if re.fullmatch(RATE, key) and number > 0.0 and unit in IN_HZ:
-            return number * IN_HZ[unit]
-        if re.fullmatch(STEP, key) and number > 0.0 and unit in IN_S:
-            return 1.0 / (number * IN_S[unit])
+        if re.fullmatch(_RATE, key) and number > 0.0 and unit in _IN_HZ:
+            return number * _IN_HZ[unit]
+        if re.fullmatch(_STEP, key) and number > 0.0 and unit in _IN_S:
+            return 1.0 / (number * _IN_S[unit])
     return None
 
 
@@ -79,7 +79,7 @@ def scalar(value: object) -> float | None:
     if isinstance(value, Mapping | list | tuple):
         return None
     array = np.asarray(value)
-    if array.size == 1 and array.dtype.kind in "USO" and NUMBER.fullmatch(as_text(array)):
+    if array.size == 1 and array.dtype.kind in "USO" and _NUMBER.fullmatch(as_text(array)):
         return float(as_text(array).replace(",", "."))
     return float(array.ravel()[0]) if array.size == 1 and array.dtype.kind in "fiu" else None
 

@@ -17,11 +17,11 @@ from seatsim.importing.signals import DataFile, Group, Signal
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 
-END = re.compile(rb"^\$\$[^\n]*\n", re.MULTILINE)
-FIELD = {"LRFI": 10, "LDFI": 20}
-BINARY = {"KRBI": ">f4", "KDBI": ">f8"}
-RECORD = 80
-DISTANCE = "distance"
+_END = re.compile(rb"^\$\$[^\n]*\n", re.MULTILINE)
+_FIELD = {"LRFI": 10, "LDFI": 20}
+_BINARY = {"KRBI": ">f4", "KDBI": ">f8"}
+_RECORD = 80
+_DISTANCE = "distance"
 
 
 class _Definition(NamedTuple):
@@ -38,12 +38,12 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     Raises:
         InputError: the header has no end or defines no track, or the data are of another kind or truncated.
     """
-    end = END.search(content)
+    end = _END.search(content)
     if end is None:
         raise InputError(f"{path}: its header has no end ($$); the file is truncated: export it again")
     defined = _definition(content[: end.start()].decode("latin-1"))
-    if defined.kind not in {*FIELD, *BINARY} or not any(_is_track(name) for name in defined.channels):
-        permitted = f"{', '.join([*FIELD, *BINARY])} with long sections"
+    if defined.kind not in {*_FIELD, *_BINARY} or not any(_is_track(name) for name in defined.channels):
+        permitted = f"{', '.join([*_FIELD, *_BINARY])} with long sections"
         raise InputError(
             f"{path}: its numbers are '{defined.kind}', with {len(defined.channels)} channels; permitted: {permitted}"
         )
@@ -55,7 +55,7 @@ def read(path: Path, content: bytes, layout: TextLayout) -> DataFile:
     step = defined.road.get("REFERENCE_LINE_INCREMENT", 0.01)
     tracks = [index for index, name in enumerate(defined.channels) if _is_track(name)]
     places = _places(defined, [defined.channels[index] for index in tracks])
-    distance = Signal(DISTANCE, "m", np.arange(len(table), dtype=np.float64) * step)
+    distance = Signal(_DISTANCE, "m", np.arange(len(table), dtype=np.float64) * step)
     signals = [Signal(f"z at {v:+.2f} m", "m", table[:, index]) for v, index in zip(places, tracks, strict=True)]
     return DataFile(path, "", (Group("", (distance, *signals), is_road=True),))
 
@@ -115,19 +115,19 @@ def _places(defined: _Definition, tracks: list[str]) -> Array:
 def _numbers(body: bytes, defined: _Definition) -> Array:
     """Return the data, shape (cross sections, channels), NaN where the road was not measured."""
     count = len(defined.channels)
-    if defined.kind in BINARY:
-        size = np.dtype(BINARY[defined.kind]).itemsize
-        values = np.frombuffer(body[: len(body) // size * size], dtype=BINARY[defined.kind]).astype(np.float64)
+    if defined.kind in _BINARY:
+        size = np.dtype(_BINARY[defined.kind]).itemsize
+        values = np.frombuffer(body[: len(body) // size * size], dtype=_BINARY[defined.kind]).astype(np.float64)
         table = values[: len(values) // count * count].reshape(-1, count)
         # The last record is filled up with NaN, which may make further rows without any elevation.
         while len(table) and np.isnan(table[-1]).all():
             table = table[:-1]
         return table
-    width = FIELD[defined.kind]
-    per_row = -(-count * width // RECORD)
+    width = _FIELD[defined.kind]
+    per_row = -(-count * width // _RECORD)
     lines = [line for line in body.decode("latin-1").splitlines() if line.strip()]
     rows = [
-        "".join(line.ljust(RECORD)[:RECORD] for line in lines[at : at + per_row])
+        "".join(line.ljust(_RECORD)[:_RECORD] for line in lines[at : at + per_row])
         for at in range(0, len(lines), per_row)
     ]
     cells = [[row[width * column : width * (column + 1)].strip() for column in range(count)] for row in rows]

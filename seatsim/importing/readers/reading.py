@@ -21,16 +21,16 @@ from seatsim.schema.guarded import is_there, read_bytes
 from seatsim.schema.tables import LARGEST_FILE, UNPACKING_ERRORS, unpack
 from seatsim.schema.text import make_printable
 
-LONGEST_REASON = 200
+_LONGEST_REASON = 200
 """Letters of what a library says that an error repeats."""
-SNIFFED = 4096
+_SNIFFED = 4096
 """Bytes from which a format is recognised."""
 USER_BLOCK, HDF5 = 512, b"\x89HDF\r\n\x1a\n"
 """Bytes that may stand before an HDF5 file, and how it begins."""
-LEAST_ROWS = 2
-LOWEST_RATE, HIGHEST_RATE, LATEST_START = 1e-6, 1e9, 1e10
+_LEAST_ROWS = 2
+_LOWEST_RATE, _HIGHEST_RATE, _LATEST_START = 1e-6, 1e9, 1e10
 """Rates in Hz and starts in s, 300 years apart, beyond which a file is damaged."""
-LARGEST_NUMBER = 1e100
+_LARGEST_NUMBER = 1e100
 """What is larger, or infinite, was never measured and counts as a row without a number: its square overflows."""
 
 
@@ -47,41 +47,44 @@ class TextLayout(NamedTuple):
 
 
 class Format(NamedTuple):
-    """A format: the module that reads it, how its files begin, and how they may end."""
+    """A format: the function that reads it, with its module, how its files begin, and how they may end."""
 
     name: str
-    module: str
+    reader: str
     begins: tuple[bytes, ...]
     endings: tuple[str, ...]
 
 
 FORMATS = (
-    Format("Parquet", "arrow", (b"PAR1",), (".parquet", ".pq")),
-    Format("Feather", "arrow", (b"ARROW1", b"FEA1"), (".feather", ".arrow")),
-    Format("XLSX", "xlsx", (), (".xlsx", ".xlsm")),
-    Format("MAT v7.3", "matlab", (b"MATLAB 7.3 MAT-file",), ()),
-    Format("MAT v5", "matlab", (b"MATLAB 5.0 MAT-file",), (".mat",)),
-    Format("HDF5", "hdf5", (HDF5,), (".h5", ".hdf5", ".hdf")),
-    Format("MDF", "mdf", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
-    Format("LVM", "lvm", (b"LabVIEW Measurement",), ()),
-    Format("TDMS", "tdms", (b"TDSm",), (".tdms",)),
-    Format("UFF", "uff", (b"    -1",), (".uff", ".unv")),
-    Format("RPC III", "rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
-    Format("OpenCRG", "opencrg", (b"$CT", b"$ROAD_CRG", b"* "), (".crg",)),
-    Format("CSV", "text", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
+    Format("Parquet", "tables.read_arrow", (b"PAR1",), (".parquet", ".pq")),
+    Format("Feather", "tables.read_arrow", (b"ARROW1", b"FEA1"), (".feather", ".arrow")),
+    Format("XLSX", "tables.read_xlsx", (), (".xlsx", ".xlsm")),
+    Format("MAT v7.3", "matlab.read", (b"MATLAB 7.3 MAT-file",), ()),
+    Format("MAT v5", "matlab.read", (b"MATLAB 5.0 MAT-file",), (".mat",)),
+    Format("HDF5", "hdf5.read", (HDF5,), (".h5", ".hdf5", ".hdf")),
+    Format("MDF", "mdf.read", (b"MDF     ", b"UnFinMF "), (".mf4", ".mdf", ".dat4")),
+    Format("LVM", "labview.read_lvm", (b"LabVIEW Measurement",), ()),
+    Format("TDMS", "labview.read_tdms", (b"TDSm",), (".tdms",)),
+    Format("UFF", "time_histories.read_uff", (b"    -1",), (".uff", ".unv")),
+    Format("RPC III", "time_histories.read_rpc", (b"FORMAT\0", b"FORMAT "), (".rpc", ".rsp", ".tim")),
+    Format("OpenCRG", "opencrg.read", (b"$CT", b"$ROAD_CRG", b"* "), (".crg",)),
+    Format("CSV", "text.read", (), (".csv", ".tsv", ".txt", ".asc", ".dat")),
 )
 """Formats in the order in which they are tried."""
-KNOWN = ", ".join(each.name for each in FORMATS)
-NOT_TABLES = {
-    b"%PDF": "a PDF", b"\x89PNG": "a picture", b"\xff\xd8\xff": "a picture", b"\x7fELF": "a program",
+_KNOWN = ", ".join(each.name for each in FORMATS)
+_NOT_TABLES = {
+    b"%PDF": "a PDF",
+    b"\x89PNG": "a picture",
+    b"\xff\xd8\xff": "a picture",
+    b"\x7fELF": "a program",
     b"\xd0\xcf\x11\xe0": "an Excel file of the old kind (.xls): save it as .xlsx",
-}  # fmt: skip
-MARKUP = {
+}
+_MARKUP = {
     re.compile(rb"\s*[{\[]\s*(?:[\[{\"}\]]|-?\d)"): "a JSON file",
     re.compile(rb"\s*<(?:\?xml|!doctype|html|[a-z]+[ >])", re.IGNORECASE): "an XML or HTML file",
 }
 """How texts begin that are no tables."""
-ZIP = b"PK\x03\x04"
+_ZIP = b"PK\x03\x04"
 
 
 def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
@@ -93,9 +96,10 @@ def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
     """
     content = _content(path)
     found = _recognise(path, content)
-    reader = import_module(f"seatsim.importing.readers.{found.module}")
+    module, _, function = found.reader.partition(".")
+    read = getattr(import_module(f"seatsim.importing.readers.{module}"), function)
     try:
-        file: DataFile = reader.read(path, content, layout or TextLayout())
+        file: DataFile = read(path, content, layout or TextLayout())
     except InputError:
         raise
     except TooMuchError as error:
@@ -103,7 +107,7 @@ def read_file(path: Path, layout: TextLayout | None = None) -> DataFile:
     except RecursionError as error:
         raise InputError(f"{path}: its parts lie too deep in each other, or hold themselves") from error
     except Exception as error:  # libraries raise whatever a damaged file makes them stumble over
-        reason = str(error).strip().split("\n")[0][:LONGEST_REASON] or type(error).__name__
+        reason = str(error).strip().split("\n")[0][:_LONGEST_REASON] or type(error).__name__
         problem = f"cannot be read as {found.name} ({reason}); it is truncated, damaged, or of a kind that is not read"
         raise InputError(f"{path}: {problem}") from error
     return _checked(file._replace(format=found.name))
@@ -129,8 +133,8 @@ def _content(path: Path) -> bytes:
         beside = [each.name for each in path.parent.iterdir()] if path.parent.is_dir() else []
         raise InputError(f"{path}: cannot be read: no such file{nearest(path.name, beside)}")
     content = read_bytes(path, LARGEST_FILE, "a file of measured data")
-    # An XLSX is a ZIP itself, and its reader unpacks it.
-    if not content.startswith(ZIP):
+    # An XLSX is a _ZIP itself, and its reader unpacks it.
+    if not content.startswith(_ZIP):
         content = unpack(content, path)
     if not content.strip(b"\0 \r\n\t"):
         raise InputError(f"{path}: is empty; export it again")
@@ -138,14 +142,14 @@ def _content(path: Path) -> bytes:
 
 
 def _recognise(path: Path, content: bytes) -> Format:
-    head, names = content[:SNIFFED], {each.name: each for each in FORMATS}
-    for magic, what in NOT_TABLES.items():
+    head, names = content[:_SNIFFED], {each.name: each for each in FORMATS}
+    for magic, what in _NOT_TABLES.items():
         if head.startswith(magic):
-            raise InputError(f"{path}: is {what}; permitted: {KNOWN}")
-    for pattern, what in MARKUP.items():
+            raise InputError(f"{path}: is {what}; permitted: {_KNOWN}")
+    for pattern, what in _MARKUP.items():
         if pattern.match(head.removeprefix(b"\xef\xbb\xbf")):
-            raise InputError(f"{path}: is {what}; export its channels as a table; permitted: {KNOWN}")
-    if head.startswith(ZIP):
+            raise InputError(f"{path}: is {what}; export its channels as a table; permitted: {_KNOWN}")
+    if head.startswith(_ZIP):
         _check_unpacked(path, content)
         return names["XLSX"]
     if b"$ROAD_CRG" in head.upper() or b"$KD_DEFINITION" in head.upper():
@@ -157,10 +161,10 @@ def _recognise(path: Path, content: bytes) -> Format:
             return each
     ending = next((each for each in FORMATS if path.name.lower().endswith(each.endings)), None)
     if ending is not None and ending.name != "CSV":
-        version = ", of version 4 (save it by -v7)" if ending.module == "matlab" else ""
+        version = ", of version 4 (save it by -v7)" if ending.name == "MAT v5" else ""
         raise InputError(f"{path}: does not begin as {ending.name} does; it is damaged{version}, or has a wrong ending")
     if not _is_text(head):
-        raise InputError(f"{path}: is no table in a known format; permitted: {KNOWN}")
+        raise InputError(f"{path}: is no table in a known format; permitted: {_KNOWN}")
     return names["CSV"]
 
 
@@ -186,14 +190,14 @@ def _is_text(head: bytes) -> bool:
 
 def _checked(file: DataFile) -> DataFile:
     """Return a file whose groups have rows, a rate and a start that may be, and distinct names."""
-    groups = tuple(group for group in file.groups if group.signals and group.rows >= LEAST_ROWS)
+    groups = tuple(group for group in file.groups if group.signals and group.rows >= _LEAST_ROWS)
     if not groups:
         said = "".join(f"; {note}" for note in file.notes)
-        raise InputError(f"{file.path}: holds no channel with at least {LEAST_ROWS} rows of numbers{said}")
+        raise InputError(f"{file.path}: holds no channel with at least {_LEAST_ROWS} rows of numbers{said}")
     for group in groups:
-        if group.rate is not None and not LOWEST_RATE <= group.rate <= HIGHEST_RATE:
+        if group.rate is not None and not _LOWEST_RATE <= group.rate <= _HIGHEST_RATE:
             raise InputError(f"{file.path}: states a sample rate of {group.rate:g} Hz, which no logger has; correct it")
-        if group.start is not None and not abs(group.start) <= LATEST_START:
+        if group.start is not None and not abs(group.start) <= _LATEST_START:
             raise InputError(f"{file.path}: states that channels begin at {group.start:g} s; correct that")
     names = _name_once(group.name for group in groups)
     return file._replace(groups=tuple(_check_group(group, name) for group, name in zip(groups, names, strict=True)))
@@ -205,7 +209,7 @@ def _check_group(group: Group, title: str) -> Group:
     signals = []
     for name, signal in zip(names, group.signals, strict=True):
         values = np.asarray(signal.values, dtype=np.float64)
-        values = np.where(np.abs(values) <= LARGEST_NUMBER, values, np.nan)
+        values = np.where(np.abs(values) <= _LARGEST_NUMBER, values, np.nan)
         signals.append(Signal(name, make_printable(signal.unit), values))
     return group._replace(name=title, signals=tuple(signals))
 

@@ -9,13 +9,20 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from seatsim.importing.readers.columns import read_column
-from seatsim.importing.readers.dialect import BLANKS, MISSING, Dialect, find_dialect, kind_of, split_line
-from seatsim.importing.readers.header import Header, check_header, count_columns, first_row_of_numbers, split_header
+from seatsim.importing.readers.columns import part_by_time, read_column
+from seatsim.importing.readers.dialect import BLANKS, MISSING, Dialect, find_dialect, kind_of, quote, split_line
+from seatsim.importing.readers.header import (
+    COMMENT,
+    Header,
+    Rows,
+    check_header,
+    count_columns,
+    first_row_of_numbers,
+    fit_names,
+    split_header,
+)
 from seatsim.importing.readers.naming import find_rate, note_left_out
 from seatsim.importing.readers.reading import TextLayout
-from seatsim.importing.readers.row_of_names import COMMENT, Rows, fit_names, quote
-from seatsim.importing.readers.time_pairs import part_by_time
 from seatsim.importing.signals import DataFile, Signal
 from seatsim.schema.errors import InputError
 
@@ -23,13 +30,13 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from pyarrow import csv as arrow_csv
 
-SAMPLE = 65536
+_SAMPLE = 65536
 """Bytes from which delimiter, decimal sign and header are found."""
-SIGN_APART = re.compile(rb"[+-] +[.,\d]")
-FEW = 20
-WHOLE_LINE = re.compile(rb'"[^"]*[,;\t|][^"]*"')
+_SIGN_APART = re.compile(rb"[+-] +[.,\d]")
+_FEW = 20
+_WHOLE_LINE = re.compile(rb'"[^"]*[,;\t|][^"]*"')
 """A line that stands in quotation marks as a whole; a table that begins with some lines of this kind has no others."""
-LONGEST_NAME = 8
+_LONGEST_NAME = 8
 """Lines over which a name in quotation marks may go."""
 
 
@@ -65,8 +72,8 @@ def as_utf8(content: bytes, stated: str | None) -> bytes:
     if encoding != "utf-8":
         content = content.decode(encoding, errors="replace").encode()
     content = content.removeprefix(b"\xef\xbb\xbf")
-    lines = content[:SAMPLE].splitlines()[:FEW]
-    return content.replace(b'"', b"") if lines and all(WHOLE_LINE.fullmatch(line) for line in lines) else content
+    lines = content[:_SAMPLE].splitlines()[:_FEW]
+    return content.replace(b'"', b"") if lines and all(_WHOLE_LINE.fullmatch(line) for line in lines) else content
 
 
 def _encoding(content: bytes) -> str:
@@ -108,11 +115,11 @@ def _sample(content: bytes) -> list[str]:
 
     The lines that such a name takes beside its first one are empty here.
     """
-    lines = [line.decode(errors="replace") for line in content[:SAMPLE].splitlines()]
-    lines = lines[:-1] if len(content) > SAMPLE and len(lines) > 1 else lines
+    lines = [line.decode(errors="replace") for line in content[:_SAMPLE].splitlines()]
+    lines = lines[:-1] if len(content) > _SAMPLE and len(lines) > 1 else lines
     for index, line in enumerate(lines):
         if line.count('"') % 2:
-            following = range(index + 1, min(index + LONGEST_NAME, len(lines)))
+            following = range(index + 1, min(index + _LONGEST_NAME, len(lines)))
             end = next((each for each in following if lines[each].count('"') % 2), index)
             lines[index : end + 1] = [" ".join(lines[index : end + 1]), *[""] * (end - index)]
     return lines
@@ -120,7 +127,7 @@ def _sample(content: bytes) -> list[str]:
 
 def _without_lines(content: bytes, count: int) -> bytes:
     """Return the content below so many lines."""
-    begin = sum(len(line) for line in content[:SAMPLE].splitlines(keepends=True)[:count])
+    begin = sum(len(line) for line in content[:_SAMPLE].splitlines(keepends=True)[:count])
     return content[begin:]
 
 
@@ -137,7 +144,7 @@ def _clean(body: bytes, head: _Head) -> tuple[bytes, list[str]]:
     kept = [line for line in lines if not (line.strip() in names or (marks and line.startswith(marks)))]
     left_out = len(lines) - len(kept)
     if is_parted_by_blanks:
-        part = _cells_of_blanks if b'"' in body or SIGN_APART.search(body) else bytes.split
+        part = _cells_of_blanks if b'"' in body or _SIGN_APART.search(body) else bytes.split
         kept = [b" ".join(part(line)) for line in kept]
     notes = [f"lines among the rows that hold remarks or the names again are left out: {left_out}"] if left_out else []
     return b"\n".join(kept) + b"\n", notes

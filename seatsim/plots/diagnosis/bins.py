@@ -10,7 +10,7 @@ import numpy as np
 from seatsim.diagnosis.result import Diagnosis, Trace
 from seatsim.metrics import power_spectral_density, rms
 from seatsim.plots.thinning import Window, find_loudest
-from seatsim.recordings.compared import LEFT_OUT
+from seatsim.recordings.replay import LEFT_OUT
 from seatsim.schema.arrays import Array
 
 FEWEST = 20

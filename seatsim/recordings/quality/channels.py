@@ -1,4 +1,4 @@
-"""Faults of a channel of a run that its own values show: their range and their shape."""
+"""Faults of a channel of a run that its own values show: their range, their size and their shape."""
 
 from __future__ import annotations
 
@@ -6,24 +6,60 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.recordings.quality.damage import NOTABLE, REGULAR, Doubter, doubt_dropouts, doubt_spikes
-from seatsim.recordings.quality.issue import Issue, place_in_run
-from seatsim.recordings.quality.plausible_ranges import say_implausible
-from seatsim.recordings.quality.run_under_test import MOTION, RunUnderTest, is_at_rest
-from seatsim.recordings.quality.shapes import flat_tops, plateaus, quantum
+from seatsim.recordings.quality.damage import (
+    NOTABLE,
+    REGULAR,
+    Doubter,
+    doubt_dropouts,
+    doubt_spikes,
+    flat_tops,
+    is_fine,
+    plateaus,
+    quantum,
+)
+from seatsim.recordings.quality.issue import Issue, RunUnderTest, is_at_rest, place_in_run
+from seatsim.recordings.recording import ACCELEROMETERS, MOTION
+from seatsim.schema.arrays import Array
+from seatsim.schema.units import conversion
 
-STUCK = 0.5
+_PLAUSIBLE = {
+    "m/s^2": (0.0, 500.0, ("mm/s^2", "cm/s^2")),
+    "m": (0.0, 1.0, ("mm", "cm")),
+    "m/s": (0.0, 5.0, ("mm/s",)),
+    "N": (0.0, 30_000.0, ("mN",)),
+    "A": (0.0, 30.0, ("mA",)),
+    "V": (0.0, 60.0, ("mV",)),
+    "degC": (-50.0, 200.0, ("K", "degF")),
+}
+"""By SI unit the range of the size of values, of the values themselves for temperatures, and the units to which values
+outside it point, the likeliest first."""
+_STUCK = 0.5
 """s; a noisy channel without any change for this long is stuck."""
-ACCELERATIONS = ("floor_acceleration", "frame_acceleration", "driver_acceleration")
-"""Channels that nothing lets rest in a run that moves: friction and play may hold a travel, a coil its current."""
-STEADY = ("suspension_displacement", "displacement", "velocity")
+_STEADY = ("suspension_displacement", "displacement", "velocity")
 """Channels that inertia keeps from jumping: a force and an acceleration jump where a current is switched."""
-HOTTEST = 130.0
+_HOTTEST = 130.0
 """degC; upper end of the temperatures at which MR fluids are used."""
-BEYOND_SWITCHES = 6.0
+_BEYOND_SWITCHES = 6.0
 """Size in standard deviations of a single row that no switched current makes."""
-CLIPPED = 0.002
+_CLIPPED = 0.002
 """Share of rows at an extreme above which clipping is an error."""
+
+
+def say_implausible(values: Array, unit: str) -> str:
+    """Return what is said of values in an SI unit that no seat reaches, empty where a seat may reach them."""
+    if unit not in _PLAUSIBLE or _is_plausible(values, unit):
+        return ""
+    low, _, others = _PLAUSIBLE[unit]
+    extreme = float(values[np.argmax(np.abs(values))])
+    read = {other: conversion(other, unit) for other in others}
+    fitting = [other for other, (factor, zero) in read.items() if _is_plausible(factor * values + zero, unit)]
+    guess = f"; is it in {' or '.join(fitting)}?" if fitting else ""
+    return f"reaches {abs(extreme) if low == 0.0 else extreme:.4g} in SI units, more than a seat does{guess}"
+
+
+def _is_plausible(values: Array, unit: str) -> bool:
+    low, high, _ = _PLAUSIBLE[unit]
+    return bool(np.max(np.abs(values)) <= high if low == 0.0 else low <= np.min(values) and np.max(values) <= high)
 
 
 def check_ranges(run: RunUnderTest) -> Iterator[Issue]:
@@ -40,7 +76,8 @@ def check_ranges(run: RunUnderTest) -> Iterator[Issue]:
 
 def _constant(run: RunUnderTest, channel: str) -> Iterator[Issue]:
     values, noise = run.table[channel], run.noise(channel)
-    if channel in ACCELERATIONS and np.ptp(values) == 0.0:
+    # Friction and play may hold a travel, a coil its current: nothing lets an acceleration rest.
+    if channel in ACCELEROMETERS and np.ptp(values) == 0.0:
         text = f"is {values[0]:g} throughout; the sensor is dead: repair it or remove the channel"
         yield run.issue("error", "constant", text, channel)
     elif (channel in MOTION or noise > 0.0) and np.ptp(values) == 0.0:
@@ -76,11 +113,9 @@ def _temperature(run: RunUnderTest, channel: str) -> Iterator[Issue]:
         guess = "is it in kelvin? " if low > 230.0 and high < 480.0 else ""
         seen = f"ranges from {low:.4g} to {high:.4g} degC, outside -40 to 200 degC"
         yield run.issue("error", "unit", f"{seen}; {guess}convert it to degC", channel)
-    elif high > HOTTEST:
-        text = (
-            f"reaches {high:.4g} degC, where the fluid of MR dampers stands {HOTTEST:g} degC; check its unit and sensor"
-        )
-        yield run.issue("warning", "range", text, channel)
+    elif high > _HOTTEST:
+        text = f"reaches {high:.4g} degC, where the fluid of MR dampers stands {_HOTTEST:g} degC"
+        yield run.issue("warning", "range", f"{text}; check its unit and sensor", channel)
 
 
 def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
@@ -92,9 +127,9 @@ def check_shapes(run: RunUnderTest) -> Iterator[Issue]:
     for channel, values in run.table.items():
         if channel in ("current_command", "command_voltage", "damper_temperature") or np.ptp(values) == 0.0:
             continue
-        is_sure = channel in MOTION and run.is_fine(channel)
+        is_sure = channel in MOTION and is_fine(run, channel)
         for extreme, rows in flat_tops(values):
-            is_error = is_sure and rows > CLIPPED * len(values)
+            is_error = is_sure and rows > _CLIPPED * len(values)
             text = f"{rows} rows stand at its extreme {extreme:.4g}"
             cause = "it is clipped: widen its range" if is_sure else "it rests there, or is clipped: look at its range"
             yield run.issue("error" if is_error else "warning", "clipped", f"{text}; {cause}", channel)
@@ -115,7 +150,7 @@ def check_damage(run: RunUnderTest) -> Iterator[Issue]:
         if channel in run.table and np.ptp(run.table[channel]) > 0.0:
             doubter, values = Doubter(channel, run.rate), run.table[channel]
             found = [*doubt_dropouts(doubter, values, *plateaus(values))]
-            found += doubt_spikes(doubter, values, NOTABLE if channel in STEADY else BEYOND_SWITCHES)
+            found += doubt_spikes(doubter, values, NOTABLE if channel in _STEADY else _BEYOND_SWITCHES)
             yield from place_in_run(run.name, found)
 
 
@@ -123,7 +158,7 @@ def _held(run: RunUnderTest, channel: str, is_sure: bool) -> Iterator[Issue]:
     lengths, starts = plateaus(run.table[channel])
     longest, usual = int(np.argmax(lengths)), int(np.median(lengths))
     rows = slice(starts[longest], starts[longest] + lengths[longest])
-    if is_sure and lengths[longest] > max(STUCK * run.rate, 20) and _moves_beside(run, channel, rows):
+    if is_sure and lengths[longest] > max(_STUCK * run.rate, 20) and _moves_beside(run, channel, rows):
         text = f"is stuck from {rows.start / run.rate:.3g} to {rows.stop / run.rate:.3g} s"
         yield run.issue("error", "stuck", f"{text}; cut the run there or repair the sensor", channel)
     elif usual >= 2 and np.mean(lengths == usual) > REGULAR:

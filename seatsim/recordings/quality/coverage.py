@@ -19,21 +19,21 @@ from seatsim.scenario.loading import single
 from seatsim.scenario.scenario import Scenario
 from seatsim.schema.arrays import Array
 
-PERCENTILES = (0.1, 5.0, 50.0, 95.0, 99.9)
-WARM = 5.0
+_PERCENTILES = (0.1, 5.0, 50.0, 95.0, 99.9)
+_WARM = 5.0
 """K; least warming above the temperature of the nominal scenario at which thermal fade can be seen."""
-DROP, DROP_TIME = 0.1, 0.2
+_DROP, _DROP_TIME = 0.1, 0.2
 """Least drop of the current, as a share of the largest, and the seconds within which it must happen."""
-FULL_CURRENT = 0.8
+_FULL_CURRENT = 0.8
 """Share of the largest current that must be visited."""
-LARGE_TRAVEL, FAST, LIFT = 0.03, 0.3, 1.0
+_LARGE_TRAVEL, _FAST, _LIFT = 0.03, 0.3, 1.0
 """m, m/s and m/s^2 that must be visited for stops, for the damper at speed and for the cushion in tension."""
-TRUNK = (3.0, 8.0)
+_TRUNK = (3.0, 8.0)
 """Hz; a seated driver's inner resonance lies between."""
 
 
 class VisitedRange(NamedTuple):
-    """The range of a quantity over all runs, and the values at its PERCENTILES."""
+    """The range of a quantity over all runs, and the values at its `_PERCENTILES`."""
 
     quantity: str
     unit: str
@@ -42,7 +42,7 @@ class VisitedRange(NamedTuple):
     percentiles: tuple[float, ...]
 
 
-Visited = dict[str, VisitedRange]
+_Visited = dict[str, VisitedRange]
 """Ranges by quantity."""
 
 
@@ -51,7 +51,7 @@ class Coverage:
     """Seconds recorded, ranges by quantity, band of the excitation in Hz, and sentences on what is missing."""
 
     seconds: float
-    visited: Visited
+    visited: _Visited
     band: tuple[float, float] | None
     missing: list[str]
 
@@ -66,7 +66,7 @@ def measure_coverage(recording: Recording) -> Coverage:
     nominal, rate = single(recording.nominal), recording.header.sample_rate
     pools: dict[str, tuple[str, list[Array]]] = {}
     for table in tables:
-        for name, unit, values in _quantities(recording, table):
+        for name, (unit, values) in _quantities(recording, table).items():
             pools.setdefault(name, (unit, []))[1].append(values)
     visited = {name: _visited(name, unit, np.concatenate(parts)) for name, (unit, parts) in pools.items()}
     drop = _largest_drop(pools.get("current", ("A", []))[1], rate)
@@ -79,29 +79,20 @@ def shows_falling_current(recording: Recording) -> bool:
     """Return whether the current falls enough somewhere to show what remembers it, or is not recorded at all."""
     runs = [_current(recording, recording.table(run)) for run in recording.runs]
     recorded = [current for current in runs if current is not None]
-    least = DROP * single(recording.nominal).coil.max_current
+    least = _DROP * single(recording.nominal).coil.max_current
     return not recorded or _largest_drop(recorded, recording.header.sample_rate) >= least
 
 
-def _quantities(recording: Recording, table: dict[str, Array]) -> list[tuple[str, str, Array]]:
-    """Return name, unit and values of the quantities of one run."""
-    found = []
-    for channel in ("suspension_displacement", "displacement"):
-        if channel in table:
-            found.append(("travel", "m", table[channel]))
-    velocity = _velocity(recording, table)
-    if velocity is not None:
-        found.append(("velocity", "m/s", velocity))
-    current = _current(recording, table)
-    if current is not None:
-        found.append(("current", "A", current))
-    for channel, name, unit in (
-        ("damper_temperature", "temperature", "degC"),
-        ("driver_acceleration", "driver", "m/s^2"),
-    ):
-        if channel in table:
-            found.append((name, unit, table[channel]))
-    return found
+def _quantities(recording: Recording, table: dict[str, Array]) -> dict[str, tuple[str, Array]]:
+    """Return unit and values of the quantities of one run by name."""
+    found = {
+        "travel": ("m", table.get("suspension_displacement", table.get("displacement"))),
+        "velocity": ("m/s", _velocity(recording, table)),
+        "current": ("A", _current(recording, table)),
+        "temperature": ("degC", table.get("damper_temperature")),
+        "driver": ("m/s^2", table.get("driver_acceleration")),
+    }
+    return {name: (unit, values) for name, (unit, values) in found.items() if values is not None}
 
 
 def _current(recording: Recording, table: dict[str, Array]) -> Array | None:
@@ -145,13 +136,13 @@ def _slope(values: Array, noise: float, rate: float) -> Array:
 
 
 def _visited(name: str, unit: str, values: Array) -> VisitedRange:
-    percentiles = tuple(float(p) for p in np.percentile(values, PERCENTILES))
+    percentiles = tuple(float(p) for p in np.percentile(values, _PERCENTILES))
     return VisitedRange(name, unit, float(np.min(values)), float(np.max(values)), percentiles)
 
 
 def _largest_drop(currents: Sequence[Array], rate: float) -> float:
-    """Return the largest fall of a current within DROP_TIME over all runs, in A."""
-    rows = max(1, round(DROP_TIME * rate))
+    """Return the largest fall of a current within `_DROP_TIME` over all runs, in A."""
+    rows = max(1, round(_DROP_TIME * rate))
     return max((float(np.max(current[:-rows] - current[rows:], initial=0.0)) for current in currents), default=0.0)
 
 
@@ -176,51 +167,51 @@ def _band(recording: Recording, tables: list[dict[str, Array]]) -> tuple[float, 
 def _missing(
     recording: Recording,
     nominal: Scenario,
-    visited: Visited,
+    visited: _Visited,
     drop: float,
     band: tuple[float, float] | None,
 ) -> list[str]:
     """Return a sentence for each part of the operating range that is missing, with what it leaves undecided."""
     sentences = [*_missing_motion(recording, visited), *_missing_current(nominal, visited, drop)]
     sentences += [_missing_temperature(nominal, visited.get("temperature"))]
-    if recording.header.rig == "seat" and band is not None and not (band[0] < TRUNK[0] and band[1] > TRUNK[1]):
+    if recording.header.rig == "seat" and band is not None and not (band[0] < _TRUNK[0] and band[1] > _TRUNK[1]):
         place = f"the floor shakes between {band[0]:.2g} and {band[1]:.2g} Hz only"
         sentences.append(
-            f"{place}: a driver's inner resonance between {TRUNK[0]:g} and {TRUNK[1]:g} Hz is hard to assess"
+            f"{place}: a driver's inner resonance between {_TRUNK[0]:g} and {_TRUNK[1]:g} Hz is hard to assess"
         )
     return [sentence for sentence in sentences if sentence]
 
 
-def _missing_motion(recording: Recording, visited: Visited) -> list[str]:
+def _missing_motion(recording: Recording, visited: _Visited) -> list[str]:
     sentences = []
     travel, velocity, driver = (visited.get(name) for name in ("travel", "velocity", "driver"))
     if travel is None:
         sentences.append(
             "no displacement is recorded: end stops, springs and free play are seen through other channels"
         )
-    elif recording.header.rig == "seat" and max(-travel.low, travel.high) < LARGE_TRAVEL:
+    elif recording.header.rig == "seat" and max(-travel.low, travel.high) < _LARGE_TRAVEL:
         place = f"travel stays within {1e3 * travel.low:.0f} to {1e3 * travel.high:.0f} mm"
         sentences.append(f"{place}: end stops and progressive springs beyond that cannot be assessed")
-    if velocity is not None and max(-velocity.percentiles[0], velocity.percentiles[-1]) < FAST:
+    if velocity is not None and max(-velocity.percentiles[0], velocity.percentiles[-1]) < _FAST:
         reached = max(-velocity.percentiles[0], velocity.percentiles[-1])
         sentences.append(f"velocity hardly exceeds {reached:.2g} m/s: the damper's force at speed cannot be assessed")
-    if driver is not None and driver.low > -LIFT:
+    if driver is not None and driver.low > -_LIFT:
         place = f"the driver is never accelerated downwards by more than {max(0.0, -driver.low):.2g} m/s^2"
         sentences.append(f"{place}: separation from the cushion cannot be assessed")
     return sentences
 
 
-def _missing_current(nominal: Scenario, visited: Visited, drop: float) -> list[str]:
+def _missing_current(nominal: Scenario, visited: _Visited, drop: float) -> list[str]:
     current, most = visited.get("current"), nominal.coil.max_current
     if current is None:
         return ["no current is recorded: what the coil does cannot be assessed apart from the damper"]
     low, high = current.percentiles[0], current.percentiles[-1]
-    if high - low < DROP * most:
+    if high - low < _DROP * most:
         return [f"current stays at {low:.2g} to {high:.2g} A: coil, remanence and saturation cannot be assessed"]
     sentences = []
-    if drop < DROP * most:
+    if drop < _DROP * most:
         sentences.append(f"current never drops by more than {drop:.2g} A: remanence cannot be assessed")
-    if high < FULL_CURRENT * most:
+    if high < _FULL_CURRENT * most:
         sentences.append(f"current never exceeds {high:.2g} A: magnetic saturation beyond that cannot be assessed")
     return sentences
 
@@ -230,6 +221,6 @@ def _missing_temperature(nominal: Scenario, temperature: VisitedRange | None) ->
     if temperature is None:
         return "no temperature is recorded: thermal fade can only be seen as a weaker damper, not be told by its warmth"
     warmest = temperature.percentiles[-1]
-    if warmest - stated < WARM:
+    if warmest - stated < _WARM:
         return f"no run is warmer than {warmest:.0f} degC: thermal fade cannot be assessed"
     return ""

@@ -14,20 +14,17 @@ from itertools import chain
 
 from seatsim.recordings.quality.channels import check_damage, check_ranges, check_shapes, check_sizes
 from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
-from seatsim.recordings.quality.floor_sensor import check_floor_sensor
-from seatsim.recordings.quality.gravity import without_gravity
-from seatsim.recordings.quality.issue import Issue, place_in_run, select_errors, settle_refusals
+from seatsim.recordings.quality.issue import Issue, RunUnderTest, place_in_run, select_errors, settle_refusals
 from seatsim.recordings.quality.relations import doubt_relations
-from seatsim.recordings.quality.rows import check_rows
-from seatsim.recordings.quality.run_under_test import RunUnderTest
-from seatsim.recordings.quality.runs import check_all_runs, check_clock
+from seatsim.recordings.quality.runs import check_all_runs, check_clock, check_rows
+from seatsim.recordings.quality.sensors import check_floor_sensor, without_gravity
 from seatsim.recordings.recording import Recording
 from seatsim.recordings.replay import note_unused_log
 from seatsim.scenario.loading import single
 from seatsim.scenario.plausibility import list_doubts
 from seatsim.schema.errors import InputError
 
-ORDER = ("error", "warning", "note")
+_ORDER = ("error", "warning", "note")
 
 
 @dataclass(frozen=True)
@@ -62,7 +59,7 @@ def examine(recording: Recording) -> Examination:
         # Most of their time goes into simulations, which leave the interpreter free.
         with ThreadPoolExecutor() as pool:
             issues += merge_issues(list(chain.from_iterable(pool.map(_each, runs))), len(runs))
-    return Examination(sorted(issues, key=lambda issue: ORDER.index(issue.severity)))
+    return Examination(sorted(issues, key=lambda issue: _ORDER.index(issue.severity)))
 
 
 def refuse(examination: Examination) -> None:
@@ -109,9 +106,16 @@ def _check_relations(run: RunUnderTest) -> Iterator[Issue]:
 
 
 CHECKS = (
-    check_ranges, check_exchanged_currents, check_shapes, check_damage, check_rows, check_floor_sensor,
-    check_consistency, check_sizes, _check_relations,
-)  # fmt: skip
+    check_ranges,
+    check_exchanged_currents,
+    check_shapes,
+    check_damage,
+    check_rows,
+    check_floor_sensor,
+    check_consistency,
+    check_sizes,
+    _check_relations,
+)
 """Checks of one run, in their order."""
 
 

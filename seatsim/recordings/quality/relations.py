@@ -1,37 +1,46 @@
-"""What channels of a seat or a bench show of each other: signs and units that no law of motion permits.
+"""What channels of a seat or a bench show of each other, and how well they fit a simulation.
 
-Nothing of the rig is needed: accelerations contradict the travel, a damper's force does work on the motion, a channel
-that follows another one does so with the wrong sign or size.
+Signs and units that no law of motion permits need nothing of the rig. The consistency residual of a run is the sum of
+`e(a, b)^2 = rms(a - b)^2 / (rms(a)^2 + rms(b)^2)` (0 alike, 1 unrelated or of another size, 2 opposite) over
+
+    each compared channel against the simulation (the coil current at all frequencies),
+    x'' against frame acceleration - floor acceleration (a bench: x' against velocity),
+    Fd against -(ms zs'' + m zc'' + kf x + cf x'),
+
+between 0.5 and 8 Hz, where the channels are recorded: in this band even a rough nominal agrees with its seat.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import functools
+from collections.abc import Iterator
 
 import numpy as np
 
-from seatsim.recordings.channel_units import SEAT_CHANNELS
-from seatsim.recordings.quality.faults import is_within_reach
-from seatsim.recordings.quality.issue import Issue, Severity
+from seatsim.recordings.quality.issue import Issue, RunUnderTest, Severity, Table
+from seatsim.recordings.recording import SEAT_CHANNELS
+from seatsim.recordings.replay import COMPARED, LEFT_OUT
 from seatsim.schema.arrays import Array
-from seatsim.schema.units import USUAL, find_conversion
+from seatsim.schema.units import USUAL, conversion
 
-ALIKE = 0.9
+_ALIKE = 0.9
 """Correlation from which a factor between two sides of an equation is meant."""
 MOST_ROWS = 120_000
 """Rows from which relations are computed."""
-TINY_FORCE, MOVED = 5.0, 1e-3
+_TINY_FORCE, _MOVED = 5.0, 1e-3
 """N that a damper exceeds once it is moved by so many m."""
-OPEN, CLOSED, AS_GOOD = 0.05, 0.1, 2.0
+_OPEN, _CLOSED, _AS_GOOD = 0.05, 0.1, 2.0
 """Difference of two sides of an equation from which they contradict each other, share of it that a correction leaves at
 most, and ratio to the least that is left up to which another correction does as well."""
-SURELY_ALIKE, FAR = 0.97, 0.3
+_SURELY_ALIKE, _FAR = 0.97, 0.3
 """Correlation of a coil with its command, and share by which a factor differs from one, that no effect gives."""
-NEAR = 0.25
+_NEAR = 0.25
 """Share by which a factor may differ from that of a unit."""
+_USUAL_REACH, _EFFECTS_REACH = 5.0, {"damper_force": 30.0}
+"""Factor by which effects may change the size of a channel; a damper without its current has a tenth of its force."""
 
 
-def doubt_relations(table: Mapping[str, Array], rate: float) -> Iterator[Issue]:
+def doubt_relations(table: Table, rate: float) -> Iterator[Issue]:
     """Yield signs and units of a seat's or a bench's channels that contradict the laws of motion, whatever the rig."""
     part = {name: values[:MOST_ROWS] - float(np.mean(values[:MOST_ROWS])) for name, values in table.items()}
     yield from _force(part, rate)
@@ -41,17 +50,15 @@ def doubt_relations(table: Mapping[str, Array], rate: float) -> Iterator[Issue]:
     yield from _copies(part, rate, ("current_command", "coil_current", "A"), (0.0, 2.0))
 
 
-def _copies(
-    part: Mapping[str, Array], rate: float, named: tuple[str, str, str], band: tuple[float, float]
-) -> Iterator[Issue]:
+def _copies(part: Table, rate: float, named: tuple[str, str, str], band: tuple[float, float]) -> Iterator[Issue]:
     """Yield what it means that a channel is another one in a band, but for its sign or its unit."""
     first, second, unit = named
     if first in part and second in part:
         gain, alike = regress(part[first], part[second], rate, *band)
-        if alike > ALIKE and (said := read_gain(gain, unit)):
+        if alike > _ALIKE and (said := read_gain(gain, unit)):
             text = f"{second}: is {gain:.3g} times {first} below {band[1]:g} Hz: {said}, or that of {first} is wrong"
             yield Issue("warning", kind_of(gain), text, second)
-        elif unit == "A" and alike > SURELY_ALIKE and gain > 1.0 + FAR:
+        elif unit == "A" and alike > _SURELY_ALIKE and gain > 1.0 + _FAR:
             text = f"{second}: is {gain:.3g} times {first} below {band[1]:g} Hz; the scale of one of both is wrong"
             yield Issue("warning", "scale", text, second)
 
@@ -61,14 +68,14 @@ def kind_of(gain: float) -> str:
     return "sign" if gain < 0.0 else "unit"
 
 
-def _force(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
+def _force(part: Table, rate: float) -> Iterator[Issue]:
     """Yield a damper force that drives the motion, where it opposes extension and dissipates, or that is tiny."""
     name = "displacement" if "displacement" in part else "suspension_displacement"
     if name not in part or "damper_force" not in part:
         return
     travel, force = part[name], part["damper_force"]
     largest, stroke = float(np.max(np.abs(force))), float(np.max(np.abs(travel)))
-    if largest < TINY_FORCE and stroke > MOVED:
+    if largest < _TINY_FORCE and stroke > _MOVED:
         text = f"damper_force: is {largest:.3g} N at most over a stroke of {1e3 * stroke:.3g} mm; is it in kN?"
         yield Issue("warning", "unit", text, "damper_force")
     speed = np.gradient(travel, 1.0 / rate)
@@ -78,7 +85,7 @@ def _force(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
         yield Issue("warning", "sign", text, "damper_force")
 
 
-def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
+def _motion(part: Table, rate: float) -> Iterator[Issue]:
     """Name the signs and units with which the travel's second derivative is frame - floor acceleration.
 
     No effect on a rig does what a swapped sign or a unit beyond the reach of effects does here: it is an error.
@@ -87,9 +94,8 @@ def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
     if not set(names) <= set(part):
         return
     slope = np.gradient(np.gradient(part[names[0]], 1.0 / rate), 1.0 / rate)
-    target, frame, floor = (
-        band_passed(each, rate, 0.7, min(8.0, 0.2 * rate)) for each in (slope, part[names[1]], part[names[2]])
-    )
+    sides = slope, part[names[1]], part[names[2]]
+    target, frame, floor = (band_passed(each, rate, 0.7, min(8.0, 0.2 * rate)) for each in sides)
     before = _unlike(target, frame - floor)
     left = {
         (channels, said, factor): _unlike(*_corrected(channels, factor, target, frame, floor))
@@ -97,9 +103,9 @@ def _motion(part: Mapping[str, Array], rate: float) -> Iterator[Issue]:
         for said, factor in _list_factors(channels[0])
     }
     least = min(left.values())
-    is_closed = before > OPEN and least < CLOSED * before
+    is_closed = before > _OPEN and least < _CLOSED * before
     for channels, said, factor in left if is_closed else ():
-        if left[channels, said, factor] > AS_GOOD * least:
+        if left[channels, said, factor] > _AS_GOOD * least:
             continue
         severity: Severity = "warning" if is_within_reach(channels[0], factor) else "error"
         of_both = ": of both" if len(channels) > 1 else ":"
@@ -114,11 +120,11 @@ def _list_factors(channel: str) -> Iterator[tuple[str, float]]:
     """Yield what may be wrong with the scale of a channel, with the factor that corrects it."""
     wanted = SEAT_CHANNELS[channel]
     for unit in USUAL[wanted]:
-        found = find_conversion(unit, wanted)
-        if found is not None:
-            said = "" if unit == wanted else f"it reads as if in {unit}"
-            signed = " and ".join(filter(None, (said, "its sign is swapped")))
-            yield from ((text, factor) for text, factor in ((said, found.factor), (signed, -found.factor)) if text)
+        factor = conversion(unit, wanted).factor
+        said = "" if unit == wanted else f"it reads as if in {unit}"
+        if said:
+            yield said, factor
+        yield " and ".join(filter(None, (said, "its sign is swapped"))), -factor
 
 
 def _corrected(
@@ -130,18 +136,13 @@ def _corrected(
     return travel, moved - base
 
 
-def _unlike(first: Array, second: Array) -> float:
-    """Return the mean square difference over the sum of mean squares: 0 alike, 1 unrelated, 2 opposite."""
-    return float(np.sum((first - second) ** 2) / max(np.sum(first**2) + np.sum(second**2), 1e-300))
-
-
 def _scale(target: Array, relative: Array, rate: float) -> Iterator[Issue]:
     """Yield that the travel's second derivative is frame - floor acceleration but for a factor, where it is."""
     product, power = float(target @ relative), float(relative @ relative)
-    if product <= ALIKE * float(np.linalg.norm(target)) * power**0.5:
+    if product <= _ALIKE * float(np.linalg.norm(target)) * power**0.5:
         return
     gain = product / power
-    if not 1.0 - FAR < gain < 1.0 / (1.0 - FAR):
+    if not 1.0 - _FAR < gain < 1.0 / (1.0 - _FAR):
         text = f"its second derivative is {gain:.3g} times frame - floor acceleration: its scale is wrong by that"
         other = f", or that of the accelerations, or the sample rate, which then is {rate / gain**0.5:.4g} Hz"
         yield Issue("warning", "scale", f"suspension_displacement: {text}{other}", "suspension_displacement")
@@ -168,10 +169,82 @@ def regress(expected: Array, measured: Array, rate: float, low: float = 0.5, hig
 def read_gain(gain: float, unit: str) -> str:
     """Return what a gain of values in a unit means; empty where it is close to one, or means nothing."""
     sign = "its sign is swapped" if gain < 0.0 else ""
-    if abs(abs(gain) - 1.0) < NEAR:
+    if abs(abs(gain) - 1.0) < _NEAR:
         return sign
     for other in USUAL[unit]:
-        found = find_conversion(other, unit)
-        if found is not None and abs(abs(gain) * found.factor - 1.0) < NEAR:
+        if abs(abs(gain) * conversion(other, unit).factor - 1.0) < _NEAR:
             return f"it reads as if in {other}" + (f", and {sign}" if sign else "")
     return sign
+
+
+def is_within_reach(channel: str, factor: float) -> bool:
+    """Return whether an effect of the library may change the size of a channel by a factor."""
+    reach = _EFFECTS_REACH.get(channel, _USUAL_REACH)
+    return 1.0 / reach < factor < reach
+
+
+def consistency_residuals(run: RunUnderTest, table: Table, outputs: Table | None) -> dict[str, float]:
+    """Return e^2 of each compared channel (1 where there is no simulation) and of each balance between channels."""
+    skip = round(LEFT_OUT * run.rate)
+    used = {name: values[skip:] for name, values in table.items()}
+    compared = [name for name in COMPARED[run.recording.header.rig] if name in used]
+    pairs = {name: (used[name], np.zeros_like(used[name]) if outputs is None else outputs[name]) for name in compared}
+    pairs |= _balances(run, used)
+    if not pairs:
+        return {}
+    smooth = dict(zip(pairs, filter_band(run, np.array(list(pairs.values()))), strict=True))
+    return {name: _unlike(*(pair if name == "coil_current" else smooth[name])) for name, pair in pairs.items()}
+
+
+def _balances(run: RunUnderTest, used: Table) -> Iterator[tuple[str, tuple[Array, Array]]]:
+    """Yield name and both sides of each equation between recorded channels alone."""
+    plant = run.nominal.plant
+    travel = used.get("suspension_displacement")
+    if {"displacement", "velocity"} <= set(used):
+        yield "velocity balance", (_slope(run, used["displacement"]), used["velocity"])
+    if plant is None or travel is None or "frame_acceleration" not in used:
+        return
+    frame, speed = used["frame_acceleration"], _slope(run, travel)
+    yield "motion balance", (_slope(run, speed), frame - used["floor_acceleration"])
+    if {"damper_force", "driver_acceleration"} <= set(used):
+        inertia = plant.frame_mass * frame + plant.driver_mass * used["driver_acceleration"]
+        spring = plant.suspension_stiffness * travel + plant.suspension_damping * speed
+        yield "force balance", (used["damper_force"], -inertia - spring)
+
+
+def _slope(run: RunUnderTest, values: Array) -> Array:
+    return np.asarray(np.gradient(filter_band(run, values), 1.0 / run.rate))
+
+
+def _unlike(first: Array, second: Array) -> float:
+    """Return e^2: 0 alike, 1 unrelated, 2 opposite."""
+    size = float(np.mean(first**2) + np.mean(second**2))
+    return float(np.mean((first - second) ** 2)) / size if size > 0.0 else 0.0
+
+
+def filter_band(run: RunUnderTest, values: Array) -> Array:
+    """Return values, shape (..., N), between 0.5 and 8 Hz (a bench: below 8 Hz, without their mean)."""
+    from scipy.signal import sosfiltfilt
+
+    sections, rows = _filter(run.rate, run.recording.header.rig == "seat"), values.shape[-1]
+    swinging = values - np.mean(values, axis=-1, keepdims=True)
+    return np.asarray(sosfiltfilt(sections, swinging, padlen=min(3 * rows // 4, 100)))
+
+
+@functools.cache
+def _filter(rate: float, on_seat: bool) -> Array:
+    from scipy.signal import butter
+
+    high = min(8.0, 0.4 * rate)
+    edges = (min(0.5, 0.5 * high), high) if on_seat else high
+    return np.asarray(butter(2, edges, "bandpass" if on_seat else "lowpass", fs=rate, output="sos"))
+
+
+def find_delay(first: Array, second: Array, most: int) -> tuple[int, float]:
+    """Return the delay of the first relative to the second in rows, and their correlation at that delay."""
+    from scipy.signal import correlate
+
+    product = correlate(first, second, mode="full", method="fft")[len(second) - 1 - most : len(second) + most]
+    size = float(np.linalg.norm(first) * np.linalg.norm(second))
+    peak = int(np.argmax(product))
+    return peak - most, float(product[peak]) / size if size > 0.0 else 0.0

@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from seatsim.identification.identify import Identification
     from seatsim.recordings.gap import Gap
     from seatsim.standards.seat_rows import SeatTest
-    from seatsim.sweeps.statistics.exceedance import Exceedance
-    from seatsim.sweeps.statistics.inputs import SweepRows
+    from seatsim.sweeps.statistics.rows import Exceedance, SweepRows
     from seatsim.sweeps.statistics.sensitivity import Sensitivities
 
 COMFORT = "driver_acceleration_weighted"
@@ -114,7 +113,7 @@ def collect_sweep(rows: SweepRows, found: Sensitivities, exceeded: Sequence[Exce
 def collect_gap(scenario: str, folder: Path, found: Gap) -> Evidence:
     """Return what is known of a gap; every run is replayed again with half the step."""
     from seatsim.diagnosis.error_budget import measure_step_error as measure_replay_step_error
-    from seatsim.recordings.quality.gravity import without_gravity
+    from seatsim.recordings.quality.sensors import without_gravity
     from seatsim.recordings.recording import load_recording
     from seatsim.recordings.replay import replay
     from seatsim.scenario.loading import single

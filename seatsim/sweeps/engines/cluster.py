@@ -20,7 +20,6 @@ from seatsim.provenance.versions import list_versions
 from seatsim.schema.errors import InputError, RunError
 from seatsim.schema.modules import started_elsewhere, use_all, used_files
 from seatsim.sweeps.engines.base import Work, simulate_one
-from seatsim.sweeps.engines.memory import keep_freed_memory
 from seatsim.sweeps.identity import LIBRARIES, list_differences
 from seatsim.sweeps.outcome import Outcome
 from seatsim.sweeps.plan import Selection
@@ -36,7 +35,7 @@ LONGEST_SEARCH = 10
 
 
 @contextmanager
-def open_cluster(jobs: int, address: str | None) -> Iterator[ClusterEngine]:
+def open_cluster(jobs: int, address: str | None) -> Iterator[_ClusterEngine]:
     """Connect with the scheduler at an address, or start a cluster of `jobs` processes, which ends with the block.
 
     Raises:
@@ -50,10 +49,10 @@ def open_cluster(jobs: int, address: str | None) -> Iterator[ClusterEngine]:
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with _embed(jobs) if address is None else _connect(address) as client:
         _await_workers(client)
-        yield ClusterEngine(client)
+        yield _ClusterEngine(client)
 
 
-class ClusterEngine(NamedTuple):
+class _ClusterEngine(NamedTuple):
     """Simulates runs on the dask cluster of a client."""
 
     client: Client
@@ -170,5 +169,4 @@ def _simulate(task: _Task) -> list[Outcome]:
             " go on with --resume"
         )
     selection, histories = task.selection, task.histories
-    keep_freed_memory()
     return [simulate_one(selection.plan, inner, number, histories) for number, inner in selection.runs]

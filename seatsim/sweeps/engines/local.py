@@ -5,129 +5,96 @@ Most of a short run is Python between compiled calls. Threads of one process tak
 
 from __future__ import annotations
 
-import subprocess
-import sys
-import threading
 import time
 from collections import deque
-from collections.abc import Generator
-from contextlib import ExitStack, closing, suppress
-from dataclasses import dataclass, field, replace
-from multiprocessing import Pipe
-from multiprocessing.connection import Connection, wait
-from typing import NamedTuple, cast
+from collections.abc import Generator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack
+from dataclasses import replace
+from functools import partial
+from typing import Any, NamedTuple
+
+from threadpoolctl import threadpool_limits
 
 from seatsim.schema.errors import RunError
-from seatsim.schema.modules import used_files
-from seatsim.sweeps.engines.base import Work
-from seatsim.sweeps.engines.worker import simulate_batches
+from seatsim.schema.processes import open_pool
+from seatsim.sweeps.engines.base import Work, simulate_one
 from seatsim.sweeps.outcome import Outcome
 
-BATCH = 20
-"""Most runs that a worker is given at once."""
+BATCH, _LONGEST_BATCH = 20, 0.2
+"""Most runs that a process is given at once, and seconds that they may take: so much is lost where it is killed."""
 SHARES = 4
 """Towards the end a batch is this part of what is left for each worker, so that all of them end together."""
-WORTH_A_PROCESS = 3.0
-"""Seconds of work that justify a process, whose start takes above one second of a processor."""
-MOST_LOST = 3
-"""Processes that may be lost before the sweep ends: others get their runs, which may be what ends them."""
+_AT_HAND = 2
+"""Batches that a process has, one of which it works on."""
+_MOST_LOST = 3
+"""Times that processes may be lost before the sweep ends: others get their runs, which may be what ends them."""
 
 
 class LocalEngine(NamedTuple):
     """Simulates up to `jobs` runs at once.
 
     The first runs, and what has to be compiled for them, are this process's. There is one further process for every
-    `WORTH_A_PROCESS` seconds that it would need alone for what is left.
+    `worth_a_process` seconds that it would need alone for what is left, since a start takes a processor a second.
     """
 
     jobs: int
+    worth_a_process: float = 3.0
 
     def __call__(self, work: Work) -> Generator[list[Outcome]]:
-        """Yield outcomes as workers hand them over; those of a process that is lost are worked out by others.
+        """Yield outcomes as they come; the runs of a process that is lost are simulated again by others.
 
         Raises:
-            RunError: several processes were lost, one after the other.
+            RunError: processes were lost several times, one after the other.
         """
-        with closing(_Crew(work, self.jobs)) as crew:
-            crew.start_thread()
+        with _Crew(work, self) as crew:
             while crew.left:
-                for worker in crew.await_workers():
-                    if outcomes := crew.receive(worker):
-                        yield outcomes
-                crew.start_processes()
-
-
-@dataclass
-class _Worker:
-    """A worker: its connection, its process (None: a thread of this one), whether it is ready, and its runs."""
-
-    connection: Connection
-    process: subprocess.Popen[bytes] | None = None
-    ready: bool = True
-    runs: set[int] = field(default_factory=set)
+                yield crew.receive()
 
 
 class _Crew:
-    """The workers, and the runs of which `left` have no outcome yet and `_waiting` are given to nobody."""
+    """A thread, a pool of processes once it pays, the runs that they were given and those that nobody was given yet."""
 
-    def __init__(self, work: Work, jobs: int) -> None:
-        self._work, self._jobs = work, jobs
+    def __init__(self, work: Work, engine: LocalEngine) -> None:
+        self._work, self._engine = work, engine
         self._waiting = deque(run for task in work.tasks for run in task)
         self.left = len(self._waiting)
-        self._workers: dict[Connection, _Worker] = {}
-        self._lost = 0
+        self._given: dict[Future[list[Outcome]], list[int]] = {}
+        self._here: Future[list[Outcome]] | None = None
+        self._thread = ThreadPoolExecutor(1)
+        self._pool: ProcessPoolExecutor | None = None
+        self._ends = ExitStack()
+        self._processes = self._lost = 0
         self._since, self._done_here = 0.0, 0
 
-    def start_thread(self) -> None:
-        """Start the worker in this process; as a daemon it does not keep it from ending, however long its run takes."""
-        ours, theirs = Pipe()
+    def __enter__(self) -> _Crew:
+        # Libraries of linear algebra get one thread: the other processors simulate other runs.
+        self._ends.enter_context(threadpool_limits(1))
+        self._give()
+        return self
 
-        def simulate() -> None:
-            with theirs, suppress(EOFError, OSError):
-                simulate_batches(theirs, self._work.plan, self._work.histories)
+    def __exit__(self, *problem: Any) -> None:
+        """End all, in the middle of a run too; nobody waits for the thread."""
+        self._thread.shutdown(wait=False, cancel_futures=True)
+        self._ends.__exit__(*problem)
 
-        threading.Thread(target=simulate, daemon=True).start()
-        self._workers[ours] = _Worker(ours)
-        self._give(self._workers[ours])
-
-    def start_processes(self) -> None:
-        """Start as many processes as what is left justifies, by the pace of the runs in this process."""
-        if self._done_here:
-            alone = (time.monotonic() - self._since) / self._done_here * self.left
-            while len(self._workers) < min(self._jobs, 1 + alone // WORTH_A_PROCESS):
-                self._start_process()
-
-    def _start_process(self) -> None:
-        ours, theirs = Pipe()
-        # Ctrl-C in a terminal reaches a whole group of processes; in groups of their own these are ended by this one.
-        with theirs:
-            process = subprocess.Popen(
-                [sys.executable, "-P", "-m", "seatsim.sweeps.engines.worker", str(theirs.fileno())],
-                stdin=subprocess.PIPE, pass_fds=[theirs.fileno()], process_group=0,
-            )  # fmt: skip
-        self._workers[ours] = _Worker(ours, process, ready=False)
-        ours.send(used_files())
-
-    def await_workers(self) -> list[_Worker]:
-        """Return the workers that have something to say, once there are some."""
-        return [self._workers[cast("Connection", each)] for each in wait(list(self._workers))]
-
-    def receive(self, worker: _Worker) -> list[Outcome]:
-        """Return the outcomes that a worker hands over, and give it more runs; none of one that is lost."""
-        try:
-            outcomes: list[Outcome] = worker.connection.recv()
-            if not worker.ready:
-                # Without the scenarios that the plan keeps: the thread adds to them at any time.
-                worker.connection.send((replace(self._work.plan), self._work.histories))
-                worker.ready = True
-            worker.runs.difference_update(outcome.run for outcome in outcomes)
-            self._give(worker)
-        except (EOFError, OSError):
-            self._lose(worker)
-            return []
+    def receive(self) -> list[Outcome]:
+        """Return the outcomes that are there, once there are some, and give out more runs."""
+        outcomes: list[Outcome] = []
+        for future in wait(self._given, return_when=FIRST_COMPLETED).done:
+            try:
+                found = future.result()
+            except BrokenProcessPool:
+                self._lose_pool()
+                break
+            del self._given[future]
+            outcomes += found
+            if future is self._here:
+                self._here = None
+                self._count_here(len(found))
         self.left -= len(outcomes)
-        if worker.process is None:
-            self._count_here(len(outcomes))
+        self._give()
         return outcomes
 
     def _count_here(self, runs: int) -> None:
@@ -137,41 +104,57 @@ class _Crew:
         else:
             self._since = time.monotonic()
 
-    def _give(self, worker: _Worker) -> None:
-        """See to it that a worker has a batch at hand beside the one that it works on."""
-        size = max(1, min(BATCH, len(self._waiting) // (SHARES * self._jobs)))
-        while self._waiting and len(worker.runs) <= size:
+    def _give(self) -> None:
+        """See to it that the thread has a run, and every process a batch beside the one that it works on."""
+        if self._here is None and self._waiting:
+            run = self._waiting.popleft()
+            plan, histories = self._work.plan, self._work.histories
+            self._here = self._thread.submit(lambda: [simulate_one(plan, run, run, histories)])
+            self._given[self._here] = [run]
+        if not self._done_here:
+            return
+        pace = (time.monotonic() - self._since) / self._done_here
+        if self._pool is None:
+            self._processes = int(min(self._engine.jobs - 1, pace * self.left // self._engine.worth_a_process))
+            if self._processes < 1:
+                return
+            # Without the scenarios that the plan keeps: the thread adds to them at any time.
+            work = Work(replace(self._work.plan), (), self._work.histories)
+            self._pool = self._ends.enter_context(open_pool(self._processes, partial(_take_work, work)))
+        longest = min(BATCH, _LONGEST_BATCH // pace)
+        size = int(max(1, min(longest, len(self._waiting) // (SHARES * self._engine.jobs))))
+        while self._waiting and len(self._given) - (self._here is not None) < _AT_HAND * self._processes:
             batch = [self._waiting.popleft() for _ in range(min(size, len(self._waiting)))]
-            worker.runs.update(batch)
-            # Where the worker is lost its connection says so next, and others get the batch.
-            with suppress(OSError):
-                worker.connection.send(batch)
+            try:
+                self._given[self._pool.submit(_simulate, batch)] = batch
+            except BrokenProcessPool:
+                self._waiting.extendleft(reversed(batch))
+                return self._lose_pool()
 
-    def _lose(self, worker: _Worker) -> None:
-        """Give the runs of a worker that is lost to the others."""
-        del self._workers[worker.connection]
-        _end(worker)
+    def _lose_pool(self) -> None:
+        """Take back the runs of a pool of which a process was lost, so that the next one gets them."""
         self._lost += 1
-        if worker.process is None or self._lost > MOST_LOST:
-            how = f"exit status {worker.process.returncode}" if worker.process else "see the error above"
+        self._ends.pop_all().close()
+        self._ends.enter_context(threadpool_limits(1))
+        if self._lost > _MOST_LOST:
             raise RunError(
-                f"{self._lost} workers were lost ({how}), mostly for want of memory; what has ended is kept: go on with"
+                f"processes were lost {self._lost} times, mostly for want of memory; what has ended is kept: go on with"
                 " --resume and fewer --jobs"
             )
-        self._waiting.extendleft(sorted(worker.runs, reverse=True))
-        for other in self._workers.values():
-            if other.ready:
-                self._give(other)
-
-    def close(self) -> None:
-        """End all workers, in the middle of a run too."""
-        with ExitStack() as stack:
-            for worker in self._workers.values():
-                stack.callback(_end, worker)
+        for future in [future for future in self._given if future is not self._here]:
+            self._waiting.extendleft(reversed(self._given.pop(future)))
+        self._pool = None
 
 
-def _end(worker: _Worker) -> None:
-    worker.connection.close()
-    if worker.process:
-        with worker.process:
-            worker.process.kill()
+_taken: list[Work] = []
+"""What a process of the pool was given to work on, when it started."""
+
+
+def _take_work(work: Work) -> None:
+    _taken.append(work)
+    threadpool_limits(1)
+
+
+def _simulate(runs: Sequence[int]) -> list[Outcome]:
+    """Simulate some runs of the work that this process has taken."""
+    return [simulate_one(_taken[0].plan, run, run, _taken[0].histories) for run in runs]

@@ -19,18 +19,18 @@ MOST_VALUES = 40
 """Different texts of a key that have contrasts of their own."""
 RUNS_PER_TERM = 2
 """Runs for each coefficient that are needed at least."""
-SINGULAR = 1e-10
+_SINGULAR = 1e-10
 """Reciprocal of the condition number from which on runs do not determine an expansion."""
 
 
-class Degree(NamedTuple):
+class _Degree(NamedTuple):
     """How rich an expansion is: the highest degree of a key alone, and of of each of two in a product (0: none)."""
 
     alone: int
     product: int
 
 
-DEGREES = (Degree(1, 0), Degree(2, 0), Degree(2, 1), Degree(3, 1), Degree(3, 2), Degree(5, 2))
+DEGREES = (_Degree(1, 0), _Degree(2, 0), _Degree(2, 1), _Degree(3, 1), _Degree(3, 2), _Degree(5, 2))
 """Expansions that are compared, from the poorest on."""
 
 
@@ -66,14 +66,16 @@ def make_key_basis(values: Array | Sequence[object], degree: int) -> Array:
     return functions
 
 
-def make_basis(columns: Sequence[Array | Sequence[object]], degree: Degree) -> Basis:
+def make_basis(columns: Sequence[Array | Sequence[object]], degree: _Degree) -> Basis:
     """Return the functions of all keys and, where the degree has products, those of two keys."""
     single = [make_key_basis(column, degree.alone) for column in columns]
     parts: list[tuple[Array, tuple[int, ...]]] = [(np.ones((len(single[0]), 1)), ())]
     parts += [(functions, (key,)) for key, functions in enumerate(single)]
     for (first, a), (second, b) in combinations(enumerate(single), 2) if degree.product else ():
-        short = [functions[:, : degree.product] if _is_polynomial(columns[k]) else functions for k, functions in
-                 ((first, a), (second, b))]  # fmt: skip
+        short = [
+            functions[:, : degree.product] if _is_polynomial(columns[k]) else functions
+            for k, functions in ((first, a), (second, b))
+        ]
         product = (short[0][:, :, None] * short[1][:, None, :]).reshape(len(a), -1)
         parts.append((product, (first, second)))
     return Basis(np.hstack([values for values, _ in parts]), list(_name_columns(parts)))
@@ -83,7 +85,7 @@ def fit_expansion(basis: Array, metrics: Array) -> Expansion | None:
     """Return the expansion of metrics, shape (N, M), or None where the runs do not determine it."""
     runs, terms = basis.shape
     gram = basis.T @ basis
-    if runs < RUNS_PER_TERM * terms or np.linalg.cond(gram) > 1 / SINGULAR:
+    if runs < RUNS_PER_TERM * terms or np.linalg.cond(gram) > 1 / _SINGULAR:
         return None
     inverse = cast("Array", np.linalg.inv(gram))
     coefficients: Array = inverse @ (basis.T @ metrics)
@@ -99,7 +101,7 @@ def predict_left_out(basis: Array, metrics: Array, expansion: Expansion) -> Arra
     coefficient.
     """
     leverage = ((basis @ expansion.inverse) * basis).sum(axis=1)
-    if np.any(leverage > 1 - SINGULAR):
+    if np.any(leverage > 1 - _SINGULAR):
         return None
     errors: Array = (metrics - basis @ expansion.coefficients) / (1 - leverage)[:, None]
     return errors

@@ -27,7 +27,7 @@ from seatsim.sweeps.statistics.chaos import (
     make_key_basis,
     predict_left_out,
 )
-from seatsim.sweeps.statistics.inputs import SweepRows, is_number
+from seatsim.sweeps.statistics.rows import SweepRows, is_number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,13 +35,13 @@ if TYPE_CHECKING:
 RESAMPLES = 200
 MOST_RUNS = 4000
 """Runs that are used; more hardly narrow the intervals, and the bootstrap takes time for each."""
-DEPENDENT = 0.3
+_DEPENDENT = 0.3
 """Correlation of functions of two keys from which on these are dependent, and shares of variance have no meaning."""
 SAME = 0.95
 """Correlation from which on two keys are one, however few their points."""
-SWING = (0.05, 0.95)
+_SWING = (0.05, 0.95)
 """Quantiles of a key between which a metric swings."""
-VANISHING = 1e-9
+_VANISHING = 1e-9
 """Standard deviation over the mean of a metric that does not vary."""
 
 
@@ -86,8 +86,11 @@ def analyse_sensitivity(rows: SweepRows) -> Sensitivities:
     columns = [usable[key].to_numpy() for key in keys]
     pair = _find_dependent(columns)
     if pair is not None:
-        return Sensitivities([], f"{keys[pair[0]]} and {keys[pair[1]]} vary together; shares of variance need keys that"
-                                 " vary independently (cross, lhs, sobol)")  # fmt: skip
+        return Sensitivities(
+            [],
+            f"{keys[pair[0]]} and {keys[pair[1]]} vary together; shares of variance need keys that"
+            " vary independently (cross, lhs, sobol)",
+        )
     complete = [name for name in rows.metrics if usable[name].notna().all() and _varies(usable[name].to_numpy())]
     if not complete:
         return Sensitivities([], "no metric varies")
@@ -112,7 +115,7 @@ def analyse_sensitivity(rows: SweepRows) -> Sensitivities:
 
 
 def _varies(values: Array) -> bool:
-    return float(values.std()) > VANISHING * (abs(float(values.mean())) + VANISHING)
+    return float(values.std()) > _VANISHING * (abs(float(values.mean())) + _VANISHING)
 
 
 def _find_dependent(columns: Sequence[Array]) -> tuple[int, int] | None:
@@ -121,7 +124,7 @@ def _find_dependent(columns: Sequence[Array]) -> tuple[int, int] | None:
         for b in range(a + 1, len(bases)):
             pairs = len(set(zip(columns[a].tolist(), columns[b].tolist(), strict=True)))
             # Few points are alike by chance, within three standard deviations of 1/sqrt(points); the same ones are not.
-            permitted = max(DEPENDENT, min(SAME, 3 / np.sqrt(pairs)))
+            permitted = max(_DEPENDENT, min(SAME, 3 / np.sqrt(pairs)))
             if np.abs(bases[a].T @ bases[b]).max() / len(bases[a]) > permitted:
                 return a, b
     return None
@@ -160,9 +163,16 @@ def _resample(basis: Basis, metrics: Array, draw: NDArray[np.intp]) -> Iterator[
 
 
 def _make_row(
-    usable: pd.DataFrame, metric: str, key: str, number: int, basis: Basis, expansion: Expansion,
-    resampled: Sequence[Expansion], column: int, explained: float,
-) -> Sensitivity:  # fmt: skip
+    usable: pd.DataFrame,
+    metric: str,
+    key: str,
+    number: int,
+    basis: Basis,
+    expansion: Expansion,
+    resampled: Sequence[Expansion],
+    column: int,
+    explained: float,
+) -> Sensitivity:
     first, total = _indices(basis, expansion, number, column)
     drawn = np.array([_indices(basis, each, number, column) for each in resampled] or [(np.nan, np.nan)])
     lows, highs = np.quantile(drawn, 0.025, axis=0), np.quantile(drawn, 0.975, axis=0)
@@ -191,7 +201,7 @@ def _swing(
     means = basis.values[:, mine] @ expansion.coefficients[mine, column]
     values = usable[key]
     if is_number(values):
-        low, high = (values.quantile(share, interpolation="nearest") for share in SWING)
+        low, high = (values.quantile(share, interpolation="nearest") for share in _SWING)
     else:
         low, high = values.iloc[int(means.argmin())], values.iloc[int(means.argmax())]
     at = [float(means[int(np.flatnonzero(values.to_numpy() == value)[0])]) for value in (low, high)]

@@ -17,7 +17,8 @@ from seatsim.effects.driver import Biodynamics
 from seatsim.effects.sensor import Bias
 from seatsim.exchange.blocks.rig import rig_block
 from seatsim.rig.drivers import BODIES, SINGLE_MASS
-from seatsim.scenario.loading import FILES, single
+from seatsim.scenario.loading import single
+from seatsim.scenario.sections import FILES
 from seatsim.simulation.simulate import set_up
 
 from .toy import NOMINAL, place, pose, record

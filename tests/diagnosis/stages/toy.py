@@ -20,8 +20,8 @@ from seatsim.effects.base import EffectSpecification
 from seatsim.effects.damper import GasSpring, SealFriction
 from seatsim.effects.driver import Biodynamics
 from seatsim.effects.suspension import Friction, ProgressiveSpring
-from seatsim.recordings.inputs import recorded_inputs
 from seatsim.recordings.recording import ChannelEntry, Header, Recording, RunEntry
+from seatsim.recordings.replay import recorded_inputs
 from seatsim.scenario.loading import single
 from seatsim.schema.errors import RunError
 from seatsim.schema.fields import param

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from seatsim.recordings.quality.run_under_test import RunUnderTest
+from seatsim.recordings.quality.issue import RunUnderTest
 from seatsim.recordings.recording import SEAT_CHANNELS, ChannelEntry, Header, Recording, RunEntry
 from seatsim.scenario.loading import single
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatsim.recordings.quality.consistency import check_consistency, check_exchanged_currents
-from seatsim.recordings.quality.run_under_test import RunUnderTest
+from seatsim.recordings.quality.issue import RunUnderTest
 from seatsim.recordings.recording import load_recording
 from seatsim.scenario.loading import single
 

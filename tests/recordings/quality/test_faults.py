@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.recordings.quality.faults import exchange_fault, list_faults
+from seatsim.recordings.quality.consistency import list_faults
 
 RATE = 250.0
 SIGNAL = np.random.default_rng(2).standard_normal(6000).cumsum()
@@ -38,19 +38,6 @@ def test_signs_are_turned_of_motion_force_and_coil_current_only(under_test):
     corrected = signs["damper_force"].correct(run.table)
     assert np.array_equal(corrected["damper_force"], -run.table["damper_force"])
     assert corrected["coil_current"] is run.table["coil_current"]
-
-
-def test_accelerations_may_be_exchanged_pairwise(under_test):
-    run = under_test(table_of("floor_acceleration", "frame_acceleration", "driver_acceleration", "damper_force"))
-    pairs = [fault.channels for fault in list_faults(run, None) if fault.kind == "exchange"]
-    assert pairs == [("floor_acceleration", "frame_acceleration"), ("floor_acceleration", "driver_acceleration"),
-                     ("frame_acceleration", "driver_acceleration")]  # fmt: skip
-
-
-def test_an_exchange_is_its_own_correction():
-    fault, table = exchange_fault("a", "b"), {"a": 1, "b": 2, "c": 3}
-    assert fault.correct(table) == {"a": 2, "b": 1, "c": 3}
-    assert fault.correct(fault.correct(table)) == table
 
 
 @pytest.mark.parametrize(("rows", "word"), [(25, "late"), (-25, "early")])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.recordings.quality.floor_sensor import check_floor_sensor, follows_floor
+from seatsim.recordings.quality.sensors import check_floor_sensor, follows_floor
 from seatsim.recordings.recording import load_recording
 
 from ...faulty_recordings import RATE, blurred, limited, rewrite, stepped, with_play

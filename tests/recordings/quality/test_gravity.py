@@ -7,7 +7,7 @@ import pytest
 
 from seatsim.diagnosis.problem import pose_problem
 from seatsim.recordings.gap import gap
-from seatsim.recordings.quality.gravity import without_gravity
+from seatsim.recordings.quality.sensors import without_gravity
 from seatsim.recordings.recording import load_recording
 
 from ...diagnosis.serial import SerialExecutor

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lfilter, sosfiltfilt
 
-from seatsim.recordings.quality.noise_level import check_noise
+from seatsim.recordings.quality.sensors import check_noise
 
 RATE, ROWS = 250.0, 3000
 TIME = np.arange(ROWS) / RATE

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatsim.recordings.quality.rows import check_rows, find_repeated_rows
+from seatsim.recordings.quality.runs import check_rows, find_repeated_rows
 
 NOISE = np.random.default_rng(0).standard_normal(2000)
 

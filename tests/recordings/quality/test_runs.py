@@ -6,8 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatsim.recordings.quality.issue import Issue, issue_in_all_runs, select_errors
-from seatsim.recordings.quality.run_under_test import is_at_rest
+from seatsim.recordings.quality.issue import Issue, is_at_rest, issue_in_all_runs, select_errors
 from seatsim.recordings.quality.runs import check_all_runs, check_clock
 
 RATE = 250.0

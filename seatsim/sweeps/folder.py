@@ -1,20 +1,78 @@
-"""`manifest.json`: what a sweep is, how far it is, and whether it may be gone on with."""
+"""The folder of a sweep: who holds it, what it is of, how far it is, and whether it may be gone on with.
+
+A lock names its owner and dies with it (flock). Commands for different shares of a sweep hold the folder together,
+which the locks of `filelock` cannot do. `manifest.json` holds the rest.
+"""
 
 from __future__ import annotations
 
+import os
+import socket
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, cast
 
 from seatsim.provenance.invocation import current_invocation
 from seatsim.provenance.manifest import describe_invocation, describe_outputs
 from seatsim.schema.errors import InputError
-from seatsim.schema.files import write_json
-from seatsim.schema.guarded import expect, read_json
+from seatsim.schema.files import make_folder, write_json
+from seatsim.schema.guarded import check_no_link, expect, open_in_place, read_json
 from seatsim.sweeps.identity import GROWING, Identity, digest_design, list_differences
 from seatsim.sweeps.outcome import STATES
 from seatsim.sweeps.plan import Plan
+
+
+@contextmanager
+def hold_folder(folder: Path, share: str = "") -> Iterator[None]:
+    """Hold the folder of a sweep; commands for different shares of its runs, such as `2/8`, hold it together.
+
+    The system releases the locks (flock) when the process ends, however that happens. The files stay.
+
+    Raises:
+        InputError: another process holds the folder, or the same share of it; the message names that process. Or
+            something in it is a link, through which rows would be written.
+    """
+    make_folder(folder)
+    for place in folder.iterdir():
+        check_no_link(folder, place)
+    if not share:
+        with hold_file(folder / ".lock"):
+            yield
+        return
+    with hold_file(folder / ".lock", alone=False), hold_file(folder / f".lock-{share.replace('/', '-of-')}"):
+        yield
+
+
+@contextmanager
+def hold_file(path: Path, alone: bool = True, wait: bool = False) -> Iterator[None]:
+    """Hold one lock file, alone or together with others that do the same; `wait` until that is possible, or fail.
+
+    Raises:
+        InputError: another process holds it.
+    """
+    try:
+        import fcntl
+    except ImportError as error:
+        raise InputError(
+            "a sweep locks its folder with flock, which this system has not; use Linux, macOS, or Windows' WSL"
+        ) from error
+    with open_in_place(path) as file:
+        how = (fcntl.LOCK_EX if alone else fcntl.LOCK_SH) | (0 if wait else fcntl.LOCK_NB)
+        try:
+            fcntl.flock(file, how)
+        except BlockingIOError as error:
+            owner = file.read().strip() or "another process"
+            raise InputError(
+                f"{path.parent}: {owner} works on this sweep; wait for it, end it, or choose another --out"
+            ) from error
+        file.truncate(0)
+        with suppress(OSError):  # who holds a folder is told where the disk lets it
+            file.write(f"process {os.getpid()} on {socket.gethostname()}" if alone else "a command for a share of it")
+            file.flush()
+        yield
+
 
 NAME = "manifest.json"
 FIELDS = {"identity": str, "versions": dict, "seed": int, "counts": dict, "limits": dict, "configuration": dict}
@@ -25,13 +83,24 @@ def write_manifest(folder: Path, identity: Identity, limits: Mapping[str, float]
     """Write the manifest of a sweep, with what `seatsim reproduce` needs where a command is at work."""
     invocation = current_invocation()
     parts = {path.relative_to(folder).as_posix(): path for path in sorted(folder.glob("runs/part-*.parquet"))}
-    stated = {} if invocation is None else {
-        **describe_invocation(invocation, folder), **describe_outputs({} if counts["pending"] else parts),
-    }  # fmt: skip
+    stated = (
+        {}
+        if invocation is None
+        else {
+            **describe_invocation(invocation, folder),
+            **describe_outputs({} if counts["pending"] else parts),
+        }
+    )
     content = {
-        "identity": identity.digest, "versions": identity.versions, "seed": identity.seed, "counts": counts,
-        "limits": limits, "configuration": identity.configuration, "design": identity.design, **stated,
-    }  # fmt: skip
+        "identity": identity.digest,
+        "versions": identity.versions,
+        "seed": identity.seed,
+        "counts": counts,
+        "limits": limits,
+        "configuration": identity.configuration,
+        "design": identity.design,
+        **stated,
+    }
     return write_json(folder / NAME, content, lasting=True)
 
 
@@ -90,10 +159,12 @@ def check_resumable(folder: Path, identity: Identity, plan: Plan, resume: bool) 
         return
     fixed = [_without_growing(each) for each in (old["configuration"], identity.configuration)]
     differences = [
-        *list_differences({"seed": old["seed"], "versions": old["versions"]},
-                          {"seed": identity.seed, "versions": dict(identity.versions)}),
+        *list_differences(
+            {"seed": old["seed"], "versions": old["versions"]},
+            {"seed": identity.seed, "versions": dict(identity.versions)},
+        ),
         *list_differences(fixed[0], fixed[1]),
-    ]  # fmt: skip
+    ]
     only_adds = plan.runs >= counts["runs"] and digest_design(plan, counts["runs"]) == old["design"]
     if not only_adds:
         differences += list_differences(_growing(old["configuration"]), _growing(identity.configuration))

@@ -1,0 +1,116 @@
+"""The commands that take one scenario to other ends than a run: synthesise, export, explore."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from seatsim.cli.options import Json, OneScenario, Out, OwnCode, Settings, scenario_settings
+from seatsim.cli.terminal import announce, answer, show_progress, warn, wrote, wrote_one
+from seatsim.schema.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    from seatsim.scenario.scenario import Scenario
+
+
+_PAGE_EXTRA = 'the page needs an extra; install it with: pip install "seatsim[page]"'
+
+
+def export(
+    scenario: OneScenario,
+    form: Annotated[str, typer.Option("--to", help="fmu2, fmu3, c or mat.")],
+    what: Annotated[str, typer.Option("--what", help="rig, damper or controller.")],
+    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The file to be written.")],
+    variant: Annotated[
+        str | None,
+        typer.Option("--variant", metavar="NAME", help="The variant of the scenario.", show_default="the first"),
+    ] = None,
+    settings: Settings = None,
+    own_code: OwnCode = None,
+    as_json: Json = False,
+) -> None:
+    """Write a scenario's rig, damper or controller for other programs: as an FMU, as C, or as a MAT file."""
+    from seatsim.exchange.block import list_variables
+    from seatsim.exchange.export import export as write
+    from seatsim.scenario.loading import load
+
+    run = _choose(scenario, load(scenario, scenario_settings(settings)), variant)
+    with show_progress() as progress:
+        progress(f"exporting {what}")
+        block = write(run, form, what, out)
+    warn(block.notes)
+    wrote_one(out)
+    variables = [
+        {"name": v.name, "causality": v.causality, "unit": v.unit, "meaning": v.meaning, "start": v.value}
+        for v in list_variables(block)
+    ]
+    answer({"name": block.name, "step": block.step, "variables": variables, "notes": block.notes}, [out])
+
+
+def _choose(name: str, runs: Sequence[Scenario], variant: str | None) -> Scenario:
+    """Return the first run of a variant, or of all, and say so where there are others."""
+    known = list(dict.fromkeys(run.label["variant"] for run in runs if "variant" in run.label))
+    if variant is not None and variant not in known:
+        names = f"its variants: {'; '.join(known)}" if known else "it has no variants"
+        raise InputError(f"--variant {variant}: {name} has no such variant{nearest(variant, known)}; {names}")
+    chosen = [run for run in runs if variant is None or run.label["variant"] == variant]
+    if len(chosen) > 1:
+        others = f"; --variant takes another one: {'; '.join(known)}" if variant is None and known else ""
+        warn([f"{name} holds {len(chosen)} runs; the first is exported: {chosen[0].title}{others}"])
+    return chosen[0]
+
+
+def synthesise(
+    scenario: OneScenario,
+    out_folder: Out = None,
+    settings: Settings = None,
+    own_code: OwnCode = None,
+    as_json: Json = False,
+) -> None:
+    """Synthesise the H-infinity static output feedback of a scenario's plant and weights."""
+    from seatsim.cli.design_table import design_table
+    from seatsim.cli.show_table import show_table
+    from seatsim.provenance.manifest import write_documented
+    from seatsim.scenario.loading import single
+    from seatsim.scenario.synthesis import synthesise_design
+    from seatsim.schema.yaml_source import Source
+
+    chosen = single(scenario, scenario_settings(settings))
+    with show_progress() as progress:
+        design = synthesise_design(chosen, progress)
+    show_table(design_table(design, chosen))
+    folder = out_folder or Path("out") / chosen.name
+
+    def write(part: Path) -> list[Path]:
+        design.save(part / "design.yaml")
+        return [part / "design.yaml"]
+
+    paths = write_documented(folder, write, chosen.seed)
+    wrote(folder, paths)
+    answer(Source(folder / "design.yaml").data, paths)
+
+
+def explore(
+    target: Annotated[
+        str, typer.Argument(metavar="[SCENARIO|RECORDING]", help="A scenario, an example, or a recording's folder.")
+    ] = "quickstart",
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="Port of loopback.", show_default="a free one")
+    ] = 0,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address and open no browser.")] = False,
+    own_code: OwnCode = None,
+    as_json: Json = False,
+) -> None:
+    """Open a page on this machine: move driver, temperature, road and controller, or effects, and see what follows."""
+    try:
+        from seatsim.page.serve import find_target, serve
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.partition(".")[0] not in ("starlette", "uvicorn"):
+            raise
+        raise InputError(_PAGE_EXTRA) from error
+    path = Path(target)
+    folder = path if path.is_dir() else path.parent if path.exists() else Path()
+    serve(find_target(path), folder, port, not no_browser, announce)

@@ -1,0 +1,179 @@
+"""A block as C99 without allocation: alone, with a test vector that a compiled `main` checks, or for a unit."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, cast
+
+import numba
+from numba import types
+
+from seatsim.exchange.block import RATES, Block, Variable, list_variables
+from seatsim.exchange.printing.functions import print_function
+from seatsim.exchange.printing.program import Program
+from seatsim.exchange.printing.values import BOOLEAN, REAL, Signature, is_empty, is_row, is_tuple, number
+from seatsim.schema.files import write_text
+
+_SAMPLES = 200
+"""Samples of the test vector."""
+_SIZES = {
+    0.02: "displacement",
+    0.2: "velocity",
+    0.3: "frame_velocity driver_velocity floor_velocity",
+    0.5: "current command replayed_command",
+    1.5: "driver_acceleration",
+    2.0: "acceleration floor_acceleration frame_acceleration",
+    10.0: "temperature",
+    20.0: "frame_force driver_force",
+    300.0: "damper_force",
+}
+"""Size of the sines that the test vector feeds, in the unit of the input; an input that is not here stays as it is."""
+_KINDS = {bool: "BOOLEAN_VARIABLE", int: "INTEGER_VARIABLE", float: "REAL_VARIABLE"}
+
+
+def resource(name: str) -> str:
+    """Return the text of a file of C that comes with this package."""
+    return (files("seatsim.exchange") / "c" / name).read_text(encoding="utf-8")
+
+
+def _fill(name: str, words: Mapping[str, str]) -> str:
+    """Return the text of such a file with its `@WORD@`s replaced, those that are in the words themselves left alone."""
+    return re.sub(r"@(\w+)@", lambda found: words[found[1]], resource(name))
+
+
+def print_model(block: Block) -> str:
+    """Return the C of a block: `struct Model` and the functions that reset, start, advance and observe it.
+
+    Raises:
+        NotPrintableError: a function of the block uses what has no counterpart in C.
+    """
+    program = Program(print_function)
+    p, u, s = (Signature(numba.typeof(value)) for value in (block.parameters, block.inputs, block.rest))
+    number_ = Signature(REAL)
+    start = _call(program, block.start, (p, u, s), ("m->parameters", "m->inputs", "rest_state"))
+    given = ("m->parameters", "m->inputs", "m->state")
+    observe = _call(program, block.observe, (p, u, s, number_), (*given, "m->age"))
+    advance = _call(program, block.advance, (p, u, s, number_, number_), (*given, "(real)k * part", "part"))
+    result = numba.typeof((block.initial, True))
+    names = {
+        "Parameters": program.types.name(p.type),
+        "Inputs": program.types.name(u.type),
+        "State": program.types.name(s.type),
+        "Outputs": program.types.name(numba.typeof(block.outputs)),
+        "Advanced": program.types.name(result),
+    }
+    values = {"Parameters": block.parameters, "Inputs": block.inputs, "State": block.rest}
+    constants = [
+        f"static const {names[kind]} {name} = {_initialiser(values[kind], numba.typeof(values[kind]))};"
+        for kind, name in (("Parameters", "nominal_parameters"), ("Inputs", "first_inputs"), ("State", "rest_state"))
+    ]
+    words = {"START": start, "OBSERVE": observe, "ADVANCE": advance}
+    words |= {"FIXED_STEP": str(int(block.fixed_step)), "STEP": repr(block.step)}
+    model = _fill("model.h", names | words)
+    return "\n".join([resource("prelude.h"), program.source(), *constants, "", model])
+
+
+def print_variables(variables: Sequence[Variable]) -> str:
+    """Return the table of a model's variables, by which a wrapper finds them."""
+    names = [v.name for v in variables]
+    rates = [names.index(RATES[v.name]) if RATES.get(v.name) in names else -1 for v in variables]
+    rows = [
+        f'    {{"{v.name}", {_KINDS[type(v.value)]}, {v.causality.upper()}, offsetof(Model, {v.place}),'
+        f" {_limit(v.low)}, {_limit(v.high)}, {rate}}},"
+        for v, rate in zip(variables, rates, strict=True)
+    ]
+    return _fill("variables.h", {"ROWS": "\n".join(rows)})
+
+
+def _call(
+    program: Program, function: Callable[..., object], kinds: tuple[Signature, ...], codes: tuple[str, ...]
+) -> str:
+    """Return the call of a function of the block, which is printed."""
+    printed = program.function(function, kinds)
+    if printed.passed is not None:
+        return codes[printed.passed]
+    pairs = zip(codes, kinds, strict=True)
+    listed = [f"&{code}" if is_tuple(kind.type) else code for code, kind in pairs if not is_empty(kind.type)]
+    return f"{printed.name}({', '.join(listed)})"
+
+
+def _initialiser(value: object, kind: types.Type) -> str:
+    """Return the value of a record or number as C initialises it."""
+    if kind == REAL:
+        return number(float(cast(float, value))).code
+    if kind == BOOLEAN or isinstance(kind, types.Integer):
+        return str(int(cast(int, value)))
+    pairs = zip(cast("tuple[object, ...]", value), kind, strict=True)
+    listed = ", ".join(_initialiser(item, inner) for item, inner in pairs if not is_empty(inner))
+    return f"{{{{{listed}}}}}" if is_row(kind) else f"{{{listed}}}"
+
+
+def _limit(value: float) -> str:
+    return repr(value) if math.isfinite(value) else ("HUGE_VAL" if value > 0 else "-HUGE_VAL")
+
+
+def write_c(block: Block, path: Path) -> None:
+    """Write a block as one C file.
+
+    Raises:
+        InputError: a function has no counterpart in C, or the file cannot be written. OutputError: the disk is full.
+    """
+    write_text(path, print_c(block))
+
+
+def print_c(block: Block) -> str:
+    """Return the text of the file."""
+    variables = list_variables(block)
+    inputs = [v for v in variables if v.causality == "input"]
+    outputs = [v for v in variables if v.causality == "output"]
+    fed, expected = zip(*_test_vector(block, inputs, outputs), strict=True)
+    words = {
+        # A name must not end the comment in which it stands.
+        "TITLE": f"{block.name}: {block.summary}".replace("*/", "* /").replace("/*", "/ *"),
+        "NOTES": "".join(f"\n   Note: {note}." for note in block.notes),
+        "INPUTS": _list_of(inputs),
+        "OUTPUTS": _list_of(outputs),
+        "SAMPLES": str(_SAMPLES),
+        "FED": _rows(fed),
+        "EXPECTED": _rows(expected),
+        "FEED": "".join(f"        m.{v.place} = (real)fed[k][{j}];\n" for j, v in enumerate(inputs)),
+        "CHECK": "".join(
+            f"        off += is_off(m.{v.place}, expected[k][{j}], {j});\n" for j, v in enumerate(outputs)
+        ),
+        "INPUT_COUNT": str(len(inputs)),
+        "OUTPUT_COUNT": str(len(outputs)),
+    }
+    return _fill("file.c", words | {"MODEL": print_model(block)})
+
+
+def _list_of(variables: list[Variable]) -> str:
+    return "".join(f"\n     m.{v.place:<32} {v.unit:<8} {v.meaning}" for v in variables)
+
+
+def _test_vector(
+    block: Block, inputs: list[Variable], outputs: list[Variable]
+) -> Iterator[tuple[list[float], list[float]]]:
+    """Yield the inputs of each sample and the outputs after it, computed by the Python functions themselves."""
+    parameters, given, state = block.parameters, block.inputs, block.initial
+    for k in range(_SAMPLES):
+        values = {v.name: _signal(v, j, k * block.step) for j, v in enumerate(inputs)}
+        given = given._replace(**values)
+        if k == 0:
+            state = block.start(parameters, given, block.rest)
+        state, _ = block.advance(parameters, given, state, 0.0, block.step)
+        seen: Any = block.observe(parameters, given, state, block.step)
+        yield [float(v) for v in values.values()], [float(getattr(seen, v.name)) for v in outputs]
+
+
+def _signal(v: Variable, position: int, time: float) -> float:
+    """Return a sine of a frequency and phase of its own about the value at the start."""
+    size = next((size for size, names in _SIZES.items() if v.name in names.split()), 0.0)
+    return float(v.value) + size * math.sin(7.0 * time * (1.0 + 0.37 * position) + position)
+
+
+def _rows(rows: tuple[list[float], ...]) -> str:
+    return "\n".join("    {" + ", ".join(map(repr, row)) + "}," for row in rows)

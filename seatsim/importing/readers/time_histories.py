@@ -1,0 +1,180 @@
+"""Time histories of test stands: universal files (UFF58), read by pyuff, and RPC III (MTS).
+
+In RPC III a header of keywords comes before groups of points, channel after channel in each. The format is recalled,
+and compared with open readers of it: records of 128 bytes, a keyword of 32 and a value of 96, the first three FORMAT,
+NUM_HEADER_BLOCKS (of 512 bytes) and NUM_PARAMS. A group holds PTS_PER_GROUP points of every channel. Integers are
+`SCALE.CHAN_n` each, times INT_FULL_SCALE / 32768.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from seatsim.importing.readers.naming import note_left_out
+from seatsim.importing.readers.reading import TextLayout, need
+from seatsim.importing.signals import Channels, DataFile, Group, Signal
+from seatsim.schema.arrays import Array
+from seatsim.schema.errors import InputError
+from seatsim.schema.units import DIMENSIONS, conversion
+
+_FUNCTION = 58
+"""Type of a data set that is a function."""
+_FUNCTIONS = """a general function, a time response, an auto spectrum, a cross spectrum, a frequency response,
+a transmissibility, a coherence, an auto correlation, a cross correlation, a power spectral density,
+an energy spectral density, a probability density, a spectrum""".replace("\n", " ").split(", ")
+"""What functions are by the number of their type; those over time are the first two."""
+_OVER_TIME, _TIME_AXIS = (0, 1), (0, 17)
+"""Types of functions, and of the quantity along the abscissa (0 is not stated)."""
+_OF_LINE = 6
+"""Values of a line, up to which the last one is filled with zeros."""
+_NAMES = ("rsp_ent_name", "id1", "id5", "ordinate_axis_lab", "id2")
+_NONE = ("", "none", "notset", "not set", "general", "unknown")
+_RECORD, _KEYWORD, _BLOCK = 128, 32, 512
+_FULL_SCALE = 32768
+_ORDERS = {"BINARY_IEEE_LITTLE_END": "<", "BINARY_IEEE_BIG_END": ">", "BINARY": "<"}
+_TYPES = {"SHORT_INTEGER": "i2", "FLOATING_POINT": "f4"}
+_NEEDED = ("NUM_HEADER_BLOCKS", "CHANNELS", "DELTA_T", "PTS_PER_FRAME", "PTS_PER_GROUP", "FRAMES")
+
+
+def read_uff(path: Path, content: bytes, layout: TextLayout) -> DataFile:
+    """Return the time responses, those of equal length, step and start, or of the same times, as one group."""
+    pyuff = need("pyuff", "UFF58")
+    if not content.rstrip().endswith(b"-1"):
+        raise InputError(f"{path}: its last data set has no end (-1); the file is truncated: export it again")
+    gathered = Channels()
+    others = []
+    with tempfile.NamedTemporaryFile(suffix=".uff") as file:  # pyuff reads names of files alone
+        file.write(content)
+        file.flush()
+        sets = pyuff.UFF(file.name)
+        kinds = [int(kind) for kind in sets.get_set_types()]
+        for index, kind in enumerate(kinds):
+            held = cast("Mapping[str, object]", sets.read_sets(index)) if kind == _FUNCTION else {}
+            reason = _why_not(kind, held)
+            if reason:
+                others.append(f"data set {index + 1} is {reason}")
+                continue
+            signal, times = _signal(f"{path}, data set {index + 1}", held)
+            if held.get("abscissa_spacing") == 0:
+                gathered.add_timed("", times, [signal])
+            else:
+                step = round(float(np.mean(np.diff(times))), 12) if len(times) > 1 else 0.0
+                gathered.add("", signal, 1.0 / step if step else None, float(times[0]) if len(times) else 0.0)
+    return DataFile(path, "", gathered.groups(), note_left_out("left out, as they are no responses over time", others))
+
+
+def _why_not(kind: int, held: Mapping[str, object]) -> str:
+    """Return what a data set is if it is no response over time, else an empty text."""
+    if kind != _FUNCTION:
+        return f"no function, but of type {kind}"
+    function, axis = (int(cast("int", held[key]) or 0) for key in ("func_type", "abscissa_spec_data_type"))
+    if function not in _OVER_TIME:
+        return _FUNCTIONS[function] if 0 < function < len(_FUNCTIONS) else f"a function of type {function}"
+    return "" if axis in _TIME_AXIS else f"a function over {str(held['abscissa_axis_lab']).strip() or axis}"
+
+
+def _signal(place: str, held: Mapping[str, object]) -> tuple[Signal, Array]:
+    """Return a channel and its times in s."""
+    values, times = _array(held, "data"), _array(held, "x")
+    stated = int(cast("int", held["num_pts"]))
+    if min(len(values), len(times)) < stated:
+        raise InputError(f"{place}: has {len(values)} of {stated} values; the file is truncated: export it again")
+    if len(values) >= stated + _OF_LINE:
+        raise InputError(f"{place}: has {len(values)} values where it states {stated}; correct the number of them")
+    name = next((str(held[key]).strip() for key in _NAMES if str(held.get(key, "")).strip().lower() not in _NONE), "")
+    node = f"{held.get('rsp_node', '')}:{held.get('rsp_dir', '')}"
+    unit = _unit(held, "ordinate_axis_units_lab")
+    of_time = conversion(_unit(held, "abscissa_axis_units_lab") or "s", DIMENSIONS["time"]).factor
+    return Signal(name or node, unit, values[:stated]), of_time * times[:stated]
+
+
+def _unit(held: Mapping[str, object], key: str) -> str:
+    unit = str(held.get(key, "")).strip()
+    return "" if unit.lower() in _NONE else unit
+
+
+def _array(held: Mapping[str, object], key: str) -> Array:
+    return np.real(np.asarray(held[key])).astype(np.float64)
+
+
+def read_rpc(path: Path, content: bytes, layout: TextLayout) -> DataFile:
+    """Return the channels of a time history as one group.
+
+    Raises:
+        InputError: a keyword is missing, the numbers are of an unknown kind, or there are fewer than stated.
+    """
+    header = _header(path, content)
+    count, frames, per_frame, per_group = (
+        int(header[key]) for key in ("CHANNELS", "FRAMES", "PTS_PER_FRAME", "PTS_PER_GROUP")
+    )
+    if min(count, frames, per_frame, per_group) < 1:
+        raise InputError(
+            f"{path}: states {count} channels of {frames} frames of {per_frame} points; each is at least 1"
+        )
+    kind, order = header.get("DATA_TYPE", "SHORT_INTEGER"), header.get("FORMAT", "BINARY")
+    if kind not in _TYPES or order not in _ORDERS:
+        permitted = f"{', '.join(_TYPES)} in {', '.join(_ORDERS)}"
+        raise InputError(f"{path}: numbers are {kind} in {order}; permitted: {permitted}")
+    values = np.frombuffer(content[int(header["NUM_HEADER_BLOCKS"]) * _BLOCK :], dtype="u1")
+    table = _demultiplex(path, values, _ORDERS[order] + _TYPES[kind], (count, frames * per_frame, per_group))
+    scales = [_scale(header, number, kind) for number in range(1, count + 1)]
+    signals = tuple(
+        Signal(
+            header.get(f"DESC.CHAN_{number}", f"channel {number}"), header.get(f"UNITS.CHAN_{number}", ""), scale * row
+        )
+        for number, (scale, row) in enumerate(zip(scales, table, strict=True), 1)
+    )
+    kept, notes = _kept(table, per_frame)
+    signals = tuple(signal._replace(values=signal.values[:kept]) for signal in signals)
+    return DataFile(path, "", (Group("", signals, 1.0 / float(header["DELTA_T"])),), notes)
+
+
+def _kept(table: Array, per_frame: int) -> tuple[int, tuple[str, ...]]:
+    """Return how many points there are without the zeros that fill the last frame, and a sentence on them."""
+    used = np.flatnonzero(table[:, -per_frame:].any(axis=0))
+    filled = per_frame - 1 - int(used[-1]) if len(used) else 0
+    if not filled:
+        return table.shape[1], ()
+    return table.shape[1] - filled, (
+        f"the last {filled} points of every channel are zero: they fill the last frame and are left out",
+    )
+
+
+def _header(path: Path, content: bytes) -> dict[str, str]:
+    header: dict[str, str] = {}
+    for start in range(0, len(content) - _RECORD + 1, _RECORD):
+        record = content[start : start + _RECORD]
+        key, value = (
+            part.split(b"\0")[0].decode("cp1252", "replace").strip() for part in (record[:_KEYWORD], record[_KEYWORD:])
+        )
+        if key:
+            header[key] = value
+        if start // _RECORD + 1 >= int(header.get("NUM_PARAMS", "3")):
+            break
+    missing = [key for key in _NEEDED if key not in header]
+    if missing:
+        raise InputError(f"{path}: its header states no {missing[0]}; it is no RPC III time history, or truncated")
+    return header
+
+
+def _demultiplex(path: Path, raw: np.ndarray, kind: str, shape: tuple[int, int, int]) -> Array:
+    """Return points of every channel, shape (channels, points), from groups that are filled up to the last."""
+    count, points, per_group = shape
+    groups = -(-points // per_group)
+    wanted, size = groups * per_group * count, np.dtype(kind).itemsize
+    if len(raw) < wanted * size:
+        stated = f"{count} channels of {points} points need {wanted * size} bytes"
+        raise InputError(f"{path}: {stated} and {len(raw)} are there; the file is truncated: export it again")
+    values = raw[: wanted * size].view(kind).astype(np.float64).reshape(groups, count, per_group)
+    return values.transpose(1, 0, 2).reshape(count, -1)[:, :points]
+
+
+def _scale(header: Mapping[str, str], number: int, kind: str) -> float:
+    if kind == "FLOATING_POINT":
+        return 1.0
+    return float(header[f"SCALE.CHAN_{number}"]) * float(header.get("INT_FULL_SCALE", _FULL_SCALE)) / _FULL_SCALE

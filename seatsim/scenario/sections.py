@@ -1,0 +1,237 @@
+"""What a scenario file may hold: every key at its top, stated once.
+
+The reading of a file, its JSON Schema (`seatsim schema`), the pages of `seatsim describe` and the keys that `--set`
+completes all come from `SECTIONS`. A key of plant, driver, coil, solver, start or sensors is a field of a record, where
+its unit, meaning, bounds and default stand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+from seatsim.effects.base import EFFECTS
+from seatsim.rig.coil import Coil
+from seatsim.rig.control import LAWS, Law
+from seatsim.rig.drivers import Driver
+from seatsim.rig.plant import Plant
+from seatsim.rig.sensors import Sensors
+from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.scenario.checks import checks_schema, read_checks
+from seatsim.scenario.damper import damper_schema, read_damper, schema_of_models
+from seatsim.scenario.scenario import Control, Inverse, Solver, Start
+from seatsim.schema.errors import InputError, gathered, raise_all
+from seatsim.schema.json_schema import (
+    ANYTHING,
+    BY_KEY,
+    TEXT,
+    Schema,
+    cases_schema,
+    head_schema,
+    mapping_schema,
+    name_schema,
+    named_schema,
+    record_schema,
+)
+from seatsim.schema.registry import Record, Registry, find
+from seatsim.schema.text import explain_bad_name
+from seatsim.schema.validation import build, check_keys, chosen_class, is_finite_number, mapping, sweep_hint
+from seatsim.schema.yaml_source import Source
+from seatsim.schema.yaml_text import KeyPath
+
+if TYPE_CHECKING:
+    from seatsim.excitations.base import Excitation
+
+_LARGEST_SEED = 2**63 - 1
+"""The largest whole number that a column of a table holds."""
+_LONGEST_SAMPLE_TIME = 1.0
+"""Seconds between two samples of a law."""
+FILES = (("controller", "design"), ("excitation", "path"))
+"""Section and key under which a scenario names a file, from its own folder."""
+# An excitation may read a recording, whose nominal is a scenario: their package builds on this one.
+EXCITATIONS: Registry[Excitation, object] = Registry("excitation")
+
+
+class Section(NamedTuple):
+    """A key at the top of a scenario file: what reads its value, and what gives the JSON Schema of it.
+
+    `record` is the class whose fields are its keys, where these are always the same; `field` is that of a `Scenario`
+    which holds what was read, where it is not called as the key.
+    """
+
+    read: Callable[[object, Source], object]
+    schema: Callable[[], Schema]
+    record: type | None = None
+    field: str = ""
+
+
+def _of_record(key: str, record: type, required: tuple[str, ...] = (), field: str = "") -> Section:
+    """Return the section whose keys are the fields of a record; `required` ones must be stated despite a default."""
+    return Section(
+        lambda value, source: build(record, value, source, (key,), required),
+        lambda: record_schema(record, required or None),
+        record,
+        field,
+    )
+
+
+def _read_name(value: object, source: Source) -> str:
+    """Return the name of a scenario, which its folder of results has."""
+    if isinstance(value, dict | list) or value is None:
+        raise source.error(("name",), f"{value!r} is no name; write it as text")
+    problem = explain_bad_name(str(value))
+    if problem:
+        raise source.error(("name",), f"{str(value)!r} {problem}")
+    return str(value)
+
+
+def _read_seed(value: object, source: Source) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _LARGEST_SEED:
+        needed = f"a whole number of at least 0 and at most {_LARGEST_SEED}"
+        raise source.error(("seed",), f"{value!r} is not permitted; it must be {needed}{sweep_hint(value, ('seed',))}")
+    return value
+
+
+def _read_temperature(value: object, source: Source) -> float | Thermal:
+    if isinstance(value, Mapping):
+        return build(Thermal, value, source, ("temperature",))
+    return float(build(Thermal, {"start": value}, source, ("temperature",)).start)
+
+
+def _temperature_schema() -> Schema:
+    degrees: Schema = {"type": "number", "unit": "degC"}
+    return {"anyOf": [degrees, {"type": "array", "items": degrees, "minItems": 1}, record_schema(Thermal)]}
+
+
+def _read_control(values: object, source: Source) -> Control:
+    keys: KeyPath = ("controller",)
+    stated, errors = mapping(values, source, keys), list[InputError]()
+    inverse = sensors = sample_time = law = None
+    with gathered(errors):
+        cls = chosen_class(LAWS, stated, "law", source, keys)
+        # What is registered as a law has one of the methods of `Law`: its decorator is applied to nothing else.
+        law = cast("Law", build(cls, _own_keys(stated, ("law", *_CONTROL), "design", source), source, keys))
+    with gathered(errors):
+        inverse = _read_inverse(stated["inverse"], source) if "inverse" in stated else None
+    with gathered(errors):
+        sensors = build(Sensors, stated["sensors"], source, (*keys, "sensors")) if "sensors" in stated else None
+    with gathered(errors):
+        sample_time = _read_sample_time(stated.get("sample_time"), source)
+    raise_all(errors)
+    return Control(law, sample_time, inverse, sensors)
+
+
+def _read_sample_time(value: object, source: Source) -> float | None:
+    if value is None:
+        return None
+    if not (is_finite_number(value) and 0 < value <= _LONGEST_SAMPLE_TIME):
+        keys = ("controller", "sample_time")
+        raise source.error(keys, f"{value!r} is not permitted; it must be 0 to 1 s{sweep_hint(value, keys)}")
+    return value
+
+
+def _read_inverse(values: object, source: Source) -> Inverse:
+    keys: KeyPath = ("controller", "inverse")
+    damper = read_damper(values, source, keys, extra=("temperature",))
+    temperature = mapping(values, source, keys).get("temperature", "measured")
+    if temperature == "measured":
+        return Inverse(damper, None)
+    if not is_finite_number(temperature):
+        raise source.error((*keys, "temperature"), f"{temperature!r} is not permitted; a number in degC or 'measured'")
+    return Inverse(damper, float(temperature))
+
+
+_CONTROL: Mapping[str, Callable[[], Schema]] = {
+    "sample_time": lambda: {
+        "type": "number",
+        "exclusiveMinimum": 0,
+        "maximum": _LONGEST_SAMPLE_TIME,
+        "unit": "s",
+        "description": "time between two samples of the law [s]",
+    },
+    "inverse": lambda: damper_schema({"temperature": ANYTHING}),
+    "sensors": lambda: record_schema(Sensors),
+}
+"""Keys of a controller that stand beside those of its law."""
+
+
+def _read_excitation(values: object, source: Source) -> Excitation:
+    keys: KeyPath = ("excitation",)
+    stated = mapping(values, source, keys)
+    cls = chosen_class(EXCITATIONS, stated, "kind", source, keys)
+    return build(cls, _own_keys(stated, ("kind",), "path", source), source, keys)
+
+
+def _own_keys(stated: Mapping[str, object], others: tuple[str, ...], path: str, source: Source) -> dict[str, object]:
+    """Return the keys of a named class beside its name; a file under the key `path` lies beside the source."""
+    own = {key: value for key, value in stated.items() if key not in others}
+    name = own.get(path)
+    return own | {path: str(source.path.parent / name)} if isinstance(name, str) else own
+
+
+def _read_effects(values: object, source: Source) -> tuple[Record, ...]:
+    if not isinstance(values, list):
+        raise source.error(("effects",), f"{values!r} is not a list; write '- effect: NAME' below it")
+    effects, errors = list[Record](), list[InputError]()
+    for index, value in enumerate(values):
+        keys: KeyPath = ("effects", index)
+        with gathered(errors):
+            stated = mapping(value, source, keys)
+            check_keys(stated, ("effect", "parameters"), source, keys)
+            cls = chosen_class(EFFECTS, stated, "effect", source, keys)
+            effects.append(build(cls, stated.get("parameters", {}), source, (*keys, "parameters")))
+    raise_all(errors)
+    return tuple(effects)
+
+
+def _effects_schema() -> Schema:
+    def own(name: str) -> Schema:
+        return {"properties": {"parameters": record_schema(find("effect", name))}}
+
+    keys = {"effect": name_schema("effect"), "parameters": BY_KEY}
+    return {"type": "array", "items": mapping_schema(keys, ("effect",)) | cases_schema("effect", "effect", own)}
+
+
+SECTIONS: Mapping[str, Section] = {
+    "name": Section(_read_name, lambda: TEXT),
+    "seed": Section(
+        _read_seed, lambda: {"type": "integer", "minimum": 0, "description": "every random draw derives from it"}
+    ),
+    "plant": _of_record("plant", Plant),
+    "driver": _of_record("driver", Driver),
+    "damper": Section(
+        lambda value, source: read_damper(value, source, ("damper",)), lambda: damper_schema(of_a_unit=True)
+    ),
+    "actuator": _of_record("actuator", Coil, ("rate", "max_current"), "coil"),
+    "temperature": Section(_read_temperature, _temperature_schema, Thermal),
+    "controller": Section(
+        _read_control,
+        lambda: named_schema("law", "law", {key: schema() for key, schema in _CONTROL.items()}),
+        field="control",
+    ),
+    "excitation": Section(_read_excitation, lambda: named_schema("excitation", "kind", {})),
+    "effects": Section(_read_effects, _effects_schema),
+    "solver": _of_record("solver", Solver),
+    "start": _of_record("start", Start),
+    "checks": Section(read_checks, checks_schema),
+}
+"""What a scenario is made of, by the keys at the top of its file."""
+OF_ALL_RUNS: Mapping[str, Schema] = {
+    "variants": {"type": "object", "additionalProperties": BY_KEY},
+    "sweep": {"type": "object", "additionalProperties": {"type": "array", "minItems": 1}},
+    "published": BY_KEY,
+}
+"""Further keys, which make several runs of a file or speak of all of them."""
+NEEDED, NEEDED_BY_A_SEAT = ("damper", "actuator", "temperature"), ("plant", "controller", "excitation")
+"""Keys that must be stated; a file without any of the latter is a damper bench."""
+RECORDS: Mapping[str, type] = {key: section.record for key, section in SECTIONS.items() if section.record} | {
+    "temperature_factors": TemperatureFactors,
+    "sensors": Sensors,
+}
+"""The records whose fields are keys, by what they are called."""
+
+
+def scenario_schema() -> Schema:
+    """Return the JSON Schema of a scenario, with the keys of every damper, law, excitation and effect by its name."""
+    keys = {key: section.schema() for key, section in SECTIONS.items()}
+    return head_schema("seatsim scenario", mapping_schema(keys | dict(OF_ALL_RUNS), NEEDED) | schema_of_models())
