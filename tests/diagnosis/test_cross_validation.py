@@ -48,6 +48,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_a_known_effect_is_named_beside_a_form_that_is_wrong_everywhere(folder):
     found = seatsim.diagnose(folder)
     assert found.verdict == "unknown"

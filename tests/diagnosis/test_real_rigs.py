@@ -27,6 +27,7 @@ def data(shared):
     return shared / "data"
 
 
+@pytest.mark.slow
 def test_the_offset_of_utfsm_fitted_to_half_of_the_runs_closes_the_gap_of_records_never_seen(real_rigs, data, tmp_path):
     rig = real_rigs.utfsm(data, "utfsm", (0.0, 0.25))
     rig = rig._replace(trials=rig.trials[:1])
@@ -67,6 +68,7 @@ def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, data, 
     assert 5.0 * found.floor["overall"] < found.overall < 0.4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name, known", [
     ("utfsm", [{"damper.gas_spring"}]),
     # The force follows the voltage faster one way than the other, by which the standard lag, too, is passed.
