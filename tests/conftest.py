@@ -11,6 +11,7 @@ from seatsim.schema import modules, registry
 
 from .faulty_recordings import record_sound_rig
 
+pytest_plugins = ["pytester"]
 ROOT = Path(__file__).resolve().parents[1]
 SEAT = """\
 plant: {frame_mass: 20.0, driver_mass: 80.0, suspension_stiffness: 4600.0, suspension_damping: 150.0,

@@ -11,12 +11,12 @@ import numpy as np
 from pydantic import Field
 
 from controllers.analysis.margins import compute_margins
-from controllers.analysis.sampled_loop import build_sampled_loop
 from controllers.linear_systems import LinearSystem
 from controllers.seat_plant import TRAVEL_AND_RATE, ActuatorLag, Measure, Weights, build_generalised_plant
 from seatsim.rig.coil import Coil
 from seatsim.rig.control import Measurement, State, law
 from seatsim.rig.plant import Plant
+from seatsim.rig.sampled_loop import build_sampled_loop
 from seatsim.schema.arrays import Array
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param

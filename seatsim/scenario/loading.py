@@ -14,6 +14,7 @@ from seatsim.rig.drivers import Driver
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import Thermal
+from seatsim.scenario.checks import read_checks, require_variants
 from seatsim.scenario.damper import stated_damper
 from seatsim.scenario.expansion import expand
 from seatsim.scenario.finding import find_file
@@ -32,7 +33,18 @@ if TYPE_CHECKING:
 LARGEST_SEED = 2**63 - 1
 """The largest whole number that a column of a table holds."""
 BENCH_KEYS = ("name", "seed", "damper", "actuator", "temperature", "effects", "solver")
-SEAT_KEYS = (*BENCH_KEYS, "plant", "driver", "controller", "excitation", "start", "sweep", "variants", "published")
+SEAT_KEYS = (
+    *BENCH_KEYS,
+    "plant",
+    "driver",
+    "controller",
+    "excitation",
+    "start",
+    "sweep",
+    "variants",
+    "published",
+    "checks",
+)
 FILES = (("controller", "design"), ("excitation", "path"))
 """Section and key under which a scenario names a file, from its own folder."""
 CONTROL_KEYS = ("law", "sample_time", "inverse", "sensors")
@@ -52,7 +64,10 @@ def load(path: str | Path, settings: Mapping[str, object] | None = None) -> list
     source = Source(find_file(Path(path)))
     if {"scenario", "vary"} <= set(source.data):
         raise source.error(("vary",), f"this file is a sweep of a scenario; simulate it with 'seatsim sweep {path}'")
-    return [read_scenario(variant, label) for variant, label in expand(source, settings or {})]
+    scenarios = [read_scenario(variant, label) for variant, label in expand(source, settings or {})]
+    variants = {one.label["variant"]: None for one in scenarios if "variant" in one.label}
+    require_variants(scenarios[0].checks, variants, source)
+    return scenarios
 
 
 def single(path: str | Path, settings: Mapping[str, object] | None = None) -> Scenario:
@@ -202,6 +217,7 @@ _READERS: Mapping[str, Callable[[object, Source], object]] = {
     "solver": lambda value, source: build(Solver, value, source, ("solver",)),
     "start": lambda value, source: build(Start, value, source, ("start",)),
     "seed": _seed,
+    "checks": read_checks,
 }
 """What reads each section of a scenario."""
 _FIELDS = {"actuator": "coil", "controller": "control"}

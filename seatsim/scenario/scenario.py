@@ -14,6 +14,7 @@ from seatsim.rig.drivers import Driver
 from seatsim.rig.plant import Plant
 from seatsim.rig.sensors import Sensors
 from seatsim.rig.temperature import TemperatureFactors, Thermal
+from seatsim.scenario.checks import Check
 from seatsim.schema.errors import InputError
 from seatsim.schema.fields import param
 from seatsim.schema.registry import Record
@@ -82,6 +83,7 @@ class Scenario:
     solver: Solver = field(default_factory=Solver)
     start: Start = field(default_factory=Start)
     seed: int = 0
+    checks: tuple[Check, ...] = ()
     label: Mapping[str, Any] = field(default_factory=dict)
     source: Source | None = None
 

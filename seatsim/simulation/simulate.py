@@ -157,6 +157,11 @@ def _initial_state(model: InverseModel) -> tuple[float, ...]:
     return initial
 
 
+def sample_period(step: float, control: Control) -> float:
+    """Return the time in s between two samples of the law, where the simulation goes on by `step` seconds."""
+    return _count_steps(step, control) * step
+
+
 def _count_steps(step: float, control: Control) -> int:
     """Return how many steps of the simulation lie between two samples of the law."""
     if control.sample_time is None:

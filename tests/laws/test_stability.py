@@ -8,13 +8,13 @@ from scipy.linalg import expm, solve_continuous_are
 from scipy.signal import cont2discrete
 
 from controllers.analysis.margins import compute_margins
-from controllers.analysis.sampled_loop import build_sampled_loop, build_seat_with_coil
 from controllers.laws.gaussian import EstimateFeedback, SwitchedFeedback
 from controllers.linear_systems import LinearSystem
 from controllers.optimal.kalman import Noise, design_kalman_filter, dot, predict
 from controllers.optimal.regulator import QuadraticWeights, solve_regulator
 from seatsim.rig.control import prepare_law
 from seatsim.rig.plant import state_space
+from seatsim.rig.sampled_loop import build_sampled_loop, build_seat_with_coil
 from seatsim.rig.sensors import Sensors
 from seatsim.scenario.loading import load
 from seatsim.schema.errors import InputError

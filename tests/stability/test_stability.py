@@ -5,12 +5,12 @@ import pytest
 
 import seatsim
 from controllers.analysis.margins import compute_margins
-from controllers.analysis.sampled_loop import build_sampled_loop
 from controllers.laws.static_output_feedback import OutputFeedback
 from controllers.linear_systems import LinearSystem
 from controllers.seat_plant import ActuatorLag, Weights, build_generalised_plant
 from seatsim.rig.coil import Coil
 from seatsim.rig.plant import Plant, state_space
+from seatsim.rig.sampled_loop import build_sampled_loop
 
 GAIN = np.array([[2.0, 2147.6]])
 COIL = Coil(130.0, 1.0)

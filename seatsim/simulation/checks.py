@@ -1,0 +1,140 @@
+"""Whether a run meets the checks of its scenario: its metrics, its sampled loop, and how it comes to rest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from seatsim.excitations.rest import Rest
+from seatsim.rig.control import LAWS, ForceLaw, prepare_law
+from seatsim.rig.sampled_loop import SampledLoop, build_sampled_loop
+from seatsim.scenario.checks import LOOP_FIGURES, STABLE, Check
+from seatsim.scenario.scenario import Scenario, Start
+from seatsim.schema.errors import InputError
+from seatsim.schema.registry import specification_of
+from seatsim.simulation.augment import augment_plant
+from seatsim.simulation.result import Run
+from seatsim.simulation.simulate import sample_period, simulate
+
+RELEASE = Start(displacement=0.02)
+"""Where the suspension is released to see whether the controlled seat comes to rest."""
+RELEASE_DURATION = 12.0
+"""Time in s from the release to the end of the observation, which is its last two seconds."""
+LARGEST_SPEED = 1e-3
+"""Speed of the suspension in m/s below which a released seat has come to rest."""
+
+
+class Figure(NamedTuple):
+    """A measured figure with its bounds."""
+
+    name: str
+    value: float
+    unit: str
+    low: float
+    high: float
+
+    @property
+    def is_within(self) -> bool:
+        """Whether the figure lies within its bounds; one that has no value does not."""
+        return self.low <= self.value <= self.high
+
+    def __str__(self) -> str:
+        unit = "" if self.unit == "-" else f" {self.unit}"
+        stated = {"at least": self.low, "at most": self.high}
+        bounds = [f"{word} {bound:.4g}{unit}" for word, bound in stated.items() if math.isfinite(bound)]
+        return f"{self.name} is {self.value:.4g}{unit}; it must be {' and '.join(bounds)}"
+
+
+class CheckedRun(NamedTuple):
+    """A check of a run with the figure that decides it: the first out of bounds, else the first that was measured."""
+
+    run: str
+    check: str
+    figure: Figure
+
+
+def check_run(run: Run) -> Iterator[CheckedRun]:
+    """Yield every check that a run has to meet with the figure that decides it, in the order of the file.
+
+    Raises:
+        InputError: the loop of a law that is not linear is asked for its margins, or a metric has no value in this run.
+    """
+    for check in applicable_checks(run.scenario):
+        yield CheckedRun(run.scenario.title, check.name, decide_check(run, check))
+
+
+def applicable_checks(scenario: Scenario) -> list[Check]:
+    """Return the checks that a run of this scenario has to meet."""
+    return [check for check in scenario.checks if check.is_made_of(scenario.label)]
+
+
+def decide_check(run: Run, check: Check) -> Figure:
+    """Return the figure that decides a check of a run.
+
+    Raises:
+        InputError: as for `check_run`.
+    """
+    figures = list(_measure(run, check))
+    return next((figure for figure in figures if not figure.is_within), figures[0])
+
+
+def _measure(run: Run, check: Check) -> Iterator[Figure]:
+    scenario, bounds = run.scenario, (check.low, check.high)
+    with scenario.placed("checks", check.name):
+        if check.name == STABLE:
+            yield from _measure_stability(scenario)
+        elif check.name in LOOP_FIGURES:
+            yield Figure(check.name, _loop_figure(scenario, check.name), LOOP_FIGURES[check.name], *bounds)
+        elif check.name in run.metrics:
+            metric = run.metrics[check.name]
+            yield Figure(check.name, metric.value, metric.unit, *bounds)
+        else:
+            raise InputError(f"the run has no {check.name}: what it is computed from is not stated or not recorded")
+
+
+def _measure_stability(scenario: Scenario) -> Iterator[Figure]:
+    """Yield the spectral radius of a linear loop, and for every law how fast a released seat still moves at the end."""
+    loop = _sampled_loop(scenario)
+    if isinstance(loop, SampledLoop):
+        # The largest number below 1: a loop with a radius of 1 does not come to rest.
+        radius, bound = loop.radius(_delay_samples(scenario, loop)), math.nextafter(1.0, 0.0)
+        yield Figure("spectral radius of the sampled loop", radius, "-", 0.0, bound)
+    released = simulate(replace(scenario, excitation=Rest(RELEASE_DURATION), start=RELEASE))
+    speed = np.abs(released["suspension_velocity"][-round(2.0 / released.step) :])
+    yield Figure("speed of the suspension 10 to 12 s after a release", float(speed.max()), "m/s", 0.0, LARGEST_SPEED)
+
+
+def _loop_figure(scenario: Scenario, name: str) -> float:
+    loop = _sampled_loop(scenario)
+    if not isinstance(loop, SampledLoop):
+        raise InputError(f"{loop}; name the variants that have such a loop, as {name}: {{min: x, per: [VARIANT]}}")
+    late = _delay_samples(scenario, loop)
+    if name == "disk_margin":
+        return loop.disk_margin(late)
+    return max(0.0, loop.delay_margin() - scenario.coil.delay)
+
+
+def _delay_samples(scenario: Scenario, loop: SampledLoop) -> int:
+    """Return the samples that the delay of the coil takes, rounded up, so that no loop looks better than it is."""
+    return math.ceil(round(scenario.coil.delay / loop.sample_time, 6))
+
+
+def _sampled_loop(scenario: Scenario) -> SampledLoop | str:
+    """Return the loop of a law that is linear at small motion, on the seat as its effects change it; else why none."""
+    plant, control = scenario.plant, scenario.control
+    if plant is None or control is None:
+        return "a damper bench has no loop"
+    period = sample_period(scenario.solver.step, control)
+    law = prepare_law(control.law, plant, scenario.coil, period)
+    if not isinstance(law, ForceLaw):
+        return f"law {LAWS.name_of(type(control.law))} wants a current, not a force, and has no linear loop"
+    initial = specification_of(type(control.law)).initial
+    augmented = augment_plant(scenario.effects, plant)
+    try:
+        return build_sampled_loop(law, initial, augmented, scenario.coil, period, control.sensors, scenario.solver.step)
+    except InputError as error:
+        return f"law {LAWS.name_of(type(control.law))}: {error}"
