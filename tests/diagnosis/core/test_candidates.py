@@ -210,3 +210,8 @@ def test_starts_and_off_values_are_within_the_range(listed):
         for name, value in EFFECTS.specification_of(cls).off.items():
             low, high = bounds(cls, name)
             assert low <= value <= high, (cls, name)
+
+
+def test_a_parameter_that_the_scenario_leaves_off_starts_as_in_the_form(listed):
+    found = by_effect(list_candidates(posed(effects=(GasSpring(10.0),))))["damper.gas_spring"]
+    assert found[1].start == (30.0, 500.0) and (found[1].scale > 0.0).all()

@@ -215,3 +215,10 @@ def test_comfort_is_the_rms_of_the_quoted_channels(folder):
     ]  # fmt: skip
     for figure in found:
         assert (figure.measured, figure.nominal, figure.after) == pytest.approx(np.sqrt([17.0, 25.0, 10.0]))
+
+
+def test_noise_alone_is_the_least_that_they_hold(folder):
+    objective = pose_one(folder)
+    found, rig = deviations_of(objective, (offer("a", "one", start=0.25), 0.5))
+    least = scatter(objective, ["one"]) / [1.0, 1.0, 0.25]
+    assert rig.cost < 1.1 * rig.rows and np.all(found > 0.95 * least) and np.all(found < 1.8 * least)

@@ -272,6 +272,8 @@ def test_noise_that_is_expected_too_large_hides_no_effect(solved):
     doubtful = Method(weigh_noise=lambda problem: weigh_noise(problem).scale(100.0))
     found = diagnose_problem(solved("a heavier driver")[1], method=doubtful)
     assert (found.verdict, found.selected) == ("known", ["driver.mass"])
+    chosen = solve(solved("a heavier driver")[1], (), lambda _: None, doubtful).decision.chosen
+    assert chosen.cost == pytest.approx(chosen.rows, rel=0.05)
 
 
 @pytest.mark.parametrize(("repeats", "verdict"), [(None, "unknown"), ({"again": "first"}, "known")])
