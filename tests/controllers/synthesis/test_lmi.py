@@ -10,6 +10,7 @@ from controllers.synthesis.certify import certify
 from controllers.synthesis.lmi import (
     _bounded_real,
     _change_states,
+    _recentre,
     _transpose,
     compute_full_order_bound,
     find_single_step_gain,
@@ -105,3 +106,22 @@ def test_the_single_step_gain_of_a_measured_state_is_near_the_best_in_any_unit_o
     plant = GeneralisedPlant(-one, size * one, size * one, [[1 / size], [0]], one / size, column, [[0], [1]], 0 * one)
     gain = find_single_step_gain(plant, 1.0, later())
     assert hinf_norm(plant.close(gain)).value == pytest.approx(np.sqrt(0.5), rel=0.1)
+
+
+def test_recentred_plants_have_unit_rate_gamma_columns_and_rows(random_plant):
+    plant, factor = random_plant(3), np.random.default_rng(2).standard_normal((4, 4))
+    p = _recentre(plant, factor, 5.0)
+    assert np.linalg.norm(p.A, 2) == pytest.approx(1.0)
+    np.testing.assert_allclose(np.linalg.norm(p.B2, axis=0), 1.0)
+    np.testing.assert_allclose(np.linalg.norm(p.C2, axis=1), 1.0)
+    rate = np.linalg.norm(factor @ plant.A @ np.linalg.inv(factor), 2)
+    wanted = frequency_response(plant.close(np.zeros((2, 2))), rate * OMEGA) / 5.0
+    np.testing.assert_allclose(frequency_response(p.close(np.zeros((2, 2))), OMEGA), wanted, rtol=1e-8)
+    # Gains are in other units, but the paths from u and to y are those of the plant up to a factor each.
+    for column in range(2):
+        ratio = np.append(factor @ plant.B2[:, column], np.sqrt(rate / 5.0) * plant.D12[:, column])
+        made = np.append(p.B2[:, column], p.D12[:, column])
+        np.testing.assert_allclose(made / np.linalg.norm(made), ratio / np.linalg.norm(ratio), rtol=1e-9)
+        row = np.append(plant.C2[column] @ np.linalg.inv(factor), np.sqrt(rate / 5.0) * plant.D21[column])
+        made = np.append(p.C2[column], p.D21[column])
+        np.testing.assert_allclose(made / np.linalg.norm(made), row / np.linalg.norm(row), rtol=1e-9)
