@@ -50,6 +50,7 @@ def test_the_quarter_car_maps_onto_the_seat_with_its_resonance(real_rigs, record
     assert 5.0 * found.floor["overall"] < found.overall < 0.4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name, known", [
     ("utfsm", [{"damper.gas_spring"}]),
     # The force follows the voltage faster one way than the other, by which the standard lag, too, is passed.

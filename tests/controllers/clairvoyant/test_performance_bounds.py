@@ -10,11 +10,6 @@ FOUND = ClairvoyantBounds(
 )
 
 
-def test_the_criterion_that_was_reached_and_the_width():
-    np.testing.assert_allclose(FOUND.reached, [1.5**2 + 0.25, 1.2**2 + 4.0])
-    np.testing.assert_allclose(FOUND.width, [np.sqrt(2.5 / 2.0) - 1, np.sqrt(5.44 / 5.0) - 1])
-
-
 def test_the_bound_is_the_highest_of_all_weights():
     assert FOUND.bound(0.0) == pytest.approx(np.sqrt(5.0))
     # At 1 m: 2 - 1 and 5 - 4 meet; at 1.2 m the first weight is higher; at 10 m nothing is left.
@@ -31,10 +26,3 @@ def test_the_best_is_interpolated_and_never_rises_with_travel():
     np.testing.assert_allclose(turned.best([0.75, 1.0, 1.5]), [1.35, 1.2, 1.15])
     worse = ClairvoyantBounds(FOUND.weights, FOUND.lower, np.array([1.2, 1.4]), FOUND.travel, FOUND.force, 0.005)
     np.testing.assert_allclose(worse.best([0.75, 3.0]), [1.2, 1.2])
-
-
-def test_the_curves_go_to_a_file_by_name_without_the_forces():
-    plain = FOUND.as_dict()
-    assert list(plain) == ["weights", "lower", "acceleration", "travel", "width"]
-    assert plain["lower"] == [2.0, 5.0] and plain["travel"] == [0.5, 1.0]
-    assert plain["width"] == pytest.approx(FOUND.width.tolist())
